@@ -1,0 +1,74 @@
+// The continuum models that compete for the grains, behind one small interface.
+// A new model is one file that implements Model and one line in continuum/registry.cc.
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace grainfield::continuum {
+
+/// A computation that failed (not converged, no equilibrium); the message says what to change.
+class ComputationFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A parameter value that the model cannot take: names it, the value found and what is allowed.
+class BadParameter : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A parameter of a model, declared once: checks, documentation and command line come from it.
+struct Parameter {
+  std::string name;                  ///< as the user types it
+  std::string unit;                  ///< "N/m", "m", "-", ...
+  std::string meaning;               ///< one line, with what raising it does where not obvious
+  std::string source;                ///< e.g. "Roul 5.2"
+  double value = 0;                  ///< default of a numerical parameter
+  double least = 0, most = 0;        ///< allowed range, inclusive unless the meaning says otherwise
+  std::vector<std::string> choices;  ///< not empty: a parameter of words; the first is the default
+};
+
+/// Values chosen by the user: numbers as text or words, by parameter name.
+using Settings = std::map<std::string, std::string>;
+
+/// n x dim matrix of positions in the project's axes (2D: x, y up; 3D: x, y, z up), m.
+using Points = Eigen::MatrixXd;
+/// n x 3 (2D: xx, yy, xy) or n x 6 (3D: xx, yy, zz, yz, xz, xy), tension positive; nan outside.
+using Stresses = Eigen::MatrixXd;
+
+/// A model with its parameters set.
+class Model {
+ public:
+  virtual ~Model() = default;
+  /// Stress at the points, in Pa (3D) or N/m (2D), tension positive; a row of nan where a point is
+  /// outside the model's domain. Throws ComputationFailed.
+  virtual Stresses stress(const Points& points) = 0;
+  /// Figures of the evaluation that belong into summary.json, e.g. unknowns, iterations, residual.
+  virtual std::map<std::string, double> figures() const { return {}; }
+};
+
+/// What the registry knows of a model before its parameters are set.
+struct ModelInfo {
+  std::string name;                   ///< as in `grainfield model NAME`
+  std::string summary;                ///< one line
+  int dim = 2;                        ///< of the points: 2, 3, or 0 = decided by parameter "dim"
+  std::vector<Parameter> parameters;
+  std::unique_ptr<Model> (*make)(const Settings&);  ///< throws BadParameter
+};
+
+/// Every model, in the order of the documentation.
+const std::vector<ModelInfo>& registry();
+/// The named model; throws BadParameter with the nearest names when there is none.
+const ModelInfo& find_model(const std::string& name);
+/// The dimension of the points of this model with these settings: 2 or 3.
+int dimension(const ModelInfo& info, const Settings& settings);
+/// A model ready to evaluate. Every setting must be a known parameter within its range (throws
+/// BadParameter naming the parameter, the value found, what is allowed and the nearest name).
+std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings);
+
+}  // namespace grainfield::continuum

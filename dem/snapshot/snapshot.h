@@ -1,0 +1,71 @@
+// The state of a packing at one instant, as the rest of the project and ParaView see it.
+// The HDF5 layout is documented in docs/file-formats.md.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace grainfield::dem {
+
+using Vec3 = Eigen::Vector3d;
+
+/// A grain. In 2D z is 0, "volume" is an area (m2), mass uses an areal density.
+struct Grain {
+  std::int64_t id = 0;       ///< the same grain has the same id in every snapshot of a run
+  Vec3 position{0, 0, 0};    ///< centroid, m
+  Vec3 velocity{0, 0, 0};    ///< m/s
+  double angle = 0;          ///< rotation about z, rad
+  double spin = 0;           ///< rad/s
+  double radius = 0;         ///< m
+  double mass = 0;           ///< kg
+  double inertia = 0;        ///< polar moment about the centroid, kg m2
+  double volume = 0;         ///< m2 in 2D
+  bool fixed = false;        ///< part of the apparatus (rough floor): takes force, does not move
+};
+
+/// A rigid immobile half plane: the grains are on the side the normal points to.
+struct Wall {
+  std::string name;          ///< "floor", "left", "right"
+  Vec3 point{0, 0, 0};       ///< on the wall, m
+  Vec3 normal{0, 1, 0};      ///< unit, into the grains
+  double friction = 0;       ///< coefficient of grain against wall
+};
+
+/// A contact that transmits force. j >= 0: index of the other grain; j = -1 - w: wall w.
+struct Contact {
+  std::int64_t i = 0, j = 0; ///< indices into Snapshot::grains, i < j for pairs
+  Vec3 point{0, 0, 0};       ///< contact point, m
+  Vec3 normal{0, 0, 0};      ///< unit, from i towards j
+  Vec3 force{0, 0, 0};       ///< on grain i by j, N; on j it is the opposite
+  double normal_force = 0;   ///< repulsion >= 0, N
+  double tangential_force = 0;  ///< signed along (-n_y, n_x), on grain i, N
+  double spring = 0;         ///< elastic part of tangential_force (the contact's memory), N
+  double friction = 0;       ///< Coulomb coefficient of this contact
+  bool sliding = false;      ///< |tangential| at mu * normal
+};
+
+struct Snapshot {
+  int dim = 2;
+  double time = 0;                 ///< s
+  Vec3 gravity{0, 0, 0};           ///< m/s2
+  std::int64_t loaded_grain = -1;  ///< id of the grain that carries the applied force, or -1
+  Vec3 applied_force{0, 0, 0};     ///< on that grain, N
+  std::vector<Grain> grains;       ///< sorted by id
+  std::vector<Contact> contacts;   ///< sorted by (i, j)
+  std::vector<Wall> walls;
+  std::map<std::string, std::string> attributes;  ///< law, parameters, seed, version, ...
+};
+
+/// Writes the snapshot as group `group` ("/unloaded", "/realization_003/loaded") of the file,
+/// creating the file or adding to it. Not atomic: the caller writes beside and renames.
+/// Throws std::runtime_error naming the file.
+void write_snapshot(const std::string& file, const std::string& group, const Snapshot& snapshot);
+/// Throws std::invalid_argument naming the file and what is missing or broken (not HDF5, truncated,
+/// no such group or column, contacts naming unknown grains).
+Snapshot read_snapshot(const std::string& file, const std::string& group);
+/// Every group of the file that holds a snapshot, in the file's order of names.
+std::vector<std::string> list_snapshots(const std::string& file);
+
+}  // namespace grainfield::dem
