@@ -1,0 +1,31 @@
+// What the layer's base feels: the force of the grains on a flat floor or on fixed grains, smeared
+// along x with the averaging kernel.
+#pragma once
+#include <Eigen/Core>
+
+#include "coupling/averaging/average.h"
+#include "coupling/averaging/kernel.h"
+#include "coupling/field.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// Stress on the base at abscissas x (packing's axes, m). Columns sigma_yy and sigma_xy (N/m,
+/// tension positive: a pressing layer gives sigma_yy < 0), `contacts` (1: within the kernel's
+/// range). The points are (x, frame floor). Contacts with a wall named "floor" or with a fixed
+/// grain count. The integral of -sigma_yy over all x is the total vertical floor force.
+Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, const Kernel& kernel);
+
+/// base_profile(loaded) - base_profile(unloaded). Throws as require_same_grains.
+Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
+                    const Eigen::VectorXd& x, const Kernel& kernel);
+
+/// Force of the base on the grains, N: (horizontal, vertical up).
+Eigen::Vector2d base_force(const dem::Snapshot& snapshot);
+/// The same of every wall but the floor: what the side walls carry.
+Eigen::Vector2d side_wall_force(const dem::Snapshot& snapshot);
+/// (vertical base force loaded - unloaded) / applied vertical force: `response.total_over_load`.
+/// nan without an applied force.
+double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,47 @@
+// Weights of coarse graining. A new kernel is one file that implements Kernel and one line in
+// kernel.cc.
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// A smooth or sharp isotropic weight of the plane: integral 1, zero beyond range().
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+  virtual std::string name() const = 0;
+  /// Radius beyond which the weight is zero, m.
+  virtual double range() const = 0;
+  /// The weight at distance r, 1/m2.
+  virtual double value(double r) const = 0;
+  /// Integral of the weight over s in [s0, s1] along a straight line that passes the point at
+  /// distance d (s is the arc length from the foot of the perpendicular), 1/m. The limits are
+  /// already inside the kernel's support. The default is Gauss-Legendre quadrature with 30 points
+  /// on either side of the foot (exact for polynomials in s of degree 59).
+  virtual double along_line(double d, double s0, double s1) const;
+
+  /// Standard deviation along one axis, m.
+  double standard_deviation() const;
+  /// Weight of the kernel seen from the side: its integral over y at abscissa x, 1/m. The kernel
+  /// with which forces on the floor are smeared along x.
+  double marginal(double x) const;
+  /// Distance over which values smeared with this kernel are worth one independent value:
+  /// 1 / integral of marginal squared, m (3.54 standard deviations for a Gaussian).
+  double independent_length() const;
+};
+
+/// Integral over t in [0, 1] of kernel(|point - (a + t (b - a))|), 1/m2: what the branch from a to
+/// b gives to the field at `point` (Weinhart et al. 2012 eq. 13). Cut at the kernel's support.
+double branch_weight(const Kernel& kernel, const Eigen::Vector2d& point, const Eigen::Vector2d& a,
+                     const Eigen::Vector2d& b);
+
+/// "lucy" (range 2 w), "gaussian" (standard deviation w, cut at 3 w and renormalised), "heaviside"
+/// (a disk of radius w). Throws std::invalid_argument for an unknown name (says the nearest) or a
+/// width that is not positive.
+std::unique_ptr<Kernel> make_kernel(const std::string& name, double width);
+const std::vector<std::string>& kernel_names();
+
+}  // namespace grainfield::coupling

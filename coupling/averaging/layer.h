@@ -1,0 +1,34 @@
+// The layer as a rectangle, and the frame in which continuum models see it: load at (0, 0), inside
+// is y < 0 down to y = -depth.
+#pragma once
+#include <Eigen/Core>
+
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// Edges of a settled layer in the packing's own axes, m.
+struct LayerFrame {
+  double left = 0, right = 0;  ///< side walls; without walls the outermost grains' edges
+  double floor = 0;            ///< flat floor's height; rough floor: mean height of the contacts
+                               ///< between free and fixed grains
+  double surface = 0;          ///< mean height of the highest grain edge over columns two mean
+                               ///< diameters wide
+  double load_x = 0;           ///< abscissa of the loaded grain, or the middle of the layer
+
+  double depth() const { return surface - floor; }
+  double width() const { return right - left; }
+  /// From the models' frame to the packing's axes; n x 2, m.
+  Eigen::MatrixXd to_packing(const Eigen::MatrixXd& model_points) const;
+  /// From the packing's axes to the models' frame; n x 2, m.
+  Eigen::MatrixXd to_model(const Eigen::MatrixXd& packing_points) const;
+};
+
+/// Measures the layer. `loaded_grain`: id of the grain that is or will be loaded (for load_x), -1:
+/// the snapshot's own. Throws std::invalid_argument when the snapshot has no free grain or is 3D.
+LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
+
+/// Mean diameter of the free grains, m; the unit in which kernel widths are usually chosen.
+double mean_diameter(const dem::Snapshot& snapshot);
+
+}  // namespace grainfield::coupling

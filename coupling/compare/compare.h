@@ -1,0 +1,89 @@
+// The simulation's profiles against the models', with the ensemble's errors, and the verdict
+// (docs/comparison.md).
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/compare/shape.h"
+
+namespace grainfield::coupling {
+
+/// The simulation along one horizontal line.
+struct Profile {
+  std::string name;                    ///< "depth 0.075 m", "base"
+  std::string key;                     ///< for summary keys: "depth_0.075", "base"
+  double depth = 0;                    ///< m below the surface
+  std::string quantity = "-sigma_yy";  ///< what the columns hold
+  std::string unit = "N/m";
+  Eigen::VectorXd x;              ///< m from the load, ascending
+  Eigen::VectorXd mean;           ///< over realizations
+  Eigen::VectorXd error;          ///< standard error of the mean; nan or empty with one realization
+  Eigen::MatrixXd samples;        ///< x.size() x realizations, or empty
+  double independent_length = 0;  ///< m: Kernel::independent_length of the averaging
+};
+
+/// One model on all the profiles' points, smoothed as the data are (compare/smooth.h).
+struct ModelProfiles {
+  std::string key;                      ///< for summary keys, e.g. "layer_smooth"
+  std::string label;                    ///< for people, e.g. "elastic layer, smooth base"
+  std::string family;                   ///< "half plane", "finite layer", ...; see family_of
+  std::vector<Eigen::VectorXd> values;  ///< one per profile, same points; nan = no value there
+};
+
+/// What the verdict calls a registry model: flamant, fe_elastic_half_space: "half plane"; layer,
+/// fe_elastic_layer: "finite layer"; others: their own name.
+std::string family_of(const std::string& model_name);
+
+/// Distance of a model from the simulation.
+struct Measures {
+  double rel_l2 = 0;        ///< |simulation - model| / |simulation|, root of the sums of squares
+  double largest = 0;       ///< largest |simulation - model|, the profile's unit
+  double largest_at = 0;    ///< its x, m
+  std::string largest_in;   ///< its profile's name
+  double chi2_per_dof = 0;  ///< see docs/comparison.md; nan with one realization
+  double dof = 0;           ///< independent points: length over independent_length
+};
+
+struct ModelComparison {
+  std::string key, label, family;
+  std::vector<Measures> per_profile;
+  Measures overall;
+  std::vector<ProfileShape> shapes;  ///< of the model, one per profile
+};
+
+/// Where the simulation lies between the best half plane (0) and the best finite layer (1).
+struct Verdict {
+  std::string best_model;        ///< key of the model nearest to the simulation
+  std::string sentence;          ///< for people, one line
+  bool distinguishable = false;  ///< the two nearest families differ by more than the spread
+  double position = 0;  ///< 0 the other family's best, 1 the winner's family; nan: only one family
+  double position_error = 0;         ///< standard error over realizations; nan with one
+  std::string ranked_by;             ///< "chi2_per_dof" | "rel_l2"
+  std::vector<std::string> ranking;  ///< keys, nearest first
+};
+
+struct Comparison {
+  std::vector<Profile> profiles;
+  std::vector<ModelProfiles> models;
+  std::vector<ProfileShape> shapes;      ///< of the simulation, one per profile
+  std::vector<ModelComparison> results;  ///< in the order of models
+  Verdict verdict;
+  int realizations = 1;
+  double load = 0;   ///< F, N
+  double depth = 0;  ///< h, m; F/h is the unit of normalised profiles
+};
+
+/// Throws std::invalid_argument for no profile, no model, sizes that differ, or a simulation that
+/// is nan everywhere.
+Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
+                   double depth);
+
+/// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,dof}, also per profile as
+/// compare.MODEL.PROFILE.*, verdict.position, verdict.position_error, and of the profile `main`
+/// (index) response.{peak,peak_at,width,rms_width,peaks,integral}. verdict.best_model is a word:
+/// see Verdict.
+std::map<std::string, double> summary_figures(const Comparison& comparison, std::size_t main);
+
+}  // namespace grainfield::coupling

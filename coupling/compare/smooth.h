@@ -1,0 +1,26 @@
+// A model seen through the averaging: its stress convolved with the kernel that made the data, so
+// that the kernel's broadening of a peak is not counted against the model.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+
+#include "coupling/averaging/kernel.h"
+
+namespace grainfield::coupling {
+
+/// n x 2 points in the models' frame to n x 3 stresses (xx, yy, xy), nan outside.
+using StressFunction = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
+
+/// Convolution over the plane at the points (models' frame, inside is -depth < y < 0); n x 3.
+/// Nodes below the base take the value at the base above (what extend_into_walls does to the data),
+/// nodes above the surface count zero stress (as empty space does). `rings` radial Gauss points
+/// times 2 rings + 2 directions; error falls spectrally away from the load. One call of `stress`.
+/// depth <= 0: a half plane.
+Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
+                                const Kernel& kernel, double depth, int rings = 6);
+
+/// Convolution along x with the kernel's marginal: what base_profile does to floor forces; n x 3.
+Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::MatrixXd& points,
+                               const Kernel& kernel, int nodes = 15);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,28 @@
+// A file that appears complete or not at all.
+#pragma once
+#include <string>
+
+namespace grainfield::coupling {
+
+/// Gives a temporary name beside `path`; commit() renames it to `path`; without commit() the
+/// destructor removes it. The folder must exist. Throws std::invalid_argument naming the path when
+/// the folder is missing or cannot be written, std::runtime_error when renaming fails.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  const std::string& path() const { return path_; }
+  const std::string& temporary() const { return temporary_; }
+  void commit();
+
+ private:
+  std::string path_, temporary_;
+  bool committed_ = false;
+};
+
+/// Writes text through an AtomicFile. Throws also when the disk is full.
+void write_text_file(const std::string& path, const std::string& text);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,29 @@
+// Tables that people and programs read: profiles.csv/.md/.tex and summary.json.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+
+#include "coupling/compare/compare.h"
+
+namespace grainfield::coupling {
+
+/// One row per profile point: profile, depth, x, simulation mean, standard error, and of each model
+/// its value, difference (simulation - model) and difference / standard error; header names carry
+/// units; comment lines (#) before give F, h, F/h and the number of realizations.
+std::string profiles_csv(const Comparison& comparison);
+/// The same rows for reading, normalised by F/h, at most `rows` rows per profile.
+std::string profiles_markdown(const Comparison& comparison, int rows = 25);
+std::string profiles_latex(const Comparison& comparison, int rows = 25);
+/// Writes folder/profiles.csv, .md and .tex, each complete or not at all.
+void write_profiles(const std::string& folder, const Comparison& comparison);
+
+/// Flat results of a run. Not-a-number is written as the string "nan", infinities as "inf", "-inf".
+using Summary = std::map<std::string, std::variant<double, std::int64_t, std::string>>;
+void write_summary(const std::string& file, const Summary& summary);
+/// Throws std::invalid_argument naming the file: missing, not JSON, not flat. "nan" comes back as a
+/// number.
+Summary read_summary(const std::string& file);
+
+}  // namespace grainfield::coupling

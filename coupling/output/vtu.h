@@ -1,0 +1,26 @@
+// Grains, contacts and force chains as VTK unstructured grids (ASCII .vtu), written complete or not
+// at all.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// The outline of a grain as a closed polygon (without repeating the first corner), m.
+std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides = 32);
+
+/// One polygon per grain. Cell data: id, radius, mass, fixed, coordination, force (sum of contact
+/// forces), pressure and stress (sum x F / V, tension positive), velocity, angle; with `reference`
+/// (the same grains earlier) also displacement and rotation.
+void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
+                      const dem::Snapshot* reference = nullptr);
+/// One line from centre to centre (centre to contact point for walls) per contact. Cell data:
+/// force, normal_force, tangential_force, sliding, wall (-1: a pair).
+void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot);
+/// One quadrilateral per contact along the branch whose width grows with the normal force (that of
+/// the largest force is the smaller grain's radius). Cell data: normal_force, relative_force.
+void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot);
+
+}  // namespace grainfield::coupling

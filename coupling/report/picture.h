@@ -1,0 +1,53 @@
+// Pictures as gnuplot programs, built from data. Every builder puts the data into the program
+// itself, so that drawing needs no other file.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "coupling/field.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+struct Picture {
+  std::string title, caption;
+  std::string program;            ///< gnuplot commands without terminal and output
+  int width = 900, height = 500;  ///< pixels
+  bool bitmap = false;            ///< PNG (many elements) instead of SVG
+};
+
+struct Series {
+  std::string label;
+  Eigen::VectorXd x, y, error;  ///< error empty or nan: no band
+  bool simulation = false;      ///< drawn with points and its band; models as lines
+};
+
+/// One frame of curves; `frames` stand in a grid under a common legend.
+struct Frame {
+  std::string title;
+  std::vector<Series> series;
+};
+Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
+               const std::vector<Frame>& frames);
+
+/// One map of a column on a regular grid; several side by side share the colour scale.
+struct Map {
+  std::string title;
+  int nx = 0, ny = 0;
+  Eigen::MatrixXd points;  ///< nx*ny x 2
+  Eigen::VectorXd value;
+};
+Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,
+             const std::string& value_label, const std::vector<Map>& maps);
+
+/// Grains with their contact forces as lines whose width grows with the force. With `reference` the
+/// lines show the change of force from it (more: red, less: blue).
+Picture packing(const std::string& title, const dem::Snapshot& snapshot,
+                const dem::Snapshot* reference = nullptr);
+
+/// Polar histogram of contact directions, weighted by count and by force; contacts with walls and
+/// fixed grains are left out.
+Picture contact_angles(const std::string& title, const dem::Snapshot& snapshot);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,43 @@
+// A self-contained HTML page made of sections: pictures, tables and text. Studies build a Report;
+// write_report draws the pictures with gnuplot and puts everything into one file.
+#pragma once
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "coupling/report/picture.h"
+
+namespace grainfield::coupling {
+
+struct Text {
+  std::string title;     ///< heading, or empty
+  std::string body;      ///< plain text; an empty line starts a paragraph
+  bool verdict = false;  ///< shown large
+};
+
+struct Table {
+  std::string title, caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+using Section = std::variant<Text, Picture, Table>;
+
+struct Report {
+  std::string title, subtitle;
+  std::vector<Section> sections;
+};
+
+/// What became of the pictures.
+struct ReportResult {
+  int pictures = 0;  ///< drawn
+  std::string
+      why_missing;  ///< empty, or why some were not: "gnuplot not found: install gnuplot-nox"
+};
+
+/// Writes the page complete or not at all. Pictures that cannot be drawn are replaced by the
+/// reason.
+ReportResult write_report(const std::string& file, const Report& report);
+
+}  // namespace grainfield::coupling
