@@ -13,37 +13,37 @@ using Vec3 = Eigen::Vector3d;
 
 /// A grain. In 2D z is 0, "volume" is an area (m2), mass uses an areal density.
 struct Grain {
-  std::int64_t id = 0;       ///< the same grain has the same id in every snapshot of a run
-  Vec3 position{0, 0, 0};    ///< centroid, m
-  Vec3 velocity{0, 0, 0};    ///< m/s
-  double angle = 0;          ///< rotation about z, rad
-  double spin = 0;           ///< rad/s
-  double radius = 0;         ///< m
-  double mass = 0;           ///< kg
-  double inertia = 0;        ///< polar moment about the centroid, kg m2
-  double volume = 0;         ///< m2 in 2D
-  bool fixed = false;        ///< part of the apparatus (rough floor): takes force, does not move
+  std::int64_t id = 0;     ///< the same grain has the same id in every snapshot of a run
+  Vec3 position{0, 0, 0};  ///< centroid, m
+  Vec3 velocity{0, 0, 0};  ///< m/s
+  double angle = 0;        ///< rotation about z, rad
+  double spin = 0;         ///< rad/s
+  double radius = 0;       ///< m
+  double mass = 0;         ///< kg
+  double inertia = 0;      ///< polar moment about the centroid, kg m2
+  double volume = 0;       ///< m2 in 2D
+  bool fixed = false;      ///< part of the apparatus (rough floor): takes force, does not move
 };
 
 /// A rigid immobile half plane: the grains are on the side the normal points to.
 struct Wall {
-  std::string name;          ///< "floor", "left", "right"
-  Vec3 point{0, 0, 0};       ///< on the wall, m
-  Vec3 normal{0, 1, 0};      ///< unit, into the grains
-  double friction = 0;       ///< coefficient of grain against wall
+  std::string name;      ///< "floor", "left", "right"
+  Vec3 point{0, 0, 0};   ///< on the wall, m
+  Vec3 normal{0, 1, 0};  ///< unit, into the grains
+  double friction = 0;   ///< coefficient of grain against wall
 };
 
 /// A contact that transmits force. j >= 0: index of the other grain; j = -1 - w: wall w.
 struct Contact {
-  std::int64_t i = 0, j = 0; ///< indices into Snapshot::grains, i < j for pairs
-  Vec3 point{0, 0, 0};       ///< contact point, m
-  Vec3 normal{0, 0, 0};      ///< unit, from i towards j
-  Vec3 force{0, 0, 0};       ///< on grain i by j, N; on j it is the opposite
-  double normal_force = 0;   ///< repulsion >= 0, N
+  std::int64_t i = 0, j = 0;    ///< indices into Snapshot::grains, i < j for pairs
+  Vec3 point{0, 0, 0};          ///< contact point, m
+  Vec3 normal{0, 0, 0};         ///< unit, from i towards j
+  Vec3 force{0, 0, 0};          ///< on grain i by j, N; on j it is the opposite
+  double normal_force = 0;      ///< repulsion >= 0, N
   double tangential_force = 0;  ///< signed along (-n_y, n_x), on grain i, N
-  double spring = 0;         ///< elastic part of tangential_force (the contact's memory), N
-  double friction = 0;       ///< Coulomb coefficient of this contact
-  bool sliding = false;      ///< |tangential| at mu * normal
+  double spring = 0;            ///< elastic part of tangential_force (the contact's memory), N
+  double friction = 0;          ///< Coulomb coefficient of this contact
+  bool sliding = false;         ///< |tangential| at mu * normal
 };
 
 struct Snapshot {

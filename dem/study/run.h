@@ -1,36 +1,32 @@
-// A realization as a resumable sequence of phases. A new study (a pile, a shear box) implements Run.
+// A realization as a resumable sequence of phases. A new study (a pile, a shear box) implements
+// Run.
 #pragma once
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "dem/engine/engine.h"  // ComputationFailed
 #include "dem/snapshot/snapshot.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::dem {
 
-/// A simulation that failed (diverged, never came to rest): says when, where and what to change.
-class ComputationFailed : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 struct Progress {
-  std::string phase;             ///< "deposit row 3/16", "rest", "load", "hold"
-  double fraction = 0;           ///< of the whole realization, an estimate in [0, 1]
-  double simulated_time = 0;     ///< s
+  std::string phase;          ///< "deposit row 3/16", "rest", "load", "hold"
+  double fraction = 0;        ///< of the whole realization, an estimate in [0, 1]
+  double simulated_time = 0;  ///< s
   long steps = 0;
-  int grains = 0;                ///< grains in motion or at rest so far, without fixed ones
-  double kinetic_energy = 0;     ///< J
+  int grains = 0;             ///< grains in motion or at rest so far, without fixed ones
+  double kinetic_energy = 0;  ///< J
   double unbalanced_force_ratio = 0;
 };
 
 /// What a finished realization leaves.
 struct RunResult {
-  std::vector<std::pair<std::string, Snapshot>> snapshots;  ///< e.g. {"unloaded", ..}, {"loaded", ..}
+  std::vector<std::pair<std::string, Snapshot>>
+      snapshots;                          ///< e.g. {"unloaded", ..}, {"loaded", ..}
   std::map<std::string, double> figures;  ///< summary keys, e.g. "dem.grains", "base.weight_ratio"
 };
 
@@ -50,8 +46,9 @@ class Run {
   virtual RunResult result() const = 0;
 };
 
-/// Throws std::invalid_argument naming the key of the setup that does not hold ("motion.time_step").
-/// The bits of the result do not depend on threads.
-std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint64_t seed, int threads);
+/// Throws std::invalid_argument naming the key of the setup that does not hold
+/// ("motion.time_step"). The bits of the result do not depend on threads.
+std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint64_t seed,
+                                         int threads);
 
 }  // namespace grainfield::dem

@@ -6,35 +6,35 @@
 namespace grainfield::dem {
 
 struct PackingSetup {
-  std::string kind = "layered";     ///< triangular | sqrt3 | layered
-  std::string sizes = "uniform";    ///< mono | bidisperse | uniform
-  double radius = 0.0045;           ///< m; mono, and the larger of bidisperse
-  double radius_small = 0.0035;     ///< m; the smaller of bidisperse
-  double fraction_small = 0.5;      ///< share by number of the smaller grains
-  double radius_min = 0.0036;       ///< m; uniform
-  double radius_max = 0.0054;       ///< m; uniform
-  int columns = 64;                 ///< lattices: grains in a row
-  int rows = 16;                    ///< lattices: rows
-  double width = 0.6;               ///< m; layered
-  double depth = 0.15;              ///< m; layered: rows are dropped until this height is reached
-  double drop_height = 0.008;       ///< m above the surface from which a row is dropped
-  std::string floor = "smooth";     ///< smooth (flat wall with friction) | rough (fixed grains)
-  double jitter = 0;                ///< lattices: relative spread of radii, uniform +- (0 = perfect)
+  std::string kind = "layered";   ///< triangular | sqrt3 | layered
+  std::string sizes = "uniform";  ///< mono | bidisperse | uniform
+  double radius = 0.0045;         ///< m; mono, and the larger of bidisperse
+  double radius_small = 0.0035;   ///< m; the smaller of bidisperse
+  double fraction_small = 0.5;    ///< share by number of the smaller grains
+  double radius_min = 0.0036;     ///< m; uniform
+  double radius_max = 0.0054;     ///< m; uniform
+  int columns = 64;               ///< lattices: grains in a row
+  int rows = 16;                  ///< lattices: rows
+  double width = 0.6;             ///< m; layered
+  double depth = 0.15;            ///< m; layered: rows are dropped until this height is reached
+  double drop_height = 0.008;     ///< m above the surface from which a row is dropped
+  std::string floor = "smooth";   ///< smooth (flat wall with friction) | rough (fixed grains)
+  double jitter = 0;              ///< lattices: relative spread of radii, uniform +- (0 = perfect)
 };
 
 struct MaterialSetup {
-  std::string law = "overlap_area"; ///< overlap_area | linear
-  double density = 5000;            ///< kg/m2
-  double young = 1e7;               ///< N/m; overlap_area
-  double damping = 0.75;            ///< gamma of overlap_area, -
-  double normal_stiffness = 1e7;    ///< N/m; linear
+  std::string law = "overlap_area";       ///< overlap_area | linear
+  double density = 5000;                  ///< kg/m2
+  double young = 1e7;                     ///< N/m; overlap_area
+  double damping = 0.75;                  ///< gamma of overlap_area, -
+  double normal_stiffness = 1e7;          ///< N/m; linear
   double tangential_stiffness = 2e7 / 7;  ///< N/m; linear
-  double normal_damping = 500;      ///< 1/s; linear: force m_eff * gamma_n * v_n
-  double tangential_damping = 250;  ///< 1/s; linear
-  double friction = 0.5;            ///< grain on grain
-  double floor_friction = 0.5;      ///< grain on flat floor
-  double wall_friction = 0;         ///< grain on side walls
-  double gravity = 9.81;            ///< m/s2, downwards
+  double normal_damping = 500;            ///< 1/s; linear: force m_eff * gamma_n * v_n
+  double tangential_damping = 250;        ///< 1/s; linear
+  double friction = 0.5;                  ///< grain on grain
+  double floor_friction = 0.5;            ///< grain on flat floor
+  double wall_friction = 0;               ///< grain on side walls
+  double gravity = 9.81;                  ///< m/s2, downwards
 };
 
 struct MotionSetup {
@@ -44,10 +44,10 @@ struct MotionSetup {
 };
 
 struct RestSetup {
-  double unbalanced_force_ratio = 1e-6;      ///< mean resultant / mean contact force
+  double unbalanced_force_ratio = 1e-6;  ///< mean resultant / mean contact force
   double kinetic_to_elastic_energy = 1e-10;
-  double background_damping = 20;            ///< 1/s, acceleration -= this * v while coming to rest
-  double max_time = 20;                      ///< s of simulated time for any one rest
+  double background_damping = 20;  ///< 1/s, acceleration -= this * v while coming to rest
+  double max_time = 20;            ///< s of simulated time for any one rest
 };
 
 struct LoadSetup {

@@ -1,0 +1,38 @@
+#include "dem/engine/engine.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "dem/engine/engine_loop.h"
+#include "dem/integrators/gear.h"
+#include "dem/integrators/verlet.h"
+
+namespace grainfield::dem {
+
+double stable_time_step(double least_mass, double stiffness) {
+  return 0.1 * std::numbers::pi * std::sqrt(least_mass / stiffness);
+}
+
+std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
+  if (!(settings.time_step > 0)) {
+    throw std::invalid_argument(
+        fmt::format("motion.time_step: found {} s, allowed: above 0", settings.time_step));
+  }
+  if (!(settings.friction >= 0)) {
+    throw std::invalid_argument(
+        fmt::format("material.friction: found {}, allowed: 0 or more", settings.friction));
+  }
+  // Laws times integrators, each compiled as one loop. A new law joins the variant in engine.h.
+  return std::visit(
+      [&settings]<class Law>(const Law& law) -> std::unique_ptr<Engine> {
+        if (settings.integrator == IntegratorKind::gear) {
+          return std::make_unique<EngineLoop<Law, GearIntegrator>>(settings, law);
+        }
+        return std::make_unique<EngineLoop<Law, VerletIntegrator>>(settings, law);
+      },
+      settings.law);
+}
+
+}  // namespace grainfield::dem

@@ -1,0 +1,105 @@
+// The discrete-element engine: grains, walls, contacts and time.
+//
+// One step, on any number of threads with the same bits:
+//   1. every grain: integrator begins (moves), displacement since the last neighbour search
+//   2. every candidate pair and wall: overlap, law, force written beside the pair
+//   3. every grain: gathers its contacts' forces in a fixed order; integrator ends
+// Parts 3 and 1 of successive steps are one sweep. Shape, law and integrator are fixed at compile
+// time inside (engine_loop.h); this interface hides them.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "dem/engine/body.h"
+#include "dem/laws/linear.h"
+#include "dem/laws/overlap_area.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::dem {
+
+/// A simulation that failed (diverged, never came to rest): says when, where and what to change.
+class ComputationFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class IntegratorKind { verlet, gear };
+
+struct EngineSettings {
+  std::variant<OverlapAreaLaw, LinearLaw> law;
+  IntegratorKind integrator = IntegratorKind::verlet;
+  double time_step = 1e-5;                  ///< s
+  double friction = 0.5;                    ///< grain on grain
+  double gravity_x = 0, gravity_y = -9.81;  ///< m/s2
+  double skin = 0;  ///< m; gap kept in the neighbour list; 0 = chosen from the radii
+  int threads = 1;
+};
+
+/// A grain to be added.
+struct NewGrain {
+  double x = 0, y = 0, vx = 0, vy = 0, angle = 0, spin = 0;
+  double radius = 0;
+  double density = 0;  ///< kg/m2
+  bool fixed = false;
+};
+
+/// A force on one grain that rises from 0 to its full value along a smooth ramp (3 s^2 - 2 s^3).
+struct AppliedForce {
+  std::int64_t id = -1;   ///< grain, -1: none
+  double fx = 0, fy = 0;  ///< full force, N
+  double start = 0;       ///< s
+  double ramp = 0;        ///< s; 0: at once
+};
+
+/// State of rest and energy, from the forces of the last step.
+struct Diagnostics {
+  double kinetic_energy = 0;          ///< J
+  double elastic_energy = 0;          ///< J
+  double mean_contact_force = 0;      ///< N
+  double mean_unbalanced_force = 0;   ///< N, mean resultant on the free grains
+  double max_unbalanced_force = 0;    ///< N
+  double unbalanced_force_ratio = 0;  ///< mean resultant / mean contact force
+  double max_overlap_ratio = 0;       ///< largest depth / smaller radius
+  double height = 0;                  ///< top of the highest free grain, m
+  int contacts = 0;                   ///< that carry force, with walls
+  int sliding = 0;
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Adds a grain and returns its id (0, 1, 2, ...). Radius and density must be positive.
+  virtual std::int64_t add(const NewGrain& grain) = 0;
+  virtual void add_wall(const Wall& wall) = 0;
+  /// Applies this force from now on instead of any earlier one.
+  virtual void apply(const AppliedForce& force) = 0;
+  /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
+  virtual void set_background_damping(double rate) = 0;
+  /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges.
+  virtual void step(long n) = 0;
+
+  virtual double time() const = 0;
+  virtual long steps() const = 0;
+  virtual int grains() const = 0;  ///< without fixed ones
+  virtual double time_step() const = 0;
+  virtual Diagnostics measure() const = 0;
+  virtual Snapshot snapshot() const = 0;
+
+  /// The whole state, in bits, and back. restore() expects an engine made with the same settings
+  /// and without grains; throws std::invalid_argument when the image does not fit.
+  virtual std::string image() const = 0;
+  virtual void restore(const std::string& image) = 0;
+};
+
+/// The largest stable time step, (1/10) pi sqrt(m_min / stiffness) (physics section 2), s.
+double stable_time_step(double least_mass, double stiffness);
+
+/// Throws std::invalid_argument for settings out of range.
+std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
+
+}  // namespace grainfield::dem

@@ -1,0 +1,53 @@
+#include "dem/engine/thread_team.h"
+
+namespace grainfield::dem {
+
+ThreadTeam::ThreadTeam(int size) : size_(size < 1 ? 1 : size), barrier_(size_) {
+  for (int rank = 1; rank < size_; ++rank) threads_.emplace_back([this, rank] { serve(rank); });
+}
+
+ThreadTeam::~ThreadTeam() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadTeam::run(const std::function<void(int)>& work) {
+  if (size_ > 1) {
+    const std::lock_guard lock(mutex_);
+    work_ = &work;
+    running_ = size_ - 1;
+    ++generation_;
+  }
+  wake_.notify_all();
+  work(0);
+  if (size_ > 1) {
+    std::unique_lock lock(mutex_);
+    finished_.wait(lock, [this] { return running_ == 0; });
+  }
+}
+
+void ThreadTeam::serve(int rank) {
+  long seen = 0;
+  while (true) {
+    const std::function<void(int)>* work = nullptr;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [&] { return stop_ || generation_ != seen; });
+      if (stop_) return;
+      seen = generation_;
+      work = work_;
+    }
+    (*work)(rank);
+    {
+      const std::lock_guard lock(mutex_);
+      --running_;
+    }
+    finished_.notify_one();
+  }
+}
+
+}  // namespace grainfield::dem

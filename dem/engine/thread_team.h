@@ -1,0 +1,49 @@
+// A few threads that run one function together and meet at barriers.
+#pragma once
+#include <barrier>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace grainfield::dem {
+
+/// Runs a function on `size` threads (the caller is one of them). Threads are kept between runs.
+class ThreadTeam {
+ public:
+  explicit ThreadTeam(int size);
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
+
+  int size() const { return size_; }
+  /// Calls work(rank) for rank 0..size-1 and returns when all have. work must not throw.
+  void run(const std::function<void(int)>& work);
+  /// Within work: waits for all. Free when there is one thread.
+  void meet() {
+    if (size_ > 1) barrier_.arrive_and_wait();
+  }
+
+ private:
+  void serve(int rank);
+
+  int size_;
+  std::barrier<> barrier_;
+  std::mutex mutex_;
+  std::condition_variable wake_, finished_;
+  const std::function<void(int)>* work_ = nullptr;
+  long generation_ = 0;
+  int running_ = 0;
+  bool stop_ = false;
+  std::vector<std::thread> threads_;
+};
+
+/// The part [first, last) of n items that `rank` of `size` handles.
+inline std::pair<int, int> share(int n, int rank, int size) {
+  const long long first = static_cast<long long>(n) * rank / size;
+  const long long last = static_cast<long long>(n) * (rank + 1) / size;
+  return {static_cast<int>(first), static_cast<int>(last)};
+}
+
+}  // namespace grainfield::dem

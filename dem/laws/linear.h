@@ -1,0 +1,38 @@
+// Linear spring and dashpot on the overlap depth, damping proportional to the effective mass.
+//
+//   F_n = k_n depth + m_eff gamma_n v_n   (never attractive)
+//   spring k_t v_t dt, dashpot m_eff gamma_t v_t
+#pragma once
+#include "dem/laws/contact.h"
+
+namespace grainfield::dem {
+
+struct LinearLaw {
+  static constexpr const char* name = "linear";
+  static constexpr bool needs_area = false;
+  double normal_stiffness = 1e7;           ///< k_n, N/m
+  double tangential_stiffness_ = 2e7 / 7;  ///< k_t, N/m
+  double normal_damping = 500;             ///< gamma_n, 1/s
+  double tangential_damping = 250;         ///< gamma_t, 1/s
+
+  double stiffness() const { return std::max(normal_stiffness, tangential_stiffness_); }
+  double tangential_stiffness() const { return tangential_stiffness_; }
+
+  LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
+                      double& spring) const {
+    const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
+    const double normal =
+        std::max(normal_stiffness * o.depth + mass * normal_damping * m.approach, 0.0);
+    const double force = friction_force(normal, mu, tangential_stiffness_,
+                                        mass * tangential_damping, m.slip, dt, spring);
+    return {normal, force};
+  }
+
+  /// Elastic energy, J.
+  double energy(const Overlap& o, double spring) const {
+    return 0.5 * normal_stiffness * o.depth * o.depth +
+           (tangential_stiffness_ > 0 ? 0.5 * spring * spring / tangential_stiffness_ : 0.0);
+  }
+};
+
+}  // namespace grainfield::dem

@@ -1,0 +1,46 @@
+// Roul's soft-grain law: repulsion from the overlap area (Roul ch. 2; physics: R = E A / l).
+//
+//   R = E A / l                          l = r_i r_j / (r_i + r_j)
+//   D = gamma (dA/dt)/l sqrt(E m_eff)    m_eff = m_i m_j / (m_i + m_j),  D >= -R: never attractive
+//   spring (2/7) E v_t dt, dashpot sqrt((2/7) E m_t) v_t, 1/m_t = 1/m_i + 1/m_j + r_i^2/I_i +
+//   r_j^2/I_j
+#pragma once
+#include "dem/laws/contact.h"
+
+namespace grainfield::dem {
+
+struct OverlapAreaLaw {
+  static constexpr const char* name = "overlap_area";
+  static constexpr bool needs_area = true;
+  double young = 1e7;     ///< E, N/m
+  double damping = 0.75;  ///< gamma, -; raising it makes impacts less elastic
+
+  /// Stiffness that bounds the time step, N/m.
+  double stiffness() const { return young; }
+  double tangential_stiffness() const { return young * (2.0 / 7); }
+
+  LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
+                      double& spring) const {
+    const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
+    const double scale = young / o.length;
+    const double elastic = scale * o.area;
+    const double viscous =
+        damping * o.chord * m.approach / o.length * std::sqrt(young / inverse_sum);
+    const double normal = std::max(elastic + viscous, 0.0);
+    const double inverse_tangential = inverse_sum + o.arm_i * o.arm_i * m.inverse_inertia_i +
+                                      o.arm_j * o.arm_j * m.inverse_inertia_j;
+    const double kt = tangential_stiffness();
+    const double force =
+        friction_force(normal, mu, kt, std::sqrt(kt / inverse_tangential), m.slip, dt, spring);
+    return {normal, force};
+  }
+
+  /// Elastic energy, J: the work of R at constant l, (E/l) * integral of A over the depth. The
+  /// integral of the lens area is 2/5 A depth for small overlaps (A ~ depth^{3/2}), to O(depth/r).
+  double energy(const Overlap& o, double spring) const {
+    return 0.4 * young * o.area / o.length * o.depth +
+           0.5 * spring * spring / tangential_stiffness();
+  }
+};
+
+}  // namespace grainfield::dem
