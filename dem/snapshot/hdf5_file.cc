@@ -124,6 +124,14 @@ std::vector<long long> read_integers(hid_t group, const std::string& name, int c
   return read_any<long long>(group, name, columns, where, H5T_NATIVE_LLONG);
 }
 
+void write_bytes(hid_t group, const std::string& name, const std::string& bytes) {
+  write_any(group, name, std::vector<char>(bytes.begin(), bytes.end()), 1, "", H5T_NATIVE_CHAR);
+}
+std::string read_bytes(hid_t group, const std::string& name, const std::string& where) {
+  const auto values = read_any<char>(group, name, 1, where, H5T_NATIVE_CHAR);
+  return std::string(values.begin(), values.end());
+}
+
 bool has_attribute(hid_t object, const std::string& name) {
   return H5Aexists(object, name.c_str()) > 0;
 }

@@ -46,6 +46,9 @@ std::vector<double> read_doubles(hid_t group, const std::string& name, int colum
                                  const std::string& where);
 std::vector<long long> read_integers(hid_t group, const std::string& name, int columns,
                                      const std::string& where);
+/// Uninterpreted bytes.
+void write_bytes(hid_t group, const std::string& name, const std::string& bytes);
+std::string read_bytes(hid_t group, const std::string& name, const std::string& where);
 bool has_attribute(hid_t object, const std::string& name);
 std::string read_text_attribute(hid_t object, const std::string& name);
 double read_number_attribute(hid_t object, const std::string& name);

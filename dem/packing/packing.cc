@@ -1,0 +1,182 @@
+#include "dem/packing/packing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainfield::dem {
+namespace {
+
+void require(bool holds, const char* key, double found, const char* allowed) {
+  if (!holds) {
+    throw std::invalid_argument(
+        fmt::format("packing.{}: found {:g}, allowed: {}", key, found, allowed));
+  }
+}
+
+NewGrain grain_at(double x, double y, double radius, double density) {
+  NewGrain g;
+  g.x = x;
+  g.y = y;
+  g.radius = radius;
+  g.density = density;
+  return g;
+}
+
+// Radii side by side until no further grain fits into the width, and what is left over.
+std::vector<double> fill_width(const PackingSetup& packing, double width, Random& random,
+                               double& slack) {
+  std::vector<double> radii;
+  slack = width;
+  while (true) {
+    const double r = draw_radius(packing, random);
+    if (2 * r > slack) break;
+    radii.push_back(r);
+    slack -= 2 * r;
+  }
+  return radii;
+}
+
+}  // namespace
+
+void check_packing(const PackingSetup& p) {
+  if (p.kind == "layered") {
+    require(p.width >= 4 * largest_radius(p), "width", p.width, "at least two grain diameters");
+    require(p.depth >= 2 * largest_radius(p), "depth", p.depth, "at least one grain diameter");
+    require(p.drop_height >= 0, "drop_height", p.drop_height, "0 or more");
+  } else {
+    require(p.columns >= 2, "columns", p.columns, "2 or more");
+    require(p.rows >= 1, "rows", p.rows, "1 or more");
+    if (p.sizes != "mono") {
+      throw std::invalid_argument(fmt::format(
+          "packing.sizes: found {}, allowed: mono, because packing.kind = {} is a lattice", p.sizes,
+          p.kind));
+    }
+    require(p.jitter >= 0 && p.jitter < 0.5, "jitter", p.jitter, "0 to below 0.5");
+  }
+  require(smallest_radius(p) > 0, "radius", smallest_radius(p), "above 0");
+  if (p.sizes == "uniform") {
+    require(p.radius_max >= p.radius_min, "radius_max", p.radius_max,
+            "at least packing.radius_min");
+  }
+}
+
+double draw_radius(const PackingSetup& p, Random& random) {
+  if (p.sizes == "bidisperse") {
+    return random.uniform() < p.fraction_small ? p.radius_small : p.radius;
+  }
+  if (p.sizes == "uniform") return random.uniform(p.radius_min, p.radius_max);
+  return p.jitter > 0 ? p.radius * (1 - 2 * p.jitter * random.uniform()) : p.radius;
+}
+
+double largest_radius(const PackingSetup& p) {
+  if (p.sizes == "bidisperse") return std::max(p.radius, p.radius_small);
+  return p.sizes == "uniform" ? p.radius_max : p.radius;
+}
+
+double smallest_radius(const PackingSetup& p) {
+  if (p.sizes == "bidisperse") return std::min(p.radius, p.radius_small);
+  return p.sizes == "uniform" ? p.radius_min : p.radius * (1 - 2 * p.jitter);
+}
+
+double layer_width(const PackingSetup& p) {
+  const double d = 2 * p.radius;
+  if (p.kind == "triangular") return p.columns * d;
+  if (p.kind == "sqrt3") return (p.columns - 1) * std::sqrt(3.0) * d + d;
+  return p.width;
+}
+
+std::vector<Wall> layer_walls(const PackingSetup& p, const MaterialSetup& material) {
+  const double half = 0.5 * layer_width(p);
+  const bool rough = p.floor == "rough";
+  std::vector<Wall> walls(3);
+  // Below a rough floor's grains the plane is out of reach.
+  walls[0] = {"floor", Vec3(0, rough ? -2 * largest_radius(p) : 0.0, 0), Vec3(0, 1, 0),
+              material.floor_friction};
+  walls[1] = {"left", Vec3(-half, 0, 0), Vec3(1, 0, 0), material.wall_friction};
+  walls[2] = {"right", Vec3(half, 0, 0), Vec3(-1, 0, 0), material.wall_friction};
+  return walls;
+}
+
+std::vector<NewGrain> floor_grains(const PackingSetup& p, double density, Random& random) {
+  std::vector<NewGrain> grains;
+  if (p.floor != "rough") return grains;
+  const double width = layer_width(p);
+  double slack = 0;
+  const std::vector<double> radii = fill_width(p, width, random, slack);
+  const double gap = radii.empty() ? 0 : slack / static_cast<double>(radii.size());
+  double x = -0.5 * width;
+  for (const double r : radii) {
+    NewGrain g = grain_at(x + 0.5 * gap + r, -r, r, density);
+    g.fixed = true;
+    grains.push_back(g);
+    x += 2 * r + gap;
+  }
+  return grains;
+}
+
+std::vector<NewGrain> lattice_grains(const PackingSetup& p, double density, Random& random) {
+  std::vector<NewGrain> grains;
+  const double d = 2 * p.radius;
+  const bool triangular = p.kind == "triangular";
+  const double along = triangular ? d : std::sqrt(3.0) * d;
+  const double up = triangular ? std::sqrt(3.0) / 2 * d : 0.5 * d;
+  // On a rough floor (tops at y = 0, same spacing) the first row of a triangular lattice sits in
+  // the hollows; a sqrt(3) lattice rests on the tops.
+  const bool in_hollows = triangular && p.floor == "rough";
+  const double base = in_hollows ? up - p.radius : p.radius;
+  for (int row = 0; row < p.rows; ++row) {
+    const bool shifted = (row % 2 == 1) != in_hollows;
+    const int count = shifted ? p.columns - 1 : p.columns;
+    const double start = -0.5 * (count - 1) * along;
+    for (int k = 0; k < count; ++k) {
+      grains.push_back(
+          grain_at(start + k * along, base + row * up, draw_radius(p, random), density));
+    }
+  }
+  return grains;
+}
+
+std::vector<NewGrain> row_of_grains(const PackingSetup& p, double density, double y,
+                                    Random& random) {
+  const double width = layer_width(p);
+  double slack = 0;
+  const std::vector<double> radii = fill_width(p, width, random, slack);
+  // Gaps: shares of the slack by uniform weights.
+  std::vector<double> weights(radii.size() + 1);
+  double total = 0;
+  for (double& w : weights) total += w = random.uniform();
+  std::vector<NewGrain> grains;
+  double x = -0.5 * width;
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    x += slack * weights[k] / total;
+    grains.push_back(grain_at(x + radii[k], y + radii[k], radii[k], density));
+    x += 2 * radii[k];
+  }
+  return grains;
+}
+
+double surface_height(const Snapshot& snapshot, double width) {
+  double radius_sum = 0;
+  int count = 0;
+  for (const Grain& g : snapshot.grains) {
+    if (g.fixed) continue;
+    radius_sum += g.radius;
+    ++count;
+  }
+  if (count == 0) return 0;
+  const int strips = std::max(1, static_cast<int>(width / (4 * radius_sum / count)));
+  std::vector<double> top(strips, 0.0);
+  for (const Grain& g : snapshot.grains) {
+    if (g.fixed) continue;
+    const int k =
+        std::clamp(static_cast<int>((g.position.x() / width + 0.5) * strips), 0, strips - 1);
+    top[k] = std::max(top[k], g.position.y() + g.radius);
+  }
+  double sum = 0;
+  for (const double t : top) sum += t;
+  return sum / strips;
+}
+
+}  // namespace grainfield::dem

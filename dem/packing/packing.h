@@ -1,0 +1,47 @@
+// Where grains and walls of a layer start: lattices, and rows to be dropped one after the other.
+// The floor's surface is y = 0; the layer spans x in [-width/2, width/2] between side walls.
+#pragma once
+#include <vector>
+
+#include "dem/engine/engine.h"
+#include "dem/random/random.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::dem {
+
+/// Throws std::invalid_argument naming the key ("packing.radius_max"), the value and what is
+/// allowed.
+void check_packing(const PackingSetup& packing);
+
+/// Radius of the next grain, m: mono, bidisperse (by number) or uniform in [radius_min,
+/// radius_max].
+double draw_radius(const PackingSetup& packing, Random& random);
+double largest_radius(const PackingSetup& packing);
+double smallest_radius(const PackingSetup& packing);
+
+/// Distance between the side walls, m.
+double layer_width(const PackingSetup& packing);
+
+/// Floor, left and right wall with their friction.
+std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& material);
+
+/// The fixed grains of a rough floor: side by side from wall to wall, their tops at y = 0, sizes as
+/// the packing's. Empty for a smooth floor.
+std::vector<NewGrain> floor_grains(const PackingSetup& packing, double density, Random& random);
+
+/// All grains of a lattice, touching and without overlap.
+/// triangular: rows offset by half a diameter, six neighbours; odd rows have one grain less.
+/// sqrt3 (Roul 5.4): spacing sqrt(3) d in a row, rows offset by half of it and d/2 apart, so that a
+/// grain touches four others at +-30 degrees from the horizontal and none in its row.
+std::vector<NewGrain> lattice_grains(const PackingSetup& packing, double density, Random& random);
+
+/// One row to drop: grains side by side with random gaps from wall to wall, their lowest points at
+/// height y.
+std::vector<NewGrain> row_of_grains(const PackingSetup& packing, double density, double y,
+                                    Random& random);
+
+/// Height of the free surface, m: mean over vertical strips four mean radii wide of the highest
+/// grain top. 0 without free grains.
+double surface_height(const Snapshot& snapshot, double width);
+
+}  // namespace grainfield::dem

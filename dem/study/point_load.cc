@@ -1,0 +1,389 @@
+// A layer is built, comes to rest, and one of its top grains is loaded (Roul ch. 5):
+//   deposit (layered packings) -> rest -> snapshot "unloaded" -> load -> hold -> snapshot "loaded".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include "dem/engine/image.h"
+#include "dem/packing/packing.h"
+#include "dem/snapshot/hdf5_file.h"
+#include "dem/study/contact_changes.h"
+#include "dem/study/run.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Rest is judged every so many steps, counted within a phase: cheap beside the steps themselves.
+constexpr long kCheckEvery = 200;
+// A dropped row counts as settled when the mean kinetic energy per grain is below this share of
+// m g r of a mean grain: then nothing rises by more than a hundredth of a radius any more.
+constexpr double kSettledShare = 0.01;
+// ... but is given at least the time of its fall and at most this, s.
+constexpr double kMaxSettleTime = 2.0;
+
+enum class Phase : int { deposit, rest, load, hold, done };
+
+class PointLoadRun final : public Run {
+ public:
+  PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads);
+
+  void advance(long steps) override;
+  bool done() const override { return phase_ == Phase::done; }
+  Progress progress() const override;
+  void save(const std::string& file) const override;
+  void restore(const std::string& file) override;
+  RunResult result() const override;
+
+ private:
+  void enter(Phase phase);
+  void decide();
+  void drop_row();
+  bool at_rest() const;
+  void add(const std::vector<NewGrain>& grains);
+  std::string fingerprint() const;
+  Snapshot take_snapshot(const char* state) const;
+  std::int64_t choose_loaded_grain(const Snapshot& snapshot) const;
+
+  PointLoadSetup setup_;
+  std::uint64_t seed_;
+  Random random_;
+  double width_;
+  std::unique_ptr<Engine> engine_;
+  Phase phase_ = Phase::deposit;
+  long phase_steps_ = 0;
+  int rows_dropped_ = 0;
+  std::optional<Snapshot> unloaded_, loaded_;
+};
+
+double stiffness_of(const MaterialSetup& m) {
+  return m.law == "linear" ? std::max(m.normal_stiffness, m.tangential_stiffness) : m.young;
+}
+
+EngineSettings engine_settings(const PointLoadSetup& s, int threads) {
+  const MaterialSetup& m = s.material;
+  EngineSettings e;
+  if (m.law == "linear") {
+    e.law = LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+                      m.tangential_damping};
+  } else {
+    e.law = OverlapAreaLaw{m.young, m.damping};
+  }
+  const double r = smallest_radius(s.packing);
+  const double least_mass = m.density * std::numbers::pi * r * r;
+  const double limit = stable_time_step(least_mass, stiffness_of(m));
+  e.time_step = s.motion.time_step > 0 ? s.motion.time_step : s.motion.time_step_fraction * limit;
+  if (e.time_step > limit) {
+    throw std::invalid_argument(fmt::format(
+        "{}: found {:.4g} s, allowed: at most the stable limit {:.4g} s = (1/10) pi sqrt(m_min/{})",
+        s.motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction", e.time_step,
+        limit, m.law == "linear" ? "k" : "E"));
+  }
+  e.integrator = s.motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
+  e.friction = m.friction;
+  e.gravity_x = 0;
+  e.gravity_y = -m.gravity;
+  e.threads = threads;
+  return e;
+}
+
+PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
+    : setup_(setup), seed_(seed), random_(seed) {
+  check_packing(setup_.packing);
+  if (!(setup_.material.gravity > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "material.gravity: found {:g}, allowed: above 0 (a layer needs weight to come to rest)",
+        setup_.material.gravity));
+  }
+  width_ = layer_width(setup_.packing);
+  engine_ = make_engine(engine_settings(setup_, threads));
+  for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
+  add(floor_grains(setup_.packing, setup_.material.density, random_));
+  if (setup_.packing.kind == "layered") {
+    enter(Phase::deposit);
+    drop_row();
+  } else {
+    add(lattice_grains(setup_.packing, setup_.material.density, random_));
+    enter(Phase::rest);
+  }
+}
+
+void PointLoadRun::add(const std::vector<NewGrain>& grains) {
+  for (const NewGrain& g : grains) engine_->add(g);
+}
+
+void PointLoadRun::drop_row() {
+  const double top = rows_dropped_ == 0 ? 0.0 : engine_->measure().height;
+  add(row_of_grains(setup_.packing, setup_.material.density, top + setup_.packing.drop_height,
+                    random_));
+  ++rows_dropped_;
+}
+
+void PointLoadRun::enter(Phase phase) {
+  phase_ = phase;
+  phase_steps_ = 0;
+  engine_->set_background_damping(phase == Phase::deposit ? 0 : setup_.rest.background_damping);
+}
+
+bool PointLoadRun::at_rest() const {
+  const Diagnostics d = engine_->measure();
+  return d.unbalanced_force_ratio <= setup_.rest.unbalanced_force_ratio &&
+         d.kinetic_energy <= setup_.rest.kinetic_to_elastic_energy * d.elastic_energy;
+}
+
+void PointLoadRun::advance(long steps) {
+  while (steps > 0 && phase_ != Phase::done) {
+    const long chunk = std::min(steps, kCheckEvery - phase_steps_ % kCheckEvery);
+    engine_->step(chunk);
+    phase_steps_ += chunk;
+    steps -= chunk;
+    if (phase_steps_ % kCheckEvery == 0) decide();
+  }
+}
+
+void PointLoadRun::decide() {
+  const double in_phase = static_cast<double>(phase_steps_) * engine_->time_step();
+  switch (phase_) {
+    case Phase::deposit: {
+      const Diagnostics d = engine_->measure();
+      const double r = 0.5 * (smallest_radius(setup_.packing) + largest_radius(setup_.packing));
+      const double mass = setup_.material.density * std::numbers::pi * r * r;
+      const double fall =
+          1.5 * std::sqrt(2 * (setup_.packing.drop_height + 2 * r) / setup_.material.gravity);
+      const bool settled = d.kinetic_energy <=
+                           kSettledShare * mass * setup_.material.gravity * r * engine_->grains();
+      if (in_phase < fall || (!settled && in_phase < kMaxSettleTime)) return;
+      if (surface_height(engine_->snapshot(), width_) >= setup_.packing.depth) {
+        enter(Phase::rest);
+      } else {
+        drop_row();
+        phase_steps_ = 0;
+      }
+      return;
+    }
+    case Phase::rest:
+    case Phase::hold:
+      if (at_rest()) {
+        if (phase_ == Phase::hold) {
+          loaded_ = take_snapshot("loaded");
+          phase_ = Phase::done;
+          return;
+        }
+        unloaded_ = take_snapshot("unloaded");
+        AppliedForce force;
+        force.id = choose_loaded_grain(*unloaded_);
+        force.fy = -setup_.load.force;
+        force.start = engine_->time();
+        force.ramp = setup_.load.ramp_time;
+        engine_->apply(force);
+        enter(Phase::load);
+      } else if (in_phase > setup_.rest.max_time) {
+        const Diagnostics d = engine_->measure();
+        throw ComputationFailed(fmt::format(
+            "no rest within rest.max_time = {:g} s ({} the load): unbalanced force ratio {:.2g}, "
+            "kinetic/elastic energy {:.2g}; raise rest.max_time or rest.background_damping, or "
+            "lower "
+            "load.force",
+            setup_.rest.max_time, phase_ == Phase::hold ? "after" : "before",
+            d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy));
+      }
+      return;
+    case Phase::load:
+      if (in_phase >= setup_.load.ramp_time) enter(Phase::hold);
+      return;
+    case Phase::done:
+      return;
+  }
+}
+
+std::int64_t PointLoadRun::choose_loaded_grain(const Snapshot& s) const {
+  const double x0 = (setup_.load.position - 0.5) * width_;
+  const double reach = largest_radius(setup_.packing);
+  std::int64_t best = -1;
+  double height = -1;
+  // The highest grain within a radius of the wanted place; ties go to the nearer one.
+  for (const Grain& g : s.grains) {
+    if (g.fixed || std::fabs(g.position.x() - x0) > reach) continue;
+    const double key = g.position.y() - 1e-3 * std::fabs(g.position.x() - x0);
+    if (best < 0 || key > height) {
+      best = g.id;
+      height = key;
+    }
+  }
+  if (best < 0) {
+    throw std::invalid_argument(fmt::format(
+        "load.position: found {:g}, allowed: a share of the width with a grain below it",
+        setup_.load.position));
+  }
+  return best;
+}
+
+Snapshot PointLoadRun::take_snapshot(const char* state) const {
+  Snapshot s = engine_->snapshot();
+  s.attributes["state"] = state;
+  s.attributes["seed"] = fmt::format("{}", seed_);
+  s.attributes["packing"] = setup_.packing.kind;
+  s.attributes["floor"] = setup_.packing.floor;
+  return s;
+}
+
+Progress PointLoadRun::progress() const {
+  const Diagnostics d = engine_->measure();
+  Progress p;
+  p.simulated_time = engine_->time();
+  p.steps = engine_->steps();
+  p.grains = engine_->grains();
+  p.kinetic_energy = d.kinetic_energy;
+  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
+  const bool layered = setup_.packing.kind == "layered";
+  const double in_phase = static_cast<double>(phase_steps_) * engine_->time_step();
+  // How far a rest has come, on the logarithm of the unbalanced force ratio, from 1 down.
+  const double rest = std::clamp(std::log(std::max(d.unbalanced_force_ratio, 1e-300)) /
+                                     std::log(setup_.rest.unbalanced_force_ratio),
+                                 0.0, 1.0);
+  const double built = layered ? 0.4 : 0.0;
+  switch (phase_) {
+    case Phase::deposit:
+      p.phase = fmt::format("deposit row {}", rows_dropped_);
+      p.fraction =
+          built *
+          std::clamp((d.height - setup_.packing.drop_height) / setup_.packing.depth, 0.0, 1.0);
+      break;
+    case Phase::rest:
+      p.phase = "rest";
+      p.fraction = built + (0.5 - 0.5 * built) * rest;
+      break;
+    case Phase::load:
+      p.phase = "load";
+      p.fraction = 0.5 + 0.5 * built +
+                   0.2 * std::min(1.0, in_phase / std::max(setup_.load.ramp_time, 1e-300));
+      break;
+    case Phase::hold:
+      p.phase = "hold";
+      p.fraction = 0.7 + 0.3 * rest;
+      break;
+    case Phase::done:
+      p.phase = "done";
+      p.fraction = 1;
+      break;
+  }
+  return p;
+}
+
+std::string PointLoadRun::fingerprint() const {
+  const PackingSetup& p = setup_.packing;
+  const MaterialSetup& m = setup_.material;
+  return fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} {} {} {} {} {} {} {} {} {} {} {} | {} {} | "
+      "{} {} {} {} | "
+      "{} {} {} | {}",
+      p.kind, p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max,
+      p.columns, p.rows, p.width, p.depth, p.drop_height, p.floor, p.jitter, m.law, m.density,
+      m.young, m.damping, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+      m.tangential_damping, m.friction, m.floor_friction, m.wall_friction, m.gravity,
+      setup_.motion.integrator, engine_->time_step(), setup_.rest.unbalanced_force_ratio,
+      setup_.rest.kinetic_to_elastic_energy, setup_.rest.background_damping, setup_.rest.max_time,
+      setup_.load.force, setup_.load.ramp_time, setup_.load.position, seed_);
+}
+
+void PointLoadRun::save(const std::string& file) const {
+  const std::string beside = file + ".part";
+  std::filesystem::remove(beside);
+  {
+    ImageWriter w;
+    w.put(fingerprint());
+    w.put(phase_);
+    w.put(phase_steps_);
+    w.put(rows_dropped_);
+    w.put(random_.state());
+    w.put(engine_->image());
+    const hdf5::Handle handle = hdf5::open_for_adding(beside);
+    hdf5::write_bytes(handle, "checkpoint", w.bytes());
+  }
+  if (unloaded_) write_snapshot(beside, "/unloaded", *unloaded_);
+  if (loaded_) write_snapshot(beside, "/loaded", *loaded_);
+  std::filesystem::rename(beside, file);
+}
+
+void PointLoadRun::restore(const std::string& file) {
+  std::string bytes;
+  {
+    const hdf5::Handle handle = hdf5::open_for_reading(file);
+    bytes = hdf5::read_bytes(handle, "checkpoint", file);
+  }
+  ImageReader r(bytes);
+  std::string of, image;
+  r.get(of);
+  if (of != fingerprint()) {
+    throw std::invalid_argument(
+        fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
+  }
+  std::uint64_t random_state = 0;
+  r.get(phase_);
+  r.get(phase_steps_);
+  r.get(rows_dropped_);
+  r.get(random_state);
+  r.get(image);
+  r.finish();
+  random_.set_state(random_state);
+  engine_->restore(image);
+  unloaded_.reset();
+  loaded_.reset();
+  if (phase_ >= Phase::load) unloaded_ = read_snapshot(file, "/unloaded");
+  if (phase_ == Phase::done) loaded_ = read_snapshot(file, "/loaded");
+}
+
+RunResult PointLoadRun::result() const {
+  RunResult out;
+  if (!unloaded_ || !loaded_) return out;
+  out.snapshots = {{"unloaded", *unloaded_}, {"loaded", *loaded_}};
+  auto& f = out.figures;
+  const Diagnostics d = engine_->measure();
+  f["dem.grains"] = engine_->grains();
+  f["dem.contacts"] = d.contacts;
+  f["dem.sliding_contacts"] = d.sliding;
+  f["dem.steps"] = static_cast<double>(engine_->steps());
+  f["dem.time_step"] = engine_->time_step();
+  f["dem.unbalanced_force_ratio"] = d.unbalanced_force_ratio;
+  f["dem.unbalanced_force_max_ratio"] = d.max_unbalanced_force / d.mean_contact_force;
+  f["dem.kinetic_to_elastic_energy"] = d.kinetic_energy / d.elastic_energy;
+  f["dem.max_overlap_ratio"] = d.max_overlap_ratio;
+
+  double weight = 0, area = 0;
+  for (const Grain& g : unloaded_->grains) {
+    if (g.fixed) continue;
+    weight += g.mass * setup_.material.gravity;
+    area += g.volume;
+  }
+  const double height = surface_height(*unloaded_, width_);
+  f["dem.layer_height"] = height;
+  f["dem.layer_width"] = width_;
+  f["dem.volume_fraction"] = area / (width_ * height);
+  f["base.weight_ratio"] = base_force(*unloaded_).y() / weight;
+  f["base.response_over_load"] =
+      (base_force(*loaded_) - base_force(*unloaded_)).y() / setup_.load.force;
+  const Grain& grain = unloaded_->grains[loaded_->loaded_grain];
+  f["load.force"] = setup_.load.force;
+  f["load.x"] = grain.position.x();
+  f["load.y"] = grain.position.y();
+
+  const ContactChanges c = compare_contacts(*unloaded_, *loaded_);
+  f["load.contacts_gained"] = c.gained;
+  f["load.contacts_lost"] = c.lost;
+  f["load.newly_sliding"] = c.newly_sliding;
+  f["load.max_displacement_over_radius"] = c.max_displacement_over_radius;
+  f["load.no_rearrangement"] = c.gained == 0 && c.lost == 0 ? 1 : 0;
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint64_t seed,
+                                         int threads) {
+  return std::make_unique<PointLoadRun>(setup, seed, threads);
+}
+
+}  // namespace grainfield::dem
