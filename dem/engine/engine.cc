@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,8 +12,15 @@
 
 namespace grainfield::dem {
 
-double stable_time_step(double least_mass, double stiffness) {
-  return 0.1 * std::numbers::pi * std::sqrt(least_mass / stiffness);
+double stable_time_step(const EngineSettings& settings, double least_mass) {
+  const double viscous_limit = settings.integrator == IntegratorKind::gear ? 0.16 : 1.0;
+  return std::visit(
+      [&](const auto& law) {
+        const double elastic = 0.1 * std::numbers::pi * std::sqrt(least_mass / law.stiffness());
+        const double rate = law.viscous_rate(least_mass);
+        return rate > 0 ? std::min(elastic, viscous_limit / rate) : elastic;
+      },
+      settings.law);
 }
 
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {

@@ -18,6 +18,12 @@ struct LinearLaw {
   double stiffness() const { return std::max(normal_stiffness, tangential_stiffness_); }
   double tangential_stiffness() const { return tangential_stiffness_; }
 
+  /// Decay rate of the fastest dashpot mode of a packing of equal disks, 1/s: six neighbours
+  /// spinning alike (24 c/m with c = gamma_t m/2), or moving against each other (6 c/m).
+  double viscous_rate(double) const {
+    return std::max(12 * tangential_damping, 3 * normal_damping);
+  }
+
   LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
                       double& spring) const {
     const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);

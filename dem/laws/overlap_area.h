@@ -19,6 +19,12 @@ struct OverlapAreaLaw {
   double stiffness() const { return young; }
   double tangential_stiffness() const { return young * (2.0 / 7); }
 
+  /// Decay rate of the fastest dashpot mode of a packing of equal disks of mass m, 1/s: six
+  /// neighbours spinning alike, 24 c/m with c = sqrt((2/7) E m/6).
+  double viscous_rate(double mass) const {
+    return 24 * std::sqrt(tangential_stiffness() / (6 * mass));
+  }
+
   LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
                       double& spring) const {
     const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;

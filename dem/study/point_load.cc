@@ -59,10 +59,6 @@ class PointLoadRun final : public Run {
   std::optional<Snapshot> unloaded_, loaded_;
 };
 
-double stiffness_of(const MaterialSetup& m) {
-  return m.law == "linear" ? std::max(m.normal_stiffness, m.tangential_stiffness) : m.young;
-}
-
 EngineSettings engine_settings(const PointLoadSetup& s, int threads) {
   const MaterialSetup& m = s.material;
   EngineSettings e;
@@ -72,17 +68,17 @@ EngineSettings engine_settings(const PointLoadSetup& s, int threads) {
   } else {
     e.law = OverlapAreaLaw{m.young, m.damping};
   }
+  e.integrator = s.motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
   const double r = smallest_radius(s.packing);
-  const double least_mass = m.density * std::numbers::pi * r * r;
-  const double limit = stable_time_step(least_mass, stiffness_of(m));
+  const double limit = stable_time_step(e, m.density * std::numbers::pi * r * r);
   e.time_step = s.motion.time_step > 0 ? s.motion.time_step : s.motion.time_step_fraction * limit;
   if (e.time_step > limit) {
-    throw std::invalid_argument(fmt::format(
-        "{}: found {:.4g} s, allowed: at most the stable limit {:.4g} s = (1/10) pi sqrt(m_min/{})",
-        s.motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction", e.time_step,
-        limit, m.law == "linear" ? "k" : "E"));
+    throw std::invalid_argument(
+        fmt::format("{}: found {:.4g} s, allowed: at most the stable limit of {:.4g} s for {} with "
+                    "this material",
+                    s.motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction",
+                    e.time_step, limit, s.motion.integrator));
   }
-  e.integrator = s.motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
   e.friction = m.friction;
   e.gravity_x = 0;
   e.gravity_y = -m.gravity;

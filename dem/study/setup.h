@@ -38,16 +38,16 @@ struct MaterialSetup {
 };
 
 struct MotionSetup {
-  std::string integrator = "gear";  ///< gear | verlet
-  double time_step = 0;             ///< s; 0 = time_step_fraction of the stable limit
-  double time_step_fraction = 0.5;  ///< of (1/10) pi sqrt(m_min / stiffness)
+  std::string integrator = "verlet";  ///< verlet | gear (same results, ten times shorter steps)
+  double time_step = 0;               ///< s; 0 = time_step_fraction of the stable limit
+  double time_step_fraction = 0.8;    ///< of the stable limit (engine.h: stable_time_step)
 };
 
 struct RestSetup {
   double unbalanced_force_ratio = 1e-6;  ///< mean resultant / mean contact force
   double kinetic_to_elastic_energy = 1e-10;
-  double background_damping = 20;  ///< 1/s, acceleration -= this * v while coming to rest
-  double max_time = 20;            ///< s of simulated time for any one rest
+  double background_damping = 100;  ///< 1/s, acceleration -= this * v while coming to rest
+  double max_time = 20;             ///< s of simulated time for any one rest
 };
 
 struct LoadSetup {
