@@ -1,0 +1,83 @@
+#include "coupling/averaging/base.h"
+
+#include <cmath>
+#include <limits>
+
+namespace grainfield::coupling {
+namespace {
+
+// Calls visit(contact point, force on the layer) for every contact of a free grain with a wall or a
+// fixed grain; `base`: with the floor and fixed grains, otherwise with the other walls.
+template <class Visit>
+void for_each_support(const dem::Snapshot& snapshot, bool base, Visit&& visit) {
+  for (const dem::Contact& contact : snapshot.contacts) {
+    const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
+    const Eigen::Vector2d point = contact.point.head<2>(), force = contact.force.head<2>();
+    if (contact.j < 0) {
+      const dem::Wall& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
+      if (!gi.fixed && (wall.name == "floor") == base) visit(point, force);
+      continue;
+    }
+    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
+    if (base && gi.fixed != fixed_j) visit(point, fixed_j ? force : Eigen::Vector2d(-force));
+  }
+}
+
+Eigen::Vector2d support_force(const dem::Snapshot& snapshot, bool base) {
+  Eigen::Vector2d sum(0, 0);
+  for_each_support(snapshot, base, [&](const auto&, const Eigen::Vector2d& f) { sum += f; });
+  return sum;
+}
+
+}  // namespace
+
+Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, const Kernel& kernel) {
+  Field field;
+  field.points.resize(x.size(), 2);
+  field.points.col(0) = x;
+  field.points.col(1).setConstant(layer_frame(snapshot).floor);
+  Eigen::VectorXd yy = Eigen::VectorXd::Zero(x.size()), xy = yy, count = yy;
+  for_each_support(snapshot, true, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
+    for (Eigen::Index p = 0; p < x.size(); ++p) {
+      const double distance = x[p] - point.x();
+      if (std::abs(distance) >= kernel.range()) continue;
+      const double weight = kernel.marginal(distance);
+      yy[p] -= weight * force.y();
+      xy[p] -= weight * force.x();
+      count[p] += 1;
+    }
+  });
+  field.add("sigma_yy", "N/m").value = yy;
+  field.add("sigma_xy", "N/m").value = xy;
+  field.add("contacts", "1").value = count;
+  field.attributes = {
+      {"what", "stress on the base"}, {"kernel", kernel.name()}, {"sign", "tension positive"}};
+  return field;
+}
+
+Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
+                    const Eigen::VectorXd& x, const Kernel& kernel) {
+  require_same_grains(unloaded, loaded);
+  const Field before = base_profile(unloaded, x, kernel);
+  Field change = base_profile(loaded, x, kernel);
+  change.points = before.points;
+  for (std::size_t c = 0; c < 2; ++c) change.columns[c].value -= before.columns[c].value;
+  change.columns[2].value = change.columns[2].value.cwiseMin(before.columns[2].value);
+  change.attributes["what"] = "stress on the base, loaded - unloaded";
+  return change;
+}
+
+Eigen::Vector2d base_force(const dem::Snapshot& snapshot) { return support_force(snapshot, true); }
+
+Eigen::Vector2d side_wall_force(const dem::Snapshot& snapshot) {
+  return support_force(snapshot, false);
+}
+
+double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {
+  require_same_grains(unloaded, loaded);
+  const double load = unloaded.applied_force.y() - loaded.applied_force.y();
+  if (load == 0) return std::numeric_limits<double>::quiet_NaN();
+  return (base_force(loaded).y() - base_force(unloaded).y()) / load;
+}
+
+}  // namespace grainfield::coupling
