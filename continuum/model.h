@@ -54,9 +54,9 @@ class Model {
 
 /// What the registry knows of a model before its parameters are set.
 struct ModelInfo {
-  std::string name;                   ///< as in `grainfield model NAME`
-  std::string summary;                ///< one line
-  int dim = 2;                        ///< of the points: 2, 3, or 0 = decided by parameter "dim"
+  std::string name;     ///< as in `grainfield model NAME`
+  std::string summary;  ///< one line
+  int dim = 2;          ///< of the points: 2, 3, or 0 = decided by parameter "dim"
   std::vector<Parameter> parameters;
   std::unique_ptr<Model> (*make)(const Settings&);  ///< throws BadParameter
 };
@@ -65,6 +65,10 @@ struct ModelInfo {
 const std::vector<ModelInfo>& registry();
 /// The named model; throws BadParameter with the nearest names when there is none.
 const ModelInfo& find_model(const std::string& name);
+/// The range or the choices of a parameter in words, e.g. "above 0 m" or "smooth, rough".
+std::string allowed(const Parameter& parameter);
+/// The one of the names with the fewest differing letters; empty when there are none.
+std::string nearest(const std::string& name, const std::vector<std::string>& names);
 /// The dimension of the points of this model with these settings: 2 or 3.
 int dimension(const ModelInfo& info, const Settings& settings);
 /// A model ready to evaluate. Every setting must be a known parameter within its range (throws

@@ -1,0 +1,137 @@
+// Elastic layer of depth h on a rigid base under a line load, plane strain.
+//
+// With d the depth, k the wave number, s = k d, u = k h, Airy's function is
+//   phi = (F/pi) Int g(s) cos(k x) / k^2 dk,  so that
+//   sigma_xx = (F/pi) Int g'' cos(k x) dk,  sigma_yy = -(F/pi) Int g cos(k x) dk,
+//   sigma_xd = (F/pi) Int g' sin(k x) dk,   primes: d/ds.
+// Top: g(0) = 1 (the load), g'(0) = 0 (no shear). Base, s = u: no vertical displacement,
+//   (1-nu) g''' - (2-nu) g' = 0, and either no shear, g' = 0 (smooth), or no horizontal
+//   displacement, (1-nu) g'' + nu g = 0 (rough).
+// g = (1+s) exp(-s) is Flamant's half plane, added in closed form. The rest vanishes with its first
+// derivative at s = 0:
+//   g_r = a (sinh s - s cosh s) + b s sinh s,
+// with a, b of order u exp(-2u): the integrand decays like exp(-k (2h - d)), also under the load.
+#include <Eigen/LU>
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "continuum/closed/half_space.h"
+#include "continuum/closed/models.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+using Gauss = boost::math::quadrature::gauss<double, 30>;
+
+/// Values that differ from the base's height by less than this part of h are on the base.
+constexpr double kOnBase = 1e-9;
+/// The integrand's tail beyond exp(-48) u^2 is below 1e-17 of the peak.
+constexpr double kDecay = 48;
+/// Panels: 30 Gauss points carry 6 rad of cos(k x) and 2 units of u (the integrand's nearest
+/// poles, zeros of sinh 2u + 2u, are 2.1 away from the real axis) to round-off.
+constexpr double kPanelPhase = 6, kPanelWidth = 2;
+
+/// The functions p = sinh s - s cosh s and q = s sinh s and their derivatives, times exp(-s).
+struct Basis {
+  double p0, p1, p2, p3, q0, q1, q2, q3;
+  explicit Basis(double s) {
+    const double sh = -0.5 * std::expm1(-2 * s), ch = 1 - sh;
+    // The series replaces a difference of nearly equal terms.
+    p0 = s < 1e-2 ? -std::exp(-s) * s * s * s * (1. / 3 + s * s / 30 + s * s * s * s / 840)
+                  : sh - s * ch;
+    p1 = -s * sh;
+    p2 = -sh - s * ch;
+    p3 = -2 * ch - s * sh;
+    q0 = s * sh;
+    q1 = sh + s * ch;
+    q2 = 2 * ch + s * sh;
+    q3 = 3 * sh + s * ch;
+  }
+};
+
+class Layer : public Model {
+ public:
+  Layer(double load, double depth, double poisson, bool rough)
+      : load_(load), h_(depth), nu_(poisson), rough_(rough) {}
+
+  Stresses stress(const Points& points) override {
+    Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const double x = points(i, 0), y = points(i, 1);
+      if (!(y < 0) || !(y >= -h_ * (1 + kOnBase)) || !std::isfinite(x)) continue;
+      out.row(i) = at(x, std::max(y, -h_)).transpose();
+    }
+    return out;
+  }
+
+ private:
+  /// exp(2u) a and exp(2u) b.
+  Eigen::Vector2d coefficients(double u) const {
+    const Basis f(u);
+    // Flamant's g' = -s, g'' = s - 1, g''' = 2 - s, g = 1 + s, all times exp(-s).
+    Eigen::Matrix2d m;
+    Eigen::Vector2d rhs;
+    m.row(0) << (1 - nu_) * f.p3 - (2 - nu_) * f.p1, (1 - nu_) * f.q3 - (2 - nu_) * f.q1;
+    rhs(0) = -((1 - nu_) * (2 - u) + (2 - nu_) * u);
+    if (rough_) {
+      m.row(1) << (1 - nu_) * f.p2 + nu_ * f.p0, (1 - nu_) * f.q2 + nu_ * f.q0;
+      rhs(1) = -((1 - nu_) * (u - 1) + nu_ * (1 + u));
+    } else {
+      m.row(1) << f.p1, f.q1;
+      rhs(1) = u;
+    }
+    return m.inverse() * rhs;
+  }
+
+  Eigen::Vector3d at(double x, double y) const {
+    const double t = -y / h_, phase = x / h_;
+    const double end = kDecay / (2 - t);
+    const double width = std::min(kPanelWidth, kPanelPhase / std::max(std::abs(phase), 1e-3));
+    const int panels = static_cast<int>(std::ceil(end / width));
+    const double half = 0.5 * end / panels;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // g'' cos, g cos, g' sin
+    const auto add = [&](double u, double weight) {
+      const Eigen::Vector2d ab = coefficients(u);
+      const Basis f(u * t);
+      const double scale = weight * std::exp(-u * (2 - t));
+      const double c = scale * std::cos(u * phase), s = scale * std::sin(u * phase);
+      sum += Eigen::Vector3d(c * (ab(0) * f.p2 + ab(1) * f.q2), c * (ab(0) * f.p0 + ab(1) * f.q0),
+                             s * (ab(0) * f.p1 + ab(1) * f.q1));
+    };
+    for (int panel = 0; panel < panels; ++panel) {
+      const double middle = (2 * panel + 1) * half;
+      for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+        add(middle + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+        add(middle - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+      }
+    }
+    sum *= load_ / (M_PI * h_);
+    const auto half_plane = flamant_stress(load_, x, y);
+    // sigma_xd changes sign with the axis that points up.
+    return {half_plane[0] + sum(0), half_plane[1] - sum(1), half_plane[2] - sum(2)};
+  }
+
+  double load_, h_, nu_;
+  bool rough_;
+};
+
+}  // namespace
+
+ModelInfo layer_info() {
+  return {
+      "layer",
+      "elastic layer on a rigid base under a line load",
+      2,
+      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+       number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+       number("nu", "-", "Poisson's ratio; sigma_yy over a smooth base does not depend on it",
+              "elasticity, plane strain", 0.3, 0, 0.5),
+       choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
+      [](const Settings& s) -> std::unique_ptr<Model> {
+        return std::make_unique<Layer>(number_of(s, "F"), number_of(s, "h"), number_of(s, "nu"),
+                                       s.at("base") == "rough");
+      }};
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,37 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "continuum/closed/models.h"
+#include "continuum/model.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+
+const std::vector<ModelInfo>& registry() {
+  static const std::vector<ModelInfo> models = {flamant_info(), boussinesq_info(), layer_info(),
+                                                hydrostatic_info()};
+  return models;
+}
+
+const ModelInfo& find_model(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& info : registry()) {
+    if (info.name == name) return info;
+    names.push_back(info.name);
+  }
+  throw BadParameter(fmt::format("no model '{}'; did you mean '{}'? known: {}", name,
+                                 nearest(name, names), fmt::join(names, ", ")));
+}
+
+int dimension(const ModelInfo& info, const Settings& settings) {
+  return info.dim != 0 ? info.dim : static_cast<int>(number_of(complete(info, settings), "dim"));
+}
+
+std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings) {
+  const ModelInfo& info = find_model(name);
+  return info.make(complete(info, settings));
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,118 @@
+#include "continuum/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+namespace grainfield::continuum {
+namespace {
+
+/// Levenshtein distance.
+std::size_t edits(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+double parse(const ModelInfo& info, const Parameter& parameter, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value))
+    throw BadParameter(fmt::format("model {}: {} = '{}' is not a number; allowed: {}", info.name,
+                                   parameter.name, text, allowed(parameter)));
+  return value;
+}
+
+}  // namespace
+
+std::string nearest(const std::string& name, const std::vector<std::string>& names) {
+  const auto best = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return edits(name, a) < edits(name, b);
+  });
+  return best == names.end() ? std::string() : *best;
+}
+
+std::string allowed(const Parameter& parameter) {
+  if (!parameter.choices.empty()) return fmt::format("{}", fmt::join(parameter.choices, ", "));
+  const std::string unit = parameter.unit == "-" ? "" : " " + parameter.unit;
+  const bool above_zero = parameter.least == kAboveZero;
+  const bool bounded_below = parameter.least > -kUnbounded;
+  const bool bounded_above = parameter.most < kUnbounded;
+  if (above_zero && bounded_above)
+    return fmt::format("above 0 and at most {}{}", parameter.most, unit);
+  if (above_zero) return "above 0" + unit;
+  if (bounded_below && bounded_above)
+    return fmt::format("{} to {}{}", parameter.least, parameter.most, unit);
+  if (bounded_below) return fmt::format("at least {}{}", parameter.least, unit);
+  if (bounded_above) return fmt::format("at most {}{}", parameter.most, unit);
+  return "any number" + unit;
+}
+
+Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
+                 double value, double least, double most) {
+  return {std::move(name),
+          std::move(unit),
+          std::move(meaning),
+          std::move(source),
+          value,
+          least,
+          most,
+          {}};
+}
+
+Parameter choice(std::string name, std::string meaning, std::string source,
+                 std::vector<std::string> choices) {
+  return {std::move(name), "-", std::move(meaning), std::move(source), 0, 0, 0, std::move(choices)};
+}
+
+Settings complete(const ModelInfo& info, const Settings& settings) {
+  std::vector<std::string> names;
+  for (const auto& parameter : info.parameters) names.push_back(parameter.name);
+  for (const auto& [name, value] : settings) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw BadParameter(fmt::format("model {}: no parameter '{}'; did you mean '{}'? allowed: {}",
+                                     info.name, name, nearest(name, names),
+                                     fmt::join(names, ", ")));
+  }
+  Settings full;
+  for (const auto& parameter : info.parameters) {
+    const auto found = settings.find(parameter.name);
+    if (!parameter.choices.empty()) {
+      const auto& choices = parameter.choices;
+      const std::string word = found == settings.end() ? choices.front() : found->second;
+      if (std::find(choices.begin(), choices.end(), word) == choices.end())
+        throw BadParameter(fmt::format("model {}: {} = '{}' is not one of {}; did you mean '{}'?",
+                                       info.name, parameter.name, word, fmt::join(choices, ", "),
+                                       nearest(word, choices)));
+      full[parameter.name] = word;
+    } else if (found == settings.end()) {
+      full[parameter.name] = fmt::format("{}", parameter.value);
+    } else {
+      const double value = parse(info, parameter, found->second);
+      if (value < parameter.least || value > parameter.most)
+        throw BadParameter(fmt::format("model {}: {} = {} is out of range; allowed: {}", info.name,
+                                       parameter.name, found->second, allowed(parameter)));
+      full[parameter.name] = found->second;
+    }
+  }
+  return full;
+}
+
+double number_of(const Settings& settings, const std::string& name) {
+  return std::strtod(settings.at(name).c_str(), nullptr);
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,29 @@
+// What a model's maker needs to read its settings and to declare its parameters.
+#pragma once
+#include <limits>
+#include <string>
+
+#include "continuum/model.h"
+
+namespace grainfield::continuum {
+
+/// Parameter::least of a number that must be above zero.
+inline constexpr double kAboveZero = std::numeric_limits<double>::min();
+/// Parameter::most (and minus it, least) of a number without a bound.
+inline constexpr double kUnbounded = std::numeric_limits<double>::max();
+
+/// A numerical parameter.
+Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
+                 double value, double least, double most);
+/// A parameter of words; the first choice is the default.
+Parameter choice(std::string name, std::string meaning, std::string source,
+                 std::vector<std::string> choices);
+
+/// The settings with every missing parameter at its default. Throws BadParameter naming the model,
+/// the parameter, the value found, what is allowed and the nearest valid name or choice.
+Settings complete(const ModelInfo& info, const Settings& settings);
+
+/// The number of a parameter in settings that complete() returned.
+double number_of(const Settings& settings, const std::string& name);
+
+}  // namespace grainfield::continuum
