@@ -12,16 +12,6 @@ namespace {
 constexpr double kMaxCellsPerGrain = 16;
 constexpr int kMaxLevels = 24;
 
-std::uint64_t spread_bits(std::uint32_t v) {
-  std::uint64_t x = v;
-  x = (x | (x << 16)) & 0x0000FFFF0000FFFFull;
-  x = (x | (x << 8)) & 0x00FF00FF00FF00FFull;
-  x = (x | (x << 4)) & 0x0F0F0F0F0F0F0F0Full;
-  x = (x | (x << 2)) & 0x3333333333333333ull;
-  x = (x | (x << 1)) & 0x5555555555555555ull;
-  return x;
-}
-
 }  // namespace
 
 int HierarchicalGrid::column(const Level& level, double x) const {
@@ -118,13 +108,12 @@ void HierarchicalGrid::pairs(std::span<const Body> bodies,
   pairs.swap(sorted);
 }
 
-std::vector<int> HierarchicalGrid::z_order(std::span<const Body> bodies) const {
-  std::vector<std::pair<std::uint64_t, int>> keyed(bodies.size());
+std::vector<int> HierarchicalGrid::order(std::span<const Body> bodies) const {
+  std::vector<std::pair<std::int64_t, int>> keyed(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Level& level = levels_.front();
-    const auto c = static_cast<std::uint32_t>(column(level, bodies[i].x));
-    const auto r = static_cast<std::uint32_t>(row(level, bodies[i].y));
-    keyed[i] = {spread_bits(c) | (spread_bits(r) << 1), static_cast<int>(i)};
+    const std::int64_t c = column(level, bodies[i].x), r = row(level, bodies[i].y);
+    keyed[i] = {level.nx < level.ny ? c + r * level.nx : r + c * level.ny, static_cast<int>(i)};
   }
   std::sort(keyed.begin(), keyed.end());
   std::vector<int> order(bodies.size());

@@ -23,9 +23,10 @@ class HierarchicalGrid {
   /// `pairs`, sorted by (i, j).
   void pairs(std::span<const Body> bodies, std::vector<std::pair<int, int>>& pairs) const;
 
-  /// Order of the grains along a Z curve over the finest level's cells (ties by index): neighbours
-  /// in space become neighbours in memory. Valid after build().
-  std::vector<int> z_order(std::span<const Body> bodies) const;
+  /// Order of the grains by rows of the finest level's cells, rows along the shorter side of the
+  /// packing (ties by index): neighbours in space become neighbours in memory, and what a sweep
+  /// needs of the next row stays in cache. Valid after build().
+  std::vector<int> order(std::span<const Body> bodies) const;
 
  private:
   struct Level {

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Grain-steps per second on the 10,000-disk packing: this engine (1 and 2 threads) against LAMMPS
+# gran/hooke/history (Debian package lammps, serial), five interleaved rounds, medians.
+# Usage: tests/benchmarks/against_lammps.sh [build/release]      needs: apt-get install lammps
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+build=${1:-$here/../../build/release}
+program=$build/tests/benchmarks/dem_benchmark
+steps=2000
+command -v lmp >/dev/null || { echo "lmp not found: install the Debian package lammps" >&2; exit 2; }
+[ -x "$program" ] || { echo "$program not found: build it first" >&2; exit 2; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+awk -F, '!/^#/ && !/^x/ {n++; line[n]=sprintf("%d 1 %.17g 2500 %.17g %.17g 0", n, 2*$3, $1, $2)}
+  END {print "disks\n\n" n " atoms\n1 atom types\n\n-0.01 2.01 xlo xhi\n-0.01 3 ylo yhi\n-0.5 0.5 zlo zhi\n\nAtoms\n"
+       for (i=1;i<=n;i++) print line[i]}' "$here/data/packing_discs_10k.csv" > "$work/disks.data"
+cat > "$work/in.disks" <<IN
+units si
+dimension 2
+boundary f f p
+atom_style sphere
+newton off
+comm_modify vel yes
+read_data $work/disks.data
+set group all density/disc 2500
+pair_style gran/hooke/history 2e7 1e7 4000 2000 0.5 1
+pair_coeff * *
+neighbor 0.002 bin
+neigh_modify delay 0 every 1 check yes
+timestep 1e-5
+fix move all nve/sphere disc
+fix weight all gravity 9.81 vector 0 -1 0
+fix sides all wall/gran hooke/history 2e7 1e7 4000 2000 0.5 1 xplane 0 2
+fix floor all wall/gran hooke/history 2e7 1e7 4000 2000 0.5 1 yplane 0 NULL
+thermo 1000000
+run 200
+run $steps
+IN
+median() { sort -g | awk '{a[NR]=$1} END {print a[int((NR+1)/2)]}'; }
+own() { "$program" --benchmark_filter="disks_10k/$1/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
+  awk -F, 'NR==1{for(i=1;i<=NF;i++){gsub(/"/,"",$i); if($i=="grain_steps") k=i}} /disks_10k/{print $k/1e6}'; }
+for round in 1 2 3 4 5; do
+  (cd "$work" && OMP_NUM_THREADS=1 lmp -log none -screen "$work/out" -in in.disks) || { tail -3 "$work/out" >&2; exit 1; }
+  awk '/^Loop time/{t=$4} END{print '$steps'*10000/t/1e6}' "$work/out" >> "$work/lammps"
+  own 1 >> "$work/one"; own 2 >> "$work/two"
+  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), grainfield 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two") million grain-steps/s"
+done
+l=$(median < "$work/lammps") a=$(median < "$work/one") b=$(median < "$work/two")
+awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "median: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
