@@ -1,0 +1,22 @@
+// The commands of the program. Each adds itself to the parser, with what it does when chosen.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace grainfield::coupling {
+
+/// What the chosen command does; returns the exit code. Throws std::invalid_argument (exit 2),
+/// the modules' ComputationFailed (exit 3) or anything else (exit 1).
+using Action = std::function<int()>;
+
+void add_run(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+void add_keys(CLI::App& app, Action& action);
+void add_cases(CLI::App& app, Action& action);
+void add_model(CLI::App& app, Action& action);
+void add_average(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,70 @@
+#include "coupling/app/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "continuum/model.h"
+#include "coupling/app/commands.h"
+#include "dem/study/run.h"
+
+namespace grainfield::coupling {
+namespace {
+
+int complain(int code, const std::string& what) {
+  // One line, whatever a library put into its message.
+  std::string line = what;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  fmt::print(stderr, "grainfield: {}\n", line);
+  return code;
+}
+
+int parse_and_act(int argc, char** argv) {
+  CLI::App app{"grainfield: grains in, fields out, and a verdict on the continuum models",
+               "grainfield"};
+  app.set_version_flag("--version", "grainfield " GRAINFIELD_VERSION);
+  app.require_subcommand(1);
+  Action action;
+  add_run(app, action);
+  add_check(app, action);
+  add_keys(app, action);
+  add_cases(app, action);
+  add_model(app, action);
+  add_average(app, action);
+  add_compare(app, action);
+  add_info(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    std::string who;
+    for (const auto* chosen : app.get_subcommands()) who = chosen->get_name() + ": ";
+    return complain(2, fmt::format("{}{} (grainfield {}--help)", who, e.what(),
+                                   who.empty() ? "" : who.substr(0, who.size() - 2) + " "));
+  }
+  return action();
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  try {
+    return parse_and_act(argc, argv);
+  } catch (const std::invalid_argument& e) {
+    return complain(2, e.what());
+  } catch (const dem::ComputationFailed& e) {
+    return complain(3, e.what());
+  } catch (const continuum::ComputationFailed& e) {
+    return complain(3, e.what());
+  } catch (const std::bad_alloc&) {
+    return complain(1, "out of memory");
+  } catch (const std::exception& e) {
+    return complain(1, e.what());
+  }
+}
+
+}  // namespace grainfield::coupling

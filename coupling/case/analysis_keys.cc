@@ -1,0 +1,105 @@
+// Keys of everything around the grains: the study, ensemble, averaging, models, output, sweep.
+#include "coupling/case/declare.h"
+
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+using Numbers = std::vector<double>;
+using Words = std::vector<string>;
+using Integer = std::int64_t;
+
+void top(Section s) {
+  s.word("title", +IN(string, title), {}, "one line for people: what the study shows");
+  s.word("study", +IN(string, study), {"point-load", "elastic-layer", "elastic-half-space"},
+         "point-load: grains against continuum models; elastic-*: the finite-element model against "
+         "its closed form, without grains");
+}
+
+void ensemble(Section s) {
+  s.number("realizations", "-", +IN(Integer, ensemble.realizations), {1, 100000},
+           "independent packings; the standard error falls with the square root of their number");
+  s.number("seed", "-", +IN(Integer, ensemble.seed), {0, 9007199254740992.0},
+           "every realization derives its own seed from this one and its number");
+}
+
+void average(Section s) {
+  s.word("methods", +IN(Words, average.methods), {"coarse_graining", "particle_centre"},
+         "averagings to report; the first one is compared with the models",
+         "Weinhart et al. 2012; Roul 2.6");
+  s.word("kernel", +IN(string, average.kernel), {"lucy", "gaussian", "heaviside"},
+         "coarse_graining: the weight", "Weinhart et al. 2012");
+  s.number("width", "m", +IN(double, average.width), kNotNegative,
+           "coarse_graining: w of the kernel (lucy ends at 2 w); wider is smoother and blurs "
+           "peaks; 0: width_diameters mean diameters");
+  s.number("width_diameters", "-", +IN(double, average.width_diameters), {0, 100, true},
+           "the same in mean grain diameters, used where width is 0");
+  s.word("rve_shape", +IN(string, average.rve_shape), {"circle", "square"},
+         "particle_centre: shape of the representative volume element");
+  s.number("rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
+           "particle_centre: radius or half side; larger is smoother; 0: rve_diameters mean "
+           "diameters",
+           "Roul 3.2");
+  s.number("rve_diameters", "-", +IN(double, average.rve_diameters), {0, 100, true},
+           "the same in mean grain diameters, used where rve_radius is 0");
+  s.number("depths", "-", +IN(Numbers, average.depths), {0, 1, true},
+           "profiles below the surface, as shares of the layer's height; the base is always added");
+  s.number("points", "-", +IN(Integer, average.points), {3, 100000}, "of a profile");
+  s.number("half_width", "m", +IN(double, average.half_width), kNotNegative,
+           "profiles reach this far to either side of the load; 0: to the nearer side wall");
+  s.number("map_columns", "-", +IN(Integer, average.map_columns), {2, 10000},
+           "points of the maps along x");
+  s.number("map_rows", "-", +IN(Integer, average.map_rows), {2, 10000},
+           "points of the maps along y");
+}
+
+void elastic(Section s) {
+  s.number("force", "N", +IN(double, elastic.force), kPositive,
+           "point load on the surface (2D: force as on one grain)");
+  s.number("height", "m", +IN(double, elastic.height), kPositive, "elastic-layer: its height h",
+           "Roul table 5.1");
+  s.number("dim", "-", +IN(Integer, elastic.dim), {2, 3},
+           "2: plane strain, 3: space; models of the other dimension are left out");
+  s.number("depths", "m", +IN(Numbers, elastic.depths), kPositive, "profiles below the surface");
+  s.number("half_width", "m", +IN(double, elastic.half_width), kPositive,
+           "profiles reach this far to either side of the load");
+  s.number("points", "-", +IN(Integer, elastic.points), {3, 100000}, "of a profile");
+}
+
+void compare(Section s) {
+  s.word("models", +IN(Words, compare.models), {},
+         "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
+         "which may set name = \"...\" and the model's parameters; F, h and dim are filled from "
+         "the run unless set");
+}
+
+void output(Section s) {
+  s.flag("snapshots", +IN(bool, output.snapshots), "snapshots.h5: grains and contacts");
+  s.flag("vtu", +IN(bool, output.vtu), "VTU files of the first realization for ParaView");
+  s.flag("fields", +IN(bool, output.fields), "fields.h5 and .xdmf: averaged and modelled fields");
+  s.flag("report", +IN(bool, output.report), "report.html");
+}
+
+void sweep(Section s) {
+  s.word("key", +IN(string, sweep.key), {},
+         "the case is run once for every value of this key; empty: no sweep");
+  s.word("values", +IN(Words, sweep.values), {}, "values of that key");
+}
+
+}  // namespace
+
+void declare_analysis_keys(std::vector<Key>& keys) {
+  top({keys, ""});
+  ensemble({keys, "ensemble"});
+  average({keys, "average"});
+  elastic({keys, "elastic"});
+  compare({keys, "compare"});
+  output({keys, "output"});
+  sweep({keys, "sweep"});
+}
+
+}  // namespace grainfield::coupling
+
+#undef IN

@@ -1,0 +1,155 @@
+#include "coupling/case/apply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+namespace grainfield::coupling {
+namespace {
+
+void check_range(const Key& key, const Assignment& a, double value) {
+  const bool ok = std::isfinite(value) && value <= key.most &&
+                  (key.open_least ? value > key.least : value >= key.least);
+  if (!ok) reject(a, key.path(), fmt::format("found {:g}, allowed: {}", value, allowed(key)));
+}
+
+void check_choice(const Key& key, const Assignment& a, const std::string& value) {
+  if (key.choices.empty() ||
+      std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
+    return;
+  }
+  reject(a, key.path(),
+         fmt::format("found \"{}\", allowed: {}; nearest: {}", value, allowed(key),
+                     continuum::nearest(value, key.choices)));
+}
+
+[[noreturn]] void wrong_type(const Key& key, const Assignment& a) {
+  const std::string type = type_name(key);
+  const char* article = type == "integer" ? "an" : "a";
+  reject(a, key.path(), fmt::format("found {}, expected {} {}", describe(a), article, type));
+}
+
+double number(const Key& key, const Assignment& a, const Scalar& scalar) {
+  double value = 0;
+  if (const auto* i = std::get_if<std::int64_t>(&scalar)) {
+    value = static_cast<double>(*i);
+  } else if (const auto* d = std::get_if<double>(&scalar)) {
+    value = *d;
+  } else {
+    wrong_type(key, a);
+  }
+  check_range(key, a, value);
+  return value;
+}
+
+std::string word(const Key& key, const Assignment& a, const Scalar& scalar) {
+  // A sweep's values are of its key's type; on the command line words need no quotes.
+  const bool any = key.path() == "sweep.values" || a.from_command_line();
+  if (!any && !std::holds_alternative<std::string>(scalar)) wrong_type(key, a);
+  const std::string value = scalar_text(scalar);
+  check_choice(key, a, value);
+  return value;
+}
+
+void set(const Key& key, const Assignment& a, Case& value) {
+  std::visit(
+      [&](auto where) {
+        auto& held = where(value);
+        using T = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<T, std::vector<double>>) {
+          if (a.items.empty()) reject(a, key.path(), "found an empty list, expected numbers");
+          held.clear();
+          for (const auto& item : a.items) held.push_back(number(key, a, item));
+        } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+          held.clear();
+          for (const auto& item : a.items) held.push_back(word(key, a, item));
+        } else {
+          if (a.list) wrong_type(key, a);
+          const Scalar& item = a.items.front();
+          if constexpr (std::is_same_v<T, std::string>) {
+            held = a.from_command_line() && key.choices.empty() &&
+                           !std::holds_alternative<std::string>(item)
+                       ? a.text
+                       : word(key, a, item);
+          } else if constexpr (std::is_same_v<T, bool>) {
+            if (!std::holds_alternative<bool>(item)) wrong_type(key, a);
+            held = std::get<bool>(item);
+          } else if constexpr (std::is_same_v<T, double>) {
+            held = number(key, a, item);
+          } else {
+            if (!std::holds_alternative<std::int64_t>(item)) wrong_type(key, a);
+            held = static_cast<T>(number(key, a, item));
+          }
+        }
+      },
+      key.where);
+}
+
+[[noreturn]] void unknown(const Assignment& a) {
+  std::vector<std::string> paths;
+  for (const Key& key : keys()) paths.push_back(key.path());
+  const std::string section = a.path.substr(0, a.path.find('.'));
+  auto names = sections();
+  names.insert(names.end(), {"model", "quick"});
+  const bool sectioned = a.table || section.size() < a.path.size();
+  if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
+    reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
+  }
+  // A name that exists in another section is nearer than any misspelling.
+  const std::string name = a.path.substr(a.path.rfind('.') + 1);
+  std::string near = continuum::nearest(a.path, paths);
+  if (const Key* key = find_key(near); key != nullptr && key->section != section && sectioned) {
+    std::vector<std::string> here;
+    for (const Key& k : keys()) {
+      if (k.section == section) here.push_back(k.path());
+    }
+    const auto same =
+        std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
+    near = same != keys().end() ? same->path()
+           : here.empty()       ? near
+                                : continuum::nearest(a.path, here);
+  }
+  reject(a, a.path, "unknown key; nearest: " + near);
+}
+
+}  // namespace
+
+void reject(const Assignment& a, const std::string& key, const std::string& what) {
+  throw std::invalid_argument(fmt::format("{}: {}: {}", a.origin, key, what));
+}
+
+void apply(Draft& draft, const Assignment& a) {
+  constexpr std::string_view model = "model.";
+  if (a.path.compare(0, model.size(), model) == 0) {
+    const std::string rest = a.path.substr(model.size());
+    const std::size_t dot = rest.find('.');
+    if (dot == std::string::npos) {
+      if (!a.table) reject(a, a.path, "found a value, expected a table [model.LABEL]");
+      draft.models[rest];
+      return;
+    }
+    const std::string parameter = rest.substr(dot + 1);
+    if (a.other || a.list || a.table || parameter.find('.') != std::string::npos) {
+      reject(a, a.path, fmt::format("found {}, expected a number or a word", describe(a)));
+    }
+    draft.models[rest.substr(0, dot)].insert_or_assign(parameter, a);
+    return;
+  }
+  const Key* key = find_key(a.path);
+  if (key == nullptr) {
+    const auto names = sections();
+    if (a.table &&
+        (a.path == "model" || std::find(names.begin(), names.end(), a.path) != names.end())) {
+      return;
+    }
+    unknown(a);
+  }
+  if (a.table || a.other) wrong_type(*key, a);
+  set(*key, a, draft.value);
+  draft.last.insert_or_assign(a.path, a);
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,34 @@
+// One assignment into a case, checked against the key's declaration.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/case/case.h"
+#include "coupling/case/document.h"
+#include "coupling/case/keys.h"
+
+namespace grainfield::coupling {
+
+/// A case while it is read.
+struct Draft {
+  std::string file;  ///< for keys that nobody wrote
+  Case value;
+  std::map<std::string, Assignment> last;  ///< by key path: the assignment that holds
+  /// [model.LABEL] tables: parameter (and "name") by label.
+  std::map<std::string, std::map<std::string, Assignment>> models;
+};
+
+/// Throws std::invalid_argument "ORIGIN: KEY: ..." for an unknown key or section (with the nearest
+/// name), a wrong type or a value out of range.
+void apply(Draft& draft, const Assignment& assignment);
+
+/// What fits no single key: sections of another study, model names and parameters, sweep values,
+/// limits between keys, the stable time step. Fills Case::models.
+void finish(Draft& draft);
+
+/// `ORIGIN: KEY: what` as std::invalid_argument.
+[[noreturn]] void reject(const Assignment& assignment, const std::string& key,
+                         const std::string& what);
+
+}  // namespace grainfield::coupling

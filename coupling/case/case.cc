@@ -1,0 +1,150 @@
+#include "coupling/case/case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <stdexcept>
+
+#include "continuum/settings.h"
+#include "coupling/case/apply.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr std::string_view kQuick = "quick.";
+
+bool is_quick(const Assignment& a) {
+  return a.path == "quick" || a.path.compare(0, kQuick.size(), kQuick) == 0;
+}
+
+Assignment without_quick(Assignment a) {
+  a.path = a.path.substr(std::min(a.path.size(), kQuick.size()));
+  return a;
+}
+
+void put(Draft& draft, const std::vector<Assignment>& assignments) {
+  for (const auto& a : assignments) apply(draft, a);
+}
+
+std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+bool plain_name(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char ch) {
+    return std::isalnum(ch) != 0 || ch == '_' || ch == '-';
+  });
+}
+
+std::string model_value(const continuum::Parameter& parameter, const std::string& value) {
+  return parameter.choices.empty() ? value : "\"" + value + "\"";
+}
+
+// A suffix that is a folder's name and part of a key: "friction_0.3".
+std::string suffix_of(const std::string& key, const std::string& value) {
+  std::string out = key.substr(key.rfind('.') + 1) + "_";
+  for (const char ch : value) {
+    const auto c = static_cast<unsigned char>(ch);
+    out += std::isalnum(c) != 0 || ch == '.' || ch == '-' || ch == '+' ? ch : '_';
+  }
+  return out;
+}
+
+}  // namespace
+
+Case read_case(const std::string& file, bool quick, const Overrides& overrides) {
+  std::vector<Assignment> base, fast, set;
+  for (auto& a : read_document(file)) {
+    if (!is_quick(a)) {
+      base.push_back(std::move(a));
+    } else if (a.path != "quick") {
+      fast.push_back(without_quick(std::move(a)));
+    } else if (!a.table) {
+      reject(a, "quick", "found a value, expected a table of keys");
+    }
+  }
+  for (const auto& text : overrides) set.push_back(parse_override(text));
+
+  Draft draft;
+  draft.file = file;
+  draft.value.name = stem(file);
+  put(draft, base);
+  // The quick setting is checked even where it is not used: a mistake shows before it is needed.
+  Draft with_quick = draft;
+  put(with_quick, fast);
+  if (quick) {
+    put(with_quick, set);
+    finish(with_quick);
+    return with_quick.value;
+  }
+  if (!fast.empty()) finish(with_quick);
+  put(draft, set);
+  finish(draft);
+  return draft.value;
+}
+
+std::vector<SweepCase> sweep_cases(const Case& value) {
+  if (value.sweep.key.empty()) return {{"", value}};
+  std::vector<SweepCase> out;
+  for (const auto& text : value.sweep.values) {
+    Draft draft;
+    draft.value = value;
+    draft.value.sweep = {};
+    for (const auto& model : value.models) {
+      auto& table = draft.models[model.label];
+      table["name"] = parse_override("model." + model.label + ".name=" + model.name);
+      for (const auto& [parameter, setting] : model.settings) {
+        table[parameter] = parse_override("model." + model.label + "." + parameter + "=" + setting);
+      }
+    }
+    apply(draft, parse_override(value.sweep.key + "=" + text));
+    finish(draft);
+    out.push_back({suffix_of(value.sweep.key, text), draft.value});
+  }
+  return out;
+}
+
+std::string write_case(const Case& value) {
+  std::string out, current;
+  for (const Key& key : keys()) {
+    if (!section_applies(key.section, value.study)) continue;
+    if (key.section == "sweep" && value.sweep.key.empty()) continue;
+    if (key.section != current) {
+      current = key.section;
+      out += fmt::format("\n[{}]\n", current);
+    }
+    std::string remark = key.unit == "-" ? "" : key.unit + "; ";
+    remark += key.meaning;
+    if (!key.choices.empty()) remark = allowed(key) + "; " + remark;
+    out += fmt::format("# {}\n{} = {}\n", remark, key.name, value_text(key, value));
+  }
+  for (const auto& model : value.models) {
+    const auto& info = continuum::find_model(model.name);
+    const auto label = plain_name(model.label) ? model.label : "\"" + model.label + "\"";
+    out += fmt::format("\n[model.{}]\nname = \"{}\"\n", label, model.name);
+    for (const auto& p : info.parameters) {
+      const auto given = model.settings.find(p.name);
+      const std::string remark =
+          fmt::format("{}{}", p.unit == "-" || p.unit.empty() ? "" : p.unit + "; ", p.meaning);
+      if (given != model.settings.end()) {
+        out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, given->second));
+      } else if (p.name == "F" || p.name == "h" || p.name == "dim") {
+        out += fmt::format("# {} is filled from the run: {}\n", p.name, remark);
+      } else {
+        const std::string standard =
+            p.choices.empty() ? fmt::format("{}", p.value) : p.choices.front();
+        out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, standard));
+      }
+    }
+  }
+  return out;
+}
+
+std::string case_title(const std::string& file) {
+  for (const auto& a : read_document(file)) {
+    if (a.path == "title" && a.items.size() == 1) return scalar_text(a.items.front());
+  }
+  return "";
+}
+
+}  // namespace grainfield::coupling

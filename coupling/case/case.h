@@ -1,0 +1,102 @@
+// A study as the user describes it in a TOML file, with every default filled in.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "continuum/model.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::coupling {
+
+struct EnsembleSetup {
+  std::int64_t realizations = 4;
+  std::int64_t seed = 1;
+};
+
+struct AverageSetup {
+  std::vector<std::string> methods = {"coarse_graining", "particle_centre"};
+  std::string kernel = "lucy";
+  double width = 0;  ///< m; 0 = width_diameters mean diameters
+  double width_diameters = 1;
+  std::string rve_shape = "circle";
+  double rve_radius = 0;  ///< m; 0 = rve_diameters mean diameters
+  double rve_diameters = 2.5;
+  std::vector<double> depths = {0.25, 0.5, 0.75};  ///< of the layer height
+  std::int64_t points = 121;                       ///< per profile
+  double half_width = 0;  ///< m either side of the load; 0 = the whole layer
+  std::int64_t map_columns = 81;
+  std::int64_t map_rows = 31;
+};
+
+/// Points and load of the studies without grains.
+struct ElasticSetup {
+  double force = 1;      ///< N (2D: N per metre of depth into the page)
+  double height = 0.15;  ///< m; elastic-layer
+  std::int64_t dim = 2;
+  std::vector<double> depths = {0.05, 0.1, 0.15};  ///< m
+  double half_width = 0.3;                         ///< m
+  std::int64_t points = 61;
+};
+
+struct OutputSetup {
+  bool snapshots = true;
+  bool vtu = true;
+  bool fields = true;
+  bool report = true;
+};
+
+struct SweepSetup {
+  std::string key;                  ///< empty: no sweep
+  std::vector<std::string> values;  ///< as TOML text
+};
+
+/// A model of the comparison: its label in tables and keys, the registry's name, and the settings
+/// the user gave (F, h and dim are added from the run where the model has them).
+struct ModelChoice {
+  std::string label;
+  std::string name;
+  continuum::Settings settings;
+};
+
+/// How models = [...] and [model.LABEL] were written, before they are put together.
+struct CompareSetup {
+  std::vector<std::string> models = {"flamant", "layer", "fe_elastic_layer"};
+};
+
+struct Case {
+  std::string name;  ///< of the file, without folder and ".toml"
+  std::string title;
+  std::string study = "point-load";
+  EnsembleSetup ensemble;
+  dem::PointLoadSetup layer;
+  AverageSetup average;
+  ElasticSetup elastic;
+  CompareSetup compare;
+  OutputSetup output;
+  SweepSetup sweep;
+  std::vector<ModelChoice> models;  ///< in the order of compare.models
+};
+
+/// One member of a sweep: the value as folder and key suffix ("friction_0.3") and its case.
+struct SweepCase {
+  std::string suffix;  ///< empty: the case has no sweep
+  Case value;
+};
+
+/// An override from the command line: "key.path=value".
+using Overrides = std::vector<std::string>;
+
+/// Reads and validates a case file. With `quick`, the tables under [quick] override the rest.
+/// Throws std::invalid_argument, one line "FILE:LINE: KEY: ..." (overrides: "--set: KEY: ...").
+Case read_case(const std::string& file, bool quick, const Overrides& overrides);
+/// The cases of its sweep in order, or the case itself.
+std::vector<SweepCase> sweep_cases(const Case& value);
+/// The whole case as TOML: every key of its study with unit and meaning as a comment. Reading it
+/// back gives the same case.
+std::string write_case(const Case& value);
+/// Only the title of a case file; throws as read_case when it is not TOML.
+std::string case_title(const std::string& file);
+
+}  // namespace grainfield::coupling

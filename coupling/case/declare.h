@@ -1,0 +1,47 @@
+// How sections declare their keys; used by the *_keys.cc files only.
+#pragma once
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupling/case/keys.h"
+
+namespace grainfield::coupling {
+
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+struct Range {
+  double least = -kNoLimit, most = kNoLimit;
+  bool open_least = false;
+};
+inline constexpr Range kPositive{0, kNoLimit, true};
+inline constexpr Range kNotNegative{0, kNoLimit, false};
+
+/// Collects the keys of one section.
+class Section {
+ public:
+  Section(std::vector<Key>& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
+
+  void number(const std::string& name, const std::string& unit, Binding where, Range range,
+              const std::string& meaning, const std::string& source = "") {
+    keys_.push_back(
+        {name_, name, unit, where, range.least, range.most, {}, meaning, source, range.open_least});
+  }
+  void word(const std::string& name, Binding where, std::vector<std::string> choices,
+            const std::string& meaning, const std::string& source = "") {
+    keys_.push_back({name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false});
+  }
+  void flag(const std::string& name, Binding where, const std::string& meaning) {
+    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false});
+  }
+
+ private:
+  std::vector<Key>& keys_;
+  std::string name_;
+};
+
+void declare_grain_keys(std::vector<Key>& keys);
+void declare_analysis_keys(std::vector<Key>& keys);
+
+}  // namespace grainfield::coupling

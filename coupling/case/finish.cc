@@ -1,0 +1,174 @@
+// Checks that involve more than one key.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "continuum/settings.h"
+#include "coupling/case/apply.h"
+#include "dem/study/run.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// Where a key was written; a key that was not is blamed on the file as a whole.
+Assignment written(const Draft& draft, const std::string& path) {
+  const auto at = draft.last.find(path);
+  if (at != draft.last.end()) return at->second;
+  Assignment none;
+  none.path = path;
+  none.origin = draft.file;
+  return none;
+}
+
+void check_sections(const Draft& draft) {
+  for (const auto& [path, a] : draft.last) {
+    const Key* key = find_key(path);
+    if (!section_applies(key->section, draft.value.study)) {
+      reject(a, path, fmt::format("has no meaning for study = \"{}\"", draft.value.study));
+    }
+  }
+}
+
+// Every [model.LABEL] table, whether it is used or not.
+std::map<std::string, ModelChoice> read_models(const Draft& draft) {
+  std::map<std::string, ModelChoice> out;
+  for (const auto& [label, table] : draft.models) {
+    ModelChoice choice{label, label, {}};
+    Assignment where = written(draft, "compare.models");
+    if (!table.empty()) where = table.begin()->second;
+    if (const auto name = table.find("name"); name != table.end()) {
+      where = name->second;
+      choice.name = scalar_text(name->second.items.front());
+    }
+    const continuum::ModelInfo* info = nullptr;
+    try {
+      info = &continuum::find_model(choice.name);
+    } catch (const continuum::BadParameter& e) {
+      reject(where, "model." + label, e.what());
+    }
+    for (const auto& [parameter, a] : table) {
+      if (parameter == "name") continue;
+      const std::string value = scalar_text(a.items.front());
+      try {
+        continuum::complete(*info, {{parameter, value}});
+      } catch (const continuum::BadParameter& e) {
+        reject(a, a.path, e.what());
+      }
+      choice.settings[parameter] = value;
+    }
+    out.emplace(label, choice);
+  }
+  return out;
+}
+
+void choose_models(Draft& draft) {
+  auto tables = read_models(draft);
+  const Assignment where = written(draft, "compare.models");
+  Case& value = draft.value;
+  value.models.clear();
+  std::set<std::string> seen;
+  for (const auto& label : value.compare.models) {
+    if (!seen.insert(label).second) reject(where, "compare.models", "\"" + label + "\" twice");
+    const auto table = tables.find(label);
+    ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
+    try {
+      const auto& info = continuum::find_model(choice.name);
+      if (value.study == "point-load" && continuum::dimension(info, choice.settings) != 2) {
+        reject(where, "compare.models",
+               fmt::format("\"{}\" is three-dimensional, the grains are not", label));
+      }
+    } catch (const continuum::BadParameter& e) {
+      reject(where, "compare.models", e.what());
+    }
+    value.models.push_back(std::move(choice));
+  }
+  if (value.models.empty()) reject(where, "compare.models", "found no model, expected one or more");
+}
+
+void check_elastic(const Draft& draft) {
+  const Case& value = draft.value;
+  if (value.study != "elastic-layer") return;
+  const auto& depths = value.elastic.depths;
+  const double deepest = *std::max_element(depths.begin(), depths.end());
+  if (deepest > value.elastic.height) {
+    reject(written(draft, "elastic.depths"), "elastic.depths",
+           fmt::format("found {:g}, allowed: up to elastic.height = {:g}", deepest,
+                       value.elastic.height));
+  }
+}
+
+void check_sizes(const Draft& draft) {
+  const auto& p = draft.value.layer.packing;
+  if (p.radius_min > p.radius_max) {
+    reject(written(draft, "packing.radius_min"), "packing.radius_min",
+           fmt::format("found {:g}, allowed: up to packing.radius_max = {:g}", p.radius_min,
+                       p.radius_max));
+  }
+  if (p.sizes == "bidisperse" && p.radius_small > p.radius) {
+    reject(
+        written(draft, "packing.radius_small"), "packing.radius_small",
+        fmt::format("found {:g}, allowed: up to packing.radius = {:g}", p.radius_small, p.radius));
+  }
+}
+
+// What only the discrete elements know, such as the stable time step.
+void check_grains(const Draft& draft) {
+  if (draft.value.study != "point-load") return;
+  check_sizes(draft);
+  try {
+    dem::make_point_load_run(draft.value.layer, 1, 1);
+  } catch (const std::invalid_argument& e) {
+    const std::string what = e.what();
+    const std::string path = what.substr(0, what.find(':'));
+    throw std::invalid_argument(written(draft, path).origin + ": " + what);
+  }
+}
+
+void check_sweep(const Draft& draft) {
+  const SweepSetup& sweep = draft.value.sweep;
+  if (sweep.key.empty()) {
+    if (!sweep.values.empty()) {
+      reject(written(draft, "sweep.values"), "sweep.values", "needs sweep.key as well");
+    }
+    return;
+  }
+  const Assignment where = written(draft, "sweep.key");
+  if (sweep.key.compare(0, 6, "sweep.") == 0)
+    reject(where, "sweep.key", "cannot be one of [sweep]");
+  if (sweep.values.empty()) reject(where, "sweep.key", "needs sweep.values as well");
+  std::set<std::string> seen;
+  for (const auto& text : sweep.values) {
+    if (!seen.insert(text).second) {
+      reject(written(draft, "sweep.values"), "sweep.values", "\"" + text + "\" twice");
+    }
+    Draft one = draft;
+    one.value.sweep = {};
+    one.last.erase("sweep.key");
+    one.last.erase("sweep.values");
+    try {
+      apply(one, parse_override(sweep.key + "=" + text));
+      finish(one);
+    } catch (const std::invalid_argument& e) {
+      std::string what = e.what();
+      const std::string set = "--set: ";
+      if (what.compare(0, set.size(), set) == 0) what = what.substr(set.size());
+      reject(written(draft, find_key(sweep.key) != nullptr ? "sweep.values" : "sweep.key"),
+             find_key(sweep.key) != nullptr ? "sweep.values" : "sweep.key", what);
+    }
+  }
+}
+
+}  // namespace
+
+void finish(Draft& draft) {
+  check_sections(draft);
+  choose_models(draft);
+  check_elastic(draft);
+  check_grains(draft);
+  check_sweep(draft);
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,124 @@
+// Keys of the grains: [packing] [material] [motion] [rest] [load].
+#include "coupling/case/declare.h"
+
+// A key bound to the member of the same name: the default is that member's.
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.layer.MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+constexpr const char* kRoul = "Roul table 5.1";
+
+void packing(Section s) {
+  s.word("kind", +IN(string, packing.kind), {"triangular", "sqrt3", "layered"},
+         "how the layer is built: triangular lattice, lattice whose rows are shifted by half a "
+         "spacing of sqrt(3) diameters, or rows dropped one after another",
+         "Roul 5.2, 5.4");
+  s.word("sizes", +IN(string, packing.sizes), {"mono", "bidisperse", "uniform"},
+         "radii: all equal, two sizes, or uniform between radius_min and radius_max", kRoul);
+  s.number("radius", "m", +IN(double, packing.radius), kPositive,
+           "radius of mono and of the larger bidisperse grains; larger grains: fewer of them and a "
+           "longer time step",
+           kRoul);
+  s.number("radius_small", "m", +IN(double, packing.radius_small), kPositive,
+           "radius of the smaller bidisperse grains", kRoul);
+  s.number("fraction_small", "-", +IN(double, packing.fraction_small), {0, 1},
+           "share by number of the smaller bidisperse grains; 0 and 1 are mono-disperse");
+  s.number("radius_min", "m", +IN(double, packing.radius_min), kPositive,
+           "smallest radius of uniform sizes; it sets the time step", kRoul);
+  s.number("radius_max", "m", +IN(double, packing.radius_max), kPositive,
+           "largest radius of uniform sizes", kRoul);
+  s.number("columns", "-", +IN(int, packing.columns), {2, 100000},
+           "lattices: grains in a row; more moves the side walls away from the load", kRoul);
+  s.number("rows", "-", +IN(int, packing.rows), {1, 100000},
+           "lattices: rows of grains; more makes the layer deeper", kRoul);
+  s.number("width", "m", +IN(double, packing.width), kPositive,
+           "layered: distance of the side walls; four depths keep their influence small", kRoul);
+  s.number("depth", "m", +IN(double, packing.depth), kPositive,
+           "layered: rows are dropped until the surface is this high", kRoul);
+  s.number("drop_height", "m", +IN(double, packing.drop_height), kPositive,
+           "layered: height above the surface from which a row falls; higher packs denser",
+           "Roul table 2 (line source)");
+  s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
+         "flat wall with friction, or a row of fixed grains", "Roul 5.5");
+  s.number("jitter", "-", +IN(double, packing.jitter), {0, 0.5},
+           "lattices: radii are multiplied by a number uniform in 1 +- this; 0 is the perfect "
+           "lattice");
+}
+
+void material(Section s) {
+  s.word("law", +IN(string, material.law), {"overlap_area", "linear"},
+         "contact law: elastic force from the overlap area, or linear spring and dashpot",
+         "Roul 2.3");
+  s.number("density", "kg/m2", +IN(double, material.density), kPositive,
+           "areal density of the grains; heavier grains: longer time step", kRoul);
+  s.number("young", "N/m", +IN(double, material.young), kPositive,
+           "overlap_area: Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
+           "time step",
+           kRoul);
+  s.number("damping", "-", +IN(double, material.damping), kNotNegative,
+           "overlap_area: gamma of the normal dashpot; more dissipates faster", kRoul);
+  s.number("normal_stiffness", "N/m", +IN(double, material.normal_stiffness), kPositive,
+           "linear: normal spring");
+  s.number("tangential_stiffness", "N/m", +IN(double, material.tangential_stiffness), kNotNegative,
+           "linear: tangential spring; 2/7 of the normal one makes both swing in step");
+  s.number("normal_damping", "1/s", +IN(double, material.normal_damping), kNotNegative,
+           "linear: normal force of the dashpot per reduced mass and approach velocity");
+  s.number("tangential_damping", "1/s", +IN(double, material.tangential_damping), kNotNegative,
+           "linear: the same, tangential");
+  s.number("friction", "-", +IN(double, material.friction), {0, 10},
+           "Coulomb coefficient grain on grain; more merges the two peaks of the √3 lattice into "
+           "one",
+           kRoul);
+  s.number("floor_friction", "-", +IN(double, material.floor_friction), {0, 10},
+           "Coulomb coefficient grain on flat floor", kRoul);
+  s.number("wall_friction", "-", +IN(double, material.wall_friction), {0, 10},
+           "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
+  s.number("gravity", "m/s2", +IN(double, material.gravity), kPositive, "downwards", kRoul);
+}
+
+void motion(Section s) {
+  s.word("integrator", +IN(string, motion.integrator), {"verlet", "gear"},
+         "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
+         "Roul 2.5");
+  s.number("time_step", "s", +IN(double, motion.time_step), kNotNegative,
+           "0: time_step_fraction of the stable limit; above the limit is refused");
+  s.number("time_step_fraction", "-", +IN(double, motion.time_step_fraction), {0, 1, true},
+           "share of the stable limit; less is more exact and takes longer", "Roul 2.10");
+}
+
+void rest(Section s) {
+  s.number("unbalanced_force_ratio", "-", +IN(double, rest.unbalanced_force_ratio), {0, 0.1, true},
+           "at rest: mean resultant over mean contact force is below this");
+  s.number("kinetic_to_elastic_energy", "-", +IN(double, rest.kinetic_to_elastic_energy),
+           {0, 0.1, true}, "at rest: kinetic over elastic energy is below this");
+  s.number("background_damping", "1/s", +IN(double, rest.background_damping), kNotNegative,
+           "acceleration -= this * velocity while coming to rest; more ends slow swinging sooner, "
+           "far more makes settling creep");
+  s.number("max_time", "s", +IN(double, rest.max_time), kPositive,
+           "simulated time after which a packing that is not at rest counts as failed");
+}
+
+void load(Section s) {
+  s.number("force", "N", +IN(double, load.force), kPositive,
+           "downwards on one grain of the surface; more rearranges grains", kRoul);
+  s.number("ramp_time", "s", +IN(double, load.ramp_time), kPositive,
+           "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
+  s.number("position", "-", +IN(double, load.position), {0, 1},
+           "share of the width: the top grain nearest to it carries the force");
+}
+
+}  // namespace
+
+void declare_grain_keys(std::vector<Key>& keys) {
+  packing({keys, "packing"});
+  material({keys, "material"});
+  motion({keys, "motion"});
+  rest({keys, "rest"});
+  load({keys, "load"});
+}
+
+}  // namespace grainfield::coupling
+
+#undef IN

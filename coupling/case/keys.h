@@ -1,0 +1,52 @@
+// Every key of a case file, declared once. Validation, `grainfield keys`, docs/keys.md, the
+// written-out case.toml and the filled structs come from this list.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coupling/case/case.h"
+
+namespace grainfield::coupling {
+
+/// Where a key's value lives. The default is what a fresh Case holds there.
+using Binding = std::variant<double& (*)(Case&), std::int64_t& (*)(Case&), int& (*)(Case&),
+                             bool& (*)(Case&), std::string& (*)(Case&),
+                             std::vector<double>& (*)(Case&), std::vector<std::string>& (*)(Case&)>;
+
+struct Key {
+  std::string section;  ///< empty: top level
+  std::string name;
+  std::string unit;  ///< "-" for pure numbers and words
+  Binding where;
+  double least = 0, most = 0;        ///< numbers: inclusive range
+  std::vector<std::string> choices;  ///< words: those allowed; empty: any text
+  std::string meaning;               ///< with what raising it does
+  std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
+  bool open_least = false;           ///< the least value itself is not allowed
+
+  std::string path() const { return section.empty() ? name : section + "." + name; }
+};
+
+const std::vector<Key>& keys();
+const Key* find_key(const std::string& path);
+/// Sections in order, without the top level.
+std::vector<std::string> sections();
+/// Whether a section means something to a study.
+bool section_applies(const std::string& section, const std::string& study);
+
+/// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
+std::string type_name(const Key& key);
+/// "0 to 2", "above 0, up to 1e12", "smooth | rough", "any".
+std::string allowed(const Key& key);
+/// The value of a key in a case, as TOML.
+std::string value_text(const Key& key, const Case& value);
+
+/// What `grainfield keys` prints: all or one section. Throws std::invalid_argument with the nearest
+/// name for an unknown section.
+std::string keys_text(const std::string& section);
+/// docs/keys.md.
+std::string keys_markdown();
+
+}  // namespace grainfield::coupling
