@@ -28,8 +28,8 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 constexpr double kOnBase = 1e-9;
 /// The integrand's tail beyond exp(-48) u^2 is below 1e-17 of the peak.
 constexpr double kDecay = 48;
-/// Panels: 30 Gauss points carry 6 rad of cos(k x) and 2 units of u (the integrand's nearest
-/// poles, zeros of sinh 2u + 2u, are 2.1 away from the real axis) to round-off.
+/// Panels: 30 Gauss points carry 6 rad of cos(k x) and 2 units of u (the integrand's poles
+/// are at least 0.9 away from the real axis) to round-off.
 constexpr double kPanelPhase = 6, kPanelWidth = 2;
 
 /// The functions p = sinh s - s cosh s and q = s sinh s and their derivatives, times exp(-s).

@@ -1,0 +1,67 @@
+// Settings of models: what is wrong, what was found, what is allowed, the nearest name.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "continuum/model.h"
+
+using namespace grainfield::continuum;
+using testing::HasSubstr;
+
+namespace {
+
+std::string refusal(const std::string& model, const Settings& settings) {
+  try {
+    make_model(model, settings);
+  } catch (const BadParameter& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(Registry, UnknownModelNamesTheNearest) {
+  EXPECT_THAT(refusal("flamand", {}), HasSubstr("no model 'flamand'; did you mean 'flamant'?"));
+}
+
+TEST(Registry, UnknownParameterNamesTheNearest) {
+  EXPECT_THAT(refusal("layer", {{"bse", "rough"}}),
+              HasSubstr("layer: no parameter 'bse'; did you mean 'base'? allowed: F, h, nu, base"));
+}
+
+TEST(Registry, OutOfRangeSaysWhatIsAllowed) {
+  EXPECT_THAT(refusal("layer", {{"nu", "0.6"}}),
+              HasSubstr("nu = 0.6 is out of range; allowed: 0 to 0.5"));
+  EXPECT_THAT(refusal("boussinesq", {{"nu", "-0.1"}}), HasSubstr("nu = -0.1"));
+  EXPECT_THAT(refusal("layer", {{"h", "0"}}), HasSubstr("allowed: above 0 m"));
+}
+
+TEST(Registry, NotANumber) {
+  for (const char* text : {"", "1x", "deep", "nan", "inf", "1e999"})
+    EXPECT_THAT(refusal("layer", {{"h", text}}), HasSubstr("is not a number")) << text;
+}
+
+TEST(Registry, WrongChoiceNamesTheNearest) {
+  EXPECT_THAT(refusal("layer", {{"base", "ruogh"}}),
+              HasSubstr("base = 'ruogh' is not one of smooth, rough; did you mean 'rough'?"));
+}
+
+TEST(Registry, EveryModelIsDocumentedAndItsDefaultsAreAllowed) {
+  std::set<std::string> names;
+  for (const auto& info : registry()) {
+    EXPECT_TRUE(names.insert(info.name).second);
+    EXPECT_FALSE(info.summary.empty());
+    for (const auto& parameter : info.parameters) {
+      EXPECT_FALSE(parameter.unit.empty()) << info.name << " " << parameter.name;
+      EXPECT_FALSE(parameter.meaning.empty()) << info.name << " " << parameter.name;
+      EXPECT_FALSE(parameter.source.empty()) << info.name << " " << parameter.name;
+      EXPECT_FALSE(allowed(parameter).empty());
+    }
+    EXPECT_NO_THROW(make_model(info.name, {}));
+    const int dim = dimension(info, {});
+    EXPECT_TRUE(dim == 2 || dim == 3);
+  }
+}
