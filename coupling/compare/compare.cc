@@ -1,0 +1,192 @@
+#include "coupling/compare/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "coupling/compare/verdict.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+// With fewer realizations a point's own variance is too uncertain to divide by: the variances of
+// the points within this many independent lengths on either side are pooled.
+constexpr int least_for_own_variance = 4;
+constexpr double pooled_lengths = 2;
+
+void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles>& models) {
+  if (profiles.empty()) throw std::invalid_argument("nothing to compare: no profile");
+  if (models.empty()) throw std::invalid_argument("nothing to compare with: no model");
+  for (const Profile& p : profiles) {
+    if (p.mean.size() != p.x.size() || (p.error.size() != 0 && p.error.size() != p.x.size()) ||
+        (p.samples.size() != 0 && p.samples.rows() != p.x.size()))
+      throw std::invalid_argument(
+          fmt::format("profile \"{}\": {} positions, {} means, {} errors, {} rows of samples",
+                      p.name, p.x.size(), p.mean.size(), p.error.size(), p.samples.rows()));
+    if (!(p.mean.array().isFinite().any()))
+      throw std::invalid_argument(
+          fmt::format("profile \"{}\" has no value: no point has enough grains around it", p.name));
+  }
+  for (const ModelProfiles& m : models) {
+    if (m.values.size() != profiles.size())
+      throw std::invalid_argument(fmt::format("model \"{}\" has {} profiles, the simulation {}",
+                                              m.key, m.values.size(), profiles.size()));
+    for (std::size_t k = 0; k < profiles.size(); ++k)
+      if (m.values[k].size() != profiles[k].x.size())
+        throw std::invalid_argument(
+            fmt::format("model \"{}\" has {} values on profile \"{}\" of {} points", m.key,
+                        m.values[k].size(), profiles[k].name, profiles[k].x.size()));
+  }
+}
+
+// Variance of the mean to divide by at every point; nan where there is none.
+Eigen::VectorXd variances(const Profile& p, int realizations, double& correction) {
+  correction = 1;
+  Eigen::VectorXd own = Eigen::VectorXd::Constant(p.x.size(), nan);
+  if (p.error.size() == 0) return own;
+  own = p.error.cwiseAbs2();
+  if (realizations < 2) return own;
+  double freedom = realizations - 1;
+  if (realizations < least_for_own_variance && p.independent_length > 0) {
+    const double reach = pooled_lengths * p.independent_length;
+    Eigen::VectorXd pooled = own;
+    for (Eigen::Index k = 0; k < p.x.size(); ++k) {
+      double sum = 0;
+      int count = 0;
+      for (Eigen::Index j = 0; j < p.x.size(); ++j)
+        if (std::abs(p.x[j] - p.x[k]) <= reach && std::isfinite(own[j])) {
+          sum += own[j];
+          ++count;
+        }
+      pooled[k] = count > 0 ? sum / count : nan;
+    }
+    own = pooled;
+    freedom *= 2 * pooled_lengths;
+  }
+  // The mean of (difference / estimated error)^2 of a true model is f/(f - 2), not 1, because the
+  // error is estimated too (Student's t with f degrees of freedom; Hartlap et al. 2007 for one
+  // point).
+  correction = freedom > 2 ? (freedom - 2) / freedom : nan;
+  return own;
+}
+
+struct Totals {
+  double difference = 0, simulation = 0, chi2 = 0, dof = 0;
+};
+
+Measures measure(const Profile& p, const Eigen::VectorXd& model, int realizations, Totals& totals) {
+  double correction = 1;
+  const Eigen::VectorXd variance = variances(p, realizations, correction);
+  Measures m;
+  m.largest_in = p.name;
+  double difference = 0, simulation = 0, squares = 0;
+  int points = 0, weighted = 0;
+  double first = nan, last = nan;
+  for (Eigen::Index k = 0; k < p.x.size(); ++k) {
+    const double d = p.mean[k] - model[k];
+    if (!std::isfinite(d)) continue;
+    ++points;
+    if (!std::isfinite(first)) first = p.x[k];
+    last = p.x[k];
+    difference += d * d;
+    simulation += p.mean[k] * p.mean[k];
+    if (std::abs(d) > m.largest || points == 1) {
+      m.largest = std::abs(d);
+      m.largest_at = p.x[k];
+    }
+    if (variance[k] > 0) {
+      squares += d * d / variance[k];
+      ++weighted;
+    }
+  }
+  if (points == 0) {
+    m.rel_l2 = m.largest = m.largest_at = m.chi2_per_dof = nan;
+    return m;
+  }
+  m.rel_l2 = std::sqrt(difference / simulation);
+  m.dof = p.independent_length > 0
+              ? std::clamp((last - first) / p.independent_length, 1.0, static_cast<double>(points))
+              : points;
+  m.chi2_per_dof = weighted > 0 ? correction * squares / weighted : nan;
+  totals.difference += difference;
+  totals.simulation += simulation;
+  totals.chi2 += m.dof * m.chi2_per_dof;
+  totals.dof += m.dof;
+  return m;
+}
+
+}  // namespace
+
+std::string family_of(const std::string& model_name) {
+  if (model_name == "flamant" || model_name == "fe_elastic_half_space") return "half plane";
+  if (model_name == "layer" || model_name == "fe_elastic_layer") return "finite layer";
+  return model_name;
+}
+
+Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
+                   double depth) {
+  check(profiles, models);
+  Comparison c;
+  c.load = load;
+  c.depth = depth;
+  c.realizations = std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
+  for (const Profile& p : profiles) c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+  for (const ModelProfiles& model : models) {
+    ModelComparison result{model.key, model.label, model.family, {}, {}, {}};
+    Totals totals;
+    for (std::size_t k = 0; k < profiles.size(); ++k) {
+      result.per_profile.push_back(measure(profiles[k], model.values[k], c.realizations, totals));
+      const Measures& m = result.per_profile.back();
+      if (m.dof > 0 && !(result.overall.largest >= m.largest)) {
+        result.overall.largest = m.largest;
+        result.overall.largest_at = m.largest_at;
+        result.overall.largest_in = m.largest_in;
+      }
+      const bool drawable = (model.values[k].array().isFinite()).count() >= 3;
+      result.shapes.push_back(drawable ? profile_shape(profiles[k].x, model.values[k], {})
+                                       : ProfileShape{nan, nan, nan, nan, 0, nan});
+    }
+    result.overall.rel_l2 = std::sqrt(totals.difference / totals.simulation);
+    result.overall.dof = totals.dof;
+    result.overall.chi2_per_dof = totals.chi2 / totals.dof;
+    c.results.push_back(std::move(result));
+  }
+  c.profiles = std::move(profiles);
+  c.models = std::move(models);
+  c.verdict = judge(c);
+  return c;
+}
+
+std::map<std::string, double> summary_figures(const Comparison& c, std::size_t main) {
+  std::map<std::string, double> figures;
+  const auto put = [&](const std::string& prefix, const Measures& m) {
+    figures[prefix + "rel_l2"] = m.rel_l2;
+    figures[prefix + "max"] = m.largest;
+    figures[prefix + "chi2_per_dof"] = m.chi2_per_dof;
+    figures[prefix + "dof"] = m.dof;
+  };
+  for (const ModelComparison& result : c.results) {
+    const std::string prefix = "compare." + result.key + ".";
+    put(prefix, result.overall);
+    for (std::size_t k = 0; k < c.profiles.size(); ++k)
+      put(prefix + c.profiles[k].key + ".", result.per_profile[k]);
+  }
+  figures["verdict.position"] = c.verdict.position;
+  figures["verdict.position_error"] = c.verdict.position_error;
+  if (main < c.shapes.size()) {
+    const ProfileShape& s = c.shapes[main];
+    figures["response.peak"] = s.peak;
+    figures["response.peak_at"] = s.peak_at;
+    figures["response.width"] = s.fwhm;
+    figures["response.rms_width"] = s.rms_width;
+    figures["response.peaks"] = s.peaks;
+    figures["response.integral"] = s.integral;
+  }
+  return figures;
+}
+
+}  // namespace grainfield::coupling

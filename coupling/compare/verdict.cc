@@ -1,0 +1,135 @@
+// The verdict in one number: the simulation is projected on the line from model A (the best of the
+// family that loses) to model B (the best of the family that wins):
+//   position = sum (simulation - A)(B - A) / sum (B - A)^2   over all points of all profiles,
+// 0 at A, 1 at B, and its standard error from the realizations' own positions. Points where A and B
+// agree do not weigh, and correlations between points are in the spread of the realizations.
+#include "coupling/compare/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double confidence = 0.95;
+
+struct Projection {
+  double position = nan, error = nan;
+};
+
+Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfiles& b) {
+  const auto realizations = static_cast<Eigen::Index>(c.realizations);
+  double norm = 0, sum = 0;
+  Eigen::VectorXd each = Eigen::VectorXd::Zero(realizations);
+  bool sampled = realizations > 1;
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    const Profile& p = c.profiles[k];
+    const bool here = p.samples.cols() == realizations && p.samples.rows() == p.x.size();
+    sampled = sampled && here;
+    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
+      const double from = a.values[k][i], step = b.values[k][i] - from;
+      if (!std::isfinite(step) || !std::isfinite(p.mean[i])) continue;
+      norm += step * step;
+      sum += (p.mean[i] - from) * step;
+      if (here)
+        for (Eigen::Index r = 0; r < realizations; ++r) each[r] += (p.samples(i, r) - from) * step;
+    }
+  }
+  if (!(norm > 0)) return {};
+  Projection result{sum / norm, nan};
+  if (sampled) {
+    each /= norm;
+    const double n = static_cast<double>(realizations);
+    result.error = std::sqrt((each.array() - each.mean()).square().sum() / (n - 1) / n);
+  }
+  return result;
+}
+
+// Beyond the middle between A and B by more than the spread (Student's t, 95 %, two-sided).
+bool beyond_spread(const Projection& p, int realizations) {
+  if (realizations < 2 || !std::isfinite(p.error)) return false;
+  const boost::math::students_t t(realizations - 1);
+  return p.position - 0.5 > quantile(t, (1 + confidence) / 2) * p.error;
+}
+
+double score(const ModelComparison& result, bool by_chi2) {
+  const double value = by_chi2 ? result.overall.chi2_per_dof : result.overall.rel_l2;
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
+std::string describe(const ModelComparison& result, bool by_chi2) {
+  return by_chi2
+             ? fmt::format("{} (chi2/dof {:.3g}, relative L2 {:.1f} %)", result.label,
+                           result.overall.chi2_per_dof, 100 * result.overall.rel_l2)
+             : fmt::format("{} (relative L2 {:.1f} %)", result.label, 100 * result.overall.rel_l2);
+}
+
+}  // namespace
+
+Verdict judge(const Comparison& c) {
+  Verdict v;
+  const bool by_chi2 = std::all_of(c.results.begin(), c.results.end(), [](const auto& r) {
+    return std::isfinite(r.overall.chi2_per_dof);
+  });
+  v.ranked_by = by_chi2 ? "chi2_per_dof" : "rel_l2";
+  std::vector<std::size_t> order(c.results.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return score(c.results[a], by_chi2) < score(c.results[b], by_chi2);
+  });
+  for (std::size_t k : order) v.ranking.push_back(c.results[k].key);
+  const ModelComparison& best = c.results[order.front()];
+  v.best_model = best.key;
+  v.position = v.position_error = nan;
+
+  const auto other = std::find_if(order.begin(), order.end(), [&](std::size_t k) {
+    return c.results[k].family != best.family;
+  });
+  std::string runner_up;  // the next one of the winner's own family
+  for (std::size_t k : order)
+    if (k != order.front() && c.results[k].family == best.family) {
+      const Projection p = project(c, c.models[k], c.models[order.front()]);
+      const bool apart = beyond_spread(p, c.realizations);
+      runner_up = fmt::format("; {} follows{}", describe(c.results[k], by_chi2),
+                              apart ? "" : ", not distinguishable from it within the spread");
+      break;
+    }
+  if (other == order.end()) {
+    v.sentence = fmt::format("Of the {} models, the grains are nearest to {}{}.", best.family,
+                             describe(best, by_chi2), runner_up);
+    return v;
+  }
+  const Projection p = project(c, c.models[*other], c.models[order.front()]);
+  v.position = p.position;
+  v.position_error = p.error;
+  v.distinguishable = beyond_spread(p, c.realizations);
+  const ModelComparison& loser = c.results[*other];
+  if (v.distinguishable) {
+    v.sentence = fmt::format(
+        "The grains support the {}, not the {}: nearest is {}, against {}; on the line from {} (0) "
+        "to {} (1) they stand at {:.2f} +- {:.2f}{}.",
+        best.family, loser.family, describe(best, by_chi2), describe(loser, by_chi2), loser.family,
+        best.family, p.position, p.error, runner_up);
+  } else if (std::isfinite(p.error)) {
+    v.sentence = fmt::format(
+        "{} and {} are not distinguishable within the spread of {} realizations: nearest is {}, "
+        "against {}; on the line from {} (0) to {} (1) the grains stand at {:.2f} +- {:.2f}{}.",
+        best.family, loser.family, c.realizations, describe(best, by_chi2),
+        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, runner_up);
+    v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
+  } else {
+    v.sentence = fmt::format(
+        "One realization, spread unknown: the grains are nearest to {}, against {}; on the line "
+        "from {} (0) to {} (1) they stand at {:.2f}.",
+        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
+  }
+  return v;
+}
+
+}  // namespace grainfield::coupling

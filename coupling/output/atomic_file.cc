@@ -1,0 +1,56 @@
+#include "coupling/output/atomic_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+namespace grainfield::coupling {
+
+namespace fs = std::filesystem;
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  static std::atomic<unsigned> counter{0};
+  const fs::path target(path_);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw std::invalid_argument(
+        fmt::format("cannot write {}: {} is not a folder", path_, folder.string()));
+  if (fs::is_directory(target, error))
+    throw std::invalid_argument(fmt::format("cannot write {}: it is a folder", path_));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw std::invalid_argument(
+        fmt::format("cannot write {}: no permission to write in {}", path_, folder.string()));
+  temporary_ =
+      (folder / fmt::format(".{}.{}.{}.part", target.filename().string(), getpid(), counter++))
+          .string();
+}
+
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  if (!committed_) fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error)
+    throw std::runtime_error(fmt::format("cannot rename to {}: {}", path_, error.message()));
+  committed_ = true;
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  std::ofstream out(file.temporary(), std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("cannot write {}: disk full?", path));
+  file.commit();
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,192 @@
+#include "coupling/output/field_io.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+#include "coupling/averaging/nearest.h"
+#include "coupling/output/atomic_file.h"
+#include "coupling/output/xdmf.h"
+#include "dem/snapshot/hdf5_file.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace h5 = dem::hdf5;
+constexpr const char* format_version = "1";
+constexpr const char* user_attribute = "attribute.";  // prefix of Field::attributes in the file
+
+h5::Handle create_group(hid_t parent, const std::string& name, const std::string& file) {
+  h5::Handle group(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Gclose);
+  if (!group.valid())
+    throw std::runtime_error(fmt::format("{}: cannot write group \"{}\"", file, name));
+  return group;
+}
+
+void check_name(const std::string& name) {
+  const bool good = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  });
+  if (!good || name == "." || name == "..")
+    throw std::invalid_argument(fmt::format(
+        "\"{}\" cannot name a field or column; allowed are letters, digits, \"_\", \"-\", \".\"",
+        name));
+}
+
+void check(const NamedFields& fields) {
+  for (const auto& [name, field] : fields) {
+    check_name(name);
+    const auto n = field.points.rows();
+    if ((field.nx || field.ny) && static_cast<Eigen::Index>(field.nx) * field.ny != n)
+      throw std::invalid_argument(fmt::format("field \"{}\": a grid of {} x {} with {} points",
+                                              name, field.nx, field.ny, n));
+    for (const Column& column : field.columns) {
+      check_name(column.name);
+      if (column.value.size() != n || (column.error.size() != 0 && column.error.size() != n))
+        throw std::invalid_argument(
+            fmt::format("field \"{}\": column \"{}\" has {} values and {} errors for {} points",
+                        name, column.name, column.value.size(), column.error.size(), n));
+    }
+  }
+}
+
+std::vector<double> to_vector(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
+
+Eigen::VectorXd to_eigen(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+void write_one(hid_t root, const std::string& name, const Field& field, const std::string& file) {
+  const h5::Handle group = create_group(root, name, file);
+  const int dim = static_cast<int>(field.points.cols());
+  std::vector<double> points;
+  for (Eigen::Index p = 0; p < field.points.rows(); ++p)
+    for (int d = 0; d < dim; ++d) points.push_back(field.points(p, d));
+  h5::write(group, "points", points, dim, "m");
+  h5::write_attribute(group, "kind", "field");
+  h5::write_attribute(group, "dim", dim);
+  h5::write_attribute(group, "nx", field.nx);
+  h5::write_attribute(group, "ny", field.ny);
+  h5::write_attribute(group, "realizations", field.realizations);
+  for (const auto& [key, value] : field.attributes)
+    h5::write_attribute(group, user_attribute + key, value);
+  std::vector<std::string> names;
+  const h5::Handle values = create_group(group, "value", file);
+  const h5::Handle errors = create_group(group, "error", file);
+  for (const Column& column : field.columns) {
+    names.push_back(column.name);
+    h5::write(values, column.name, to_vector(column.value), 1, column.unit);
+    if (column.error.size())
+      h5::write(errors, column.name, to_vector(column.error), 1, column.unit);
+  }
+  h5::write_attribute(group, "columns", fmt::format("{}", fmt::join(names, ",")));
+}
+
+h5::Handle open_group(hid_t parent, const std::string& name, const std::string& where) {
+  h5::Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid())
+    throw std::invalid_argument(fmt::format("{}: group \"{}\" is missing or broken", where, name));
+  return group;
+}
+
+bool is_field(hid_t root, const std::string& name) {
+  const h5::Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
+  return group.valid() && h5::has_attribute(group, "kind") &&
+         h5::read_text_attribute(group, "kind") == "field";
+}
+
+std::vector<std::string> fields_of(hid_t root) {
+  std::vector<std::string> names;
+  for (const std::string& name : h5::groups(root))
+    if (is_field(root, name)) names.push_back(name);
+  return names;
+}
+
+std::string text_of(hid_t group, const std::string& name, const std::string& where) {
+  if (!h5::has_attribute(group, name))
+    throw std::invalid_argument(fmt::format("{}: attribute \"{}\" is missing", where, name));
+  return h5::read_text_attribute(group, name);
+}
+
+int number_of(hid_t group, const std::string& name, const std::string& where) {
+  if (!h5::has_attribute(group, name))
+    throw std::invalid_argument(fmt::format("{}: attribute \"{}\" is missing", where, name));
+  return static_cast<int>(h5::read_number_attribute(group, name));
+}
+
+std::string unit_of(hid_t group, const std::string& dataset) {
+  const h5::Handle data(H5Dopen2(group, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  return data.valid() && h5::has_attribute(data, "unit") ? h5::read_text_attribute(data, "unit")
+                                                         : "";
+}
+
+}  // namespace
+
+void write_fields(const std::string& file, const NamedFields& fields) {
+  check(fields);
+  AtomicFile target(file);
+  {
+    const h5::Handle out = h5::open_for_adding(target.temporary());
+    h5::write_attribute(out, "program", "grainfield");
+    h5::write_attribute(out, "version", GRAINFIELD_VERSION);
+    h5::write_attribute(out, "field_format", format_version);
+    for (const auto& [name, field] : fields) write_one(out, name, field, file);
+  }
+  const std::filesystem::path path(file);
+  std::filesystem::path description = path;
+  description.replace_extension(".xdmf");
+  target.commit();
+  write_text_file(description.string(), xdmf(path.filename().string(), fields));
+}
+
+Field read_field(const std::string& file, const std::string& name) {
+  const h5::Handle in = h5::open_for_reading(file);
+  const std::vector<std::string> known = fields_of(in);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw std::invalid_argument(file + ": " + unknown_name("field", name, known));
+  const std::string where = file + ":/" + name;
+  const h5::Handle group = open_group(in, name, file);
+  Field field;
+  const int dim = number_of(group, "dim", where);
+  if (dim != 2 && dim != 3)
+    throw std::invalid_argument(fmt::format("{}: dim is {}; allowed are 2 and 3", where, dim));
+  const std::vector<double> points = h5::read_doubles(group, "points", dim, where);
+  field.points = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
+      points.data(), static_cast<Eigen::Index>(points.size()) / dim, dim);
+  field.nx = number_of(group, "nx", where);
+  field.ny = number_of(group, "ny", where);
+  field.realizations = number_of(group, "realizations", where);
+  for (const std::string& key : h5::text_attributes(group))
+    if (key.rfind(user_attribute, 0) == 0)
+      field.attributes[key.substr(std::string(user_attribute).size())] =
+          h5::read_text_attribute(group, key);
+  const h5::Handle values = open_group(group, "value", where);
+  const h5::Handle errors = open_group(group, "error", where);
+  std::istringstream names(text_of(group, "columns", where));
+  for (std::string column_name; std::getline(names, column_name, ',');) {
+    Column& column = field.add(column_name, unit_of(values, column_name));
+    column.value = to_eigen(h5::read_doubles(values, column_name, 1, where + "/value"));
+    if (H5Lexists(errors, column_name.c_str(), H5P_DEFAULT) > 0)
+      column.error = to_eigen(h5::read_doubles(errors, column_name, 1, where + "/error"));
+  }
+  try {
+    check({{name, field}});
+  } catch (const std::invalid_argument& problem) {
+    throw std::invalid_argument(file + ": " + problem.what());
+  }
+  return field;
+}
+
+std::vector<std::string> list_fields(const std::string& file) {
+  const h5::Handle in = h5::open_for_reading(file);
+  return fields_of(in);
+}
+
+}  // namespace grainfield::coupling

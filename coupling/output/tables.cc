@@ -1,0 +1,201 @@
+#include "coupling/output/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "coupling/output/atomic_file.h"
+
+namespace grainfield::coupling {
+namespace {
+
+double error_at(const Profile& p, Eigen::Index k) {
+  return p.error.size() ? p.error[k] : std::nan("");
+}
+
+// Indices of at most `rows` evenly chosen points.
+std::vector<Eigen::Index> chosen(Eigen::Index points, int rows) {
+  std::vector<Eigen::Index> all;
+  const Eigen::Index n = std::min<Eigen::Index>(points, std::max(rows, 2));
+  for (Eigen::Index k = 0; k < n; ++k) all.push_back(n == 1 ? 0 : k * (points - 1) / (n - 1));
+  return all;
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
+
+struct Style {
+  std::string begin, separator, end;  // of a row
+};
+
+// Header and rows of one profile, normalised by F/h.
+std::vector<std::vector<std::string>> normalised(
+    const Comparison& c, std::size_t k, int rows,
+    const std::function<std::string(std::string)>& math) {
+  const Profile& p = c.profiles[k];
+  const double unit = c.load / c.depth;
+  std::vector<std::vector<std::string>> table(1);
+  table[0] = {math("x/h"), "simulation", "standard error"};
+  for (const ModelProfiles& m : c.models) {
+    table[0].push_back(m.label);
+    table[0].push_back("difference");
+    table[0].push_back("difference/error");
+  }
+  for (Eigen::Index i : chosen(p.x.size(), rows)) {
+    std::vector<std::string> row{cell(p.x[i] / c.depth), cell(p.mean[i] / unit),
+                                 cell(error_at(p, i) / unit)};
+    for (const ModelProfiles& m : c.models) {
+      const double difference = p.mean[i] - m.values[k][i];
+      row.push_back(cell(m.values[k][i] / unit));
+      row.push_back(cell(difference / unit));
+      row.push_back(cell(difference / error_at(p, i)));
+    }
+    table.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string join(const std::vector<std::string>& cells, const Style& style) {
+  std::string line = style.begin;
+  for (std::size_t k = 0; k < cells.size(); ++k) line += (k ? style.separator : "") + cells[k];
+  return line + style.end + "\n";
+}
+
+std::string escape_latex(const std::string& text) {
+  std::string out;
+  for (char c : text) {
+    if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string quote_csv(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string normalisation(const Comparison& c) {
+  return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
+                     c.depth, c.load / c.depth, c.realizations);
+}
+
+}  // namespace
+
+std::string profiles_csv(const Comparison& c) {
+  std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
+                     ": compression positive; x from the load\n";
+  const std::string unit = c.profiles.front().unit;
+  text += fmt::format("profile,depth_m,x_m,simulation_{0},standard_error_{0}", unit);
+  for (const ModelProfiles& m : c.models)
+    for (const std::string& name :
+         {fmt::format("{}_{}", m.key, unit), fmt::format("{}_difference_{}", m.key, unit),
+          fmt::format("{}_difference_over_error", m.key)})
+      text += fmt::format(",{}", quote_csv(name));
+  text += "\n";
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    const Profile& p = c.profiles[k];
+    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
+      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}", quote_csv(p.name), p.depth, p.x[i],
+                          p.mean[i], error_at(p, i));
+      for (const ModelProfiles& m : c.models) {
+        const double value = m.values[k][i], difference = p.mean[i] - value;
+        text +=
+            fmt::format(",{:.9g},{:.9g},{:.6g}", value, difference, difference / error_at(p, i));
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::string profiles_markdown(const Comparison& c, int rows) {
+  std::string text = "# Profiles\n\n" + normalisation(c) + "\n";
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    text += fmt::format("\n## {}\n\n{} in units of F/h\n\n", c.profiles[k].name,
+                        c.profiles[k].quantity);
+    const auto table = normalised(c, k, rows, [](std::string s) { return s; });
+    const Style style{"| ", " | ", " |"};
+    text += join(table[0], style);
+    text += join(std::vector<std::string>(table[0].size(), "---:"), style);
+    for (std::size_t r = 1; r < table.size(); ++r) text += join(table[r], style);
+  }
+  return text;
+}
+
+std::string profiles_latex(const Comparison& c, int rows) {
+  std::string text = "% " + normalisation(c) + "\n";
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    auto table = normalised(c, k, rows, [](std::string s) { return "$" + s + "$"; });
+    for (std::string& head : table[0])
+      if (head != "$x/h$") head = escape_latex(head);
+    const Style style{"  ", " & ", " \\\\"};
+    text += fmt::format(
+        "\\begin{{table}}\n\\caption{{{}: {} in units of "
+        "$F/h$}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
+        escape_latex(c.profiles[k].name), escape_latex(c.profiles[k].quantity),
+        std::string(table[0].size(), 'r'));
+    text += join(table[0], style) + "\\hline\n";
+    for (std::size_t r = 1; r < table.size(); ++r) text += join(table[r], style);
+    text += "\\hline\n\\end{tabular}\n\\end{table}\n";
+  }
+  return text;
+}
+
+void write_profiles(const std::string& folder, const Comparison& c) {
+  const std::filesystem::path at(folder);
+  write_text_file((at / "profiles.csv").string(), profiles_csv(c));
+  write_text_file((at / "profiles.md").string(), profiles_markdown(c));
+  write_text_file((at / "profiles.tex").string(), profiles_latex(c));
+}
+
+void write_summary(const std::string& file, const Summary& summary) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [key, value] : summary) {
+    if (const auto* number = std::get_if<double>(&value)) {
+      if (std::isnan(*number))
+        json[key] = "nan";
+      else if (std::isinf(*number))
+        json[key] = *number > 0 ? "inf" : "-inf";
+      else
+        json[key] = *number;
+    } else if (const auto* count = std::get_if<std::int64_t>(&value)) {
+      json[key] = *count;
+    } else {
+      json[key] = std::get<std::string>(value);
+    }
+  }
+  write_text_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+Summary read_summary(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw std::invalid_argument(fmt::format("{}: no such file or not readable", file));
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  if (!json.is_object())
+    throw std::invalid_argument(fmt::format("{}: not a JSON object (broken or truncated)", file));
+  Summary summary;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_number_integer())
+      summary[key] = value.get<std::int64_t>();
+    else if (value.is_number())
+      summary[key] = value.get<double>();
+    else if (value == "nan" || value == "inf" || value == "-inf")
+      summary[key] = std::stod(value.get<std::string>());
+    else if (value.is_string())
+      summary[key] = value.get<std::string>();
+    else
+      throw std::invalid_argument(fmt::format("{}: \"{}\" is {}; allowed are numbers and strings",
+                                              file, key, value.type_name()));
+  }
+  return summary;
+}
+
+}  // namespace grainfield::coupling

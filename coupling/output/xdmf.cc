@@ -1,0 +1,74 @@
+#include "coupling/output/xdmf.h"
+
+#include <pugixml.hpp>
+#include <sstream>
+#include <string>
+
+namespace grainfield::coupling {
+namespace {
+
+void put(pugi::xml_node node, const char* name, const std::string& value) {
+  node.append_attribute(name).set_value(value.c_str());
+}
+
+void add_data(pugi::xml_node parent, const std::string& dimensions, const std::string& reference) {
+  pugi::xml_node item = parent.append_child("DataItem");
+  put(item, "Dimensions", dimensions);
+  put(item, "NumberType", "Float");
+  put(item, "Precision", "8");
+  put(item, "Format", "HDF");
+  item.text().set(reference.c_str());
+}
+
+void add_column(pugi::xml_node grid, const std::string& name, const std::string& dimensions,
+                const std::string& reference) {
+  pugi::xml_node attribute = grid.append_child("Attribute");
+  put(attribute, "Name", name);
+  put(attribute, "AttributeType", "Scalar");
+  put(attribute, "Center", "Node");
+  add_data(attribute, dimensions, reference);
+}
+
+}  // namespace
+
+std::string xdmf(const std::string& h5_name, const NamedFields& fields) {
+  pugi::xml_document document;
+  pugi::xml_node root = document.append_child("Xdmf");
+  put(root, "Version", "3.0");
+  pugi::xml_node all = root.append_child("Domain").append_child("Grid");
+  put(all, "Name", "fields");
+  put(all, "GridType", "Collection");
+  put(all, "CollectionType", "Spatial");
+  for (const auto& [name, field] : fields) {
+    const std::string base = h5_name + ":/" + name + "/";
+    const std::string count = std::to_string(field.points.rows());
+    const bool structured = field.nx > 1 && field.ny > 1 && field.points.cols() == 2;
+    pugi::xml_node grid = all.append_child("Grid");
+    put(grid, "Name", name);
+    put(grid, "GridType", "Uniform");
+    pugi::xml_node topology = grid.append_child("Topology");
+    if (structured) {
+      put(topology, "TopologyType", "2DSMesh");
+      put(topology, "Dimensions", std::to_string(field.ny) + " " + std::to_string(field.nx));
+    } else {
+      put(topology, "TopologyType", "Polyvertex");
+      put(topology, "NumberOfElements", count);
+      put(topology, "NodesPerElement", "1");
+    }
+    pugi::xml_node geometry = grid.append_child("Geometry");
+    put(geometry, "GeometryType", field.points.cols() == 3 ? "XYZ" : "XY");
+    add_data(geometry, count + " " + std::to_string(field.points.cols()), base + "points");
+    const std::string dimensions =
+        structured ? std::to_string(field.ny) + " " + std::to_string(field.nx) : count;
+    for (const Column& column : field.columns) {
+      add_column(grid, column.name, dimensions, base + "value/" + column.name);
+      if (column.error.size())
+        add_column(grid, column.name + "_error", dimensions, base + "error/" + column.name);
+    }
+  }
+  std::ostringstream text;
+  document.save(text, "  ");
+  return text.str();
+}
+
+}  // namespace grainfield::coupling
