@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+
+#include "coupling/report/picture.h"
+#include "coupling/report/style.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr int frame_height = 330, frame_width = 480, legend_row = 24, title_height = 16;
+
+struct Range {
+  double low = 0, high = 0;
+  bool any = false;
+  void add(double v) {
+    if (!std::isfinite(v)) return;
+    low = any ? std::min(low, v) : v;
+    high = any ? std::max(high, v) : v;
+    any = true;
+  }
+};
+
+bool has_band(const Series& s) {
+  return s.error.size() == s.x.size() && s.error.array().isFinite().any();
+}
+
+std::string data_block(const std::string& name, const Series& s) {
+  std::string text = "$" + name + " << EOD\n";
+  for (Eigen::Index k = 0; k < s.x.size(); ++k)
+    text += fmt::format("{} {} {}\n", style::number(s.x[k]), style::number(s.y[k]),
+                        has_band(s) ? style::number(s.error[k]) : "NaN");
+  return text + "EOD\n";
+}
+
+}  // namespace
+
+Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
+               const std::vector<Frame>& frames) {
+  Picture picture;
+  picture.title = title;
+  const int columns = frames.size() > 1 ? 2 : 1;
+  const int rows = (static_cast<int>(frames.size()) + columns - 1) / columns;
+  std::vector<std::string> labels, plots;
+  std::string data;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    std::string plot;
+    std::size_t model = 0;
+    Range x, y;
+    for (std::size_t s = 0; s < frames[f].series.size(); ++s) {
+      const Series& series = frames[f].series[s];
+      const std::string name = fmt::format("d{}_{}", f, s);
+      data += data_block(name, series);
+      for (double v : series.x) x.add(v);
+      for (double v : series.y) y.add(v);
+      const auto part = [&](const std::string& text) { plot += (plot.empty() ? "" : ", ") + text; };
+      if (series.simulation) {
+        if (has_band(series))
+          part(
+              fmt::format("${} using 1:($2-$3):($2+$3) with filledcurves fc rgb '{}' fs solid 0.8 "
+                          "noborder title 'standard error'",
+                          name, style::band));
+        part(fmt::format("${} using 1:2 with linespoints lw 1.6 pt 7 ps 0.35 lc rgb '{}' title {}",
+                         name, style::simulation, style::quoted(series.label)));
+      } else {
+        const std::size_t look = model++ % style::models;
+        part(fmt::format("${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", name,
+                         style::dash[look], style::model[look], style::quoted(series.label)));
+      }
+    }
+    const double room = 0.06 * (y.high - y.low);
+    std::string head = fmt::format("set title {}\n", style::quoted(frames[f].title));
+    if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
+    if (y.any && y.high > y.low)
+      head += fmt::format("set yrange [{}:{}]\n", y.low - room, y.high + room);
+    plots.push_back(head + "plot " + plot + "\n");
+  }
+  const std::size_t entries = frames.empty() ? 0 : frames.front().series.size() + 1;
+  const int per_row = columns == 1 ? 2 : 3;
+  const int legend_rows = (static_cast<int>(entries) + per_row - 1) / per_row;
+  picture.width = columns == 1 ? 760 : columns * frame_width;
+  const int legend = legend_rows * legend_row + 10;
+  picture.height = rows * frame_height + legend + title_height;
+  // The frames share the space above the legend, which stands in a strip of its own.
+  const double below = static_cast<double>(legend) / picture.height;
+  picture.program =
+      data + fmt::format(
+                 "set border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\nset grid lc rgb "
+                 "'#dddddd' lw 0.6\n"
+                 "set xlabel {}\nset ylabel {}\nset xzeroaxis lc rgb '#888888' lw 0.8\nunset key\n"
+                 "set multiplot\n",
+                 style::quoted(x_label), style::quoted(y_label));
+  for (std::size_t f = 0; f < plots.size(); ++f) {
+    const int column = static_cast<int>(f) % columns, row = static_cast<int>(f) / columns;
+    const double height = (1 - below) / rows;
+    picture.program +=
+        fmt::format("set size {:.4f},{:.4f}\nset origin {:.4f},{:.4f}\n{}", 1.0 / columns, height,
+                    static_cast<double>(column) / columns, 1 - height * (row + 1), plots[f]);
+  }
+  if (!frames.empty()) {
+    // The legend alone: the first frame's entries drawn on an empty, invisible frame.
+    std::string entries_only;
+    std::size_t model = 0;
+    for (const Series& series : frames.front().series) {
+      const auto part = [&](const std::string& text) {
+        entries_only += (entries_only.empty() ? "" : ", ") + text;
+      };
+      if (series.simulation) {
+        part(fmt::format("NaN with linespoints lw 1.6 pt 7 ps 0.5 lc rgb '{}' title {}",
+                         style::simulation, style::quoted(series.label)));
+        if (has_band(series))
+          part(fmt::format("NaN with filledcurves fc rgb '{}' fs solid 0.8 title 'standard error'",
+                           style::band));
+      } else {
+        const std::size_t look = model++ % style::models;
+        part(fmt::format("NaN with lines lw 2 dt {} lc rgb '{}' title {}", style::dash[look],
+                         style::model[look], style::quoted(series.label)));
+      }
+    }
+    picture.program += fmt::format(
+        "set size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset tics\nunset xlabel\n"
+        "unset ylabel\nunset grid\nunset xzeroaxis\nset xrange [0:1]\nset yrange [0:1]\n"
+        "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
+        "set key center center horizontal maxrows {1} samplen 3 noopaque\nplot {2}\n",
+        below, legend_rows, entries_only);
+  }
+  picture.program += "unset multiplot\n";
+  return picture;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,22 @@
+// gnuplot as a child process.
+#pragma once
+#include <optional>
+#include <string>
+
+namespace grainfield::coupling {
+
+/// Full path of gnuplot on PATH, or nothing.
+std::optional<std::string> find_gnuplot();
+
+struct Drawing {
+  std::string bytes;  ///< the picture, SVG or PNG; empty when it failed
+  std::string error;  ///< why it failed: gnuplot's own first line, or the time limit
+};
+
+/// Runs gnuplot on the program in a private temporary folder, without a shell, and kills it after
+/// `seconds`. `terminal`: e.g. "svg size 900,500". Throws std::runtime_error only when no temporary
+/// folder or process can be made.
+Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
+             double seconds = 60);
+
+}  // namespace grainfield::coupling

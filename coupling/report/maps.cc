@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+
+#include "coupling/report/picture.h"
+#include "coupling/report/style.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The colour scale ends at this quantile of |value| over all maps: the few points under the load
+// would otherwise bleach everything else.
+constexpr double scale_quantile = 0.99;
+
+double colour_limit(const std::vector<Map>& maps) {
+  std::vector<double> sizes;
+  for (const Map& map : maps)
+    for (double v : map.value)
+      if (std::isfinite(v)) sizes.push_back(std::abs(v));
+  if (sizes.empty()) return 1;
+  const auto at =
+      static_cast<std::ptrdiff_t>(scale_quantile * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
+  const double limit = sizes[static_cast<std::size_t>(at)];
+  return limit > 0 ? limit : 1;
+}
+
+}  // namespace
+
+Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,
+             const std::string& value_label, const std::vector<Map>& all) {
+  Picture picture;
+  picture.title = title;
+  picture.bitmap = true;
+  picture.width = 980;
+  double aspect = 0.3;  // height over width of a map
+  if (!all.empty() && all.front().points.rows() > 1) {
+    const Eigen::RowVector2d size =
+        all.front().points.colwise().maxCoeff() - all.front().points.colwise().minCoeff();
+    if (size.x() > 0 && size.y() > 0) aspect = std::clamp(size.y() / size.x(), 0.1, 1.2);
+  }
+  const int columns = aspect > 0.6 ? std::min<int>(3, static_cast<int>(all.size())) : 1;
+  const int rows = (static_cast<int>(all.size()) + columns - 1) / std::max(1, columns);
+  const int plot_width = (picture.width - 130) / std::max(1, columns) - 70;
+  const int row_height = static_cast<int>(plot_width * aspect) + 84;
+  picture.height = std::max(1, rows) * row_height + 10;
+  std::string& p = picture.program;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Map& map = all[k];
+    p += fmt::format("$m{} << EOD\n", k);
+    for (int iy = 0; iy < map.ny; ++iy) {
+      for (int ix = 0; ix < map.nx; ++ix) {
+        const Eigen::Index row = ix + static_cast<Eigen::Index>(map.nx) * iy;
+        p += fmt::format("{:.6g} {:.6g} {}\n", map.points(row, 0), map.points(row, 1),
+                         style::number(map.value[row]));
+      }
+      p += "\n";
+    }
+    p += "EOD\n";
+  }
+  const double limit = colour_limit(all);
+  p += style::diverging;
+  p += fmt::format(
+      "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
+      "set xlabel {} offset 0,0.4\nset ylabel {}\nset cblabel {}\nset multiplot\n",
+      -limit, limit, style::quoted(x_label), style::quoted(y_label), style::quoted(value_label));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
+    const double left = 80.0 + column * (plot_width + 70.0);
+    const double top = row * static_cast<double>(row_height) + 30;
+    const double w = picture.width, h = picture.height;
+    const bool last = k + 1 == all.size();
+    // One colour box, to the right of all the maps.
+    p += fmt::format(
+        "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
+        "set bmargin at screen {:.4f}\nset title {} offset 0,-0.5\n",
+        left / w, (left + plot_width) / w, 1 - top / h, 1 - (top + plot_width * aspect) / h,
+        style::quoted(all[k].title));
+    p += last ? fmt::format(
+                    "set colorbox user origin screen {:.4f}, screen 0.12 size screen 0.018, screen "
+                    "0.76\n",
+                    (80.0 + columns * (plot_width + 70.0) - 45) / w)
+              : "unset colorbox\n";
+    const Eigen::RowVector2d low = all[k].points.colwise().minCoeff();
+    const Eigen::RowVector2d high = all[k].points.colwise().maxCoeff();
+    p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", low.x(), high.x(), low.y(),
+                     high.y());
+    p += fmt::format("plot $m{} using 1:2:3 with image pixels\n", k);
+  }
+  p += "unset multiplot\n";
+  return picture;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,152 @@
+#include "coupling/report/report.h"
+
+#include <fmt/format.h>
+
+#include <boost/beast/core/detail/base64.hpp>
+#include <sstream>
+
+#include "coupling/output/atomic_file.h"
+#include "coupling/report/gnuplot.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr const char* style_sheet = R"(
+body{font:16px/1.5 "DejaVu Sans",Helvetica,Arial,sans-serif;color:#222;max-width:1040px;margin:2em auto;padding:0 1em}
+h1{font-size:1.7em;margin-bottom:0}h2{font-size:1.2em;margin:2em 0 .4em;border-bottom:1px solid #ddd}
+.subtitle{color:#666;margin-top:.2em}.verdict{font-size:1.12em;background:#f3f6fa;border-left:5px solid #0072b2;padding:.8em 1em}
+figure{margin:0 0 1em}figure img,figure svg{max-width:100%;height:auto}figcaption{color:#555;font-size:.9em}
+.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9em}td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #e4e4e4}
+td:first-child,th:first-child{text-align:left}th{border-bottom:2px solid #888}.missing{background:#fff4e0;padding:.6em 1em}
+)";
+
+std::string escape(const std::string& text) {
+  std::string out;
+  for (char c : text) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  namespace codec = boost::beast::detail::base64;
+  std::string out(codec::encoded_size(bytes.size()), '\0');
+  out.resize(codec::encode(out.data(), bytes.data(), bytes.size()));
+  return out;
+}
+
+std::string heading(const std::string& title) {
+  return title.empty() ? "" : "<h2>" + escape(title) + "</h2>\n";
+}
+
+class Page {
+ public:
+  explicit Page(ReportResult& result) : result_(result), gnuplot_(find_gnuplot()) {}
+
+  std::string operator()(const Text& text) const {
+    std::string out = heading(text.title), paragraph;
+    std::istringstream lines(text.body);
+    const auto flush = [&] {
+      if (!paragraph.empty())
+        out += fmt::format("<p{}>{}</p>\n", text.verdict ? " class=\"verdict\"" : "",
+                           escape(paragraph));
+      paragraph.clear();
+    };
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty())
+        flush();
+      else
+        paragraph += (paragraph.empty() ? "" : " ") + line;
+    }
+    flush();
+    return out;
+  }
+
+  std::string operator()(const Table& table) const {
+    std::string out = heading(table.title) + "<div class=\"scroll\"><table>\n";
+    const auto row = [&](const std::vector<std::string>& cells, const char* tag) {
+      out += "<tr>";
+      for (const std::string& cell : cells) out += fmt::format("<{0}>{1}</{0}>", tag, escape(cell));
+      out += "</tr>\n";
+    };
+    if (!table.header.empty()) row(table.header, "th");
+    for (const auto& cells : table.rows) row(cells, "td");
+    out += "</table></div>\n";
+    if (!table.caption.empty()) out += "<p class=\"subtitle\">" + escape(table.caption) + "</p>\n";
+    return out;
+  }
+
+  std::string operator()(const Picture& picture) {
+    const std::string font = "font 'DejaVu Sans,13'";
+    std::string image;
+    if (!gnuplot_) {
+      image = missing("gnuplot not found: install gnuplot-nox");
+    } else {
+      // Bitmaps are drawn at twice the size, for sharp lines on dense screens.
+      const std::string terminal = picture.bitmap
+                                       ? fmt::format(
+                                             "pngcairo size {},{} fontscale 2 linewidth 2 "
+                                             "pointscale 2 {} background 'white'",
+                                             2 * picture.width, 2 * picture.height, font)
+                                       : fmt::format("svg size {},{} dynamic {} background 'white'",
+                                                     picture.width, picture.height, font);
+      const Drawing drawing = draw(*gnuplot_, terminal, picture.program);
+      if (drawing.bytes.empty())
+        image = missing("gnuplot failed: " + drawing.error);
+      else
+        image = embed(picture, drawing.bytes);
+    }
+    return heading(picture.title) + "<figure>" + image +
+           (picture.caption.empty() ? ""
+                                    : "<figcaption>" + escape(picture.caption) + "</figcaption>") +
+           "</figure>\n";
+  }
+
+ private:
+  std::string missing(const std::string& why) {
+    result_.why_missing = why;
+    return "<p class=\"missing\">No picture: " + escape(why) + ".</p>";
+  }
+
+  // As an image with its own address space: the ids of several SVG pictures would clash inline.
+  std::string embed(const Picture& picture, const std::string& bytes) {
+    ++result_.pictures;
+    return fmt::format(
+        "<img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/{};base64,{}\">",
+        picture.width, picture.height, escape(picture.title), picture.bitmap ? "png" : "svg+xml",
+        base64(bytes));
+  }
+
+  ReportResult& result_;
+  std::optional<std::string> gnuplot_;
+};
+
+}  // namespace
+
+ReportResult write_report(const std::string& file, const Report& report) {
+  ReportResult result;
+  Page page(result);
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n"
+      "<style>{1}</style></head><body>\n<h1>{0}</h1>\n<p class=\"subtitle\">{2}</p>\n",
+      escape(report.title), style_sheet, escape(report.subtitle));
+  for (const Section& section : report.sections) html += std::visit(page, section);
+  html += "</body></html>\n";
+  write_text_file(file, html);
+  return result;
+}
+
+}  // namespace grainfield::coupling
