@@ -45,6 +45,7 @@ struct NewGrain {
   double radius = 0;
   double density = 0;  ///< kg/m2
   bool fixed = false;
+  bool rotates = true;  ///< false: a block that slides but never spins
 };
 
 /// A force on one grain that rises from 0 to its full value along a smooth ramp (3 s^2 - 2 s^3).

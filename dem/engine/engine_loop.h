@@ -17,10 +17,12 @@
 
 namespace grainfield::dem {
 
-// Skin of the neighbour list as a share of the mean radius, when none is given: larger means fewer
-// searches and more candidate pairs; 0.03 was the fastest of 0.01, 0.03, 0.1 on
-// the settled packings of tests/benchmarks.
-inline constexpr double kSkinShare = 0.03;
+// Skin of the neighbour list as a share of the mean radius, when none is given. A large one means
+// few searches and many idle pairs: it grows when a search comes within kOften steps of the last,
+// and shrinks when none was needed for kSeldom steps. At rest 0.03 was the fastest of 0.01, 0.03
+// and 0.1 on the settled packings of tests/benchmarks. Step counts alone decide, so the bits stay.
+inline constexpr double kFirstSkin = 0.1, kLeastSkin = 0.03, kMostSkin = 0.4;
+inline constexpr long kOften = 60, kSeldom = 1000;
 // How many pairs ahead the sweep asks for the grains it will need; the pair list ends with as many
 // idle entries. Measured: 8 % on packings beyond the second-level cache, none below.
 inline constexpr int kAhead = 16;
@@ -50,12 +52,12 @@ class EngineLoop final : public Engine {
     b.y = g.y;
     b.vx = g.fixed ? 0 : g.vx;
     b.vy = g.fixed ? 0 : g.vy;
-    b.spin = g.fixed ? 0 : g.spin;
+    b.spin = g.fixed || !g.rotates ? 0 : g.spin;
     b.radius = g.radius;
     const double mass = g.density * std::numbers::pi * g.radius * g.radius;
     if (!g.fixed) {
       b.inverse_mass = 1 / mass;
-      b.inverse_inertia = 1 / (0.5 * mass * g.radius * g.radius);
+      if (g.rotates) b.inverse_inertia = 1 / (0.5 * mass * g.radius * g.radius);
       ++free_;
     }
     Memory m;
@@ -95,12 +97,14 @@ class EngineLoop final : public Engine {
   struct Pair {
     double spring = 0;  // N, on the first grain along (-n_y, n_x)
     int j = 0;          // second grain, or wall; the first is the row's
+    int pad = 0;        // so that an image has no undefined bytes
   };
   struct alignas(32) Sum {
     double fx = 0, fy = 0, torque = 0;
   };
 
   void search();
+  void adapt_skin();
   void index_contacts();
   void sort_bodies(const std::vector<int>& order);
   void locate_applied();
@@ -129,7 +133,8 @@ class EngineLoop final : public Engine {
   long steps_ = 0;
   int free_ = 0;
   std::int64_t first_new_ = 0;  // ids from here on have not been started yet
-  double skin_ = 0;
+  double skin_ = 0, skin_share_ = kFirstSkin;
+  long last_search_ = 0;
   bool search_needed_ = true;
   std::atomic<bool> moved_{false}, diverged_{false};
 
@@ -319,8 +324,9 @@ void EngineLoop<Law, Integrator>::step(long n) {
     begin_all(rank);
     for (long s = 0; s < n; ++s) {
       team_.meet();
-      if (moved_.load(std::memory_order_relaxed)) {
-        team_.meet();  // all have read the flag
+      const bool smaller_skin = start + s - last_search_ >= kSeldom && skin_share_ > kLeastSkin;
+      if (moved_.load(std::memory_order_relaxed) || smaller_skin) {
+        team_.meet();  // all have read the flags
         if (rank == 0) {
           steps_ = start + s;
           check_motion();
@@ -397,15 +403,24 @@ void EngineLoop<Law, Integrator>::sort_bodies(const std::vector<int>& order) {
 }
 
 template <class Law, class Integrator>
+void EngineLoop<Law, Integrator>::adapt_skin() {
+  const long since = steps_ - last_search_;
+  last_search_ = steps_;
+  if (since < kOften) {
+    skin_share_ = std::min(1.5 * skin_share_, kMostSkin);
+  } else if (since >= kSeldom) {
+    skin_share_ = std::max(0.5 * skin_share_, kLeastSkin);
+  }
+  double sum = 0;
+  for (const Body& b : bodies_) sum += b.radius;
+  const double mean = bodies_.empty() ? 0 : sum / static_cast<double>(bodies_.size());
+  skin_ = settings_.skin > 0 ? settings_.skin : skin_share_ * mean;
+}
+
+template <class Law, class Integrator>
 void EngineLoop<Law, Integrator>::search() {
   const int n = static_cast<int>(bodies_.size());
-  if (settings_.skin > 0) {
-    skin_ = settings_.skin;
-  } else {
-    double sum = 0;
-    for (const Body& b : bodies_) sum += b.radius;
-    skin_ = n > 0 ? kSkinShare * sum / n : 0;
-  }
+  adapt_skin();
   // The springs in use, by the grains' ids: the order of the bodies changes below. A spring is the
   // same seen from either of its grains.
   struct Kept {
@@ -445,7 +460,7 @@ void EngineLoop<Law, Integrator>::search() {
   pair_start_.assign(n + 1, 0);
   for (const auto& [i, j] : found) {
     ++pair_start_[i + 1];
-    pairs_.push_back({find(kept, std::min(ids_[i], ids_[j]), std::max(ids_[i], ids_[j])), j});
+    pairs_.push_back({find(kept, std::min(ids_[i], ids_[j]), std::max(ids_[i], ids_[j])), j, 0});
   }
   for (int i = 0; i < n; ++i) pair_start_[i + 1] += pair_start_[i];
   pairs_.resize(found.size() + kAhead);
@@ -458,7 +473,7 @@ void EngineLoop<Law, Integrator>::search() {
       const Wall& wall = walls_[w];
       const double height =
           (b.x - wall.point.x()) * wall.normal.x() + (b.y - wall.point.y()) * wall.normal.y();
-      if (height < b.radius + skin_) wall_pairs_.push_back({find(wall_kept, ids_[i], w), w});
+      if (height < b.radius + skin_) wall_pairs_.push_back({find(wall_kept, ids_[i], w), w, 0});
     }
     wall_start_.push_back(static_cast<int>(wall_pairs_.size()));
   }
@@ -550,8 +565,8 @@ Diagnostics EngineLoop<Law, Integrator>::measure() const {
   for (int i = 0; i < n; ++i) {
     const Body& b = bodies_[i];
     if (b.inverse_mass == 0) continue;
-    d.kinetic_energy +=
-        0.5 * masses_[i] * (b.vx * b.vx + b.vy * b.vy) + 0.5 * b.spin * b.spin / b.inverse_inertia;
+    d.kinetic_energy += 0.5 * masses_[i] * (b.vx * b.vx + b.vy * b.vy) +
+                        (b.inverse_inertia > 0 ? 0.5 * b.spin * b.spin / b.inverse_inertia : 0.0);
     double fx = resultant[i][0] + masses_[i] * settings_.gravity_x;
     double fy = resultant[i][1] + masses_[i] * settings_.gravity_y;
     if (i == applied_index_) {
@@ -636,6 +651,8 @@ std::string EngineLoop<Law, Integrator>::image() const {
   w.put(free_);
   w.put(first_new_);
   w.put(skin_);
+  w.put(skin_share_);
+  w.put(last_search_);
   w.put(search_needed_);
   w.put(bodies_);
   w.put(memory_);
@@ -660,6 +677,8 @@ void EngineLoop<Law, Integrator>::restore(const std::string& image) {
   r.get(free_);
   r.get(first_new_);
   r.get(skin_);
+  r.get(skin_share_);
+  r.get(last_search_);
   r.get(search_needed_);
   r.get(bodies_);
   r.get(memory_);

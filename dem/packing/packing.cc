@@ -31,7 +31,7 @@ std::vector<double> fill_width(const PackingSetup& packing, double width, Random
   slack = width;
   while (true) {
     const double r = draw_radius(packing, random);
-    if (2 * r > slack) break;
+    if (2 * r > slack * (1 + 1e-9)) break;  // rounding must not cost a row its last grain
     radii.push_back(r);
     slack -= 2 * r;
   }
@@ -99,9 +99,35 @@ std::vector<Wall> layer_walls(const PackingSetup& p, const MaterialSetup& materi
   return walls;
 }
 
+namespace {
+
+// Spacing of a lattice along a row and from row to row, in diameters.
+double along_row(const PackingSetup& p) { return p.kind == "triangular" ? 1.0 : std::sqrt(3.0); }
+double row_to_row(const PackingSetup& p) {
+  return p.kind == "triangular" ? std::sqrt(3.0) / 2 : 0.5;
+}
+
+void add_row(const PackingSetup& p, bool shifted, double y, double density, bool fixed,
+             Random& random, std::vector<NewGrain>& grains) {
+  const double along = along_row(p) * 2 * p.radius;
+  const int count = shifted ? p.columns - 1 : p.columns;
+  for (int k = 0; k < count; ++k) {
+    const double radius = fixed ? p.radius : draw_radius(p, random);
+    NewGrain g = grain_at((k - 0.5 * (count - 1)) * along, y, radius, density);
+    g.fixed = fixed;
+    grains.push_back(g);
+  }
+}
+
+}  // namespace
+
 std::vector<NewGrain> floor_grains(const PackingSetup& p, double density, Random& random) {
   std::vector<NewGrain> grains;
   if (p.floor != "rough") return grains;
+  if (p.kind != "layered") {
+    add_row(p, false, -p.radius, density, true, random, grains);
+    return grains;
+  }
   const double width = layer_width(p);
   double slack = 0;
   const std::vector<double> radii = fill_width(p, width, random, slack);
@@ -118,22 +144,12 @@ std::vector<NewGrain> floor_grains(const PackingSetup& p, double density, Random
 
 std::vector<NewGrain> lattice_grains(const PackingSetup& p, double density, Random& random) {
   std::vector<NewGrain> grains;
-  const double d = 2 * p.radius;
-  const bool triangular = p.kind == "triangular";
-  const double along = triangular ? d : std::sqrt(3.0) * d;
-  const double up = triangular ? std::sqrt(3.0) / 2 * d : 0.5 * d;
-  // On a rough floor (tops at y = 0, same spacing) the first row of a triangular lattice sits in
-  // the hollows; a sqrt(3) lattice rests on the tops.
-  const bool in_hollows = triangular && p.floor == "rough";
-  const double base = in_hollows ? up - p.radius : p.radius;
+  const double up = row_to_row(p) * 2 * p.radius;
+  // On a rough floor the lattice goes on from the fixed row, whose centres are at y = -r.
+  const bool rough = p.floor == "rough";
+  const double base = rough ? up - p.radius : p.radius;
   for (int row = 0; row < p.rows; ++row) {
-    const bool shifted = (row % 2 == 1) != in_hollows;
-    const int count = shifted ? p.columns - 1 : p.columns;
-    const double start = -0.5 * (count - 1) * along;
-    for (int k = 0; k < count; ++k) {
-      grains.push_back(
-          grain_at(start + k * along, base + row * up, draw_radius(p, random), density));
-    }
+    add_row(p, (row % 2 == 1) != rough, base + row * up, density, false, random, grains);
   }
   return grains;
 }

@@ -25,8 +25,8 @@ double layer_width(const PackingSetup& packing);
 /// Floor, left and right wall with their friction.
 std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& material);
 
-/// The fixed grains of a rough floor: side by side from wall to wall, their tops at y = 0, sizes as
-/// the packing's. Empty for a smooth floor.
+/// The fixed grains of a rough floor, their tops at y = 0: under a lattice a row of it, under a
+/// layered packing grains of its sizes side by side from wall to wall. Empty for a smooth floor.
 std::vector<NewGrain> floor_grains(const PackingSetup& packing, double density, Random& random);
 
 /// All grains of a lattice, touching and without overlap.

@@ -1,0 +1,201 @@
+// The point-load run: balance, restart to the same bits, and what it refuses.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "dem/packing/packing.h"
+#include "dem/study/contact_changes.h"
+#include "dem/study/run.h"
+
+namespace grainfield::dem {
+namespace {
+
+PointLoadSetup small(const std::string& kind) {
+  PointLoadSetup s;
+  s.packing.kind = kind;
+  s.packing.columns = 8;
+  s.packing.rows = 4;
+  s.packing.width = 0.08;
+  s.packing.depth = 0.02;
+  if (kind != "layered") s.packing.sizes = "mono";
+  s.load.force = 5;
+  s.load.ramp_time = 0.05;
+  return s;
+}
+
+void finish(Run& run) {
+  while (!run.done()) run.advance(5000);
+}
+
+TEST(PointLoad, BaseCarriesWeightAndLoad) {
+  for (const char* kind : {"triangular", "sqrt3", "layered"}) {
+    for (const char* floor : {"smooth", "rough"}) {
+      PointLoadSetup s = small(kind);
+      s.packing.floor = floor;
+      const auto run = make_point_load_run(s, 3, 1);
+      finish(*run);
+      const RunResult r = run->result();
+      EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-4) << kind << " " << floor;
+      EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2) << kind << " " << floor;
+      EXPECT_LE(r.figures.at("dem.unbalanced_force_ratio"), 1e-5);
+      ASSERT_EQ(r.snapshots.size(), 2u);
+      EXPECT_EQ(r.snapshots[1].second.applied_force.y(), -5);
+    }
+  }
+}
+
+bool same(const Snapshot& a, const Snapshot& b) {
+  if (a.grains.size() != b.grains.size() || a.contacts.size() != b.contacts.size()) return false;
+  for (std::size_t k = 0; k < a.grains.size(); ++k) {
+    if (a.grains[k].position != b.grains[k].position || a.grains[k].angle != b.grains[k].angle ||
+        a.grains[k].velocity != b.grains[k].velocity) {
+      return false;
+    }
+  }
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    if (a.contacts[k].force != b.contacts[k].force ||
+        a.contacts[k].spring != b.contacts[k].spring) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
+  const std::string file = (std::filesystem::temp_directory_path() /
+                            ("grainfield_run_" + std::to_string(getpid()) + ".h5"))
+                               .string();
+  PointLoadSetup s = small("layered");
+  s.packing.width = 0.05;
+  s.packing.depth = 0.02;
+  s.rest.unbalanced_force_ratio = 1e-3;
+  const auto whole = make_point_load_run(s, 9, 1);
+  finish(*whole);
+  const RunResult expected = whole->result();
+  const long total = static_cast<long>(expected.figures.at("dem.steps"));
+  Random random(1);
+  for (int trial = 0; trial < 3; ++trial) {
+    const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
+    {
+      const auto first = make_point_load_run(s, 9, 1 + trial % 2);
+      first->advance(stop);
+      first->save(file);
+    }
+    const auto second = make_point_load_run(s, 9, 2 - trial % 2);
+    second->restore(file);
+    finish(*second);
+    const RunResult got = second->result();
+    EXPECT_TRUE(same(got.snapshots[0].second, expected.snapshots[0].second))
+        << "stopped at " << stop;
+    EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second))
+        << "stopped at " << stop;
+    EXPECT_EQ(got.figures, expected.figures);
+  }
+  const auto other = make_point_load_run(s, 10, 1);
+  EXPECT_THROW(other->restore(file), std::invalid_argument);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const auto again = make_point_load_run(s, 9, 1);
+  EXPECT_THROW(again->restore(file), std::invalid_argument);
+  std::filesystem::remove(file);
+}
+
+std::string refusal(const PointLoadSetup& s) {
+  try {
+    make_point_load_run(s, 1, 1);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(PointLoad, RefusesWhatCannotBe) {
+  PointLoadSetup s = small("layered");
+  s.motion.time_step = 1;
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("motion.time_step: found 1 s, allowed: at most the stable limit"));
+  s = small("layered");
+  s.packing.width = 0.001;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.width"));
+  s = small("layered");
+  s.packing.radius_max = 0.001;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.radius_max"));
+  s = small("triangular");
+  s.packing.sizes = "uniform";
+  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.sizes"));
+  s = small("triangular");
+  s.material.gravity = 0;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("material.gravity"));
+}
+
+TEST(PointLoad, SaysWhenItDoesNotComeToRest) {
+  PointLoadSetup s = small("triangular");
+  s.rest.max_time = 0.01;
+  const auto run = make_point_load_run(s, 1, 1);
+  try {
+    finish(*run);
+    FAIL() << "no exception";
+  } catch (const ComputationFailed& failure) {
+    EXPECT_THAT(failure.what(), testing::HasSubstr("rest.max_time"));
+  }
+}
+
+TEST(Packing, LatticesTouchWithoutOverlap) {
+  for (const char* kind : {"triangular", "sqrt3"}) {
+    for (const char* floor : {"smooth", "rough"}) {
+      PackingSetup p = small(kind).packing;
+      p.floor = floor;
+      Random random(1);
+      std::vector<NewGrain> all = floor_grains(p, 1, random);
+      const std::size_t fixed = all.size();
+      for (const NewGrain& g : lattice_grains(p, 1, random)) all.push_back(g);
+      const double d = 2 * p.radius;
+      int touching = 0, on_floor = 0;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = i + 1; j < all.size(); ++j) {
+          const double gap = std::hypot(all[i].x - all[j].x, all[i].y - all[j].y) - d;
+          EXPECT_GT(gap, -1e-9 * d) << kind << " " << floor;
+          if (i >= fixed && gap < 1e-9 * d) ++touching;
+          if (i < fixed && j >= fixed && gap < 1e-9 * d) ++on_floor;
+        }
+        EXPECT_LE(std::fabs(all[i].x) + p.radius, 0.5 * layer_width(p) * (1 + 1e-9));
+      }
+      // 8 x 4: rows of 8, 7, 8, 7 (or 7, 8, 7, 8 in the hollows of a rough floor).
+      const bool triangular = std::string(kind) == "triangular";
+      // In the sqrt(3) lattice rows two apart lie straight above each other at exactly d.
+      EXPECT_EQ(touching, triangular ? 14 * 3 + 7 + 6 + 7 + 6 : 14 * 3 + 8 + 7);
+      EXPECT_EQ(on_floor, fixed > 0 ? (triangular ? 14 : 14 + 8) : 0);
+    }
+  }
+}
+
+TEST(ContactChanges, CountsGainedLostAndSliding) {
+  Snapshot a;
+  a.grains.resize(4);
+  for (int k = 0; k < 4; ++k) {
+    a.grains[k].id = k;
+    a.grains[k].radius = 1;
+  }
+  Contact c;
+  const auto contact = [&c](int i, int j, bool sliding) {
+    c.i = i;
+    c.j = j;
+    c.sliding = sliding;
+    return c;
+  };
+  Snapshot b = a;
+  a.contacts = {contact(0, 1, false), contact(0, 2, false), contact(1, 2, true)};
+  b.contacts = {contact(0, 2, true), contact(1, 2, true), contact(1, 3, false),
+                contact(2, 3, false)};
+  b.grains[2].position.x() = 0.5;
+  const ContactChanges changes = compare_contacts(a, b);
+  EXPECT_EQ(changes.gained, 2);
+  EXPECT_EQ(changes.lost, 1);
+  EXPECT_EQ(changes.newly_sliding, 1);
+  EXPECT_DOUBLE_EQ(changes.max_displacement_over_radius, 0.5);
+  b.grains.pop_back();
+  EXPECT_THROW(compare_contacts(a, b), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace grainfield::dem

@@ -1,0 +1,120 @@
+// Snapshots through HDF5 and back, and what is said of broken files.
+#include "dem/snapshot/snapshot.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "dem/random/random.h"
+
+namespace grainfield::dem {
+namespace {
+
+class SnapshotFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = std::filesystem::temp_directory_path() /
+                 ("grainfield_snapshot_" +
+                  std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
+                  std::to_string(getpid()));
+    std::filesystem::create_directories(directory_);
+    file_ = directory_ / "snapshots.h5";
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  static Snapshot sample() {
+    Random random(5);
+    Snapshot s;
+    s.time = 1.25;
+    s.gravity = Vec3(0, -9.81, 0);
+    s.loaded_grain = 3;
+    s.applied_force = Vec3(0, -30, 0);
+    s.attributes = {{"law", "linear"}, {"seed", "42"}};
+    for (int k = 0; k < 20; ++k) {
+      Grain g;
+      g.id = k;
+      g.position = Vec3(random.uniform(), random.uniform(), 0);
+      g.angle = random.uniform();
+      g.radius = random.uniform();
+      g.mass = random.uniform();
+      g.fixed = k % 5 == 0;
+      s.grains.push_back(g);
+    }
+    s.walls.push_back({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+    s.walls.push_back({"left", {-1, 0, 0}, {1, 0, 0}, 0});
+    Contact c;
+    c.i = 3;
+    c.j = 7;
+    c.force = Vec3(1, 2, 0);
+    c.normal_force = 3;
+    c.sliding = true;
+    s.contacts = {c};
+    c.j = -2;
+    s.contacts.push_back(c);
+    return s;
+  }
+  template <class Call>
+  static std::string message(Call call) {
+    try {
+      call();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "no std::invalid_argument";
+  }
+
+  std::filesystem::path directory_, file_;
+};
+
+TEST_F(SnapshotFile, ComesBackBitForBit) {
+  const Snapshot s = sample();
+  write_snapshot(file_, "/realization_000/loaded", s);
+  write_snapshot(file_, "/realization_000/unloaded", s);
+  EXPECT_THAT(list_snapshots(file_),
+              testing::ElementsAre("/realization_000/loaded", "/realization_000/unloaded"));
+  const Snapshot t = read_snapshot(file_, "/realization_000/loaded");
+  ASSERT_EQ(t.grains.size(), s.grains.size());
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    EXPECT_EQ(t.grains[k].position, s.grains[k].position);
+    EXPECT_EQ(t.grains[k].angle, s.grains[k].angle);
+    EXPECT_EQ(t.grains[k].mass, s.grains[k].mass);
+    EXPECT_EQ(t.grains[k].fixed, s.grains[k].fixed);
+  }
+  ASSERT_EQ(t.contacts.size(), 2u);
+  EXPECT_EQ(t.contacts[1].j, -2);
+  EXPECT_EQ(t.contacts[0].force, s.contacts[0].force);
+  EXPECT_TRUE(t.contacts[0].sliding);
+  ASSERT_EQ(t.walls.size(), 2u);
+  EXPECT_EQ(t.walls[1].name, "left");
+  EXPECT_EQ(t.attributes, s.attributes);
+  EXPECT_EQ(t.loaded_grain, 3);
+  EXPECT_EQ(t.time, 1.25);
+}
+
+TEST_F(SnapshotFile, SaysWhatIsWrong) {
+  EXPECT_THAT(message([&] { read_snapshot("/nowhere/x.h5", "/loaded"); }),
+              testing::HasSubstr("/nowhere/x.h5: no such file"));
+  std::ofstream(file_) << "not hdf5";
+  EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),
+              testing::HasSubstr("not an HDF5 file"));
+  std::filesystem::remove(file_);
+  write_snapshot(file_, "/loaded", sample());
+  EXPECT_THAT(message([&] { read_snapshot(file_, "/unloaded"); }),
+              testing::HasSubstr("the file has: /loaded"));
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
+  EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),
+              testing::HasSubstr("truncated or broken"));
+}
+
+TEST_F(SnapshotFile, RefusesContactsOfUnknownGrains) {
+  Snapshot s = sample();
+  s.contacts[0].j = 20;
+  write_snapshot(file_, "/loaded", s);
+  EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),
+              testing::HasSubstr("unknown grain"));
+}
+
+}  // namespace
+}  // namespace grainfield::dem
