@@ -57,7 +57,8 @@ void add_keys(CLI::App& app, Action& action) {
   command->add_flag("--summary", *summary, "the keys of summary.json instead");
   command->callback([=, &action] {
     action = [=] {
-      const std::string text = *summary    ? (*markdown ? summary_keys_markdown() : summary_keys_text())
+      const std::string text = *summary
+                                   ? (*markdown ? summary_keys_markdown() : summary_keys_text())
                                : *markdown ? keys_markdown()
                                            : keys_text(*section);
       fmt::print("{}", text);

@@ -1,0 +1,59 @@
+// Realizations of grains, side by side on threads and ranks, with checkpoints.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/run/ranks.h"
+#include "dem/snapshot/snapshot.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::coupling {
+
+/// The seed of realization `index` of an ensemble: SplitMix64's output function of
+/// seed + (index + 1) * 0x9E3779B97F4A7C15. Neighbouring seeds and indices give unrelated streams.
+std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index);
+
+/// One realization to be done.
+struct Task {
+  dem::PointLoadSetup setup;
+  std::uint64_t seed = 0;
+  std::string file;  ///< where its result goes; beside it FILE.checkpoint while it runs
+};
+
+/// A finished realization as it stands in its file.
+struct Realization {
+  dem::Snapshot unloaded, loaded;
+  std::map<std::string, double> figures;
+};
+
+struct EnsembleProgress {
+  std::string phase;          ///< of the realization that is least far
+  int done = 0, total = 0;    ///< realizations of this rank
+  double fraction = 0;        ///< of all work of this rank
+  double simulated_time = 0;  ///< s, of the same realization
+  int grains = 0;
+  double kinetic_energy = 0;  ///< J
+  double unbalanced_force_ratio = 0;
+  double seconds_left = 0;  ///< an estimate from the time so far; negative: not known yet
+};
+
+struct EnsembleOptions {
+  int threads = 1;
+  double checkpoint_seconds = 30;  ///< wall time between checkpoints of a realization
+  long stop_after_steps = 0;       ///< > 0: act as if interrupted when a realization gets there
+  std::function<void(const EnsembleProgress&)> progress;  ///< about five times a second
+};
+
+/// Does the tasks whose file does not exist yet (those of other ranks are done there: task t on
+/// rank t mod size) and waits for all ranks. With fewer tasks than threads each run gets several.
+/// Continues from checkpoints beside the files. Throws what the first failing task (by number)
+/// threw, on every rank; Interrupted, after all runs are saved, when stopped.
+void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options);
+
+/// Reads a finished task's file.
+Realization read_realization(const std::string& file);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,81 @@
+#include "coupling/run/models.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+
+#include "coupling/compare/compare.h"
+#include "coupling/compare/smooth.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The smoothing asks for stresses at nodes of its own choice. A first pass notes the nodes, the
+// model is called once, and a second pass hands out what it gave.
+Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, double depth) {
+  if (set.seen == Seen::in_plane) return smooth_in_plane(stress, set.points, *set.kernel, depth);
+  if (set.seen == Seen::along_x) return smooth_along_x(stress, set.points, *set.kernel);
+  return stress(set.points);
+}
+
+}  // namespace
+
+continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts) {
+  continuum::Settings out = choice.settings;
+  for (const auto& parameter : continuum::find_model(choice.name).parameters) {
+    if (parameter.name == "F") out.emplace("F", fmt::format("{}", facts.force));
+    if (parameter.name == "h") out.emplace("h", fmt::format("{}", facts.height));
+    if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
+  }
+  return out;
+}
+
+std::string model_label(const ModelChoice& choice) {
+  std::vector<std::string> items;
+  for (const auto& [name, value] : choice.settings) items.push_back(name + "=" + value);
+  return items.empty() ? choice.name : fmt::format("{} ({})", choice.name, fmt::join(items, ", "));
+}
+
+Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
+                          const std::vector<PointSet>& sets) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
+  // A half plane knows no base: below it the stresses go on.
+  const double depth = family_of(choice.name) == "half plane" ? 0 : facts.height;
+  std::vector<Eigen::MatrixXd> nodes;
+  Eigen::Index total = 0;
+  for (const auto& set : sets) {
+    seen_through(
+        set,
+        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+          nodes.push_back(points);
+          total += points.rows();
+          return Eigen::MatrixXd::Zero(points.rows(), facts.dim == 3 ? 6 : 3);
+        },
+        depth);
+  }
+  Eigen::MatrixXd all(total, facts.dim);
+  Eigen::Index row = 0;
+  for (const auto& points : nodes) {
+    all.middleRows(row, points.rows()) = points;
+    row += points.rows();
+  }
+  const Eigen::MatrixXd stresses = model->stress(all);
+  Evaluation out;
+  row = 0;
+  for (const auto& set : sets) {
+    out.stresses.push_back(seen_through(
+        set,
+        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+          row += points.rows();
+          return stresses.middleRows(row - points.rows(), points.rows());
+        },
+        depth));
+  }
+  out.figures = model->figures();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace grainfield::coupling

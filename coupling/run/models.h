@@ -1,0 +1,45 @@
+// The case's models, with what the run knows filled in, evaluated once for all points.
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/averaging/kernel.h"
+#include "coupling/case/case.h"
+
+namespace grainfield::coupling {
+
+/// What the run tells the models.
+struct RunFacts {
+  double force = 0;   ///< N: parameter F
+  double height = 0;  ///< m: parameter h
+  int dim = 2;        ///< parameter dim
+};
+
+/// The choice's settings with F, h and dim filled in where the model has them and the user did not.
+continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
+/// For people: "layer (base=rough)".
+std::string model_label(const ModelChoice& choice);
+
+/// How a model is seen at some points (models' frame).
+enum class Seen { exactly, in_plane, along_x };
+
+struct PointSet {
+  Eigen::MatrixXd points;
+  Seen seen = Seen::exactly;
+  const Kernel* kernel = nullptr;  ///< for in_plane, along_x
+};
+
+struct Evaluation {
+  std::vector<Eigen::MatrixXd> stresses;  ///< one per point set, tension positive
+  std::map<std::string, double> figures;  ///< of the model
+  double seconds = 0;                     ///< wall time
+};
+
+/// Stresses of one model on all point sets, with a single call of the model. Throws
+/// continuum::BadParameter and continuum::ComputationFailed.
+Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
+                          const std::vector<PointSet>& sets);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,310 @@
+#include "coupling/run/point_load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "coupling/averaging/average.h"
+#include "coupling/averaging/base.h"
+#include "coupling/averaging/ensemble.h"
+#include "coupling/averaging/layer.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/run/models.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The layers of all realizations as one rectangle in the models' frame.
+struct Layer {
+  double depth = 0, half_width = 0, diameter = 0;
+};
+
+Layer measure(const std::vector<std::string>& files) {
+  Layer out;
+  out.half_width = std::numeric_limits<double>::infinity();
+  const auto n = static_cast<double>(files.size());
+  for (const auto& file : files) {
+    const Realization r = read_realization(file);
+    const LayerFrame frame = layer_frame(r.unloaded, r.loaded.loaded_grain);
+    out.depth += frame.depth() / n;
+    out.diameter += mean_diameter(r.unloaded) / n;
+    out.half_width =
+        std::min({out.half_width, frame.load_x - frame.left, frame.right - frame.load_x});
+  }
+  return out;
+}
+
+AverageOptions options_of(const AverageSetup& setup, const std::string& method, double diameter,
+                          int threads) {
+  AverageOptions out;
+  out.method = method;
+  out.threads = threads;
+  if (method == "coarse_graining") {
+    out.kernel = setup.kernel;
+    out.width = setup.width > 0 ? setup.width : setup.width_diameters * diameter;
+  } else {
+    out.kernel = setup.rve_shape;
+    out.width = setup.rve_radius > 0 ? setup.rve_radius : setup.rve_diameters * diameter;
+  }
+  return out;
+}
+
+// The kernel through which models are seen. A square is taken as the disk of equal area.
+std::unique_ptr<Kernel> kernel_of(const AverageOptions& options) {
+  if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width);
+  const double side = options.kernel == "square" ? 2 / std::sqrt(3.14159265358979323846) : 1;
+  return make_kernel("heaviside", side * options.width);
+}
+
+// One averaging method over the ensemble.
+struct Averaged {
+  std::string method;
+  AverageOptions options;
+  std::vector<Ensemble> profiles;  // one per depth
+  Ensemble map, unloaded_map;
+  double balance_rms = 0, balance_largest = 0;
+};
+
+struct Collected {
+  std::vector<Averaged> methods;
+  Ensemble base, base_unloaded;
+  std::map<std::string, std::vector<double>> figures;
+};
+
+// Points inside the layer, away from its edges, where the balance of forces is looked at.
+Eigen::MatrixXd inner_points(const LayerFrame& frame) {
+  const double w = frame.width(), h = frame.depth();
+  return grid_points(frame.left + 0.1 * w, frame.right - 0.1 * w, 17, frame.floor + 0.15 * h,
+                     frame.surface - 0.25 * h, 5);
+}
+
+Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny) {
+  field.points = points;
+  field.nx = nx;
+  field.ny = ny;
+  return field;
+}
+
+class Analysis {
+ public:
+  Analysis(const Case& value, const std::vector<std::string>& files, int threads)
+      : value_(value), files_(files), setup_(value.average), layer_(measure(files)) {
+    const double half =
+        setup_.half_width > 0 ? std::min(setup_.half_width, layer_.half_width) : layer_.half_width;
+    x_ = Eigen::VectorXd::LinSpaced(setup_.points, -half, half);
+    for (const double share : setup_.depths) {
+      lines_.push_back(
+          line_points(-half, half, static_cast<int>(setup_.points), -share * layer_.depth));
+    }
+    columns_ = static_cast<int>(setup_.map_columns);
+    rows_ = static_cast<int>(setup_.map_rows);
+    grid_ = grid_points(-half, half, columns_, -layer_.depth, 0, rows_);
+    for (const auto& method : setup_.methods) {
+      Averaged a;
+      a.method = method;
+      a.options = options_of(setup_, method, layer_.diameter, threads);
+      a.profiles.resize(lines_.size());
+      collected_.methods.push_back(std::move(a));
+    }
+    kernel_ = kernel_of(collected_.methods.front().options);
+  }
+
+  StudyResult run() {
+    for (const auto& file : files_) add(read_realization(file));
+    StudyResult out;
+    out.value = value_;
+    out.realizations = files_;
+    add_identity(out.summary, value_);
+    add_fields(out);
+    add_models(out);
+    add_figures(out.summary);
+    add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
+    return out;
+  }
+
+ private:
+  void add(const Realization& r) {
+    const LayerFrame frame = layer_frame(r.unloaded, r.loaded.loaded_grain);
+    for (auto& a : collected_.methods) {
+      for (std::size_t d = 0; d < lines_.size(); ++d) {
+        a.profiles[d].add(
+            in_models_frame(response(r.unloaded, r.loaded, frame.to_packing(lines_[d]), a.options),
+                            lines_[d], 0, 0));
+      }
+      const Eigen::MatrixXd grid = frame.to_packing(grid_);
+      a.map.add(
+          in_models_frame(response(r.unloaded, r.loaded, grid, a.options), grid_, columns_, rows_));
+      a.unloaded_map.add(
+          in_models_frame(average(r.unloaded, grid, a.options), grid_, columns_, rows_));
+      const BalanceResidual balance = balance_residual(r.loaded, inner_points(frame), a.options);
+      a.balance_rms += balance.rms / static_cast<double>(files_.size());
+      a.balance_largest = std::max(a.balance_largest, balance.largest);
+    }
+    const Eigen::VectorXd x = x_.array() + frame.load_x;
+    Eigen::MatrixXd base(x_.size(), 2);
+    base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
+    collected_.base.add(
+        in_models_frame(base_response(r.unloaded, r.loaded, x, *kernel_), base, 0, 0));
+    collected_.base_unloaded.add(
+        in_models_frame(base_profile(r.unloaded, x, *kernel_), base, 0, 0));
+    for (const auto& [key, figure] : r.figures) collected_.figures[key].push_back(figure);
+    collected_.figures["response.total_over_load"].push_back(total_over_load(r.unloaded, r.loaded));
+  }
+
+  Profile profile(const Ensemble& ensemble, const std::string& name, const std::string& key,
+                  double depth) const {
+    const Field mean = ensemble.mean();
+    const Column& column = *mean.find("sigma_yy");
+    Profile out;
+    out.name = name;
+    out.key = key;
+    out.depth = depth;
+    out.x = x_;
+    out.mean = -column.value;
+    out.error = column.error;
+    out.samples = -ensemble.samples("sigma_yy");
+    out.independent_length = kernel_->independent_length();
+    return out;
+  }
+
+  std::vector<Profile> profiles() const {
+    std::vector<Profile> out;
+    const Averaged& first = collected_.methods.front();
+    for (std::size_t d = 0; d < lines_.size(); ++d) {
+      const double share = setup_.depths[d];
+      out.push_back(profile(first.profiles[d],
+                            fmt::format("depth {:g} h ({:.4g} m)", share, share * layer_.depth),
+                            fmt::format("depth_{:g}", share), share * layer_.depth));
+    }
+    out.push_back(profile(collected_.base, "base", "base", layer_.depth));
+    return out;
+  }
+
+  void add_fields(StudyResult& out) const {
+    for (const auto& a : collected_.methods) {
+      Field map = a.map.mean();
+      if (&a == &collected_.methods.front()) out.map = map;
+      out.fields.emplace_back(a.method + "_response", std::move(map));
+      out.fields.emplace_back(a.method + "_unloaded", a.unloaded_map.mean());
+      double largest = 0, error = 0;
+      Eigen::Index n = 0;
+      for (std::size_t d = 0; d < lines_.size(); ++d) {
+        Field line = a.profiles[d].mean();
+        const Column& column = *line.find("sigma_yy");
+        for (Eigen::Index i = 0; i < column.value.size(); ++i) {
+          if (std::isnan(column.value[i])) continue;
+          largest = std::max(largest, std::fabs(column.value[i]));
+          if (column.error.size() > i && !std::isnan(column.error[i])) {
+            error += column.error[i];
+            ++n;
+          }
+        }
+        out.fields.emplace_back(fmt::format("{}_depth_{:g}", a.method, setup_.depths[d]),
+                                std::move(line));
+      }
+      const std::string prefix = "average." + a.method + ".";
+      out.summary[prefix + "balance_rms"] = a.balance_rms;
+      out.summary[prefix + "balance_largest"] = a.balance_largest;
+      if (n > 0 && largest > 0) {
+        out.summary[prefix + "fluctuation"] = error / static_cast<double>(n) / largest;
+      }
+    }
+    out.base_unloaded = collected_.base_unloaded.mean();
+    out.fields.emplace_back("base_response", collected_.base.mean());
+    out.fields.emplace_back("base_unloaded", out.base_unloaded);
+  }
+
+  void add_models(StudyResult& out) const {
+    std::vector<PointSet> sets;
+    for (const auto& line : lines_) sets.push_back({line, Seen::in_plane, kernel_.get()});
+    Eigen::MatrixXd base(x_.size(), 2);
+    base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
+    sets.push_back({base, Seen::along_x, kernel_.get()});
+    sets.push_back({grid_, Seen::exactly, nullptr});
+
+    const RunFacts facts{value_.layer.load.force, layer_.depth, 2};
+    std::vector<ModelProfiles> models;
+    double seconds = 0;
+    for (const auto& choice : value_.models) {
+      const Evaluation e = evaluate_model(choice, facts, sets);
+      seconds += e.seconds;
+      ModelProfiles m;
+      m.key = choice.label;
+      m.label = model_label(choice);
+      m.family = family_of(choice.name);
+      for (std::size_t s = 0; s + 1 < sets.size(); ++s)
+        m.values.emplace_back(-e.stresses[s].col(1));
+      models.push_back(std::move(m));
+      const Eigen::MatrixXd& map = e.stresses.back();
+      out.model_maps.push_back({model_label(choice), map.col(1)});
+      Field field;
+      field.points = grid_;
+      field.nx = columns_;
+      field.ny = rows_;
+      field.add("sigma_xx", "N/m").value = map.col(0);
+      field.add("sigma_yy", "N/m").value = map.col(1);
+      field.add("sigma_xy", "N/m").value = map.col(2);
+      field.attributes["model"] = choice.name;
+      for (const auto& [name, setting] : filled_settings(choice, facts)) {
+        field.attributes["model." + name] = setting;
+      }
+      out.fields.emplace_back("model_" + choice.label, std::move(field));
+      const std::string prefix = "model." + choice.label + ".";
+      out.summary[prefix + "name"] = choice.name;
+      for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
+      out.summary["time.model." + choice.label + "_s"] = e.seconds;
+    }
+    out.summary["time.continuum_s"] = seconds;
+    out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);
+  }
+
+  void add_figures(Summary& summary) const {
+    for (const auto& [key, values] : collected_.figures) {
+      const auto n = static_cast<double>(values.size());
+      double mean = 0, square = 0;
+      for (const double v : values) mean += v / n;
+      for (const double v : values) square += (v - mean) * (v - mean);
+      summary[key] = mean;
+      if (values.size() < 2) continue;
+      summary[key + ".least"] = *std::min_element(values.begin(), values.end());
+      summary[key + ".most"] = *std::max_element(values.begin(), values.end());
+      summary[key + ".standard_error"] = std::sqrt(square / (n - 1) / n);
+    }
+    summary["layer.depth"] = layer_.depth;
+    summary["layer.F_over_h"] = value_.layer.load.force / layer_.depth;
+    summary["layer.mean_diameter"] = layer_.diameter;
+    for (const auto& a : collected_.methods) {
+      summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
+          a.options.width;
+    }
+  }
+
+  const Case& value_;
+  const std::vector<std::string>& files_;
+  const AverageSetup& setup_;
+  Layer layer_;
+  Eigen::VectorXd x_;
+  std::vector<Eigen::MatrixXd> lines_;
+  Eigen::MatrixXd grid_;
+  int columns_ = 0, rows_ = 0;
+  Collected collected_;
+  std::unique_ptr<Kernel> kernel_;
+};
+
+}  // namespace
+
+StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
+                               int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  StudyResult out = Analysis(value, realizations, threads).run();
+  out.summary["time.analysis_s"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace grainfield::coupling

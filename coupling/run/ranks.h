@@ -1,0 +1,29 @@
+// MPI ranks, started only where the program runs under mpirun.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// The ranks of this program. Without mpirun (no OMPI_COMM_WORLD_SIZE, PMI_SIZE or PMIX_RANK in the
+/// environment) it is one rank and MPI is never started.
+class Ranks {
+ public:
+  /// Starts MPI where needed; the first object of the process decides.
+  Ranks();
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  bool first() const { return rank_ == 0; }
+  /// Waits for all ranks.
+  void barrier() const;
+  /// Every rank's text, in the order of ranks, on every rank.
+  std::vector<std::string> gather(const std::string& text) const;
+
+ private:
+  int rank_ = 0, size_ = 1;
+};
+
+/// Ends MPI if Ranks started it; the program calls it once, at its end.
+void finish_ranks();
+
+}  // namespace grainfield::coupling

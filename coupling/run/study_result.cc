@@ -1,0 +1,150 @@
+#include "coupling/run/study_result.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "coupling/output/atomic_file.h"
+#include "coupling/output/vtu.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/run/summary_keys.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::string shown(const Summary& summary, const std::string& key) {
+  const auto at = summary.find(key);
+  if (at == summary.end()) return "";
+  if (const auto* number = std::get_if<double>(&at->second)) {
+    return std::isnan(*number) ? "-" : fmt::format("{:.5g}", *number);
+  }
+  if (const auto* integer = std::get_if<std::int64_t>(&at->second)) return std::to_string(*integer);
+  return std::get<std::string>(at->second);
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+// The figures worth a table of the report, with unit and meaning from their declaration.
+Rows figure_rows(const Summary& summary) {
+  Rows rows;
+  for (const char* key :
+       {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+        "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
+        "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
+        "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
+        "response.peaks", "average.coarse_graining.balance_rms",
+        "average.particle_centre.balance_rms"}) {
+    const std::string value = shown(summary, key);
+    const SummaryKey* declared = find_summary_key(key);
+    if (value.empty() || declared == nullptr) continue;
+    rows.emplace_back(fmt::format("{} ({})", declared->meaning, key),
+                      declared->unit == "-" ? value : value + " " + declared->unit);
+  }
+  return rows;
+}
+
+Rows origin_rows(const StudyResult& result) {
+  Rows rows;
+  for (const char* key : {"case.name", "case.hash", "version", "ensemble.realizations",
+                          "ensemble.seed", "dem.steps", "dem.time_step"}) {
+    const std::string value = shown(result.summary, key);
+    if (!value.empty()) rows.emplace_back(key, value);
+  }
+  for (const auto& model : result.value.models) {
+    rows.emplace_back("model " + model.label,
+                      shown(result.summary, "model." + model.label + ".name"));
+  }
+  return rows;
+}
+
+void write_grains(const std::string& folder, const StudyResult& result) {
+  const OutputSetup& want = result.value.output;
+  for (std::size_t r = 0; r < result.realizations.size(); ++r) {
+    if (!want.snapshots && !(want.vtu && r == 0)) break;
+    const Realization grains = read_realization(result.realizations[r]);
+    if (want.snapshots) {
+      const std::string file = folder + "/snapshots.h5";
+      dem::write_snapshot(file, fmt::format("/realization_{:03}/unloaded", r), grains.unloaded);
+      dem::write_snapshot(file, fmt::format("/realization_{:03}/loaded", r), grains.loaded);
+    }
+    if (want.vtu && r == 0) {
+      write_grains_vtu(folder + "/grains_unloaded.vtu", grains.unloaded);
+      write_grains_vtu(folder + "/grains_loaded.vtu", grains.loaded, &grains.unloaded);
+      write_contacts_vtu(folder + "/contacts_unloaded.vtu", grains.unloaded);
+      write_contacts_vtu(folder + "/contacts_loaded.vtu", grains.loaded);
+      write_chains_vtu(folder + "/chains_unloaded.vtu", grains.unloaded);
+      write_chains_vtu(folder + "/chains_loaded.vtu", grains.loaded);
+    }
+  }
+}
+
+void write_page(const std::string& folder, const StudyResult& result) {
+  PointLoadReport page;
+  page.title = result.value.title.empty() ? result.value.name : result.value.title;
+  Realization first;
+  if (!result.realizations.empty()) {
+    first = read_realization(result.realizations.front());
+    page.unloaded = &first.unloaded;
+    page.loaded = &first.loaded;
+  }
+  page.comparison = result.comparison;
+  page.base_unloaded = result.base_unloaded;
+  page.map = result.map;
+  page.models = result.model_maps;
+  page.figures = figure_rows(result.summary);
+  page.made = origin_rows(result);
+  write_report(folder + "/report.html", point_load_report(page));
+}
+
+}  // namespace
+
+std::string hash_text(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char ch : text) {
+    hash ^= static_cast<unsigned char>(ch);
+    hash *= 0x100000001b3ULL;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+void add_identity(Summary& summary, const Case& value) {
+  summary["case.name"] = value.name;
+  summary["case.study"] = value.study;
+  summary["case.hash"] = hash_text(write_case(value));
+  summary["version"] = std::string(GRAINFIELD_VERSION);
+  if (value.study == "point-load") {
+    summary["ensemble.realizations"] = value.ensemble.realizations;
+    summary["ensemble.seed"] = value.ensemble.seed;
+  }
+}
+
+void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main) {
+  for (const auto& [key, number] : summary_figures(comparison, main)) summary[key] = number;
+  const double unit = comparison.load / comparison.depth;
+  summary["response.peak_over_F_per_h"] = comparison.shapes[main].peak / unit;
+  for (std::size_t p = 0; p < comparison.profiles.size(); ++p) {
+    if (p == main) continue;
+    const std::string prefix = "response." + comparison.profiles[p].key;
+    summary[prefix + ".peaks"] = static_cast<double>(comparison.shapes[p].peaks);
+    summary[prefix + ".peak"] = comparison.shapes[p].peak;
+  }
+  for (const auto& model : comparison.results) {
+    summary["compare." + model.key + ".peak"] = model.shapes[main].peak;
+    summary["compare." + model.key + ".peak_over_F_per_h"] = model.shapes[main].peak / unit;
+  }
+  summary["verdict.best_model"] = comparison.verdict.best_model;
+  summary["verdict.sentence"] = comparison.verdict.sentence;
+}
+
+void write_study(const std::string& folder, const StudyResult& result) {
+  require_documented(result.summary);
+  write_profiles(folder, result.comparison);
+  if (result.value.output.fields) write_fields(folder + "/fields.h5", result.fields);
+  write_grains(folder, result);
+  if (result.value.output.report) write_page(folder, result);
+  write_text_file(folder + "/case.toml", write_case(result.value));
+  write_summary(folder + "/summary.json", result.summary);
+}
+
+}  // namespace grainfield::coupling

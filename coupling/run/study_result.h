@@ -1,0 +1,35 @@
+// What a study leaves, before it is written: the same for every kind of study.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/case/case.h"
+#include "coupling/compare/compare.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/tables.h"
+#include "coupling/report/point_load.h"
+
+namespace grainfield::coupling {
+
+struct StudyResult {
+  Case value;
+  Comparison comparison;
+  Summary summary;
+  NamedFields fields;
+  Field base_unloaded, map;               ///< for the report; may be empty
+  std::vector<ModelMap> model_maps;       ///< on map's points
+  std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty
+};
+
+/// FNV-1a of a text, 16 hexadecimal digits.
+std::string hash_text(const std::string& text);
+/// Keys that every study has: case, version, ensemble.
+void add_identity(Summary& summary, const Case& value);
+/// Keys that follow from the comparison, and the models' figures.
+void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main);
+
+/// Writes summary.json, profiles.*, fields.h5 + .xdmf, snapshots.h5, *.vtu, report.html and
+/// case.toml into a folder that exists.
+void write_study(const std::string& folder, const StudyResult& result);
+
+}  // namespace grainfield::coupling

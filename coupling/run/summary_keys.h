@@ -1,0 +1,24 @@
+// Every key that summary.json may hold, declared once; docs/summary-keys.md comes from it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/output/tables.h"
+
+namespace grainfield::coupling {
+
+struct SummaryKey {
+  std::string pattern;  ///< '*' stands for one name without dots of its own meaning
+  std::string unit;     ///< "-" for pure numbers, "text" for words
+  std::string meaning;
+};
+
+const std::vector<SummaryKey>& summary_keys();
+/// The declaration of a key, or null.
+const SummaryKey* find_summary_key(const std::string& key);
+/// Throws std::logic_error naming the first key that is not declared.
+void require_documented(const Summary& summary);
+std::string summary_keys_text();
+std::string summary_keys_markdown();
+
+}  // namespace grainfield::coupling
