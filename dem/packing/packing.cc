@@ -24,6 +24,15 @@ NewGrain grain_at(double x, double y, double radius, double density) {
   return g;
 }
 
+// Spacing of a lattice along a row and from row to row, in diameters.
+double along_row(const PackingSetup& p) {
+  return p.kind == "triangular" ? 1.0 : std::sqrt(3.0) * p.spacing;
+}
+double row_to_row(const PackingSetup& p) {
+  const double half = 0.5 * along_row(p);
+  return std::sqrt(1 - half * half);
+}
+
 // Radii side by side until no further grain fits into the width, and what is left over.
 std::vector<double> fill_width(const PackingSetup& packing, double width, Random& random,
                                double& slack) {
@@ -53,6 +62,7 @@ void check_packing(const PackingSetup& p) {
           "packing.sizes: found {}, allowed: mono, because packing.kind = {} is a lattice", p.sizes,
           p.kind));
     }
+    require(p.spacing > 0.7 && p.spacing <= 1, "spacing", p.spacing, "above 0.7, at most 1");
     require(p.jitter >= 0 && p.jitter < 0.5, "jitter", p.jitter, "0 to below 0.5");
   }
   require(smallest_radius(p) > 0, "radius", smallest_radius(p), "above 0");
@@ -83,7 +93,7 @@ double smallest_radius(const PackingSetup& p) {
 double layer_width(const PackingSetup& p) {
   const double d = 2 * p.radius;
   if (p.kind == "triangular") return p.columns * d;
-  if (p.kind == "sqrt3") return (p.columns - 1) * std::sqrt(3.0) * d + d;
+  if (p.kind == "sqrt3") return ((p.columns - 1) * along_row(p) + 1) * d;
   return p.width;
 }
 
@@ -100,12 +110,6 @@ std::vector<Wall> layer_walls(const PackingSetup& p, const MaterialSetup& materi
 }
 
 namespace {
-
-// Spacing of a lattice along a row and from row to row, in diameters.
-double along_row(const PackingSetup& p) { return p.kind == "triangular" ? 1.0 : std::sqrt(3.0); }
-double row_to_row(const PackingSetup& p) {
-  return p.kind == "triangular" ? std::sqrt(3.0) / 2 : 0.5;
-}
 
 void add_row(const PackingSetup& p, bool shifted, double y, double density, bool fixed,
              Random& random, std::vector<NewGrain>& grains) {

@@ -32,7 +32,9 @@ std::vector<NewGrain> floor_grains(const PackingSetup& packing, double density, 
 /// All grains of a lattice, touching and without overlap.
 /// triangular: rows offset by half a diameter, six neighbours; odd rows have one grain less.
 /// sqrt3 (Roul 5.4): spacing sqrt(3) d in a row, rows offset by half of it and d/2 apart, so that a
-/// grain touches four others at +-30 degrees from the horizontal and none in its row.
+/// grain touches four others at +-30 degrees from the horizontal and none in its row. At exactly
+/// sqrt(3) d rows two apart touch as well (it is the triangular lattice turned by 30 degrees); a
+/// spacing below 1 lifts the rows apart and leaves the four contacts that Roul describes.
 std::vector<NewGrain> lattice_grains(const PackingSetup& packing, double density, Random& random);
 
 /// One row to drop: grains side by side with random gaps from wall to wall, their lowest points at

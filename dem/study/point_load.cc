@@ -273,12 +273,13 @@ std::string PointLoadRun::fingerprint() const {
   const PackingSetup& p = setup_.packing;
   const MaterialSetup& m = setup_.material;
   return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} {} {} {} {} {} {} {} {} {} {} {} | {} {} | "
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} {} {} {} {} {} {} {} {} {} {} {} | {} {} "
+      "| "
       "{} {} {} {} | "
       "{} {} {} | {}",
       p.kind, p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max,
-      p.columns, p.rows, p.width, p.depth, p.drop_height, p.floor, p.jitter, m.law, m.density,
-      m.young, m.damping, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+      p.columns, p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, m.law,
+      m.density, m.young, m.damping, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
       m.tangential_damping, m.friction, m.floor_friction, m.wall_friction, m.gravity,
       setup_.motion.integrator, engine_->time_step(), setup_.rest.unbalanced_force_ratio,
       setup_.rest.kinetic_to_elastic_energy, setup_.rest.background_damping, setup_.rest.max_time,

@@ -15,6 +15,8 @@ struct PackingSetup {
   double radius_max = 0.0054;     ///< m; uniform
   int columns = 64;               ///< lattices: grains in a row
   int rows = 16;                  ///< lattices: rows
+  double spacing = 1;             ///< sqrt3: spacing in a row / (sqrt(3) d), up to 1; below 1 rows
+                                  ///< two apart do not touch, and a grain has four contacts
   double width = 0.6;             ///< m; layered
   double depth = 0.15;            ///< m; layered: rows are dropped until this height is reached
   double drop_height = 0.008;     ///< m above the surface from which a row is dropped
