@@ -1,0 +1,237 @@
+#include "coupling/run/run_case.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "coupling/output/atomic_file.h"
+#include "coupling/run/elastic.h"
+#include "coupling/run/interrupt.h"
+#include "coupling/run/point_load.h"
+#include "coupling/run/study_result.h"
+#include "coupling/run/sweep.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string identity(const Case& value) {
+  return "# grainfield " GRAINFIELD_VERSION "\n" + write_case(value);
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+// "friction = 0.3 there, friction = 0.5 here": the first line in which two written cases differ.
+std::string first_difference(const std::string& there, const std::string& here) {
+  std::istringstream a(there), b(here);
+  std::string left, right;
+  while (true) {
+    const bool more_left = static_cast<bool>(std::getline(a, left));
+    const bool more_right = static_cast<bool>(std::getline(b, right));
+    if (!more_left || !more_right) return "another number of keys";
+    if (left != right) return fmt::format("{} there, {} here", left, right);
+  }
+}
+
+// The folder of a run with its staging area and checkpoints. Rank 0 makes and removes them.
+class Workplace {
+ public:
+  explicit Workplace(const std::string& folder)
+      : folder_(folder), partial_(folder_ / ".partial"), checkpoint_(folder_ / "checkpoint") {}
+
+  void open(const Case& value, bool resume) {
+    std::error_code error;
+    // The topmost folder that this run makes goes again if nothing comes of it.
+    for (fs::path p = fs::absolute(folder_); !fs::exists(p, error); p = p.parent_path()) made_ = p;
+    fs::create_directories(folder_, error);
+    if (error) throw_unwritable(error.message());
+    if (!fs::is_directory(folder_)) throw_unwritable("it is a file");
+    if (access(folder_.c_str(), W_OK | X_OK) != 0) throw_unwritable("no write permission");
+    if (fs::exists(checkpoint_)) {
+      if (!resume) {
+        throw std::invalid_argument(fmt::format(
+            "{}: holds an unfinished run; continue it with --resume, or remove that folder",
+            checkpoint_.string()));
+      }
+      const std::string there = read_text(checkpoint_ / "case.toml");
+      const std::string here = identity(value);
+      if (there != here) {
+        throw std::invalid_argument(
+            fmt::format("{}: is of another case: {}; remove that folder to start over",
+                        checkpoint_.string(), first_difference(there, here)));
+      }
+    }
+    fs::remove_all(partial_, error);
+    fs::create_directories(partial_, error);
+    if (error) throw_unwritable(error.message());
+    fs::create_directories(checkpoint_, error);
+    if (error) throw_unwritable(error.message());
+    write_text_file((checkpoint_ / "case.toml").string(), identity(value));
+  }
+
+  // Moves everything that is complete to its place, summary.json last.
+  void publish() {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
+      if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), partial_));
+    }
+    const auto last = [](const fs::path& file) { return file.filename() == "summary.json"; };
+    std::sort(files.begin(), files.end());
+    std::stable_partition(files.begin(), files.end(), [&](const fs::path& f) { return !last(f); });
+    for (const auto& file : files) {
+      fs::create_directories((folder_ / file).parent_path());
+      fs::rename(partial_ / file, folder_ / file);
+    }
+    fs::remove_all(partial_);
+    fs::remove_all(checkpoint_);
+  }
+
+  // After an interrupt what --resume needs stays.
+  void abandon(bool keep_checkpoint) noexcept {
+    std::error_code error;
+    fs::remove_all(partial_, error);
+    if (keep_checkpoint) return;
+    fs::remove_all(checkpoint_, error);
+    if (made_.empty()) return;
+    for (fs::path p = fs::absolute(folder_);; p = p.parent_path()) {
+      if (!fs::is_empty(p, error) || error) return;
+      fs::remove(p, error);
+      if (p == made_) return;
+    }
+  }
+
+  std::string partial(const std::string& inner = "") const { return (partial_ / inner).string(); }
+  std::string checkpoint(const std::string& inner) const { return (checkpoint_ / inner).string(); }
+
+ private:
+  [[noreturn]] void throw_unwritable(const std::string& why) const {
+    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder_.string(), why));
+  }
+
+  fs::path folder_, partial_, checkpoint_, made_;
+};
+
+// Work of rank 0 alone whose failure all ranks must learn of.
+void on_first_rank(const Ranks& ranks, const std::function<void()>& work) {
+  std::exception_ptr error;
+  std::string report = "ok";
+  if (ranks.first()) {
+    try {
+      work();
+    } catch (const std::exception& e) {
+      error = std::current_exception();
+      report = e.what();
+    }
+  }
+  const auto reports = ranks.gather(report);
+  if (error) std::rethrow_exception(error);
+  if (reports.front() != "ok") throw std::invalid_argument(reports.front());
+}
+
+std::string member_file(const Workplace& place, const std::string& suffix, std::int64_t index) {
+  return place.checkpoint(
+      fmt::format("{}realization_{:03}.h5", suffix.empty() ? "" : suffix + "_", index));
+}
+
+double simulate(const std::vector<SweepCase>& members, const Workplace& place, const Ranks& ranks,
+                const RunOptions& options) {
+  std::vector<Task> tasks;
+  for (const auto& [suffix, value] : members) {
+    if (value.study != "point-load") continue;
+    for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
+      tasks.push_back({value.layer,
+                       realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
+                                        static_cast<std::uint64_t>(r)),
+                       member_file(place, suffix, r)});
+    }
+  }
+  const auto start = Clock::now();
+  if (tasks.empty()) return 0;
+  options.note(
+      fmt::format("{} realization{} of grains", tasks.size(), tasks.size() == 1 ? "" : "s"));
+  EnsembleOptions ensemble;
+  ensemble.threads = options.threads;
+  ensemble.stop_after_steps = options.stop_after_steps;
+  ensemble.progress = options.progress;
+  run_tasks(tasks, ranks, ensemble);
+  return seconds_since(start);
+}
+
+StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
+  const Case& value = member.value;
+  if (value.study != "point-load") return analyse_elastic(value);
+  std::vector<std::string> files;
+  for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
+    files.push_back(member_file(place, member.suffix, r));
+  }
+  return analyse_point_load(value, files, threads);
+}
+
+void compute(const Case& value, const Workplace& place, const Ranks& ranks,
+             const RunOptions& options) {
+  const auto start = Clock::now();
+  const std::vector<SweepCase> members = sweep_cases(value);
+  const double dem_seconds = simulate(members, place, ranks, options);
+  // Every rank analyses, since the finite-element models may be distributed; one writes.
+  std::vector<StudyResult> results;
+  for (const auto& member : members) {
+    options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",
+                             member.suffix));
+    results.push_back(analyse(member, place, options.threads));
+  }
+  options.note("outputs");
+  on_first_rank(ranks, [&] {
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      fs::create_directories(place.partial(members[m].suffix));
+      Summary& summary = results[m].summary;
+      if (members[m].value.study == "point-load") summary["time.dem_s"] = dem_seconds;
+      summary["time.total_s"] = seconds_since(start);
+      write_study(place.partial(members[m].suffix), results[m]);
+    }
+    if (!value.sweep.key.empty()) write_sweep(place.partial(), value, members, results);
+  });
+}
+
+}  // namespace
+
+void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) {
+  Workplace place(options.folder);
+  bool opened = false;
+  try {
+    on_first_rank(ranks, [&] { place.open(value, options.resume); });
+    opened = true;
+    const InterruptGuard guard;
+    compute(value, place, ranks, options);
+    on_first_rank(ranks, [&] { place.publish(); });
+  } catch (const Interrupted&) {
+    ranks.barrier();
+    if (ranks.first()) place.abandon(true);
+    throw Interrupted(
+        fmt::format("stopped; {}/checkpoint holds the state: continue with the same "
+                    "command and --resume",
+                    options.folder));
+  } catch (...) {
+    if (ranks.first() && opened) place.abandon(false);
+    throw;
+  }
+}
+
+}  // namespace grainfield::coupling

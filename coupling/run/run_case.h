@@ -1,0 +1,30 @@
+// A case from start to end: realizations, analysis, outputs, sweeps.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "coupling/case/case.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/run/ranks.h"
+
+namespace grainfield::coupling {
+
+struct RunOptions {
+  std::string folder;  ///< of the outputs; made where missing
+  int threads = 1;
+  bool resume = false;        ///< continue from FOLDER/checkpoint where there is one
+  long stop_after_steps = 0;  ///< for tests: see EnsembleOptions
+  std::function<void(const EnsembleProgress&)> progress;
+  std::function<void(const std::string&)> note;  ///< one line about what begins now
+};
+
+/// Runs a case and leaves its outputs in the folder: they are written into FOLDER/.partial and
+/// moved when all are complete, summary.json last. A sweep leaves one folder of outputs per value,
+/// and a summary and report of all. FOLDER/checkpoint holds what --resume needs; it is removed on
+/// success and on failure, not on an interrupt. Only rank 0 writes outputs.
+///
+/// Throws std::invalid_argument (folder cannot be written; a checkpoint is there without resume, or
+/// of another case), Interrupted saying how to continue, and what simulations and models throw.
+void run_case(const Case& value, const Ranks& ranks, const RunOptions& options);
+
+}  // namespace grainfield::coupling

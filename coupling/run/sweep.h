@@ -1,0 +1,15 @@
+// The members of a sweep side by side: one summary, one report.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/run/study_result.h"
+
+namespace grainfield::coupling {
+
+/// Writes summary.json (every member's keys with ".SUFFIX" at the end), report.html and case.toml
+/// of a sweep whose members' outputs are in folder/SUFFIX.
+void write_sweep(const std::string& folder, const Case& value,
+                 const std::vector<SweepCase>& members, const std::vector<StudyResult>& results);
+
+}  // namespace grainfield::coupling
