@@ -33,6 +33,11 @@ void packing(Section s) {
            "lattices: grains in a row; more moves the side walls away from the load", kRoul);
   s.number("rows", "-", +IN(int, packing.rows), {1, 100000},
            "lattices: rows of grains; more makes the layer deeper", kRoul);
+  s.number(
+      "spacing", "-", +IN(double, packing.spacing), {0.71, 1},
+      "sqrt3: distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
+      "not touch and a grain has four contacts",
+      "Roul 5.4");
   s.number("width", "m", +IN(double, packing.width), kPositive,
            "layered: distance of the side walls; four depths keep their influence small", kRoul);
   s.number("depth", "m", +IN(double, packing.depth), kPositive,
@@ -43,8 +48,7 @@ void packing(Section s) {
   s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
          "flat wall with friction, or a row of fixed grains", "Roul 5.5");
   s.number("jitter", "-", +IN(double, packing.jitter), {0, 0.5},
-           "lattices: radii are multiplied by a number uniform in 1 +- this; 0 is the perfect "
-           "lattice");
+           "lattices: radii uniform in radius * [1 - 2 jitter, 1]; 0 is the perfect lattice");
 }
 
 void material(Section s) {
