@@ -1,4 +1,5 @@
-// The settled disk packings of data/, as engines. Law, parameters and time step as in their headers.
+// The settled disk packings of data/, as engines. Law, parameters and time step as in their
+// headers.
 #pragma once
 #include <fstream>
 #include <memory>
