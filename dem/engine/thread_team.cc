@@ -2,7 +2,7 @@
 
 namespace grainfield::dem {
 
-ThreadTeam::ThreadTeam(int size) : size_(size < 1 ? 1 : size), barrier_(size_) {
+ThreadTeam::ThreadTeam(int size) : size_(size < 1 ? 1 : size) {
   for (int rank = 1; rank < size_; ++rank) threads_.emplace_back([this, rank] { serve(rank); });
 }
 
@@ -27,6 +27,21 @@ void ThreadTeam::run(const std::function<void(int)>& work) {
   if (size_ > 1) {
     std::unique_lock lock(mutex_);
     finished_.wait(lock, [this] { return running_ == 0; });
+  }
+}
+
+// A step of a few thousand grains takes some 100 us: waiting threads spin for about as long as the
+// others may lag, and only then give the core away (more threads than cores, a busy machine).
+void ThreadTeam::wait_for_all() {
+  constexpr int kSpins = 4000;
+  const long round = round_.load(std::memory_order_relaxed);
+  if (arrived_.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
+    arrived_.store(0, std::memory_order_relaxed);
+    round_.store(round + 1, std::memory_order_release);
+    return;
+  }
+  for (int spin = 0; round_.load(std::memory_order_acquire) == round; ++spin) {
+    if (spin >= kSpins) std::this_thread::yield();
   }
 }
 

@@ -1,6 +1,6 @@
 // A few threads that run one function together and meet at barriers.
 #pragma once
-#include <barrier>
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -22,14 +22,16 @@ class ThreadTeam {
   void run(const std::function<void(int)>& work);
   /// Within work: waits for all. Free when there is one thread.
   void meet() {
-    if (size_ > 1) barrier_.arrive_and_wait();
+    if (size_ > 1) wait_for_all();
   }
 
  private:
   void serve(int rank);
+  void wait_for_all();
 
   int size_;
-  std::barrier<> barrier_;
+  std::atomic<int> arrived_{0};
+  std::atomic<long> round_{0};
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
   const std::function<void(int)>* work_ = nullptr;

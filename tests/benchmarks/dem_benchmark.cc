@@ -25,7 +25,7 @@ void disks_10k(benchmark::State& s) { run(s, "packing_discs_10k.csv", 2, 1); }
 void disks_30k(benchmark::State& s) { run(s, "packing_discs_10k.csv", 2, 3); }
 void disks_100k(benchmark::State& s) { run(s, "packing_discs_10k.csv", 2, 10); }
 
-BENCHMARK(disks_1k)->Arg(1)->UseRealTime();
+BENCHMARK(disks_1k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(disks_10k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(disks_30k)->Arg(1)->UseRealTime();
 BENCHMARK(disks_100k)->Arg(1)->Arg(2)->UseRealTime();
