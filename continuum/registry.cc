@@ -4,14 +4,16 @@
 #include <algorithm>
 
 #include "continuum/closed/models.h"
+#include "continuum/fe/elastic.h"
 #include "continuum/model.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 
 const std::vector<ModelInfo>& registry() {
-  static const std::vector<ModelInfo> models = {flamant_info(), boussinesq_info(), layer_info(),
-                                                hydrostatic_info()};
+  static const std::vector<ModelInfo> models = {
+      flamant_info(),     boussinesq_info(),       layer_info(),
+      hydrostatic_info(), fe_elastic_layer_info(), fe_elastic_half_space_info()};
   return models;
 }
 

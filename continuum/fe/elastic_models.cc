@@ -1,0 +1,424 @@
+// The layer and the half space on top of ElasticSolver. Both are symmetric about the load, so only
+// x >= 0 (and in 3D y >= 0) is meshed; the vertical axis is the last one.
+//
+// Layer: the displacement is split into the half space's closed form under a point load, which
+// holds the singularity, and a smooth rest, which the elements solve for: its data are minus the
+// closed form's displacement and traction on base and sides. The point load is met exactly.
+//
+// Half space: no closed form enters. The load is a uniform pressure on a small patch, and the mesh,
+// whose cells grow with their distance from the load, reaches so far (each doubling of the radius
+// costs the same number of cells) that holding its end fixed is not felt at the depth of interest.
+#include <deal.II/grid/grid_generator.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "continuum/closed/half_space.h"
+#include "continuum/fe/elastic.h"
+#include "continuum/fe/elastic_solver.h"
+#include "continuum/fe/parallel.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+using fe::BoundaryCondition;
+using fe::ElasticProblem;
+using fe::ElasticSolver;
+using fe::kStresses;
+using fe::Stress;
+using fe::Vector;
+template <int dim>
+using Point = dealii::Point<dim>;
+
+/// Values that differ from a border's coordinate by less than this part of the domain are on it.
+constexpr double kOnBorder = 1e-9;
+/// Share of the error indicator whose cells are refined in a cycle.
+constexpr double kRefinedShare = 0.8;
+
+template <int dim>
+Stress<dim> point_load_stress(double F, double nu, const Point<dim>& p) {
+  Stress<dim> s;
+  if constexpr (dim == 2) {
+    const auto found = flamant_stress(F, p[0], p[1]);
+    for (int c = 0; c < 3; ++c) s[c] = found[c];
+  } else {
+    const auto found = boussinesq_stress(F, nu, p[0], p[1], p[2]);
+    for (int c = 0; c < 6; ++c) s[c] = found[c];
+  }
+  return s;
+}
+
+template <int dim>
+Vector<dim> point_load_displacement(double F, double E, double nu, const Point<dim>& p) {
+  Vector<dim> u;
+  if constexpr (dim == 2) {
+    const auto found = flamant_displacement(F, E, nu, p[0], p[1]);
+    for (int d = 0; d < 2; ++d) u[d] = found[d];
+  } else {
+    const auto found = boussinesq_displacement(F, E, nu, p[0], p[1], p[2]);
+    for (int d = 0; d < 3; ++d) u[d] = found[d];
+  }
+  return u;
+}
+
+/// What both models share: the box x >= 0, bottom <= vertical <= 0, refinement until the stresses
+/// at probe points stand still, and the way from points of the full space into the meshed part.
+template <int dim>
+class BoxModel : public Model {
+ public:
+  BoxModel(const std::string& name, const Settings& s)
+      : load_(number_of(s, "F")),
+        young_(number_of(s, "E")),
+        poisson_(number_of(s, "nu")),
+        tolerance_(number_of(s, "tolerance")),
+        refinements_(static_cast<int>(number_of(s, "refinements"))),
+        degree_(static_cast<int>(number_of(s, "degree"))),
+        iterations_(static_cast<int>(number_of(s, "iterations"))),
+        name_(name) {}
+
+  Stresses stress(const Points& points) override {
+    if (!solver_) {
+      solver_ =
+          std::make_unique<ElasticSolver<dim>>(fe::communicator(), degree_, iterations_, name_);
+      try {
+        build_mesh(solver_->mesh());
+        solve();
+      } catch (...) {
+        solver_.reset();
+        throw;
+      }
+    }
+    std::vector<Point<dim>> inside;
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      if (const auto p = fold(points.row(i))) {
+        inside.push_back(*p);
+        rows.push_back(i);
+      }
+    }
+    Stresses out =
+        Stresses::Constant(points.rows(), kStresses<dim>, std::numeric_limits<double>::quiet_NaN());
+    const Eigen::MatrixXd found = stress_in_mesh(inside);
+    const auto components = fe::stress_components<dim>();
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      for (int c = 0; c < kStresses<dim>; ++c) {
+        // A mirrored point: each horizontal index of the component that was mirrored flips the
+        // sign.
+        double sign = 1;
+        const auto [a, b] = components[c];
+        if (a != b) {
+          if (a < dim - 1 && points(rows[n], a) < 0) sign = -sign;
+          if (b < dim - 1 && points(rows[n], b) < 0) sign = -sign;
+        }
+        out(rows[n], c) = sign * found(static_cast<Eigen::Index>(n), c);
+      }
+    }
+    return out;
+  }
+
+  std::map<std::string, double> figures() const override {
+    auto all = solver_ ? solver_->figures() : std::map<std::string, double>();
+    all.insert(figures_.begin(), figures_.end());
+    return all;
+  }
+
+ protected:
+  virtual void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) = 0;
+  virtual ElasticProblem<dim> problem() const = 0;
+  /// Where the stress must stand still, and the stress against which its change is measured.
+  virtual std::vector<Point<dim>> probes() const = 0;
+  virtual double scale() const = 0;
+  /// What the elements' stress is added to.
+  virtual Stress<dim> closed_part(const Point<dim>&) const { return {}; }
+  virtual double refinement_weight(const Point<dim>&) const { return 1; }
+
+  BoundaryCondition<dim> mirror_plane(int axis) const {
+    BoundaryCondition<dim> mirror;
+    mirror.fixed[axis] = true;
+    return mirror;
+  }
+  static Point<dim> horizontal_and_height(double x, double height) {
+    Point<dim> p;
+    p[0] = x;
+    p[dim - 1] = height;
+    return p;
+  }
+
+  double load_, young_, poisson_;
+  double half_width_ = 0, bottom_ = 0;  ///< of the box; set by build_mesh
+  std::map<std::string, double> figures_;
+
+ private:
+  void solve() {
+    const auto equations = problem();
+    const auto points = probes();
+    Eigen::MatrixXd before;
+    for (int cycle = 0;; ++cycle) {
+      solver_->solve(equations);
+      const Eigen::MatrixXd after = solver_->stress_at(points);
+      figures_["refinement_cycles"] = cycle;
+      if (cycle > 0) {
+        const double change = (after - before).cwiseAbs().maxCoeff() / scale();
+        figures_["change"] = change;
+        if (change <= tolerance_) return;
+        if (cycle >= refinements_)
+          throw ComputationFailed(fmt::format(
+              "{}: the stress still changes by {:.1e} of its scale in refinement {}, {:.0e} is "
+              "asked; raise refinements, degree or tolerance",
+              name_, change, cycle, tolerance_));
+      }
+      before = after;
+      solver_->refine_worst(kRefinedShare,
+                            [this](const Point<dim>& p) { return refinement_weight(p); });
+    }
+  }
+
+  Eigen::MatrixXd stress_in_mesh(const std::vector<Point<dim>>& points) const {
+    Eigen::MatrixXd found = solver_->stress_at(points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const auto closed = closed_part(points[n]);
+      for (int c = 0; c < kStresses<dim>; ++c) found(static_cast<Eigen::Index>(n), c) += closed[c];
+    }
+    return found;
+  }
+
+  /// The point's image in the meshed part; none outside the domain.
+  std::optional<Point<dim>> fold(const Eigen::RowVectorXd& point) const {
+    Point<dim> p;
+    const double slack = kOnBorder * half_width_;
+    for (int d = 0; d < dim - 1; ++d) {
+      p[d] = std::abs(point(d));
+      if (!(p[d] <= half_width_ + slack)) return std::nullopt;
+      p[d] = std::min(p[d], half_width_);
+    }
+    const double height = point(dim - 1);
+    if (!(height < 0) || !(height >= bottom_ - slack)) return std::nullopt;
+    p[dim - 1] = std::max(height, bottom_);
+    return p;
+  }
+
+  double tolerance_;
+  int refinements_, degree_, iterations_;
+  std::string name_;
+  std::unique_ptr<ElasticSolver<dim>> solver_;
+};
+
+template <int dim>
+class ElasticLayer : public BoxModel<dim> {
+ public:
+  explicit ElasticLayer(const Settings& s)
+      : BoxModel<dim>("fe_elastic_layer", s),
+        h_(number_of(s, "h")),
+        ratio_(number_of(s, "half_width")),
+        cells_(static_cast<unsigned int>(number_of(s, "cells"))),
+        rough_(s.at("base") == "rough"),
+        free_sides_(s.at("sides") == "free") {}
+
+ protected:
+  void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) override {
+    this->half_width_ = ratio_ * h_;
+    this->bottom_ = -h_;
+    std::vector<unsigned int> divisions(dim, static_cast<unsigned int>(std::ceil(ratio_ * cells_)));
+    divisions[dim - 1] = cells_;
+    Point<dim> low, high;
+    for (int d = 0; d < dim - 1; ++d) high[d] = this->half_width_;
+    low[dim - 1] = -h_;
+    dealii::GridGenerator::subdivided_hyper_rectangle(mesh, divisions, low, high, true);
+  }
+
+  ElasticProblem<dim> problem() const override {
+    const double F = this->load_, E = this->young_, nu = this->poisson_;
+    const auto displacement = [=](const Point<dim>& p) {
+      return -point_load_displacement<dim>(F, E, nu, p);
+    };
+    const auto traction = [=](const Point<dim>& p, const Vector<dim>& normal) {
+      return -fe::traction<dim>(point_load_stress<dim>(F, nu, p), normal);
+    };
+    ElasticProblem<dim> equations{E, nu, {}, {}};
+    for (int axis = 0; axis < dim - 1; ++axis) {
+      equations.boundaries[2 * axis] = this->mirror_plane(axis);
+      auto& side = equations.boundaries[2 * axis + 1];
+      side = {{}, displacement, traction};
+      side.fixed[axis] = !free_sides_;
+    }
+    auto& base = equations.boundaries[2 * (dim - 1)];
+    base = {{}, displacement, traction};
+    base.fixed.fill(rough_);
+    base.fixed[dim - 1] = true;
+    return equations;
+  }
+
+  std::vector<Point<dim>> probes() const override {
+    std::vector<Point<dim>> points;
+    for (const double depth : {0.5, 1.})
+      for (const double x : {0., 0.2, 0.4, 0.6, 0.8, 1., 1.3, 1.6, 2., 2.5, 3., 4.})
+        if (x <= ratio_) points.push_back(this->horizontal_and_height(x * h_, -depth * h_));
+    return points;
+  }
+  double scale() const override {
+    return std::max(std::abs(this->load_) / std::pow(h_, dim - 1),
+                    std::numeric_limits<double>::min());
+  }
+  Stress<dim> closed_part(const Point<dim>& p) const override {
+    return point_load_stress<dim>(this->load_, this->poisson_, p);
+  }
+
+ private:
+  double h_, ratio_;
+  unsigned int cells_;
+  bool rough_, free_sides_;
+};
+
+template <int dim>
+class ElasticHalfSpace : public BoxModel<dim> {
+ public:
+  explicit ElasticHalfSpace(const Settings& s)
+      : BoxModel<dim>("fe_elastic_half_space", s),
+        depth_(number_of(s, "depth")),
+        patch_(number_of(s, "patch") * depth_),
+        cells_(number_of(s, "cells")) {
+    // The half patch is a cell of the finest level, so that its border is a cell's border.
+    levels_ =
+        static_cast<int>(std::ceil(std::log2(number_of(s, "radius") * depth_ / (patch_ / 2))));
+  }
+
+ protected:
+  void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) override {
+    this->half_width_ = std::ldexp(patch_ / 2, levels_);
+    this->bottom_ = -this->half_width_;
+    Point<dim> low, high;
+    for (int d = 0; d < dim - 1; ++d) high[d] = this->half_width_;
+    low[dim - 1] = this->bottom_;
+    dealii::GridGenerator::hyper_rectangle(mesh, low, high, true);
+    for (int level = 0; level < levels_; ++level) {
+      for (const auto& cell : mesh.active_cell_iterators()) {
+        if (!cell->is_locally_owned()) continue;
+        const double edge = cell->extent_in_direction(0);
+        const double distance = std::max(0., cell->center().norm() - edge * std::sqrt(dim) / 2);
+        // Beyond ten depths a mesh half as fine does: what is wrong there is hardly felt at the
+        // depth.
+        const double per_distance = distance > 10 * depth_ ? cells_ / 2 : cells_;
+        if (edge * per_distance > std::max(distance, patch_ / 2 * per_distance * (1 + kOnBorder)))
+          cell->set_refine_flag();
+      }
+      mesh.execute_coarsening_and_refinement();
+    }
+    this->figures_["truncation_radius"] = this->half_width_;
+    this->figures_["patch_width"] = patch_;
+  }
+
+  ElasticProblem<dim> problem() const override {
+    ElasticProblem<dim> equations{this->young_, this->poisson_, {}, {}};
+    for (int axis = 0; axis < dim - 1; ++axis) {
+      equations.boundaries[2 * axis] = this->mirror_plane(axis);
+      equations.boundaries[2 * axis + 1].fixed.fill(true);
+    }
+    equations.boundaries[2 * (dim - 1)].fixed.fill(true);
+    const double half = patch_ / 2, pressure = this->load_ / std::pow(patch_, dim - 1);
+    equations.boundaries[2 * dim - 1].traction = [=](const Point<dim>& p, const Vector<dim>&) {
+      Vector<dim> t;
+      bool loaded = true;
+      for (int d = 0; d < dim - 1; ++d) loaded = loaded && p[d] < half;
+      if (loaded) t[dim - 1] = -pressure;
+      return t;
+    };
+    return equations;
+  }
+
+  std::vector<Point<dim>> probes() const override {
+    std::vector<Point<dim>> points;
+    for (const double depth : {0.5, 1., 2.})
+      for (const double x : {0., 0.5, 1., 2.})
+        points.push_back(this->horizontal_and_height(x * depth * depth_, -depth * depth_));
+    return points;
+  }
+  double scale() const override {
+    return std::max(std::abs(this->load_) / std::pow(depth_, dim - 1),
+                    std::numeric_limits<double>::min());
+  }
+  /// Jumps at the patch's border, a local matter, would otherwise draw all the cells.
+  double refinement_weight(const Point<dim>& p) const override {
+    return std::min(1., std::pow(p.norm() / depth_, dim));
+  }
+
+ private:
+  double depth_, patch_, cells_;
+  int levels_ = 0;
+};
+
+template <template <int> class Kind>
+std::unique_ptr<Model> make(const Settings& s) {
+  if (s.at("dim") == "3") return std::make_unique<Kind<3>>(s);
+  return std::make_unique<Kind<2>>(s);
+}
+
+std::vector<Parameter> common_parameters() {
+  return {choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"}),
+          number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+          number("E", "Pa", "Young's modulus (N/m in 2D); the stress does not depend on it",
+                 "elasticity", 1e7, kAboveZero, kUnbounded),
+          // Beyond this displacement elements lock and the iterations grow.
+          number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
+}
+
+std::vector<Parameter> numerical_parameters(double degree, double tolerance, double refinements) {
+  return {number("degree", "-", "polynomial degree of the elements; cost per unknown grows with it",
+                 "numerics", degree, 1, 4),
+          number("tolerance", "-",
+                 "change of the stress by the last refinement, over F/h or F/depth (3D: their "
+                 "square), at which refinement ends",
+                 "numerics", tolerance, 1e-10, 1),
+          number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements,
+                 1, 20),
+          number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
+                 500, 1, 100000)};
+}
+
+std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
+  std::vector<Parameter> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
+ModelInfo fe_elastic_layer_info() {
+  return {
+      "fe_elastic_layer", "elastic layer on a rigid base under a point load, finite elements", 0,
+      joined(
+          {common_parameters(),
+           {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+            choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
+                   {"smooth", "rough"}),
+            number("half_width", "h", "half the width of the domain, in depths", "numerics", 8, 1,
+                   1000),
+            choice("sides",
+                   "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
+                   "without shear, as of a box",
+                   "elasticity", {"free", "smooth"}),
+            number("cells", "-", "cells over the depth before refinement", "numerics", 2, 1, 1000)},
+           numerical_parameters(3, 2e-4, 6)}),
+      make<ElasticLayer>};
+}
+
+ModelInfo fe_elastic_half_space_info() {
+  return {"fe_elastic_half_space",
+          "elastic half plane or half space under a small loaded patch, finite elements", 0,
+          joined({common_parameters(),
+                  {number("depth", "m", "depth of interest, to which the mesh is fitted",
+                          "numerics", 0.15, kAboveZero, kUnbounded),
+                   number("patch", "depth", "width of the loaded strip or square, in depths",
+                          "numerics", 0.05, 1e-4, 1),
+                   number("radius", "depth",
+                          "least distance of the mesh's end from the load, in depths; what is felt "
+                          "of the end falls like 1/radius (3D: its square)",
+                          "numerics", 1000, 4, 1e9),
+                   number("cells", "-", "cells per distance from the load before refinement",
+                          "numerics", 2, 1, 100)},
+                  numerical_parameters(3, 2e-3, 4)}),
+          make<ElasticHalfSpace>};
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,413 @@
+#include "continuum/fe/elastic_solver.h"
+
+#include <Epetra_MultiVector.h>
+#include <deal.II/base/mpi_remote_point_evaluation.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/numerics/error_estimator.h>
+#include <deal.II/numerics/vector_tools_boundary.h>
+#include <deal.II/numerics/vector_tools_evaluate.h>
+#include <fmt/format.h>
+
+#include <Teuchos_ParameterList.hpp>
+#include <chrono>
+
+#include "continuum/model.h"
+
+namespace grainfield::continuum::fe {
+namespace {
+
+using namespace dealii;
+
+/// Of |b - A x| against |b|: far below any discretization error of interest.
+constexpr double kResidual = 1e-10;
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// deal.II wants a class where a function is meant.
+template <int dim>
+class BoundaryValues : public Function<dim> {
+ public:
+  explicit BoundaryValues(const BoundaryCondition<dim>& condition)
+      : Function<dim>(dim), condition_(condition) {}
+  void vector_value(const Point<dim>& p, dealii::Vector<double>& values) const override {
+    const fe::Vector<dim> u =
+        condition_.displacement ? condition_.displacement(p) : fe::Vector<dim>();
+    for (int d = 0; d < dim; ++d) values(d) = u[d];
+  }
+
+ private:
+  const BoundaryCondition<dim>& condition_;
+};
+
+/// Translations and rotations of the nodes, one column each: what the coarse levels must represent.
+template <int dim>
+std::unique_ptr<Epetra_MultiVector> rigid_motions(const Mapping<dim>& mapping,
+                                                  const DoFHandler<dim>& dofs,
+                                                  const TrilinosWrappers::SparseMatrix& matrix) {
+  constexpr int rotations = dim == 2 ? 1 : 3;
+  auto modes =
+      std::make_unique<Epetra_MultiVector>(matrix.trilinos_matrix().DomainMap(), dim + rotations);
+  const auto& element = dofs.get_fe();
+  const Quadrature<dim> nodes(element.base_element(0).get_unit_support_points());
+  FEValues<dim> values(mapping, element, nodes, update_quadrature_points);
+  std::vector<types::global_dof_index> indices(element.n_dofs_per_cell());
+  const auto& owned = dofs.locally_owned_dofs();
+  for (const auto& cell : dofs.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    cell->get_dof_indices(indices);
+    for (unsigned int i = 0; i < indices.size(); ++i) {
+      if (!owned.is_element(indices[i])) continue;
+      const auto row = static_cast<int>(owned.index_within_set(indices[i]));
+      const auto [component, node] = element.system_to_component_index(i);
+      const auto& p = values.quadrature_point(node);
+      const int c = static_cast<int>(component);
+      for (int d = 0; d < dim; ++d) (*modes)[d][row] = c == d ? 1. : 0.;
+      if constexpr (dim == 2) {
+        (*modes)[2][row] = c == 0 ? -p[1] : p[0];
+      } else {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+          (*modes)[3 + axis][row] = c == a ? -p[b] : (c == b ? p[a] : 0.);
+        }
+      }
+    }
+  }
+  return modes;
+}
+
+}  // namespace
+
+template <int dim>
+fe::Vector<dim> traction(const Stress<dim>& stress, const fe::Vector<dim>& normal) {
+  fe::Vector<dim> t;
+  const auto components = stress_components<dim>();
+  for (int c = 0; c < kStresses<dim>; ++c) {
+    const auto [i, j] = components[c];
+    t[i] += stress[c] * normal[j];
+    if (i != j) t[j] += stress[c] * normal[i];
+  }
+  return t;
+}
+
+template <int dim>
+ElasticSolver<dim>::ElasticSolver(MPI_Comm comm, int degree, int max_iterations, std::string name)
+    : comm_(comm),
+      degree_(degree),
+      max_iterations_(max_iterations),
+      name_(std::move(name)),
+      mesh_(comm),
+      element_(FE_Q<dim>(degree), dim),
+      stress_element_(FE_Q<dim>(degree), kStresses<dim>),
+      dofs_(mesh_),
+      stress_dofs_(mesh_) {}
+
+template <int dim>
+Stress<dim> ElasticSolver<dim>::stress_of(const Tensor<2, dim>& gradient) const {
+  Stress<dim> s;
+  const auto components = stress_components<dim>();
+  for (int c = 0; c < kStresses<dim>; ++c) {
+    const auto [i, j] = components[c];
+    s[c] = shear_ * (gradient[i][j] + gradient[j][i]) + (i == j ? lambda_ * trace(gradient) : 0.);
+  }
+  return s;
+}
+
+template <int dim>
+void ElasticSolver<dim>::distribute(const ElasticProblem<dim>& problem) {
+  dofs_.distribute_dofs(element_);
+  owned_ = dofs_.locally_owned_dofs();
+  DoFTools::extract_locally_relevant_dofs(dofs_, relevant_);
+  constraints_.clear();
+  constraints_.reinit(relevant_);
+  DoFTools::make_hanging_node_constraints(dofs_, constraints_);
+  for (const auto& [id, condition] : problem.boundaries) {
+    ComponentMask mask(dim, false);
+    for (int d = 0; d < dim; ++d) mask.set(d, condition.fixed[d]);
+    if (mask.n_selected_components() == 0) continue;
+    VectorTools::interpolate_boundary_values(mapping_, dofs_, id, BoundaryValues<dim>(condition),
+                                             constraints_, mask);
+  }
+  constraints_.close();
+}
+
+template <int dim>
+void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
+  TrilinosWrappers::SparsityPattern pattern(owned_, owned_, relevant_, comm_);
+  DoFTools::make_sparsity_pattern(dofs_, pattern, constraints_, false,
+                                  Utilities::MPI::this_mpi_process(comm_));
+  pattern.compress();
+  matrix_.reinit(pattern);
+  rhs_.reinit(owned_, comm_);
+
+  const QGauss<dim> quadrature(degree_ + 1);
+  // Boundary and body data are arbitrary functions: two points more than the elements need.
+  const QGauss<dim> force_quadrature(degree_ + 3);
+  const QGauss<dim - 1> face_quadrature(degree_ + 3);
+  FEValues<dim> values(mapping_, element_, quadrature, update_gradients | update_JxW_values);
+  FEValues<dim> force_values(mapping_, element_, force_quadrature,
+                             update_values | update_quadrature_points | update_JxW_values);
+  FEFaceValues<dim> face_values(
+      mapping_, element_, face_quadrature,
+      update_values | update_quadrature_points | update_JxW_values | update_normal_vectors);
+
+  const int n = static_cast<int>(element_.n_dofs_per_cell());
+  const auto components = stress_components<dim>();
+  // K = sum_q B^T D B with B the strain of each shape function in Voigt's order, shear doubled.
+  Eigen::Matrix<double, kStresses<dim>, kStresses<dim>> elastic;
+  elastic.setZero();
+  elastic.template topLeftCorner<dim, dim>().setConstant(lambda_);
+  for (int c = 0; c < kStresses<dim>; ++c) elastic(c, c) += c < dim ? 2 * shear_ : shear_;
+  Eigen::Matrix<double, kStresses<dim>, Eigen::Dynamic> strain(kStresses<dim>, n), stress = strain;
+  Eigen::MatrixXd k(n, n);
+  FullMatrix<double> cell_matrix(n, n);
+  dealii::Vector<double> cell_rhs(n);
+  std::vector<types::global_dof_index> indices(n);
+
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    k.setZero();
+    for (const unsigned int q : values.quadrature_point_indices()) {
+      strain.setZero();
+      for (int i = 0; i < n; ++i) {
+        const int component = static_cast<int>(element_.system_to_component_index(i).first);
+        const auto& gradient = values.shape_grad(i, q);
+        for (int c = 0; c < kStresses<dim>; ++c) {
+          const auto [a, b] = components[c];
+          if (a == component) strain(c, i) += gradient[b];
+          if (a != b && b == component) strain(c, i) += gradient[a];
+        }
+      }
+      stress.noalias() = values.JxW(q) * elastic * strain;
+      k.noalias() += strain.transpose() * stress;
+    }
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) cell_matrix(i, j) = k(i, j);
+
+    cell_rhs = 0;
+    if (problem.body_force) {
+      force_values.reinit(cell);
+      for (const unsigned int q : force_values.quadrature_point_indices()) {
+        const auto f = problem.body_force(force_values.quadrature_point(q));
+        for (int i = 0; i < n; ++i)
+          cell_rhs(i) += f[element_.system_to_component_index(i).first] *
+                         force_values.shape_value(i, q) * force_values.JxW(q);
+      }
+    }
+    for (const auto& face : cell->face_iterators()) {
+      if (!face->at_boundary()) continue;
+      const auto found = problem.boundaries.find(face->boundary_id());
+      if (found == problem.boundaries.end() || !found->second.traction) continue;
+      face_values.reinit(cell, face);
+      for (const unsigned int q : face_values.quadrature_point_indices()) {
+        const auto t =
+            found->second.traction(face_values.quadrature_point(q), face_values.normal_vector(q));
+        for (int i = 0; i < n; ++i)
+          cell_rhs(i) += t[element_.system_to_component_index(i).first] *
+                         face_values.shape_value(i, q) * face_values.JxW(q);
+      }
+    }
+    cell->get_dof_indices(indices);
+    constraints_.distribute_local_to_global(cell_matrix, cell_rhs, indices, matrix_, rhs_);
+  }
+  matrix_.compress(VectorOperation::add);
+  rhs_.compress(VectorOperation::add);
+}
+
+template <int dim>
+void ElasticSolver<dim>::solve_linear() {
+  TrilinosWrappers::PreconditionAMG::AdditionalData data;
+  data.elliptic = true;
+  data.higher_order_elements = degree_ > 1;
+  data.smoother_sweeps = 2;
+  data.aggregation_threshold = 0.02;
+  Teuchos::ParameterList parameters;
+  std::unique_ptr<Epetra_MultiVector> constant;
+  data.set_parameters(parameters, constant, matrix_);
+  const auto modes = rigid_motions(mapping_, dofs_, matrix_);
+  parameters.set("null space: type", "pre-computed");
+  parameters.set("null space: dimension", modes->NumVectors());
+  parameters.set("null space: vectors", modes->Values());
+
+  TrilinosWrappers::MPI::Vector x(owned_, comm_);
+  const double size = rhs_.l2_norm();
+  SolverControl control(max_iterations_, kResidual * size);
+  try {
+    TrilinosWrappers::PreconditionAMG preconditioner;
+    preconditioner.initialize(matrix_, parameters);
+    PrimitiveVectorMemory<TrilinosWrappers::MPI::Vector> memory;
+    SolverCG<TrilinosWrappers::MPI::Vector>(control, memory)
+        .solve(matrix_, x, rhs_, preconditioner);
+  } catch (const SolverControl::NoConvergence& failure) {
+    throw ComputationFailed(fmt::format(
+        "{}: conjugate gradients stopped after {} iterations at {:.1e} of the load, {:.0e} is "
+        "asked; "
+        "raise iterations, or lower nu or degree",
+        name_, failure.last_step, failure.last_residual / (size > 0 ? size : 1), kResidual));
+  }
+  TrilinosWrappers::MPI::Vector residual(owned_, comm_);
+  figures_["residual"] = size > 0 ? matrix_.residual(residual, x, rhs_) / size : 0;
+  figures_["cg_iterations"] = control.last_step();
+  constraints_.distribute(x);
+  solution_.reinit(owned_, relevant_, comm_);
+  solution_ = x;
+}
+
+/// The stress is most accurate at the Gauss points of one order less than the element's; on each
+/// cell the polynomial through them is carried on to the nodes, where the cells' values are
+/// averaged.
+template <int dim>
+void ElasticSolver<dim>::recover_stress() {
+  stress_dofs_.distribute_dofs(stress_element_);
+  IndexSet relevant;
+  DoFTools::extract_locally_relevant_dofs(stress_dofs_, relevant);
+  const auto& owned = stress_dofs_.locally_owned_dofs();
+  stress_.reinit(owned, relevant, comm_);
+  LinearAlgebra::distributed::Vector<double> count(owned, relevant, comm_);
+
+  const FE_DGQArbitraryNodes<dim> through{QGauss<1>(degree_)};
+  const auto& nodes = stress_element_.base_element(0).get_unit_support_points();
+  const Quadrature<dim> gauss(through.get_unit_support_points());
+  Eigen::MatrixXd extrapolate(nodes.size(), gauss.size());
+  for (unsigned int i = 0; i < nodes.size(); ++i)
+    for (unsigned int q = 0; q < gauss.size(); ++q)
+      extrapolate(i, q) = through.shape_value(q, nodes[i]);
+
+  FEValues<dim> values(mapping_, element_, gauss, update_gradients);
+  std::vector<Tensor<2, dim>> gradients(gauss.size());
+  std::vector<types::global_dof_index> indices(stress_element_.n_dofs_per_cell());
+  Eigen::MatrixXd at_gauss(gauss.size(), kStresses<dim>);
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    values[FEValuesExtractors::Vector(0)].get_function_gradients(solution_, gradients);
+    for (unsigned int q = 0; q < gauss.size(); ++q) {
+      const auto s = stress_of(gradients[q]);
+      for (int c = 0; c < kStresses<dim>; ++c) at_gauss(q, c) = s[c];
+    }
+    const Eigen::MatrixXd at_nodes = extrapolate * at_gauss;
+    typename DoFHandler<dim>::cell_iterator(&mesh_, cell->level(), cell->index(), &stress_dofs_)
+        ->get_dof_indices(indices);
+    for (unsigned int i = 0; i < indices.size(); ++i) {
+      const auto [component, node] = stress_element_.system_to_component_index(i);
+      stress_(indices[i]) += at_nodes(node, component);
+      count(indices[i]) += 1;
+    }
+  }
+  stress_.compress(VectorOperation::add);
+  count.compress(VectorOperation::add);
+  for (unsigned int i = 0; i < stress_.locally_owned_size(); ++i)
+    stress_.local_element(i) /= count.local_element(i);
+  AffineConstraints<double> hanging(relevant);
+  DoFTools::make_hanging_node_constraints(stress_dofs_, hanging);
+  hanging.close();
+  hanging.distribute(stress_);
+  stress_.update_ghost_values();
+}
+
+template <int dim>
+void ElasticSolver<dim>::solve(const ElasticProblem<dim>& problem) {
+  shear_ = problem.E / (2 * (1 + problem.nu));
+  lambda_ = problem.E * problem.nu / ((1 + problem.nu) * (1 - 2 * problem.nu));
+  const double start = now();
+  distribute(problem);
+  assemble(problem);
+  const double assembled = now();
+  solve_linear();
+  const double solved = now();
+  recover_stress();
+  figures_["unknowns"] = static_cast<double>(dofs_.n_dofs());
+  figures_["cells"] = static_cast<double>(mesh_.n_global_active_cells());
+  figures_["assemble_s"] += assembled - start;
+  figures_["solve_s"] += solved - assembled;
+  figures_["solves"] += 1;
+}
+
+template <int dim>
+void ElasticSolver<dim>::refine_worst(double share,
+                                      const std::function<double(const Point<dim>&)>& weight) {
+  dealii::Vector<float> indicator(mesh_.n_active_cells());
+  KellyErrorEstimator<dim>::estimate(mapping_, dofs_, QGauss<dim - 1>(degree_ + 1), {}, solution_,
+                                     indicator);
+  if (weight) {
+    for (const auto& cell : mesh_.active_cell_iterators())
+      if (cell->is_locally_owned())
+        indicator(cell->active_cell_index()) *= static_cast<float>(weight(cell->center()));
+  }
+  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(mesh_, indicator, share,
+                                                                           0);
+  mesh_.execute_coarsening_and_refinement();
+}
+
+template <int dim>
+Eigen::MatrixXd ElasticSolver<dim>::stress_at(const std::vector<Point<dim>>& points) const {
+  // Rank 0 asks, the owners of the cells answer, everybody gets the same copy.
+  const bool root = Utilities::MPI::this_mpi_process(comm_) == 0;
+  // Part of a cell by which a point on its border may lie outside through round-off.
+  Utilities::MPI::RemotePointEvaluation<dim> cache(1e-9);
+  const auto found = VectorTools::point_values<kStresses<dim>>(
+      mapping_, stress_dofs_, stress_, root ? points : std::vector<Point<dim>>(), cache);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> out(points.size(),
+                                                                             kStresses<dim>);
+  if (root) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (int c = 0; c < kStresses<dim>; ++c) out(i, c) = found[i][c];
+  }
+  MPI_Bcast(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, 0, comm_);
+  return out;
+}
+
+template <int dim>
+std::array<double, 3> ElasticSolver<dim>::errors(
+    const std::function<fe::Vector<dim>(const Point<dim>&)>& displacement,
+    const std::function<Stress<dim>(const Point<dim>&)>& stress) const {
+  const QGauss<dim> quadrature(degree_ + 3);
+  FEValues<dim> values(
+      mapping_, element_, quadrature,
+      update_values | update_gradients | update_quadrature_points | update_JxW_values);
+  FEValues<dim> stress_values(mapping_, stress_element_, quadrature, update_values);
+  const FEValuesExtractors::Vector u(0);
+  std::vector<fe::Vector<dim>> found(quadrature.size());
+  std::vector<Tensor<2, dim>> gradients(quadrature.size());
+  std::vector<dealii::Vector<double>> recovered(quadrature.size(),
+                                                dealii::Vector<double>(kStresses<dim>));
+  std::array<double, 3> sums{};
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    values[u].get_function_values(solution_, found);
+    values[u].get_function_gradients(solution_, gradients);
+    stress_values.reinit(typename DoFHandler<dim>::cell_iterator(&mesh_, cell->level(),
+                                                                 cell->index(), &stress_dofs_));
+    stress_values.get_function_values(stress_, recovered);
+    for (unsigned int q = 0; q < quadrature.size(); ++q) {
+      const auto& p = values.quadrature_point(q);
+      const auto exact = stress(p);
+      sums[0] += (found[q] - displacement(p)).norm_square() * values.JxW(q);
+      sums[1] += (stress_of(gradients[q]) - exact).norm_square() * values.JxW(q);
+      for (int c = 0; c < kStresses<dim>; ++c)
+        sums[2] += std::pow(recovered[q][c] - exact[c], 2) * values.JxW(q);
+    }
+  }
+  for (auto& sum : sums) sum = std::sqrt(Utilities::MPI::sum(sum, comm_));
+  return sums;
+}
+
+template fe::Vector<2> traction<2>(const Stress<2>&, const fe::Vector<2>&);
+template fe::Vector<3> traction<3>(const Stress<3>&, const fe::Vector<3>&);
+template class ElasticSolver<2>;
+template class ElasticSolver<3>;
+
+}  // namespace grainfield::continuum::fe

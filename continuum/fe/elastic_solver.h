@@ -1,0 +1,108 @@
+// Isotropic linear elasticity on distributed adaptive meshes of quadrilaterals or hexahedra, the
+// same code in 2D (plane strain) and 3D. Internal to fe/: needs deal.II.
+//
+// div sigma + f = 0, sigma = lambda tr(eps) I + 2 G eps, continuous elements of any degree. The
+// assembled matrix is solved by conjugate gradients, preconditioned by smoothed-aggregation
+// algebraic multigrid (Trilinos ML) that knows the rigid motions: iterations, and with them the
+// time per unknown, hardly grow with the mesh.
+#pragma once
+#include <deal.II/base/function.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace grainfield::continuum::fe {
+
+template <int dim>
+using Vector = dealii::Tensor<1, dim>;
+/// Components of a symmetric stress: xx, yy, xy or xx, yy, zz, yz, xz, xy.
+template <int dim>
+inline constexpr int kStresses = dim*(dim + 1) / 2;
+template <int dim>
+using Stress = dealii::Tensor<1, kStresses<dim>>;
+/// Row and column of each stored component.
+template <int dim>
+constexpr std::array<std::pair<int, int>, kStresses<dim>> stress_components() {
+  if constexpr (dim == 2)
+    return {{{0, 0}, {1, 1}, {0, 1}}};
+  else
+    return {{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
+}
+/// The traction of a stress on a surface.
+template <int dim>
+Vector<dim> traction(const Stress<dim>& stress, const Vector<dim>& normal);
+
+/// What holds on one part of the boundary (a face of the box).
+template <int dim>
+struct BoundaryCondition {
+  std::array<bool, dim> fixed{};  ///< components of the displacement that are given
+  /// Their values; none = 0.
+  std::function<Vector<dim>(const dealii::Point<dim>&)> displacement = {};
+  /// Of the components that are not fixed; none = free.
+  std::function<Vector<dim>(const dealii::Point<dim>&, const Vector<dim>& normal)> traction = {};
+};
+
+template <int dim>
+struct ElasticProblem {
+  double E = 1, nu = 0.3;
+  std::map<dealii::types::boundary_id, BoundaryCondition<dim>> boundaries;
+  std::function<Vector<dim>(const dealii::Point<dim>&)> body_force = {};
+};
+
+template <int dim>
+class ElasticSolver {
+ public:
+  /// `name` begins the messages of failures.
+  ElasticSolver(MPI_Comm comm, int degree, int max_iterations, std::string name);
+
+  dealii::parallel::distributed::Triangulation<dim>& mesh() { return mesh_; }
+  /// Assembles and solves on the present mesh, recovers the stress. Throws ComputationFailed.
+  void solve(const ElasticProblem<dim>& problem);
+  /// Refines the cells that carry `share` of the jumps of the gradient (Kelly et al. 1983), each
+  /// weighted by the function at the cell's centre.
+  void refine_worst(double share,
+                    const std::function<double(const dealii::Point<dim>&)>& weight = {});
+  /// Recovered stress at points inside the mesh, one row each; the same on every rank.
+  Eigen::MatrixXd stress_at(const std::vector<dealii::Point<dim>>& points) const;
+  /// L2 norms of the errors of displacement, stress and recovered stress.
+  std::array<double, 3> errors(
+      const std::function<Vector<dim>(const dealii::Point<dim>&)>& displacement,
+      const std::function<Stress<dim>(const dealii::Point<dim>&)>& stress) const;
+  const std::map<std::string, double>& figures() const { return figures_; }
+
+ private:
+  void distribute(const ElasticProblem<dim>& problem);
+  void assemble(const ElasticProblem<dim>& problem);
+  void solve_linear();
+  void recover_stress();
+  Stress<dim> stress_of(const dealii::Tensor<2, dim>& gradient) const;
+
+  MPI_Comm comm_;
+  int degree_, max_iterations_;
+  std::string name_;
+  double lambda_ = 0, shear_ = 0;
+  dealii::MappingQ1<dim> mapping_;
+  dealii::parallel::distributed::Triangulation<dim> mesh_;
+  dealii::FESystem<dim> element_, stress_element_;
+  dealii::DoFHandler<dim> dofs_, stress_dofs_;
+  dealii::IndexSet owned_, relevant_;
+  dealii::AffineConstraints<double> constraints_;
+  dealii::TrilinosWrappers::SparseMatrix matrix_;
+  dealii::TrilinosWrappers::MPI::Vector rhs_, solution_;
+  dealii::LinearAlgebra::distributed::Vector<double> stress_;
+  std::map<std::string, double> figures_;
+};
+
+}  // namespace grainfield::continuum::fe
