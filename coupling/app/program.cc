@@ -10,6 +10,7 @@
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
+#include "coupling/run/interrupt.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -54,6 +55,8 @@ int parse_and_act(int argc, char** argv) {
 int run_program(int argc, char** argv) {
   try {
     return parse_and_act(argc, argv);
+  } catch (const Interrupted& e) {
+    return complain(130, e.what());
   } catch (const std::invalid_argument& e) {
     return complain(2, e.what());
   } catch (const dem::ComputationFailed& e) {

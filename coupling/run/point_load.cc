@@ -185,16 +185,27 @@ class Analysis {
     return out;
   }
 
+  // What `grainfield compare` needs to know of a field.
+  Field described(Field field, const AverageOptions& options) const {
+    field.attributes["method"] = options.method;
+    field.attributes["kernel"] = options.kernel;
+    field.attributes["width"] = fmt::format("{}", options.width);
+    field.attributes["h"] = fmt::format("{}", layer_.depth);
+    field.attributes["F"] = fmt::format("{}", value_.layer.load.force);
+    field.attributes["frame"] = "models: load at (0, 0), surface y = 0";
+    return field;
+  }
+
   void add_fields(StudyResult& out) const {
     for (const auto& a : collected_.methods) {
-      Field map = a.map.mean();
+      Field map = described(a.map.mean(), a.options);
       if (&a == &collected_.methods.front()) out.map = map;
       out.fields.emplace_back(a.method + "_response", std::move(map));
-      out.fields.emplace_back(a.method + "_unloaded", a.unloaded_map.mean());
+      out.fields.emplace_back(a.method + "_unloaded", described(a.unloaded_map.mean(), a.options));
       double largest = 0, error = 0;
       Eigen::Index n = 0;
       for (std::size_t d = 0; d < lines_.size(); ++d) {
-        Field line = a.profiles[d].mean();
+        Field line = described(a.profiles[d].mean(), a.options);
         const Column& column = *line.find("sigma_yy");
         for (Eigen::Index i = 0; i < column.value.size(); ++i) {
           if (std::isnan(column.value[i])) continue;
@@ -214,8 +225,9 @@ class Analysis {
         out.summary[prefix + "fluctuation"] = error / static_cast<double>(n) / largest;
       }
     }
-    out.base_unloaded = collected_.base_unloaded.mean();
-    out.fields.emplace_back("base_response", collected_.base.mean());
+    const AverageOptions& first = collected_.methods.front().options;
+    out.base_unloaded = described(collected_.base_unloaded.mean(), first);
+    out.fields.emplace_back("base_response", described(collected_.base.mean(), first));
     out.fields.emplace_back("base_unloaded", out.base_unloaded);
   }
 

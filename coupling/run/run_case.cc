@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "continuum/fe/elastic.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/run/elastic.h"
 #include "coupling/run/interrupt.h"
@@ -190,7 +191,9 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
   const auto start = Clock::now();
   const std::vector<SweepCase> members = sweep_cases(value);
   const double dem_seconds = simulate(members, place, ranks, options);
-  // Every rank analyses, since the finite-element models may be distributed; one writes.
+  // Every rank analyses and one writes. Beside grains each rank solves its own finite elements, so
+  // that the bits do not depend on the ranks; a study of models alone is solved by all together.
+  continuum::solve_on(value.study == "point-load" ? continuum::Ranks::own : continuum::Ranks::all);
   std::vector<StudyResult> results;
   for (const auto& member : members) {
     options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",

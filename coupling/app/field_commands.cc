@@ -1,0 +1,149 @@
+// average and compare: the steps of a run on their own.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "coupling/app/commands.h"
+#include "coupling/app/model_settings.h"
+#include "coupling/app/points_csv.h"
+#include "coupling/run/average_files.h"
+#include "coupling/run/compare_field.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
+ModelChoice parse_choice(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string head = text.substr(0, colon);
+  const std::size_t equals = head.find('=');
+  ModelChoice out;
+  out.name = equals == std::string::npos ? head : head.substr(equals + 1);
+  out.label = equals == std::string::npos ? head : head.substr(0, equals);
+  continuum::find_model(out.name);
+  if (colon == std::string::npos) return out;
+  std::vector<std::string> items;
+  std::string rest = text.substr(colon + 1);
+  for (std::size_t at = 0; at <= rest.size();) {
+    const std::size_t end = std::min(rest.find(',', at), rest.size());
+    items.push_back(rest.substr(at, end - at));
+    at = end + 1;
+  }
+  out.settings = parse_settings(items, "--model " + out.name);
+  return out;
+}
+
+// The same model twice: the settings tell them apart.
+std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
+  std::vector<ModelChoice> out;
+  std::set<std::string> seen;
+  for (const auto& text : texts) {
+    ModelChoice choice = parse_choice(text);
+    const std::string label = choice.label;
+    for (int n = 2; !seen.insert(choice.label).second; ++n) {
+      choice.label = fmt::format("{}_{}", label, n);
+    }
+    out.push_back(std::move(choice));
+  }
+  return out;
+}
+
+void parse_grid(const std::string& text, AverageRequest& request) {
+  const std::size_t x = text.find('x');
+  try {
+    std::size_t used = 0;
+    request.nx = std::stoi(text, &used);
+    if (used != x) throw std::invalid_argument("");
+    request.ny = std::stoi(text.substr(x + 1), &used);
+    if (used + x + 1 != text.size() || request.nx < 2 || request.ny < 2) {
+      throw std::invalid_argument("");
+    }
+  } catch (const std::exception&) {
+    throw std::invalid_argument(
+        fmt::format("--grid: found \"{}\", expected COLUMNSxROWS, both 2 or more", text));
+  }
+}
+
+}  // namespace
+
+void add_average(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("average", "average snapshots into a field");
+  struct Given {
+    std::vector<std::string> snapshots;
+    std::string output, points, grid;
+    AverageRequest request;
+  };
+  auto given = std::make_shared<Given>();
+  AverageOptions& options = given->request.options;
+  command->add_option("snapshots", given->snapshots, "FILE.h5 (all in it) or FILE.h5:group")
+      ->required();
+  command->add_option("-o,--output", given->output, "FIELD.h5; FIELD.xdmf comes beside it")
+      ->required();
+  command->add_flag("--response", given->request.response,
+                    "loaded - unloaded of the snapshots so named");
+  auto* method =
+      command->add_option("--method", options.method, "coarse_graining | particle_centre");
+  auto* kernel =
+      command->add_option("--kernel", options.kernel,
+                          "lucy | gaussian | heaviside; of particle_centre: circle | square");
+  command->add_option("--width", options.width,
+                      "m; default one mean diameter (particle_centre: 2.5)");
+  command->add_option("--points", given->points,
+                      "CSV with columns x,y (m; load at 0,0, surface y = 0)");
+  command->add_option("--grid", given->grid, "COLUMNSxROWS over the layer; default 81x31");
+  command->add_option("--threads", options.threads, "the results do not depend on it");
+  command->callback([=, &action] {
+    action = [=] {
+      AverageRequest& request = given->request;
+      if (method->count() > 0 && request.options.method == "particle_centre" &&
+          kernel->count() == 0) {
+        request.options.kernel = "circle";
+      }
+      if (!(request.options.width >= 0)) {
+        throw std::invalid_argument(
+            fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
+      }
+      if (!given->grid.empty()) parse_grid(given->grid, request);
+      if (!given->points.empty()) request.points = read_points_csv(given->points, 2);
+      request.snapshots = parse_snapshot_names(given->snapshots);
+      const NamedFields fields = average_files(request);
+      write_fields(given->output, fields);
+      for (const auto& [name, field] : fields) {
+        fmt::print("{}: {} points, {} realization{}\n", name, field.points.rows(),
+                   field.realizations, field.realizations == 1 ? "" : "s");
+      }
+      return 0;
+    };
+  });
+}
+
+void add_compare(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("compare", "compare averaged fields with continuum models");
+  auto request = std::make_shared<CompareRequest>();
+  auto models = std::make_shared<std::vector<std::string>>();
+  command->add_option("fields", request->file, "FIELD.h5 of run or average --response")->required();
+  command
+      ->add_option("--model", *models,
+                   "NAME, NAME:p=v,... or LABEL=NAME:p=v,...; F and h come from "
+                   "the file")
+      ->required();
+  command->add_option("--field", request->fields, "only these fields of the file")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", request->folder, "folder; default results/compare-FIELD");
+  command->callback([=, &action] {
+    action = [=] {
+      request->models = parse_choices(*models);
+      if (request->folder.empty()) {
+        request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
+      }
+      fmt::print("{}\n", compare_field(*request));
+      fmt::print("report: {}/report.html\n", request->folder);
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,107 @@
+// model: a continuum model at the user's points.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "continuum/model.h"
+#include "coupling/app/commands.h"
+#include "coupling/app/model_settings.h"
+#include "coupling/app/points_csv.h"
+#include "coupling/output/atomic_file.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::string range_of(const continuum::Parameter& p) {
+  if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
+  // Bounds this far out mean none; the smallest positive number means "above 0".
+  constexpr double kFar = 1e300;
+  std::string low = p.least < -kFar ? ""
+                    : p.least == std::numeric_limits<double>::min()
+                        ? "above 0"
+                        : fmt::format("from {:g}", p.least);
+  const std::string high = p.most > kFar ? "" : fmt::format("up to {:g}", p.most);
+  if (low.empty() && high.empty()) return "any";
+  return low + (low.empty() || high.empty() ? "" : " ") + high;
+}
+
+void list_models() {
+  for (const auto& info : continuum::registry()) {
+    fmt::print("{:<24} {}  {}\n", info.name,
+               info.dim == 0   ? "2D or 3D"
+               : info.dim == 2 ? "2D      "
+                               : "3D      ",
+               info.summary);
+  }
+  fmt::print("grainfield model NAME --list shows a model's parameters\n");
+}
+
+void list_parameters(const continuum::ModelInfo& info) {
+  fmt::print("{}: {}\n", info.name, info.summary);
+  for (const auto& p : info.parameters) {
+    fmt::print("  {} = {}  ({}; {})\n      {}{}\n", p.name,
+               p.choices.empty() ? fmt::format("{:g}", p.value) : p.choices.front(),
+               p.unit.empty() || p.unit == "-" ? "no unit" : p.unit, range_of(p), p.meaning,
+               p.source.empty() ? "" : " [" + p.source + "]");
+  }
+}
+
+}  // namespace
+
+continuum::Settings parse_settings(const std::vector<std::string>& texts,
+                                   const std::string& where) {
+  continuum::Settings out;
+  for (const auto& text : texts) {
+    const std::size_t at = text.find('=');
+    if (at == 0 || at == std::string::npos || at + 1 == text.size()) {
+      throw std::invalid_argument(
+          fmt::format("{}: found \"{}\", expected parameter=value", where, text));
+    }
+    out[text.substr(0, at)] = text.substr(at + 1);
+  }
+  return out;
+}
+
+void add_model(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("model", "evaluate a continuum model at points");
+  struct Given {
+    std::string name, points, output;
+    std::vector<std::string> sets;
+    bool list = false;
+  };
+  auto given = std::make_shared<Given>();
+  command->add_option("name", given->name, "model; without it the models are listed");
+  command->add_option("--set", given->sets, "parameter=value")->allow_extra_args(false);
+  command->add_option("--points", given->points, "CSV with columns x,y or x,y,z (m, load at 0,0)");
+  command->add_option("-o,--output", given->output, "CSV of stresses; without it on the terminal");
+  command->add_flag("--list", given->list, "show the model's parameters");
+  command->callback([=, &action] {
+    action = [=] {
+      if (given->name.empty()) {
+        list_models();
+        return 0;
+      }
+      const auto& info = continuum::find_model(given->name);
+      if (given->list) {
+        list_parameters(info);
+        return 0;
+      }
+      if (given->points.empty()) throw std::invalid_argument("model: --points is missing");
+      const auto settings = parse_settings(given->sets, "--set");
+      const auto model = continuum::make_model(given->name, settings);
+      const auto points = read_points_csv(given->points, continuum::dimension(info, settings));
+      const std::string text = stresses_csv(points, model->stress(points));
+      if (given->output.empty()) {
+        fmt::print("{}", text);
+      } else {
+        write_text_file(given->output, text);
+      }
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,109 @@
+#define CSV_IO_NO_THREAD
+#include "coupling/app/points_csv.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+// The optimizer warns of the package's deliberate cutting of long file names in its own messages.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wstringop-truncation"
+#include <libfccp/csv.h>
+#pragma GCC diagnostic pop
+
+namespace grainfield::coupling {
+namespace {
+
+// The package's own reading of floats rounds carelessly: it gives text, the standard library
+// numbers.
+template <unsigned dim>
+using Reader = io::CSVReader<dim, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>,
+                             io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
+
+double number(const char* text, const char* column, const std::string& file, unsigned line) {
+  const char* end = text + std::strlen(text);
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text + (*text == '+' ? 1 : 0), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+    throw std::invalid_argument(
+        fmt::format("{}:{}: column {}: found \"{}\", expected a number", file, line, column, text));
+  }
+  return value;
+}
+
+template <unsigned dim>
+Eigen::MatrixXd read(const std::string& file) {
+  std::vector<double> values;
+  unsigned line = 0;
+  try {
+    Reader<dim> in(file);
+    const char *x = nullptr, *y = nullptr, *z = nullptr;
+    const auto take = [&](const char* text, const char* column) {
+      values.push_back(number(text, column, file, in.get_file_line()));
+    };
+    if constexpr (dim == 2) {
+      in.read_header(io::ignore_extra_column, "x", "y");
+      while (line = in.get_file_line() + 1, in.read_row(x, y)) {
+        take(x, "x");
+        take(y, "y");
+      }
+    } else {
+      in.read_header(io::ignore_extra_column, "x", "y", "z");
+      while (line = in.get_file_line() + 1, in.read_row(x, y, z)) {
+        take(x, "x");
+        take(y, "y");
+        take(z, "z");
+      }
+    }
+  } catch (const io::error::missing_column_in_header& e) {
+    throw std::invalid_argument(fmt::format("{}:1: no column \"{}\", expected the header {}", file,
+                                            e.column_name, dim == 2 ? "x,y" : "x,y,z"));
+  } catch (const io::error::header_missing&) {
+    throw std::invalid_argument(
+        fmt::format("{}: is empty, expected the header {}", file, dim == 2 ? "x,y" : "x,y,z"));
+  } catch (const io::error::too_few_columns&) {
+    throw std::invalid_argument(fmt::format("{}:{}: too few columns", file, line));
+  } catch (const io::error::too_many_columns&) {
+    throw std::invalid_argument(fmt::format("{}:{}: too many columns", file, line));
+  } catch (const io::error::can_not_open_file& e) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, std::strerror(e.errno_value)));
+  } catch (const io::error::base& e) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, e.what()));
+  }
+  if (values.empty()) throw std::invalid_argument(file + ": holds no points");
+  return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, dim, Eigen::RowMajor>>(
+      values.data(), static_cast<Eigen::Index>(values.size() / dim), dim);
+}
+
+}  // namespace
+
+Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
+  if (std::filesystem::is_directory(file)) {
+    throw std::invalid_argument(file + ": is a folder, expected a CSV file");
+  }
+  return dim == 2 ? read<2>(file) : read<3>(file);
+}
+
+std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses) {
+  std::string out = points.cols() == 2
+                        ? "x,y,sigma_xx,sigma_yy,sigma_xy\n"
+                        : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy\n";
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    for (Eigen::Index c = 0; c < points.cols(); ++c) {
+      out += fmt::format("{}{}", c > 0 ? "," : "", points(i, c));
+    }
+    for (Eigen::Index c = 0; c < stresses.cols(); ++c) {
+      const double value = stresses(i, c);
+      out += std::isnan(value) ? ",nan" : fmt::format(",{}", value);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,17 @@
+// Points and stresses as CSV.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+namespace grainfield::coupling {
+
+/// The columns x,y (dim 2) or x,y,z (dim 3) of a CSV file with a header, in any order, other
+/// columns ignored; n x dim. Lines starting with '#' are comments. Throws std::invalid_argument
+/// "FILE[:LINE]: what" for a missing or empty file, a missing column, a line that is too short or
+/// too long, a value that is no finite number, or no points at all.
+Eigen::MatrixXd read_points_csv(const std::string& file, int dim);
+
+/// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components) with all digits; nan outside the model.
+std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,138 @@
+// run: a case from start to end, with progress.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "coupling/app/commands.h"
+#include "coupling/case/case.h"
+#include "coupling/output/tables.h"
+#include "coupling/run/interrupt.h"
+#include "coupling/run/run_case.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::string duration(double seconds) {
+  if (seconds < 0) return "?";
+  const auto s = static_cast<long>(seconds + 0.5);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
+}
+
+/// One line that is rewritten on a terminal; elsewhere a line every few seconds.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void show(const EnsembleProgress& p) {
+    if (quiet_) return;
+    const auto now = std::chrono::steady_clock::now();
+    constexpr auto kEvery = std::chrono::seconds(5);
+    if (!terminal_ && now - last_ < kEvery) return;
+    last_ = now;
+    const std::string line = fmt::format(
+        "{:3.0f} %  {}/{} done  {}  t {:.3f} s  {} grains  kinetic {:.1e} J  unbalanced {:.1e}  "
+        "{} left",
+        100 * p.fraction, p.done, p.total, p.phase, p.simulated_time, p.grains, p.kinetic_energy,
+        p.unbalanced_force_ratio, duration(p.seconds_left));
+    if (terminal_) {
+      fmt::print(stderr, "\r\033[K{}", line);
+      open_ = true;
+    } else {
+      fmt::print(stderr, "{}\n", line);
+    }
+    std::fflush(stderr);
+  }
+
+  void note(const std::string& text) {
+    if (quiet_) return;
+    end();
+    fmt::print(stderr, "{}\n", text);
+    std::fflush(stderr);
+  }
+
+  void end() {
+    if (open_) fmt::print(stderr, "\n");
+    open_ = false;
+  }
+
+ private:
+  bool quiet_, terminal_, open_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+struct Given {
+  std::string file, output;
+  std::vector<std::string> sets;
+  bool quick = false, resume = false;
+  int threads = 0;
+  long stop_after_steps = 0;
+};
+
+void say_result(const Case& value, const std::string& folder) {
+  const Summary summary = read_summary(folder + "/summary.json");
+  const auto sentence = summary.find("verdict.sentence");
+  if (sentence != summary.end()) fmt::print("{}\n", std::get<std::string>(sentence->second));
+  fmt::print("results: {}\n", folder);
+  if (value.output.report) fmt::print("report: {}/report.html\n", folder);
+}
+
+int run(const Given& given) {
+  if (given.threads < 0) {
+    throw std::invalid_argument(
+        fmt::format("--threads: found {}, allowed: 1 or more", given.threads));
+  }
+  const Case value = read_case(given.file, given.quick, given.sets);
+  const Ranks ranks;
+  ProgressLine line(!ranks.first());
+  RunOptions options;
+  options.folder = !given.output.empty() ? given.output
+                                         : "results/" + value.name + (given.quick ? "-quick" : "");
+  while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();
+  // Ranks share a machine: without a wish each takes one thread.
+  const int cores = ranks.size() > 1 ? 1 : static_cast<int>(std::thread::hardware_concurrency());
+  options.threads = given.threads > 0 ? given.threads : std::max(1, cores);
+  options.resume = given.resume;
+  options.stop_after_steps = given.stop_after_steps;
+  options.progress = [&](const EnsembleProgress& p) { line.show(p); };
+  options.note = [&](const std::string& text) { line.note(text); };
+  try {
+    run_case(value, ranks, options);
+  } catch (...) {
+    line.end();
+    finish_ranks();
+    throw;
+  }
+  line.end();
+  if (ranks.first()) say_result(value, options.folder);
+  finish_ranks();
+  return 0;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run", "run a case: grains, averages, models, report");
+  auto given = std::make_shared<Given>();
+  command->add_option("case", given->file, "case file (TOML)")->required();
+  command->add_option("-o,--output", given->output, "folder; default results/CASE (CASE-quick)");
+  command->add_flag("--quick", given->quick, "with the case's quick setting");
+  command->add_option("--set", given->sets, "override: key.path=value")->allow_extra_args(false);
+  command->add_option(
+      "--threads", given->threads,
+      "default: all cores; under mpirun one per rank; the results do not depend on it");
+  command->add_flag("--resume", given->resume, "continue an interrupted run");
+  command
+      ->add_option("--stop-after-steps", given->stop_after_steps,
+                   "for tests: stop as by Ctrl-C when a realization has made this many steps")
+      ->group("");
+  command->callback([=, &action] { action = [=] { return run(*given); }; });
+}
+
+}  // namespace grainfield::coupling
