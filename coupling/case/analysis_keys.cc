@@ -62,6 +62,8 @@ void elastic(Section s) {
            "Roul table 5.1");
   s.number("dim", "-", +IN(Integer, elastic.dim), {2, 3},
            "2: plane strain, 3: space; models of the other dimension are left out");
+  s.word("base", +IN(string, elastic.base), {"smooth", "rough"},
+         "elastic-layer: base of every model that has one and does not set it", "Roul 5.5");
   s.number("depths", "m", +IN(Numbers, elastic.depths), kPositive, "profiles below the surface");
   s.number("half_width", "m", +IN(double, elastic.half_width), kPositive,
            "profiles reach this far to either side of the load");
@@ -71,8 +73,9 @@ void elastic(Section s) {
 void compare(Section s) {
   s.word("models", +IN(Words, compare.models), {},
          "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
-         "which may set name = \"...\" and the model's parameters; F, h and dim are filled from "
-         "the run unless set");
+         "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
+         "elastic-layer) are filled "
+         "from the run unless set");
 }
 
 void output(Section s) {

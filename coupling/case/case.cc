@@ -128,7 +128,8 @@ std::string write_case(const Case& value) {
           fmt::format("{}{}", p.unit == "-" || p.unit.empty() ? "" : p.unit + "; ", p.meaning);
       if (given != model.settings.end()) {
         out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, given->second));
-      } else if (p.name == "F" || p.name == "h" || p.name == "dim") {
+      } else if (p.name == "F" || p.name == "h" || p.name == "dim" || p.name == "depth" ||
+                 (p.name == "base" && value.study == "elastic-layer")) {
         out += fmt::format("# {} is filled from the run: {}\n", p.name, remark);
       } else {
         const std::string standard =

@@ -35,6 +35,7 @@ struct ElasticSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
   double height = 0.15;  ///< m; elastic-layer
   std::int64_t dim = 2;
+  std::string base = "smooth";  ///< elastic-layer
   std::vector<double> depths = {0.05, 0.1, 0.15};  ///< m
   double half_width = 0.3;                         ///< m
   std::int64_t points = 61;

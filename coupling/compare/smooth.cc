@@ -12,6 +12,8 @@ namespace {
 // The base is at -depth up to this share of the depth inside, so that rounding cannot put a node
 // outside the model's domain.
 constexpr double inside_base = 1e-9;
+// Closer to the load than this many kernel ranges the load's singularity decides the error.
+constexpr double near_load = 1.5;
 
 struct Node {
   double at, weight;
@@ -39,32 +41,62 @@ struct PlaneNode {
   double weight;
 };
 
-// sum over the nodes of weight * stress(point + offset), zero above the surface.
-Eigen::MatrixXd convolve(const StressFunction& stress, const Eigen::MatrixXd& points,
-                         std::vector<PlaneNode> nodes, double depth, bool surface) {
+// Where the stress is asked for, with the weight it gives to which point.
+class Plan {
+ public:
+  void add(Eigen::Index point, const Eigen::RowVector2d& at, double weight) {
+    where_.push_back(at);
+    owner_.push_back(point);
+    weight_.push_back(weight);
+  }
+  // Sums of weight * stress, one row per point.
+  Eigen::MatrixXd evaluate(const StressFunction& stress, Eigen::Index points) const {
+    Eigen::MatrixXd where(static_cast<Eigen::Index>(where_.size()), 2);
+    for (std::size_t k = 0; k < where_.size(); ++k)
+      where.row(static_cast<Eigen::Index>(k)) = where_[k];
+    const Eigen::MatrixXd value = stress(where);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(points, value.cols());
+    for (std::size_t k = 0; k < where_.size(); ++k)
+      result.row(owner_[k]) += weight_[k] * value.row(static_cast<Eigen::Index>(k));
+    return result;
+  }
+
+ private:
+  std::vector<Eigen::RowVector2d> where_;
+  std::vector<Eigen::Index> owner_;
+  std::vector<double> weight_;
+};
+
+void normalise(std::vector<PlaneNode>& nodes) {
   double total = 0;
   for (const PlaneNode& node : nodes) total += node.weight;
   for (PlaneNode& node : nodes) node.weight /= total;
-  const auto n = static_cast<Eigen::Index>(nodes.size());
-  Eigen::MatrixXd where(points.rows() * n, 2);
-  std::vector<double> weight(static_cast<std::size_t>(points.rows() * n));
-  Eigen::Index used = 0;
-  std::vector<Eigen::Index> owner;
-  for (Eigen::Index p = 0; p < points.rows(); ++p)
-    for (const PlaneNode& node : nodes) {
-      Eigen::RowVector2d at = points.row(p) + node.offset;
-      if (surface && at.y() >= 0) continue;
-      if (surface && depth > 0) at.y() = std::max(at.y(), -depth * (1 - inside_base));
-      where.row(used) = at;
-      weight[static_cast<std::size_t>(used++)] = node.weight;
-      owner.push_back(p);
+}
+
+// Near the load the stress grows as 1/distance: polar coordinates about the load take the growth
+// away, and the kernel is what varies over the nodes.
+void add_around_load(Plan& plan, Eigen::Index point, const Eigen::RowVector2d& at,
+                     const Kernel& kernel, double depth, int nodes_per_axis) {
+  const double distance = at.norm(), range = kernel.range(), pi = std::numbers::pi;
+  const double r0 = std::max(0.0, distance - range), r1 = distance + range;
+  double from = -pi, to = 0;
+  if (distance > range) {
+    const double direction = std::atan2(at.y(), at.x()), half = std::asin(range / distance);
+    from = std::max(from, direction - half);
+    to = std::min(to, direction + half);
+  }
+  const std::vector<Node> nodes = gauss_legendre(nodes_per_axis);
+  for (const Node& radial : nodes)
+    for (const Node& angular : nodes) {
+      const double r = (r0 + r1) / 2 + (r1 - r0) / 2 * radial.at;
+      const double angle = (from + to) / 2 + (to - from) / 2 * angular.at;
+      Eigen::RowVector2d node(r * std::cos(angle), r * std::sin(angle));
+      const double value = kernel.value((node - at).norm());
+      if (value == 0) continue;
+      if (depth > 0) node.y() = std::max(node.y(), -depth * (1 - inside_base));
+      plan.add(point, node,
+               value * r * radial.weight * angular.weight * (r1 - r0) / 2 * (to - from) / 2);
     }
-  const Eigen::MatrixXd value = stress(where.topRows(used));
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(points.rows(), value.cols());
-  for (Eigen::Index k = 0; k < used; ++k)
-    result.row(owner[static_cast<std::size_t>(k)]) +=
-        weight[static_cast<std::size_t>(k)] * value.row(k);
-  return result;
 }
 
 }  // namespace
@@ -82,7 +114,22 @@ Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::Matri
                        ring.weight * r * kernel.value(r)});
     }
   }
-  return convolve(stress, points, std::move(nodes), depth, true);
+  normalise(nodes);
+  Plan plan;
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    const Eigen::RowVector2d point = points.row(p);
+    if (point.norm() < near_load * kernel.range() && point.y() <= 0) {
+      add_around_load(plan, p, point, kernel, depth, 4 * rings);
+      continue;
+    }
+    for (const PlaneNode& node : nodes) {
+      Eigen::RowVector2d at = point + node.offset;
+      if (at.y() >= 0) continue;
+      if (depth > 0) at.y() = std::max(at.y(), -depth * (1 - inside_base));
+      plan.add(p, at, node.weight);
+    }
+  }
+  return plan.evaluate(stress, points.rows());
 }
 
 Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::MatrixXd& points,
@@ -94,7 +141,11 @@ Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::Matrix
     const double theta = node.at * std::numbers::pi / 2, x = kernel.range() * std::sin(theta);
     nodes.push_back({Eigen::RowVector2d(x, 0), node.weight * kernel.marginal(x) * std::cos(theta)});
   }
-  return convolve(stress, points, std::move(nodes), 0, false);
+  normalise(nodes);
+  Plan plan;
+  for (Eigen::Index p = 0; p < points.rows(); ++p)
+    for (const PlaneNode& node : nodes) plan.add(p, points.row(p) + node.offset, node.weight);
+  return plan.evaluate(stress, points.rows());
 }
 
 }  // namespace grainfield::coupling

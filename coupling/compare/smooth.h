@@ -14,8 +14,8 @@ using StressFunction = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 /// Convolution over the plane at the points (models' frame, inside is -depth < y < 0); n x 3.
 /// Nodes below the base take the value at the base above (what extend_into_walls does to the data),
 /// nodes above the surface count zero stress (as empty space does). `rings` radial Gauss points
-/// times 2 rings + 2 directions; error falls spectrally away from the load. One call of `stress`.
-/// depth <= 0: a half plane.
+/// times 2 rings + 2 directions; within 1.5 kernel ranges of the load (0, 0) 4 rings squared points
+/// in polar coordinates about it. One call of `stress`. depth <= 0: a half plane.
 Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
                                 const Kernel& kernel, double depth, int rings = 6);
 

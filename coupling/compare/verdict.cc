@@ -18,6 +18,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double confidence = 0.95;
+// With fewer realizations the errors are too uncertain to weigh points by: rank by relative L2.
+constexpr int least_for_chi2 = 4;
 
 struct Projection {
   double position = nan, error = nan;
@@ -74,9 +76,10 @@ std::string describe(const ModelComparison& result, bool by_chi2) {
 
 Verdict judge(const Comparison& c) {
   Verdict v;
-  const bool by_chi2 = std::all_of(c.results.begin(), c.results.end(), [](const auto& r) {
-    return std::isfinite(r.overall.chi2_per_dof);
-  });
+  const bool by_chi2 = c.realizations >= least_for_chi2 &&
+                       std::all_of(c.results.begin(), c.results.end(), [](const auto& r) {
+                         return std::isfinite(r.overall.chi2_per_dof);
+                       });
   v.ranked_by = by_chi2 ? "chi2_per_dof" : "rel_l2";
   std::vector<std::size_t> order(c.results.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

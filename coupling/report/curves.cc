@@ -52,6 +52,11 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       data += data_block(name, series);
       for (double v : series.x) x.add(v);
       for (double v : series.y) y.add(v);
+      if (has_band(series))
+        for (Eigen::Index k = 0; k < series.y.size(); ++k) {
+          y.add(series.y[k] - series.error[k]);
+          y.add(series.y[k] + series.error[k]);
+        }
       const auto part = [&](const std::string& text) { plot += (plot.empty() ? "" : ", ") + text; };
       if (series.simulation) {
         if (has_band(series))

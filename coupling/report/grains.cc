@@ -14,7 +14,7 @@ namespace {
 constexpr double width_quantile = 0.99;
 constexpr double widest = 9;              // pixels
 constexpr double least_share = 0.02;      // of the widest: thinner lines are not drawn
-constexpr std::size_t most_in_svg = 600;  // grains; beyond, a bitmap is smaller
+constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int bins = 36;                  // of the polar histogram, 10 degrees each
 
 struct Line {
@@ -97,14 +97,15 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
   picture.width = 980;
   const double aspect = (top - bottom + 2 * margin) / (right - left + 2 * margin);
   const bool arrow = snapshot.loaded_grain >= 0;
-  const int above = arrow ? 66 : 24, below = 64, side = 84;
+  const int above = arrow ? 66 : 24, below = 64, side = 96;
   const int plot_width = picture.width - side - 20;
   picture.height = static_cast<int>(plot_width * aspect) + above + below;
   p += fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
       "set tmargin at screen {:.4f}\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
       "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset style fill solid 1 border rgb '#b9b2a0'\n",
+      "set xlabel 'x (m)'\nset ylabel 'y (m)' offset 1,0\nset style fill solid 1 border rgb "
+      "'#b9b2a0'\n",
       static_cast<double>(side) / picture.width, 1 - 20.0 / picture.width,
       static_cast<double>(below) / picture.height, 1 - static_cast<double>(above) / picture.height,
       left - margin, right + margin, bottom - margin, top + margin);

@@ -41,7 +41,7 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   const int columns = aspect > 0.6 ? std::min<int>(3, static_cast<int>(all.size())) : 1;
   const int rows = (static_cast<int>(all.size()) + columns - 1) / std::max(1, columns);
   const int plot_width = (picture.width - 130) / std::max(1, columns) - 70;
-  const int row_height = static_cast<int>(plot_width * aspect) + 84;
+  const int row_height = static_cast<int>(plot_width * aspect) + 112;
   picture.height = std::max(1, rows) * row_height + 10;
   std::string& p = picture.program;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -61,12 +61,12 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   p += style::diverging;
   p += fmt::format(
       "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel {} offset 0,0.4\nset ylabel {}\nset cblabel {}\nset multiplot\n",
+      "set xlabel {} offset 0,0.2\nset ylabel {}\nset cblabel {}\nset multiplot\n",
       -limit, limit, style::quoted(x_label), style::quoted(y_label), style::quoted(value_label));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
     const double left = 80.0 + column * (plot_width + 70.0);
-    const double top = row * static_cast<double>(row_height) + 30;
+    const double top = row * static_cast<double>(row_height) + 36;
     const double w = picture.width, h = picture.height;
     const bool last = k + 1 == all.size();
     // One colour box, to the right of all the maps.
@@ -84,7 +84,7 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
     const Eigen::RowVector2d high = all[k].points.colwise().maxCoeff();
     p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", low.x(), high.x(), low.y(),
                      high.y());
-    p += fmt::format("plot $m{} using 1:2:3 with image pixels\n", k);
+    p += fmt::format("plot $m{} using 1:2:3 with image\n", k);
   }
   p += "unset multiplot\n";
   return picture;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -116,7 +117,11 @@ std::string compare_field(const CompareRequest& request) {
     const bool kernel_known = attribute(field, "method", where) == "coarse_graining";
     kernel = make_kernel(kernel_known ? attribute(field, "kernel", where) : "heaviside",
                          number(field, "width", where));
-    for (auto& line : lines_of(field, name, where)) lines.push_back(std::move(line));
+    for (auto& line : lines_of(field, name, where)) {
+      const double depth = line.profile.depth;
+      facts.depth = facts.depth > 0 ? std::min(facts.depth, depth) : depth;
+      lines.push_back(std::move(line));
+    }
     if (field.nx > 0) map = field;
   }
   std::vector<PointSet> sets;

@@ -26,6 +26,8 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
   for (const auto& parameter : continuum::find_model(choice.name).parameters) {
     if (parameter.name == "F") out.emplace("F", fmt::format("{}", facts.force));
     if (parameter.name == "h") out.emplace("h", fmt::format("{}", facts.height));
+    if (parameter.name == "depth") out.emplace("depth", fmt::format("{}", facts.depth));
+    if (parameter.name == "base" && !facts.base.empty()) out.emplace("base", facts.base);
     if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
   }
   return out;

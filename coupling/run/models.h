@@ -15,9 +15,11 @@ struct RunFacts {
   double force = 0;   ///< N: parameter F
   double height = 0;  ///< m: parameter h
   int dim = 2;        ///< parameter dim
+  double depth = 0;   ///< m: parameter depth, the least depth one looks at
+  std::string base;   ///< parameter base; empty: the model's default
 };
 
-/// The choice's settings with F, h and dim filled in where the model has them and the user did not.
+/// The choice's settings with F, h, dim and depth filled in where the model has them and the user did not.
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);

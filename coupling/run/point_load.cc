@@ -239,7 +239,8 @@ class Analysis {
     sets.push_back({base, Seen::along_x, kernel_.get()});
     sets.push_back({grid_, Seen::exactly, nullptr});
 
-    const RunFacts facts{value_.layer.load.force, layer_.depth, 2};
+    const double least_share = *std::min_element(setup_.depths.begin(), setup_.depths.end());
+    const RunFacts facts{value_.layer.load.force, layer_.depth, 2, least_share * layer_.depth, ""};
     std::vector<ModelProfiles> models;
     double seconds = 0;
     for (const auto& choice : value_.models) {
