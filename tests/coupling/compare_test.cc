@@ -1,0 +1,299 @@
+// Shapes of profiles, smoothing of models, measures and the verdict.
+#include "coupling/compare/compare.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "coupling/compare/shape.h"
+#include "coupling/compare/smooth.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using Eigen::VectorXd;
+using testing::HasSubstr;
+
+VectorXd axis(int n, double reach) { return VectorXd::LinSpaced(n, -reach, reach); }
+
+VectorXd bell(const VectorXd& x, double at, double width, double height) {
+  return height * (-((x.array() - at) / width).square() / 2).exp();
+}
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Shape, OfABell) {
+  const VectorXd x = axis(401, 8);
+  const ProfileShape s = profile_shape(x, bell(x, 0.5, 1.2, 3), {});
+  EXPECT_NEAR(s.peak, 3, 1e-3);
+  EXPECT_NEAR(s.peak_at, 0.5, 0.04);
+  EXPECT_NEAR(s.fwhm, 2 * std::sqrt(2 * std::log(2.0)) * 1.2, 1e-3);
+  EXPECT_NEAR(s.rms_width, 1.2, 1e-3);
+  EXPECT_NEAR(s.integral, 3 * 1.2 * std::sqrt(2 * std::numbers::pi), 1e-6);
+  EXPECT_EQ(s.peaks, 1);
+}
+
+TEST(Shape, OfAnOpenProfileHasNoWidth) {
+  const VectorXd x = axis(41, 1);
+  EXPECT_TRUE(std::isnan(profile_shape(x, bell(x, 0, 3, 1), {}).fwhm));
+  EXPECT_EQ(profile_shape(x, VectorXd::Constant(41, -1.0), {}).peaks, 0);
+}
+
+// Twenty noisy curves each: correlated noise whose size the errors state.
+TEST(Shape, CountsOneAndTwoPeaksUnderNoise) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const VectorXd x = axis(161, 4);
+  const double noise = 0.04;
+  int one = 0, two = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    VectorXd rough(161);
+    for (double& v : rough) v = normal(random);
+    VectorXd smooth = VectorXd::Zero(161);
+    for (int k = 0; k < 161; ++k)
+      for (int j = 0; j < 161; ++j)
+        smooth[k] += rough[j] * std::exp(-(x[k] - x[j]) * (x[k] - x[j]) / (2 * 0.3 * 0.3));
+    smooth *= noise / std::sqrt(smooth.squaredNorm() / 161);
+    const VectorXd error = VectorXd::Constant(161, noise);
+    one += profile_shape(x, bell(x, 0, 1, 1) + smooth, error).peaks == 1;
+    two +=
+        profile_shape(x, bell(x, -1.3, 0.6, 1) + bell(x, 1.3, 0.6, 0.9) + smooth, error).peaks == 2;
+  }
+  // 2 standard errors: about one false wiggle in twenty curves is expected; three are allowed.
+  EXPECT_GE(one, 17);
+  EXPECT_GE(two, 17);
+}
+
+TEST(Shape, ProminenceDecidesWhatAPeakIs) {
+  VectorXd x = axis(7, 3), v(7), error = VectorXd::Constant(7, 0.01);
+  v << 0, 1, 0.96, 1, 0.5, 0.52, 0;                // dips of 4 % and of 2 %
+  EXPECT_EQ(profile_shape(x, v, error).peaks, 2);  // equal tops both stand above the ends
+  v << 0, 1, 0.96, 0.999, 0.5, 0.52, 0;
+  EXPECT_EQ(profile_shape(x, v, error).peaks, 1);
+  v << 0, 1, 0.9, 0.999, 0.5, 0.52, 0;
+  EXPECT_EQ(profile_shape(x, v, error).peaks, 2);
+  EXPECT_EQ(profile_shape(x, v, VectorXd::Constant(7, 0.06)).peaks, 1);  // below 2 standard errors
+  v << 0, 1, 1, 1, 0.5, 0.4, 0;                                          // a plateau is one peak
+  EXPECT_EQ(profile_shape(x, v, error).peaks, 1);
+}
+
+TEST(Shape, Refuses) {
+  EXPECT_EQ(refusal([] { profile_shape(axis(4, 1), VectorXd::Zero(3), {}); }),
+            "a profile of 4 positions, 3 values and 0 errors");
+  EXPECT_EQ(refusal([] { profile_shape(-axis(3, 1), VectorXd::Zero(3), {}); }),
+            "a profile's positions must ascend; -0 m follows 1 m");
+  EXPECT_EQ(refusal([] { profile_shape(axis(3, 1), VectorXd::Constant(3, NAN), {}); }),
+            "a profile has 0 values; its shape needs at least 3");
+}
+
+Eigen::MatrixXd flamant(const Eigen::MatrixXd& p) {
+  Eigen::MatrixXd s(p.rows(), 3);
+  for (Eigen::Index k = 0; k < p.rows(); ++k) {
+    const double x = p(k, 0), d = -p(k, 1), r2 = x * x + d * d;
+    const double f = -2 / std::numbers::pi * d / (r2 * r2);
+    s.row(k) << f * x * x, f * d * d, -f * d * x;
+  }
+  return s;
+}
+
+TEST(Smooth, LeavesALinearFieldAsItIs) {
+  const StressFunction linear = [](const Eigen::MatrixXd& p) -> Eigen::MatrixXd {
+    Eigen::MatrixXd s(p.rows(), 3);
+    s << 2 * p.col(0) + p.col(1), p.col(1), p.col(0);
+    return s;
+  };
+  Eigen::MatrixXd points(2, 2);
+  points << 0.1, -0.5, -0.2, -0.4;
+  for (const char* name : {"lucy", "gaussian", "heaviside"}) {
+    const auto k = make_kernel(name, 0.05);
+    EXPECT_TRUE(smooth_in_plane(linear, points, *k, 1).isApprox(linear(points), 1e-12)) << name;
+    EXPECT_TRUE(smooth_along_x(linear, points, *k).isApprox(linear(points), 1e-12)) << name;
+  }
+}
+
+// A fine grid of points under the kernel is the reference, far from the load and around it.
+TEST(Smooth, IsTheConvolutionAlsoAroundTheLoad) {
+  const auto k = make_kernel("lucy", 0.1);
+  Eigen::MatrixXd points(4, 2);
+  points << 0.2, -1.0, 0.0, -0.31, 0.05, -0.12, 0.1, -0.02;
+  const Eigen::MatrixXd smooth = smooth_in_plane(flamant, points, *k, 0);
+  const int n = 600;
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    double sum = 0;
+    const double step = 2 * k->range() / n;
+    for (int i = 0; i < n; ++i) {
+      Eigen::MatrixXd column(n, 2);
+      for (int j = 0; j < n; ++j)
+        column.row(j) << points(p, 0) - k->range() + (i + 0.5) * step,
+            points(p, 1) - k->range() + (j + 0.5) * step;
+      const Eigen::MatrixXd value = flamant(column);
+      for (int j = 0; j < n; ++j)
+        if (column(j, 1) < 0)
+          sum += k->value((column.row(j) - points.row(p)).norm()) * value(j, 1) * step * step;
+    }
+    EXPECT_NEAR(smooth(p, 1), sum, 3e-3 * std::abs(sum)) << points.row(p);
+  }
+}
+
+TEST(Smooth, KeepsTheLoadOfAHalfPlane) {
+  const auto k = make_kernel("gaussian", 0.1);
+  const int n = 2001;
+  Eigen::MatrixXd points(n, 2);
+  points.col(0) = axis(n, 40);
+  points.col(1).setConstant(-0.5);
+  const double step = 80.0 / (n - 1);
+  EXPECT_NEAR(-smooth_in_plane(flamant, points, *k, 0).col(1).sum() * step, 1, 1e-3);
+  EXPECT_NEAR(-smooth_along_x(flamant, points, *k).col(1).sum() * step, 1, 1e-3);
+}
+
+struct Scene {
+  std::vector<Profile> profiles;
+  std::vector<ModelProfiles> models;
+};
+
+// N realizations of a bell of given height plus noise correlated over 0.3, against two bells.
+Scene scene(int realizations, double height, double noise, unsigned seed = 5) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Profile p;
+  p.name = "depth 0.1 m";
+  p.key = "depth_0.1";
+  p.depth = 0.1;
+  p.x = axis(121, 3);
+  p.independent_length = 2 * std::sqrt(std::numbers::pi) * 0.3;
+  p.samples.resize(121, realizations);
+  for (int r = 0; r < realizations; ++r) {
+    VectorXd rough(321), smooth = VectorXd::Zero(121);
+    for (double& v : rough) v = normal(random);
+    double norm = 0;
+    for (int j = -100; j <= 100; ++j) norm += std::exp(-(j * 0.05) * (j * 0.05) / 0.09);
+    for (int k = 0; k < 121; ++k)
+      for (int j = 0; j < 321; ++j) {
+        const double d = p.x[k] - (j - 160) * 0.05;
+        smooth[k] += rough[j] * std::exp(-d * d / 0.18);
+      }
+    p.samples.col(r) = bell(p.x, 0, 1, height) + noise * smooth / std::sqrt(norm);
+  }
+  p.mean = p.samples.rowwise().mean();
+  if (realizations > 1)
+    p.error = ((p.samples.colwise() - p.mean).rowwise().squaredNorm() / (realizations - 1.0) /
+               realizations)
+                  .cwiseSqrt();
+  Scene s;
+  s.profiles = {p};
+  s.models = {{"flamant", "half plane", "half plane", {bell(p.x, 0, 1.4, 0.64)}},
+              {"layer_smooth", "smooth layer", "finite layer", {bell(p.x, 0, 1, 0.92)}},
+              {"layer_rough", "rough layer", "finite layer", {bell(p.x, 0, 1.1, 0.81)}}};
+  return s;
+}
+
+Comparison compared(const Scene& s) { return compare(s.profiles, s.models, 300, 0.15); }
+
+TEST(Compare, MeasuresOfKnownDifferences) {
+  Profile p;
+  p.name = "base";
+  p.key = "base";
+  p.x = axis(4, 1.5);
+  p.mean = Eigen::Vector4d(0, 3, 4, 0);
+  p.error = Eigen::Vector4d(1, 1, 2, 1);
+  const Comparison c = compare({p}, {{"m", "M", "M", {Eigen::Vector4d(0, 2, 6, NAN)}}}, 1, 1);
+  const Measures& m = c.results[0].overall;
+  EXPECT_DOUBLE_EQ(m.rel_l2, std::sqrt(5.0) / 5);
+  EXPECT_EQ(m.largest, 2);
+  EXPECT_EQ(m.largest_at, 0.5);
+  EXPECT_EQ(m.largest_in, "base");
+  EXPECT_DOUBLE_EQ(m.chi2_per_dof, (0 + 1 + 1) / 3.0);
+  EXPECT_EQ(m.dof, 3);
+}
+
+// The true model has chi2/dof 1 in the mean, whatever the number of realizations, because the
+// uncertainty of the errors themselves is corrected for.
+TEST(Compare, Chi2OfTheTruthIsOne) {
+  for (int n : {3, 5, 10, 30}) {
+    double sum = 0;
+    const int trials = 100;
+    for (int t = 0; t < trials; ++t) {
+      Scene s = scene(n, 0.92, 0.3, static_cast<unsigned>(1000 + t));
+      sum += compared(s).results[1].overall.chi2_per_dof;
+    }
+    // Heavy tails with few realizations; 100 trials of about 5 independent points each.
+    EXPECT_NEAR(sum / trials, 1, n < 6 ? 0.3 : 0.12) << n;
+  }
+}
+
+TEST(Compare, VerdictOfAClearCase) {
+  const Comparison c = compared(scene(8, 0.92, 0.05));
+  EXPECT_EQ(c.verdict.best_model, "layer_smooth");
+  EXPECT_TRUE(c.verdict.distinguishable);
+  EXPECT_NEAR(c.verdict.position, 1, 4 * c.verdict.position_error);
+  EXPECT_EQ(c.verdict.ranked_by, "chi2_per_dof");
+  EXPECT_THAT(c.verdict.ranking, testing::ElementsAre("layer_smooth", "layer_rough", "flamant"));
+  EXPECT_THAT(c.verdict.sentence,
+              testing::StartsWith("The grains support the finite layer, not the half plane"));
+}
+
+TEST(Compare, VerdictWithinTheSpread) {
+  const Comparison c = compared(scene(4, 0.8, 4));
+  EXPECT_FALSE(c.verdict.distinguishable);
+  EXPECT_THAT(c.verdict.sentence, HasSubstr("not distinguishable"));
+}
+
+TEST(Compare, OneRealizationRanksByRelativeDifference) {
+  const Comparison c = compared(scene(1, 0.92, 0.05));
+  EXPECT_EQ(c.verdict.ranked_by, "rel_l2");
+  EXPECT_EQ(c.verdict.best_model, "layer_smooth");
+  EXPECT_FALSE(c.verdict.distinguishable);
+  EXPECT_TRUE(std::isnan(c.results[0].overall.chi2_per_dof));
+  EXPECT_THAT(c.verdict.sentence, HasSubstr("One realization, spread unknown"));
+}
+
+TEST(Compare, OneFamilyHasNoPosition) {
+  Scene s = scene(6, 0.92, 0.05);
+  s.models.erase(s.models.begin());
+  const Comparison c = compared(s);
+  EXPECT_TRUE(std::isnan(c.verdict.position));
+  EXPECT_THAT(c.verdict.sentence, HasSubstr("Of the finite layer models"));
+}
+
+TEST(Compare, SummaryHasTheAgreedKeys) {
+  const auto figures = summary_figures(compared(scene(6, 0.92, 0.05)), 0);
+  for (const char* key : {"compare.flamant.rel_l2", "compare.flamant.max",
+                          "compare.flamant.chi2_per_dof", "compare.layer_smooth.depth_0.1.rel_l2",
+                          "response.peak", "response.width", "response.peaks", "verdict.position"})
+    EXPECT_TRUE(figures.count(key)) << key;
+  EXPECT_EQ(figures.at("response.peaks"), 1);
+}
+
+TEST(Compare, Refuses) {
+  const Scene s = scene(2, 1, 0.1);
+  EXPECT_EQ(refusal([&] { compare({}, s.models, 1, 1); }), "nothing to compare: no profile");
+  EXPECT_EQ(refusal([&] { compare(s.profiles, {}, 1, 1); }), "nothing to compare with: no model");
+  Scene broken = s;
+  broken.models[0].values[0].resize(7);
+  EXPECT_EQ(refusal([&] { compared(broken); }),
+            "model \"flamant\" has 7 values on profile \"depth 0.1 m\" of 121 points");
+  broken = s;
+  broken.profiles[0].mean.setConstant(NAN);
+  EXPECT_EQ(refusal([&] { compared(broken); }),
+            "profile \"depth 0.1 m\" has no value: no point has enough grains around it");
+}
+
+TEST(Compare, Families) {
+  EXPECT_EQ(family_of("flamant"), "half plane");
+  EXPECT_EQ(family_of("fe_elastic_layer"), "finite layer");
+  EXPECT_EQ(family_of("osl_layer"), "osl_layer");
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

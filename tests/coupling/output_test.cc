@@ -1,0 +1,272 @@
+// Files: complete or not at all, read back as written, well-formed, and their error texts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "averaging_scene.h"
+#include "coupling/output/atomic_file.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/tables.h"
+#include "coupling/output/vtu.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Output : public testing::Test {
+ protected:
+  Output() {
+    std::string name = (fs::temp_directory_path() / "grainfield-test-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~Output() override { fs::remove_all(folder_); }
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+  static std::string text(const std::string& file) {
+    std::ifstream in(file);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+  }
+  static std::string refusal(const std::function<void()>& act) {
+    try {
+      act();
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "nothing thrown";
+  }
+  fs::path folder_;
+};
+
+Field sample(bool grid) {
+  Field f;
+  f.points.resize(6, 2);
+  f.points << 0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1;
+  if (grid) {
+    f.nx = 3;
+    f.ny = 2;
+  }
+  f.realizations = 4;
+  f.attributes = {{"kernel", "lucy"}, {"what", "a <test> & \"more\""}};
+  Column& c = f.add("sigma_yy", "N/m");
+  c.value << 1, 2, NAN, 4, 5, 1.0 / 3;
+  c.error = Eigen::VectorXd::Constant(6, 0.1);
+  f.add("grains", "1").value.setConstant(7);
+  return f;
+}
+
+TEST_F(Output, AtomicFileAppearsOnCommitOnly) {
+  {
+    AtomicFile file(at("a.txt"));
+    std::ofstream(file.temporary()) << "half";
+    EXPECT_FALSE(fs::exists(at("a.txt")));
+  }
+  EXPECT_EQ(files(), 0u);
+  write_text_file(at("a.txt"), "whole");
+  EXPECT_EQ(text(at("a.txt")), "whole");
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Output, AtomicFileRefusesWhereItCannotWrite) {
+  EXPECT_EQ(refusal([&] { write_text_file(at("no/a.txt"), ""); }),
+            "cannot write " + at("no/a.txt") + ": " + at("no") + " is not a folder");
+  EXPECT_EQ(refusal([&] { write_text_file(folder_.string(), ""); }),
+            "cannot write " + folder_.string() + ": it is a folder");
+  if (geteuid() != 0) {
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_THAT(refusal([&] { write_text_file(at("a.txt"), ""); }), HasSubstr("no permission"));
+    fs::permissions(folder_, fs::perms::owner_all);
+  }
+}
+
+TEST_F(Output, FieldsComeBackBitForBit) {
+  write_fields(at("fields.h5"), {{"map", sample(true)}, {"line-1", sample(false)}});
+  EXPECT_EQ(files(), 2u);
+  EXPECT_THAT(list_fields(at("fields.h5")), testing::UnorderedElementsAre("map", "line-1"));
+  const Field f = read_field(at("fields.h5"), "map"), g = sample(true);
+  EXPECT_EQ(f.points, g.points);
+  EXPECT_EQ(f.nx, 3);
+  EXPECT_EQ(f.ny, 2);
+  EXPECT_EQ(f.realizations, 4);
+  EXPECT_EQ(f.attributes, g.attributes);
+  ASSERT_EQ(f.columns.size(), 2u);
+  EXPECT_EQ(f.columns[0].name, "sigma_yy");
+  EXPECT_EQ(f.columns[0].unit, "N/m");
+  EXPECT_EQ(f.columns[0].value[5], 1.0 / 3);
+  EXPECT_TRUE(std::isnan(f.columns[0].value[2]));
+  EXPECT_EQ(f.columns[0].error, g.columns[0].error);
+  EXPECT_EQ(f.columns[1].error.size(), 0);
+}
+
+TEST_F(Output, FieldReaderNamesWhatIsWrong) {
+  const std::string file = at("fields.h5");
+  EXPECT_EQ(refusal([&] { read_field(file, "map"); }), file + ": no such file");
+  write_fields(file, {{"map", sample(true)}, {"base", sample(false)}});
+  EXPECT_EQ(refusal([&] { read_field(file, "mop"); }),
+            file + ": unknown field \"mop\"; known: base, map; did you mean \"map\"?");
+  const std::string whole = text(file);
+  std::ofstream(at("cut.h5"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  EXPECT_EQ(refusal([&] { read_field(at("cut.h5"), "map"); }),
+            at("cut.h5") + ": the HDF5 file is truncated or broken");
+  std::ofstream(at("text.h5")) << "hello";
+  EXPECT_THAT(refusal([&] { read_field(at("text.h5"), "map"); }), HasSubstr("not an HDF5 file"));
+}
+
+TEST_F(Output, FieldWriterRefusesAndLeavesNothing) {
+  EXPECT_THAT(refusal([&] {
+                write_fields(at("f.h5"), {{"a/b", sample(true)}});
+              }),
+              HasSubstr("\"a/b\" cannot name a field"));
+  Field f = sample(true);
+  f.nx = 5;
+  EXPECT_EQ(refusal([&] {
+              write_fields(at("f.h5"), {{"map", f}});
+            }),
+            "field \"map\": a grid of 5 x 2 with 6 points");
+  f = sample(true);
+  f.columns[0].value.resize(3);
+  EXPECT_EQ(refusal([&] {
+              write_fields(at("f.h5"), {{"map", f}});
+            }),
+            "field \"map\": column \"sigma_yy\" has 3 values and 6 errors for 6 points");
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(Output, XdmfIsWellFormedAndPointsAtTheData) {
+  write_fields(at("fields.h5"), {{"map", sample(true)}, {"line", sample(false)}});
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file(at("fields.xdmf").c_str()));
+  const auto grids = document.select_nodes("//Grid[@GridType='Uniform']");
+  ASSERT_EQ(grids.size(), 2u);
+  EXPECT_STREQ(document.select_node("//Grid[@Name='map']/Topology/@Dimensions").attribute().value(),
+               "2 3");
+  EXPECT_STREQ(
+      document.select_node("//Grid[@Name='line']/Topology/@TopologyType").attribute().value(),
+      "Polyvertex");
+  EXPECT_STREQ(
+      document.select_node("//Grid[@Name='map']/Attribute[@Name='sigma_yy_error']/DataItem")
+          .node()
+          .text()
+          .get(),
+      "fields.h5:/map/error/sigma_yy");
+}
+
+std::size_t count_numbers(const pugi::xml_node& node) {
+  std::istringstream in(node.text().get());
+  std::size_t n = 0;
+  for (double v; in >> v;) ++n;
+  return n;
+}
+
+TEST_F(Output, VtuFilesAreWellFormedAndConsistent) {
+  const dem::Snapshot before = test::layer(1, 5, 3), after = test::layer(1, 5, 3, false, 2);
+  write_grains_vtu(at("grains.vtu"), after, &before);
+  write_contacts_vtu(at("contacts.vtu"), after);
+  write_chains_vtu(at("chains.vtu"), after);
+  EXPECT_EQ(files(), 3u);
+  for (const char* name : {"grains.vtu", "contacts.vtu", "chains.vtu"}) {
+    pugi::xml_document d;
+    ASSERT_TRUE(d.load_file(at(name).c_str())) << name;
+    const pugi::xml_node piece = d.select_node("//Piece").node();
+    const auto points = piece.attribute("NumberOfPoints").as_uint();
+    const auto cells = piece.attribute("NumberOfCells").as_uint();
+    EXPECT_GT(cells, 0u);
+    EXPECT_EQ(count_numbers(d.select_node("//Points/DataArray").node()), 3 * points);
+    EXPECT_EQ(count_numbers(d.select_node("//DataArray[@Name='connectivity']").node()), points);
+    EXPECT_EQ(count_numbers(d.select_node("//DataArray[@Name='types']").node()), cells);
+    for (const auto& array : d.select_nodes("//CellData/DataArray"))
+      EXPECT_EQ(count_numbers(array.node()),
+                cells * array.node().attribute("NumberOfComponents").as_uint())
+          << name << array.node().attribute("Name").value();
+  }
+  pugi::xml_document d;
+  d.load_file(at("grains.vtu").c_str());
+  EXPECT_EQ(d.select_node("//Piece").node().attribute("NumberOfCells").as_uint(), 15u);
+  d.load_file(at("contacts.vtu").c_str());
+  EXPECT_EQ(d.select_node("//Piece").node().attribute("NumberOfCells").as_uint(),
+            after.contacts.size());
+}
+
+TEST_F(Output, VtuStressOfGrainsAddsUpToTheForcesAtTheWalls) {
+  // sum of V sigma over the grains = sum over walls of F x (virial of a packing at rest plus
+  // weight).
+  const dem::Snapshot s = test::layer(2, 6, 4);
+  write_grains_vtu(at("g.vtu"), s);
+  pugi::xml_document d;
+  d.load_file(at("g.vtu").c_str());
+  std::istringstream in(d.select_node("//DataArray[@Name='stress']").node().text().get());
+  double yy = 0, expected = 0;
+  for (const dem::Grain& g : s.grains) {
+    double row[9];
+    for (double& v : row) in >> v;
+    yy += row[4] * g.volume;
+    expected += g.mass * s.gravity.y() * g.position.y();
+  }
+  for (const dem::Contact& c : s.contacts)
+    if (c.j < 0) expected += c.force.y() * c.point.y();
+  EXPECT_NEAR(yy, expected, 1e-6 * std::abs(expected));
+}
+
+Comparison small() {
+  Profile p;
+  p.name = "depth 0.1 m";
+  p.key = "depth_0.1";
+  p.depth = 0.1;
+  p.x = Eigen::Vector3d(-1, 0, 1);
+  p.mean = Eigen::Vector3d(1, 4, 1);
+  p.error = Eigen::Vector3d(0.5, 0.5, 0.5);
+  return compare({p}, {{"flamant", "half plane, 50 %", "half plane", {Eigen::Vector3d(1, 3, 2)}}},
+                 2, 0.5);
+}
+
+TEST_F(Output, ProfilesHaveUnitsDifferencesAndNormalisation) {
+  const std::string csv = profiles_csv(small());
+  EXPECT_THAT(csv, testing::StartsWith("# F = 2 N, h = 0.5 m, F/h = 4 N/m"));
+  EXPECT_THAT(csv, HasSubstr("profile,depth_m,x_m,simulation_N/m,standard_error_N/m,flamant_N/m,"
+                             "flamant_difference_N/m,flamant_difference_over_error\n"));
+  EXPECT_THAT(csv, HasSubstr("depth 0.1 m,0.1,0,4,0.5,3,1,2\n"));
+  EXPECT_THAT(profiles_markdown(small()),
+              HasSubstr("| 0.0000 | 1.0000 | 0.1250 | 0.7500 | 0.2500 | 2.0000 |"));
+  EXPECT_THAT(profiles_latex(small()), HasSubstr("half plane, 50 \\%"));
+  write_profiles(folder_.string(), small());
+  EXPECT_EQ(files(), 3u);
+}
+
+TEST_F(Output, SummaryComesBack) {
+  const Summary s{
+      {"a.b", 1.0 / 3}, {"n", std::int64_t{7}}, {"who", std::string("flamant")}, {"x", NAN}};
+  write_summary(at("summary.json"), s);
+  EXPECT_THAT(text(at("summary.json")), HasSubstr("\"x\": \"nan\""));
+  const Summary back = read_summary(at("summary.json"));
+  EXPECT_EQ(std::get<double>(back.at("a.b")), 1.0 / 3);
+  EXPECT_EQ(std::get<std::int64_t>(back.at("n")), 7);
+  EXPECT_EQ(std::get<std::string>(back.at("who")), "flamant");
+  EXPECT_TRUE(std::isnan(std::get<double>(back.at("x"))));
+}
+
+TEST_F(Output, SummaryReaderNamesWhatIsWrong) {
+  const std::string file = at("summary.json");
+  EXPECT_EQ(refusal([&] { read_summary(file); }), file + ": no such file or not readable");
+  write_text_file(file, "{\"a\": ");
+  EXPECT_EQ(refusal([&] { read_summary(file); }),
+            file + ": not a JSON object (broken or truncated)");
+  write_text_file(file, "{\"a\": [1]}");
+  EXPECT_EQ(refusal([&] { read_summary(file); }),
+            file + ": \"a\" is array; allowed are numbers and strings");
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

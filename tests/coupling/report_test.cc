@@ -1,0 +1,151 @@
+// The report: pictures drawn or their absence explained, nothing executed that data say.
+#include "coupling/report/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "averaging_scene.h"
+#include "coupling/averaging/average.h"
+#include "coupling/report/gnuplot.h"
+#include "coupling/report/point_load.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportTest : public testing::Test {
+ protected:
+  ReportTest() {
+    std::string name = (fs::temp_directory_path() / "grainfield-test-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    if (const char* path = std::getenv("PATH")) path_ = path;
+  }
+  ~ReportTest() override {
+    setenv("PATH", path_.c_str(), 1);
+    fs::remove_all(folder_);
+  }
+  std::string file() const { return (folder_ / "report.html").string(); }
+  std::string page() const {
+    std::ifstream in(file());
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+  }
+  void need_gnuplot() {
+    if (!find_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  }
+  fs::path folder_;
+  std::string path_;
+};
+
+PointLoadReport input(const dem::Snapshot& before, const dem::Snapshot& after) {
+  Profile p;
+  p.name = "depth 0.03 m";
+  p.key = "depth_0.03";
+  p.depth = 0.03;
+  p.x = Eigen::VectorXd::LinSpaced(9, -0.05, 0.05);
+  p.mean = (-(p.x / 0.02).array().square()).exp();
+  p.error = Eigen::VectorXd::Constant(9, 0.1);
+  Profile base = p;
+  base.name = base.key = "base";
+  base.depth = 0.06;
+  PointLoadReport in;
+  in.title = "A <case> & its `report`";
+  in.unloaded = &before;
+  in.loaded = &after;
+  const Eigen::VectorXd model = 0.9 * p.mean;
+  in.comparison =
+      compare({p, base}, {{"flamant", "half plane", "half plane", {model, model}}}, 2, 0.06);
+  AverageOptions o;
+  o.width = 0.02;
+  in.map = response(before, after, grid_points(0.01, 0.11, 11, 0, 0.05, 6), o);
+  in.map.nx = 11;
+  in.map.ny = 6;
+  in.models = {{"half plane", Eigen::VectorXd::Constant(66, -1)}};
+  in.figures = {{"response.peaks", "1"}};
+  in.made = {{"seed", "7"}};
+  return in;
+}
+
+TEST_F(ReportTest, HasEveryPictureAndTable) {
+  need_gnuplot();
+  const dem::Snapshot before = test::layer(1), after = test::layer(1, 12, 6, false, 2);
+  const ReportResult r = write_report(file(), point_load_report(input(before, after)));
+  EXPECT_EQ(r.why_missing, "");
+  EXPECT_EQ(r.pictures, 6);  // two packings, depths, base, maps, angles
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("A &lt;case&gt; &amp; its `report`"));
+  EXPECT_THAT(html, HasSubstr("data:image/png;base64,"));
+  EXPECT_THAT(html, HasSubstr("data:image/svg+xml;base64,"));
+  EXPECT_THAT(html, HasSubstr("class=\"verdict\""));
+  EXPECT_THAT(html, HasSubstr("<td>seed</td><td>7</td>"));
+  EXPECT_THAT(html, Not(HasSubstr("src=\"http")));
+}
+
+TEST_F(ReportTest, WithoutGnuplotKeepsItsTablesAndSaysWhatToInstall) {
+  setenv("PATH", folder_.c_str(), 1);
+  const dem::Snapshot before = test::layer(1), after = test::layer(1, 12, 6, false, 2);
+  const ReportResult r = write_report(file(), point_load_report(input(before, after)));
+  EXPECT_EQ(r.pictures, 0);
+  EXPECT_EQ(r.why_missing, "gnuplot not found: install gnuplot-nox");
+  EXPECT_THAT(page(), HasSubstr("No picture: gnuplot not found: install gnuplot-nox."));
+  EXPECT_THAT(page(), HasSubstr("Distance of the models from the grains"));
+}
+
+TEST_F(ReportTest, TextInDataCannotRunCommands) {
+  need_gnuplot();
+  const std::string trap = (folder_ / "trap").string();
+  const std::string evil =
+      "a' \"; system('touch " + trap + "') `touch " + trap + "` \\\" $x\n!touch " + trap;
+  Series s{evil, Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 1, 0), {}, true};
+  Report report{"t", "", {curves(evil, evil, evil, {{evil, {s}}})}};
+  const ReportResult r = write_report(file(), report);
+  EXPECT_EQ(r.why_missing, "");
+  EXPECT_FALSE(fs::exists(trap));
+}
+
+TEST_F(ReportTest, NanAndFlatDataStillDraw) {
+  need_gnuplot();
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(4, 0, 3);
+  Series gaps{"gaps", x, Eigen::Vector4d(1, NAN, 1, 1), Eigen::Vector4d(NAN, NAN, NAN, NAN), true};
+  Map map{"m", 2, 2, grid_points(0, 1, 2, 0, 1, 2), Eigen::Vector4d(NAN, NAN, NAN, 0)};
+  Report report{"t", "", {curves("c", "x", "y", {{"f", {gaps}}}), maps("m", "x", "y", "v", {map})}};
+  EXPECT_EQ(write_report(file(), report).why_missing, "");
+}
+
+TEST_F(ReportTest, BrokenAndEndlessProgramsAreReported) {
+  need_gnuplot();
+  const std::string gnuplot = *find_gnuplot();
+  EXPECT_THAT(draw(gnuplot, "svg", "plot nonsense(x)").error, HasSubstr("undefined function"));
+  EXPECT_EQ(draw(gnuplot, "svg", "while (1) { a = 1 }", 0.3).error,
+            "gnuplot took longer than 0.3 s");
+}
+
+TEST_F(ReportTest, ContactAnglesAreRelativeToIsotropic) {
+  // All contacts upright: the two bins at 90 and 270 degrees hold everything.
+  dem::Snapshot s;
+  for (int k = 0; k < 4; ++k) s.grains.push_back(test::disk(k, 0, k, 0.5));
+  for (int k = 0; k < 3; ++k) {
+    dem::Contact c;
+    c.i = k;
+    c.j = k + 1;
+    c.normal = {0, 1, 0};
+    c.normal_force = 1;
+    s.contacts.push_back(c);
+  }
+  // 36 bins, two of them full: 18 times the isotropic density.
+  EXPECT_THAT(contact_angles("t", s).program, HasSubstr("\n1.1022e-15 18\n"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
