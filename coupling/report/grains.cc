@@ -97,7 +97,7 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
   picture.width = 980;
   const double aspect = (top - bottom + 2 * margin) / (right - left + 2 * margin);
   const bool arrow = snapshot.loaded_grain >= 0;
-  const int above = arrow ? 66 : 24, below = 64, side = 96;
+  const int above = arrow ? 66 : 24, below = 80, side = 96;
   const int plot_width = picture.width - side - 20;
   picture.height = static_cast<int>(plot_width * aspect) + above + below;
   p += fmt::format(
