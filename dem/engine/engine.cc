@@ -32,13 +32,14 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
     throw std::invalid_argument(
         fmt::format("material.friction: found {}, allowed: 0 or more", settings.friction));
   }
-  // Laws times integrators, each compiled as one loop. A new law joins the variant in engine.h.
+  // Shapes times laws times integrators, each compiled as one loop. A new law joins the variant in
+  // engine.h.
   return std::visit(
       [&settings]<class Law>(const Law& law) -> std::unique_ptr<Engine> {
         if (settings.integrator == IntegratorKind::gear) {
-          return std::make_unique<EngineLoop<Law, GearIntegrator>>(settings, law);
+          return std::make_unique<EngineLoop<DiskShape, Law, GearIntegrator>>(settings, law);
         }
-        return std::make_unique<EngineLoop<Law, VerletIntegrator>>(settings, law);
+        return std::make_unique<EngineLoop<DiskShape, Law, VerletIntegrator>>(settings, law);
       },
       settings.law);
 }

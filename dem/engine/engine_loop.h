@@ -1,4 +1,4 @@
-// The step loop, compiled once per law and integrator (see engine.h for the algorithm).
+// The step loop, compiled once per shape, law and integrator (see engine.h for the algorithm).
 #pragma once
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ enum class SweepKind {
   last      ///< end the step and keep the forces for measure() and snapshot()
 };
 
-template <class Law, class Integrator>
+template <class Shape, class Law, class Integrator>
 class EngineLoop final : public Engine {
  public:
   using Memory = typename Integrator::Memory;
@@ -155,16 +155,16 @@ class EngineLoop final : public Engine {
   HierarchicalGrid grid_;
 };
 
-template <class Law, class Integrator>
-inline void EngineLoop<Law, Integrator>::begin(int i, bool& moved) {
+template <class Shape, class Law, class Integrator>
+inline void EngineLoop<Shape, Law, Integrator>::begin(int i, bool& moved) {
   Body& b = bodies_[i];
   integrator_.begin(b, memory_[i]);
   const double dx = b.x - reference_[i][0], dy = b.y - reference_[i][1];
   moved |= !(dx * dx + dy * dy <= 0.25 * skin_ * skin_);  // also true for nan
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::begin_all(int rank) {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::begin_all(int rank) {
   bool moved = false;
   for (int i = blocks_[rank]; i < blocks_[rank + 1]; ++i) {
     if (bodies_[i].inverse_mass != 0) begin(i, moved);
@@ -172,25 +172,26 @@ void EngineLoop<Law, Integrator>::begin_all(int rank) {
   if (moved) moved_.store(true, std::memory_order_relaxed);
 }
 
-template <class Law, class Integrator>
-inline std::array<double, 2> EngineLoop<Law, Integrator>::applied_at(double t) const {
+template <class Shape, class Law, class Integrator>
+inline std::array<double, 2> EngineLoop<Shape, Law, Integrator>::applied_at(double t) const {
   const double since = t - applied_.start;
   const double s = applied_.ramp > 0 ? std::clamp(since / applied_.ramp, 0.0, 1.0) : 1.0;
   const double part = s * s * (3 - 2 * s);
   return {applied_.fx * part, applied_.fy * part};
 }
 
-template <class Law, class Integrator>
-inline bool EngineLoop<Law, Integrator>::overlap_with_wall(const Body& a, const Wall& w,
-                                                           Overlap& o) const {
+template <class Shape, class Law, class Integrator>
+inline bool EngineLoop<Shape, Law, Integrator>::overlap_with_wall(const Body& a, const Wall& w,
+                                                                  Overlap& o) const {
   const double height = (a.x - w.point.x()) * w.normal.x() + (a.y - w.point.y()) * w.normal.y();
-  return overlap_with_plane<Law::needs_area>(height, a.radius, w.normal.x(), w.normal.y(), o);
+  return Shape::template overlap_with_plane<Law::needs_area>(a, height, w.normal.x(), w.normal.y(),
+                                                             o);
 }
 
-template <class Law, class Integrator>
-inline ContactForce EngineLoop<Law, Integrator>::evaluate(const Body& a, const Body& b,
-                                                          const Overlap& o, double mu, double dt,
-                                                          double& spring) const {
+template <class Shape, class Law, class Integrator>
+inline ContactForce EngineLoop<Shape, Law, Integrator>::evaluate(const Body& a, const Body& b,
+                                                                 const Overlap& o, double mu,
+                                                                 double dt, double& spring) const {
   const double vx = a.vx - b.vx, vy = a.vy - b.vy;
   ContactMotion m;
   m.approach = vx * o.nx + vy * o.ny;
@@ -205,13 +206,14 @@ inline ContactForce EngineLoop<Law, Integrator>::evaluate(const Body& a, const B
 }
 
 /// Force of pair k between grains i and j; 0 and an empty memory when they do not touch.
-template <class Law, class Integrator>
-inline bool EngineLoop<Law, Integrator>::pair_force(int i, int k, double dt, ContactForce& force) {
+template <class Shape, class Law, class Integrator>
+inline bool EngineLoop<Shape, Law, Integrator>::pair_force(int i, int k, double dt,
+                                                           ContactForce& force) {
   Pair& pair = pairs_[k];
   const Body& a = bodies_[i];
   const Body& b = bodies_[pair.j];
   Overlap o;
-  if (!overlap_of_disks<Law::needs_area>(b.x - a.x, b.y - a.y, a.radius, b.radius, o)) {
+  if (!Shape::template overlap<Law::needs_area>(a, b, o)) {
     pair.spring = 0;
     return false;
   }
@@ -221,8 +223,8 @@ inline bool EngineLoop<Law, Integrator>::pair_force(int i, int k, double dt, Con
 
 /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
 /// their second grain, as they do when one thread sweeps all.
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::incoming(int rank, double dt) {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::incoming(int rank, double dt) {
   for (const auto& [i, k] : incoming_[rank]) {
     ContactForce& f = pair_forces_[k];
     if (!pair_force(i, k, dt, f)) {
@@ -238,9 +240,9 @@ void EngineLoop<Law, Integrator>::incoming(int rank, double dt) {
 
 /// The sweep over a block: grain i is complete once its own pairs (i, j > i) are done, because
 /// those with j < i were done at j; so it moves at once and no later pair needs its old place.
-template <class Law, class Integrator>
+template <class Shape, class Law, class Integrator>
 template <SweepKind kind>
-void EngineLoop<Law, Integrator>::sweep(int rank, long step_index, double dt) {
+void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double dt) {
   static const Body kWallBody{};  // at rest, of infinite mass
   const int first = blocks_[rank], last = blocks_[rank + 1];
   const auto [load_x, load_y] =
@@ -305,8 +307,8 @@ void EngineLoop<Law, Integrator>::sweep(int rank, long step_index, double dt) {
   if (moved) moved_.store(true, std::memory_order_relaxed);
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::step(long n) {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::step(long n) {
   if (n <= 0) return;
   if (search_needed_) search();
   const double dt = settings_.time_step;
@@ -350,8 +352,8 @@ void EngineLoop<Law, Integrator>::step(long n) {
   steps_ = start + n;
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::check_motion() {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::check_motion() {
   for (const Body& b : bodies_) {
     const double move = std::hypot(b.vx, b.vy) * settings_.time_step;
     if (!(move <= kMaxMoveShare * b.radius) || !std::isfinite(b.x) || !std::isfinite(b.y)) {
@@ -360,8 +362,8 @@ void EngineLoop<Law, Integrator>::check_motion() {
   }
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::report_divergence() const {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Body& b = bodies_[i];
     const double speed = std::hypot(b.vx, b.vy);
@@ -379,16 +381,16 @@ void EngineLoop<Law, Integrator>::report_divergence() const {
   throw ComputationFailed("diverged");
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::locate_applied() {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::locate_applied() {
   applied_index_ = -1;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     if (ids_[i] == applied_.id) applied_index_ = static_cast<int>(i);
   }
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::sort_bodies(const std::vector<int>& order) {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::sort_bodies(const std::vector<int>& order) {
   const std::size_t n = order.size();
   const auto permute = [&order, n](auto& values) {
     auto sorted = values;
@@ -402,8 +404,8 @@ void EngineLoop<Law, Integrator>::sort_bodies(const std::vector<int>& order) {
   locate_applied();
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::adapt_skin() {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::adapt_skin() {
   const long since = steps_ - last_search_;
   last_search_ = steps_;
   if (since < kOften) {
@@ -417,8 +419,8 @@ void EngineLoop<Law, Integrator>::adapt_skin() {
   skin_ = settings_.skin > 0 ? settings_.skin : skin_share_ * mean;
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::search() {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::search() {
   const int n = static_cast<int>(bodies_.size());
   adapt_skin();
   // The springs in use, by the grains' ids: the order of the bodies changes below. A spring is the
@@ -486,8 +488,8 @@ void EngineLoop<Law, Integrator>::search() {
 }
 
 /// Blocks of the threads, with about the same number of pairs in each, and what crosses them.
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::index_contacts() {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::index_contacts() {
   const int n = static_cast<int>(bodies_.size()), size = team_.size();
   blocks_.assign(size + 1, n);
   blocks_[0] = 0;
@@ -512,9 +514,9 @@ void EngineLoop<Law, Integrator>::index_contacts() {
 
 /// visit(first grain, pair, force, is a wall, overlap) for every contact that carried force in the
 /// last step.
-template <class Law, class Integrator>
+template <class Shape, class Law, class Integrator>
 template <class Visit>
-void EngineLoop<Law, Integrator>::visit_contacts(Visit visit) const {
+void EngineLoop<Shape, Law, Integrator>::visit_contacts(Visit visit) const {
   if (search_needed_) return;
   Overlap o;
   for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
@@ -522,8 +524,7 @@ void EngineLoop<Law, Integrator>::visit_contacts(Visit visit) const {
     for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
       const ContactForce& f = pair_forces_[k];
       const Body& b = bodies_[pairs_[k].j];
-      if ((f.fx != 0 || f.fy != 0) &&
-          overlap_of_disks<Law::needs_area>(b.x - a.x, b.y - a.y, a.radius, b.radius, o)) {
+      if ((f.fx != 0 || f.fy != 0) && Shape::template overlap<Law::needs_area>(a, b, o)) {
         visit(i, pairs_[k], f, false, o);
       }
     }
@@ -536,8 +537,8 @@ void EngineLoop<Law, Integrator>::visit_contacts(Visit visit) const {
   }
 }
 
-template <class Law, class Integrator>
-Diagnostics EngineLoop<Law, Integrator>::measure() const {
+template <class Shape, class Law, class Integrator>
+Diagnostics EngineLoop<Shape, Law, Integrator>::measure() const {
   Diagnostics d;
   const int n = static_cast<int>(bodies_.size());
   std::vector<std::array<double, 2>> resultant(n, {0, 0});
@@ -586,8 +587,8 @@ Diagnostics EngineLoop<Law, Integrator>::measure() const {
   return d;
 }
 
-template <class Law, class Integrator>
-Snapshot EngineLoop<Law, Integrator>::snapshot() const {
+template <class Shape, class Law, class Integrator>
+Snapshot EngineLoop<Shape, Law, Integrator>::snapshot() const {
   Snapshot s;
   s.time = time();
   s.gravity = Vec3(settings_.gravity_x, settings_.gravity_y, 0);
@@ -642,8 +643,8 @@ Snapshot EngineLoop<Law, Integrator>::snapshot() const {
   return s;
 }
 
-template <class Law, class Integrator>
-std::string EngineLoop<Law, Integrator>::image() const {
+template <class Shape, class Law, class Integrator>
+std::string EngineLoop<Shape, Law, Integrator>::image() const {
   ImageWriter w;
   w.put(background_);
   w.put(applied_);
@@ -668,8 +669,8 @@ std::string EngineLoop<Law, Integrator>::image() const {
   return w.bytes();
 }
 
-template <class Law, class Integrator>
-void EngineLoop<Law, Integrator>::restore(const std::string& image) {
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::restore(const std::string& image) {
   ImageReader r(image);
   r.get(background_);
   r.get(applied_);
