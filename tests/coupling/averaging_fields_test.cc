@@ -187,8 +187,8 @@ TEST(Averaging, BalanceNeedsEveryTerm) {
 }
 
 TEST(Averaging, ParticleCentreLeavesALargerResidual) {
-  const dem::Snapshot s = layer(8, 24, 12);
-  const Eigen::MatrixXd points = grid_points(0.06, 0.18, 9, 0.04, 0.08, 7);
+  const dem::Snapshot s = layer(8, 14, 9);
+  const Eigen::MatrixXd points = grid_points(0.04, 0.1, 9, 0.03, 0.06, 7);
   const double cg = balance_residual(s, points, coarse("lucy", 0.02)).rms;
   const double pc = balance_residual(s, points, centre("circle", 0.02)).rms;
   EXPECT_LT(cg, 1e-3);
@@ -224,14 +224,14 @@ TEST(Averaging, ExtendedStressReachesTheFloorsValue) {
 
 TEST(Averaging, ResponseIntegratesToTheLoad) {
   for (bool rough : {false, true}) {
-    const dem::Snapshot before = layer(9, 16, 6, rough), after = layer(9, 16, 6, rough, 5.0);
+    const dem::Snapshot before = layer(9, 12, 5, rough), after = layer(9, 12, 5, rough, 5.0);
     EXPECT_NEAR(total_over_load(before, after) +
                     (side_wall_force(after).y() - side_wall_force(before).y()) / 5.0,
                 1, 1e-9);
     const auto kernel = make_kernel("gaussian", 0.008);
-    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(3001, -0.06, 0.22);
+    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(3001, -0.06, 0.18);
     const Field base = base_response(before, after, x, *kernel);
-    EXPECT_NEAR(-base.find("sigma_yy")->value.sum() * 0.28 / 3000,
+    EXPECT_NEAR(-base.find("sigma_yy")->value.sum() * 0.24 / 3000,
                 5.0 * total_over_load(before, after), 2e-4 * 5.0);
     const Field change =
         response(before, after, line_points(0.05, 0.1, 5, 0.03), coarse("lucy", 0.01));
@@ -244,11 +244,11 @@ TEST(Averaging, ResponseIntegratesToTheLoad) {
 }
 
 TEST(Averaging, BitsDoNotDependOnThreads) {
-  const dem::Snapshot s = layer(10, 20, 8);
-  const Eigen::MatrixXd points = grid_points(0, 0.2, 37, 0, 0.08, 23);
+  const dem::Snapshot s = layer(10);
+  const Eigen::MatrixXd points = grid_points(0, 0.12, 29, 0, 0.06, 17);
   for (AverageOptions o : {coarse("lucy", 0.015), centre("circle", 0.02)}) {
     const Field one = average(s, points, o);
-    for (int threads : {2, 3, 8, 1000}) {
+    for (int threads : {2, 3, 8, 40}) {
       o.threads = threads;
       const Field many = average(s, points, o);
       for (std::size_t c = 0; c < one.columns.size(); ++c)
