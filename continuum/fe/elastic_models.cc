@@ -18,6 +18,7 @@
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/elastic_solver.h"
 #include "continuum/fe/parallel.h"
+#include "continuum/fe/plugin.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -354,71 +355,12 @@ std::unique_ptr<Model> make(const Settings& s) {
   return std::make_unique<Kind<2>>(s);
 }
 
-std::vector<Parameter> common_parameters() {
-  return {choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"}),
-          number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
-          number("E", "Pa", "Young's modulus (N/m in 2D); the stress does not depend on it",
-                 "elasticity", 1e7, kAboveZero, kUnbounded),
-          // Beyond this displacement elements lock and the iterations grow.
-          number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
-}
-
-std::vector<Parameter> numerical_parameters(double degree, double tolerance, double refinements) {
-  return {number("degree", "-", "polynomial degree of the elements; cost per unknown grows with it",
-                 "numerics", degree, 1, 4),
-          number("tolerance", "-",
-                 "change of the stress by the last refinement, over F/h or F/depth (3D: their "
-                 "square), at which refinement ends",
-                 "numerics", tolerance, 1e-10, 1),
-          number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements,
-                 1, 20),
-          number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
-                 500, 1, 100000)};
-}
-
-std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
-  std::vector<Parameter> all;
-  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 }  // namespace
 
-ModelInfo fe_elastic_layer_info() {
-  return {
-      "fe_elastic_layer", "elastic layer on a rigid base under a point load, finite elements", 0,
-      joined(
-          {common_parameters(),
-           {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
-            choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
-                   {"smooth", "rough"}),
-            number("half_width", "h", "half the width of the domain, in depths", "numerics", 8, 1,
-                   1000),
-            choice("sides",
-                   "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
-                   "without shear, as of a box",
-                   "elasticity", {"free", "smooth"}),
-            number("cells", "-", "cells over the depth before refinement", "numerics", 2, 1, 1000)},
-           numerical_parameters(3, 2e-4, 6)}),
-      make<ElasticLayer>};
-}
-
-ModelInfo fe_elastic_half_space_info() {
-  return {"fe_elastic_half_space",
-          "elastic half plane or half space under a small loaded patch, finite elements", 0,
-          joined({common_parameters(),
-                  {number("depth", "m", "depth of interest, to which the mesh is fitted",
-                          "numerics", 0.15, kAboveZero, kUnbounded),
-                   number("patch", "depth", "width of the loaded strip or square, in depths",
-                          "numerics", 0.05, 1e-4, 1),
-                   number("radius", "depth",
-                          "least distance of the mesh's end from the load, in depths; what is felt "
-                          "of the end falls like 1/radius (3D: its square)",
-                          "numerics", 1000, 4, 1e9),
-                   number("cells", "-", "cells per distance from the load before refinement",
-                          "numerics", 2, 1, 100)},
-                  numerical_parameters(3, 2e-3, 4)}),
-          make<ElasticHalfSpace>};
+std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& settings) {
+  if (name == "fe_elastic_layer") return make<ElasticLayer>(settings);
+  if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(settings);
+  throw BadParameter("no finite-element model '" + name + "'");
 }
 
 }  // namespace grainfield::continuum

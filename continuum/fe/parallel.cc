@@ -4,7 +4,7 @@
 #include <p4est.h>
 #include <sc.h>
 
-#include "continuum/fe/elastic.h"
+#include "continuum/fe/plugin.h"
 
 namespace grainfield::continuum {
 namespace {
@@ -42,7 +42,7 @@ class MpiSession {
 
 }  // namespace
 
-void solve_on(Ranks ranks) { g_ranks = ranks; }
+void fe::choose_ranks(Ranks ranks) { g_ranks = ranks; }
 
 MPI_Comm fe::communicator() {
   static const MpiSession session;

@@ -1,0 +1,21 @@
+// The one door of the finite-element library: the program loads it when a model of it is made.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "continuum/fe/elastic.h"
+#include "continuum/model.h"
+
+namespace grainfield::continuum::fe {
+
+/// The named model ("fe_elastic_layer") with complete settings. Throws BadParameter.
+std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings);
+
+/// Who solves from now on; see continuum::solve_on.
+void choose_ranks(Ranks ranks);
+
+inline constexpr char kMakeSymbol[] = "grainfield_fe_make";
+using MakeFunction = void (*)(const char* name, const Settings& settings, Ranks ranks,
+                              std::unique_ptr<Model>& model);
+
+}  // namespace grainfield::continuum::fe

@@ -1,0 +1,129 @@
+// The finite-element models as the registry lists them. Their solvers are in a library of their own
+// (continuum/fe), which is loaded when the first of them is made: with it come deal.II's two
+// hundred libraries, and a program that only checks a case must not wait for those.
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <mutex>
+
+#include "continuum/fe/elastic.h"
+#include "continuum/fe/plugin.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+constexpr char layer_name[] = "fe_elastic_layer";
+constexpr char half_space_name[] = "fe_elastic_half_space";
+
+Ranks g_ranks = Ranks::all;
+
+// Beside the program, where an installed program has it, or where it was built.
+void* open_library() {
+  std::error_code error;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path built = GRAINFIELD_FE_LIBRARY;
+  for (const auto& file : {folder / built.filename(),
+                           folder.parent_path() / "lib/grainfield" / built.filename(), built}) {
+    if (!std::filesystem::exists(file, error)) continue;
+    if (void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
+    throw ComputationFailed(fmt::format(
+        "the finite-element library cannot be loaded: {}; install the packages of packages.txt",
+        dlerror()));
+  }
+  throw ComputationFailed(fmt::format(
+      "the finite-element library {} is neither beside the program nor in ../lib/grainfield",
+      built.filename().string()));
+}
+
+fe::MakeFunction plugin() {
+  static std::mutex once;
+  static fe::MakeFunction function = nullptr;
+  const std::lock_guard lock(once);
+  if (function == nullptr) {
+    void* symbol = dlsym(open_library(), fe::kMakeSymbol);
+    if (symbol == nullptr)
+      throw ComputationFailed("the finite-element library is of another version");
+    function = reinterpret_cast<fe::MakeFunction>(symbol);
+  }
+  return function;
+}
+
+template <const char* name>
+std::unique_ptr<Model> make_in_plugin(const Settings& settings) {
+  std::unique_ptr<Model> model;
+  plugin()(name, settings, g_ranks, model);
+  return model;
+}
+
+std::vector<Parameter> common_parameters() {
+  return {choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"}),
+          number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+          number("E", "Pa", "Young's modulus (N/m in 2D); the stress does not depend on it",
+                 "elasticity", 1e7, kAboveZero, kUnbounded),
+          // Beyond this displacement elements lock and the iterations grow.
+          number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
+}
+
+std::vector<Parameter> numerical_parameters(double degree, double tolerance, double refinements) {
+  return {number("degree", "-", "polynomial degree of the elements; cost per unknown grows with it",
+                 "numerics", degree, 1, 4),
+          number("tolerance", "-",
+                 "change of the stress by the last refinement, over F/h or F/depth (3D: their "
+                 "square), at which refinement ends",
+                 "numerics", tolerance, 1e-10, 1),
+          number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements,
+                 1, 20),
+          number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
+                 500, 1, 100000)};
+}
+
+std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
+  std::vector<Parameter> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
+void solve_on(Ranks ranks) { g_ranks = ranks; }
+
+ModelInfo fe_elastic_layer_info() {
+  return {
+      layer_name, "elastic layer on a rigid base under a point load, finite elements", 0,
+      joined(
+          {common_parameters(),
+           {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+            choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
+                   {"smooth", "rough"}),
+            number("half_width", "h", "half the width of the domain, in depths", "numerics", 8, 1,
+                   1000),
+            choice("sides",
+                   "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
+                   "without shear, as of a box",
+                   "elasticity", {"free", "smooth"}),
+            number("cells", "-", "cells over the depth before refinement", "numerics", 2, 1, 1000)},
+           numerical_parameters(3, 2e-4, 6)}),
+      make_in_plugin<layer_name>};
+}
+
+ModelInfo fe_elastic_half_space_info() {
+  return {half_space_name,
+          "elastic half plane or half space under a small loaded patch, finite elements", 0,
+          joined({common_parameters(),
+                  {number("depth", "m", "depth of interest, to which the mesh is fitted",
+                          "numerics", 0.15, kAboveZero, kUnbounded),
+                   number("patch", "depth", "width of the loaded strip or square, in depths",
+                          "numerics", 0.05, 1e-4, 1),
+                   number("radius", "depth",
+                          "least distance of the mesh's end from the load, in depths; what is felt "
+                          "of the end falls like 1/radius (3D: its square)",
+                          "numerics", 1000, 4, 1e9),
+                   number("cells", "-", "cells per distance from the load before refinement",
+                          "numerics", 2, 1, 100)},
+                  numerical_parameters(3, 2e-3, 4)}),
+          make_in_plugin<half_space_name>};
+}
+
+}  // namespace grainfield::continuum
