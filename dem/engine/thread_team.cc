@@ -31,18 +31,20 @@ void ThreadTeam::run(const std::function<void(int)>& work) {
 }
 
 // A step of a few thousand grains takes some 100 us: waiting threads spin for about as long as the
-// others may lag, and only then give the core away (more threads than cores, a busy machine).
+// others may lag, and only then sleep (more threads than cores, a busy machine).
 void ThreadTeam::wait_for_all() {
   constexpr int kSpins = 4000;
-  const long round = round_.load(std::memory_order_relaxed);
+  const int round = round_.load(std::memory_order_relaxed);
   if (arrived_.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
     arrived_.store(0, std::memory_order_relaxed);
-    round_.store(round + 1, std::memory_order_release);
+    round_.fetch_add(1, std::memory_order_release);
+    round_.notify_all();
     return;
   }
-  for (int spin = 0; round_.load(std::memory_order_acquire) == round; ++spin) {
-    if (spin >= kSpins) std::this_thread::yield();
+  for (int spin = 0; spin < kSpins; ++spin) {
+    if (round_.load(std::memory_order_acquire) != round) return;
   }
+  round_.wait(round, std::memory_order_acquire);
 }
 
 void ThreadTeam::serve(int rank) {

@@ -31,7 +31,7 @@ class ThreadTeam {
 
   int size_;
   std::atomic<int> arrived_{0};
-  std::atomic<long> round_{0};
+  std::atomic<int> round_{0};  // wraps around harmlessly
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
   const std::function<void(int)>* work_ = nullptr;
