@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi_remote_point_evaluation.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_q.h>
@@ -48,6 +49,34 @@ class BoundaryValues : public Function<dim> {
 
  private:
   const BoundaryCondition<dim>& condition_;
+};
+
+/// Recognizes cells that are scaled copies of an earlier one: their stiffness is that one's times
+/// the size to the power dim - 2.
+template <int dim>
+class SimilarCells {
+ public:
+  /// The size relative to the cell whose matrix is to be reused; 0: this one is to be integrated,
+  /// and is what later cells are compared with.
+  template <typename Cell>
+  double operator()(const Cell& cell) {
+    std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell> shape;
+    for (const unsigned int v : cell.vertex_indices()) shape[v] = cell.vertex(v) - cell.vertex(0);
+    const double size = shape.back().norm();
+    bool same = reference_size_ > 0;
+    for (unsigned int v = 0; same && v < shape.size(); ++v)
+      same = (shape[v] / size - reference_[v]).norm() < kSameShape;
+    if (same) return size / reference_size_;
+    for (unsigned int v = 0; v < shape.size(); ++v) reference_[v] = shape[v] / size;
+    reference_size_ = size;
+    return 0;
+  }
+
+ private:
+  /// Of the diagonal: round-off of coordinates, amplified for cells far smaller than the domain.
+  static constexpr double kSameShape = 1e-10;
+  std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell> reference_;
+  double reference_size_ = 0;
 };
 
 /// Translations and rotations of the nodes, one column each: what the coarse levels must represent.
@@ -127,6 +156,8 @@ Stress<dim> ElasticSolver<dim>::stress_of(const Tensor<2, dim>& gradient) const 
 template <int dim>
 void ElasticSolver<dim>::distribute(const ElasticProblem<dim>& problem) {
   dofs_.distribute_dofs(element_);
+  // The components of a node side by side: the multigrid coarsens nodes, not single components.
+  DoFRenumbering::support_point_wise(dofs_);
   owned_ = dofs_.locally_owned_dofs();
   DoFTools::extract_locally_relevant_dofs(dofs_, relevant_);
   constraints_.clear();
@@ -174,27 +205,32 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
   FullMatrix<double> cell_matrix(n, n);
   dealii::Vector<double> cell_rhs(n);
   std::vector<types::global_dof_index> indices(n);
+  SimilarCells<dim> similar_size;
 
   for (const auto& cell : dofs_.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
-    values.reinit(cell);
-    k.setZero();
-    for (const unsigned int q : values.quadrature_point_indices()) {
-      strain.setZero();
-      for (int i = 0; i < n; ++i) {
-        const int component = static_cast<int>(element_.system_to_component_index(i).first);
-        const auto& gradient = values.shape_grad(i, q);
-        for (int c = 0; c < kStresses<dim>; ++c) {
-          const auto [a, b] = components[c];
-          if (a == component) strain(c, i) += gradient[b];
-          if (a != b && b == component) strain(c, i) += gradient[a];
+    const double size = similar_size(*cell);
+    if (size == 0) {
+      values.reinit(cell);
+      k.setZero();
+      for (const unsigned int q : values.quadrature_point_indices()) {
+        strain.setZero();
+        for (int i = 0; i < n; ++i) {
+          const int component = static_cast<int>(element_.system_to_component_index(i).first);
+          const auto& gradient = values.shape_grad(i, q);
+          for (int c = 0; c < kStresses<dim>; ++c) {
+            const auto [a, b] = components[c];
+            if (a == component) strain(c, i) += gradient[b];
+            if (a != b && b == component) strain(c, i) += gradient[a];
+          }
         }
+        stress.noalias() = values.JxW(q) * elastic * strain;
+        k.noalias() += strain.transpose() * stress;
       }
-      stress.noalias() = values.JxW(q) * elastic * strain;
-      k.noalias() += strain.transpose() * stress;
     }
+    const double scale = size == 0 ? 1 : std::pow(size, dim - 2);
     for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) cell_matrix(i, j) = k(i, j);
+      for (int j = 0; j < n; ++j) cell_matrix(i, j) = scale * k(i, j);
 
     cell_rhs = 0;
     if (problem.body_force) {
@@ -237,9 +273,12 @@ void ElasticSolver<dim>::solve_linear() {
   std::unique_ptr<Epetra_MultiVector> constant;
   data.set_parameters(parameters, constant, matrix_);
   const auto modes = rigid_motions(mapping_, dofs_, matrix_);
+  parameters.set("PDE equations", dim);
   parameters.set("null space: type", "pre-computed");
   parameters.set("null space: dimension", modes->NumVectors());
   parameters.set("null space: vectors", modes->Values());
+  // Solved directly; its dense factor costs the cube of this.
+  parameters.set("coarse: max size", 400);
 
   TrilinosWrappers::MPI::Vector x(owned_, comm_);
   const double size = rhs_.l2_norm();
