@@ -20,6 +20,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double confidence = 0.95;
 // With fewer realizations the errors are too uncertain to weigh points by: rank by relative L2.
 constexpr int least_for_chi2 = 4;
+// A model that misses by more than half of the signal describes nothing, even when others do worse.
+constexpr double most_rel_l2 = 0.5;
 
 struct Projection {
   double position = nan, error = nan;
@@ -113,12 +115,14 @@ Verdict judge(const Comparison& c) {
   v.position_error = p.error;
   v.distinguishable = beyond_spread(p, c.realizations);
   const ModelComparison& loser = c.results[*other];
+  const bool none = best.overall.rel_l2 > most_rel_l2;
   if (v.distinguishable) {
     v.sentence = fmt::format(
-        "The grains support the {}, not the {}: nearest is {}, against {}; on the line from {} (0) "
-        "to {} (1) they stand at {:.2f} +- {:.2f}{}.",
-        best.family, loser.family, describe(best, by_chi2), describe(loser, by_chi2), loser.family,
-        best.family, p.position, p.error, runner_up);
+        "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) they stand "
+        "at {:.2f} +- {:.2f}{}.",
+        none ? "They are nearer to the" : "The grains support the", best.family,
+        none ? " than to" : ", not", loser.family, describe(best, by_chi2),
+        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, runner_up);
   } else if (std::isfinite(p.error)) {
     v.sentence = fmt::format(
         "{} and {} are not distinguishable within the spread of {} realizations: nearest is {}, "
@@ -131,6 +135,12 @@ Verdict judge(const Comparison& c) {
         "One realization, spread unknown: the grains are nearest to {}, against {}; on the line "
         "from {} (0) to {} (1) they stand at {:.2f}.",
         describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
+  }
+  if (none) {
+    v.sentence = fmt::format(
+        "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
+        "L2). {}",
+        100 * best.overall.rel_l2, v.sentence);
   }
   return v;
 }

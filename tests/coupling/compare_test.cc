@@ -243,10 +243,34 @@ TEST(Compare, VerdictOfAClearCase) {
               testing::StartsWith("The grains support the finite layer, not the half plane"));
 }
 
+TEST(Compare, VerdictWhenNoModelFits) {
+  Scene s = scene(8, 0.92, 0.05);
+  for (Profile& p : s.profiles) {
+    p.mean *= 10;
+    p.samples *= 10;
+    p.error *= 10;
+  }
+  EXPECT_THAT(compared(s).verdict.sentence,
+              testing::AllOf(testing::StartsWith("None of the models describes these grains"),
+                             HasSubstr("nearer to the"), Not(HasSubstr("support"))));
+}
+
 TEST(Compare, VerdictWithinTheSpread) {
   const Comparison c = compared(scene(4, 0.8, 4));
   EXPECT_FALSE(c.verdict.distinguishable);
   EXPECT_THAT(c.verdict.sentence, HasSubstr("not distinguishable"));
+}
+
+TEST(Compare, DistinguishableMeansBeyondStudentsT) {
+  int yes = 0, no = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const Verdict v = compared(scene(4, 0.85, 0.2, seed)).verdict;
+    // 3.1824: two-sided 95 % of Student's t with 3 degrees of freedom.
+    EXPECT_EQ(v.distinguishable, v.position - 0.5 > 3.1824463 * v.position_error) << seed;
+    ++(v.distinguishable ? yes : no);
+  }
+  EXPECT_GT(yes, 0);
+  EXPECT_GT(no, 0);
 }
 
 TEST(Compare, OneRealizationRanksByRelativeDifference) {
