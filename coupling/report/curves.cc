@@ -73,7 +73,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       }
     }
     const double room = 0.06 * (y.high - y.low);
-    std::string head = fmt::format("set title {}\n", style::quoted(frames[f].title));
+    std::string head = fmt::format("set title {} noenhanced\n", style::quoted(frames[f].title));
     if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
     if (y.any && y.high > y.low)
       head += fmt::format("set yrange [{}:{}]\n", y.low - room, y.high + room);
@@ -125,7 +125,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
         "set size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset tics\nunset xlabel\n"
         "unset ylabel\nunset grid\nunset xzeroaxis\nset xrange [0:1]\nset yrange [0:1]\n"
         "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
-        "set key center center horizontal maxrows {1} samplen 3 noopaque\nplot {2}\n",
+        "set key noenhanced center center horizontal maxrows {1} samplen 3 noopaque\nplot {2}\n",
         below, legend_rows, entries_only);
   }
   picture.program += "unset multiplot\n";

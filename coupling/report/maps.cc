@@ -72,7 +72,7 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
     // One colour box, to the right of all the maps.
     p += fmt::format(
         "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
-        "set bmargin at screen {:.4f}\nset title {} offset 0,-0.5\n",
+        "set bmargin at screen {:.4f}\nset title {} offset 0,-0.5 noenhanced\n",
         left / w, (left + plot_width) / w, 1 - top / h, 1 - (top + plot_width * aspect) / h,
         style::quoted(all[k].title));
     p += last ? fmt::format(
