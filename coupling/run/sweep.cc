@@ -55,7 +55,9 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
     frames.push_back(std::move(frame));
   }
   Picture picture = curves("Response of every member", "x from the load (m)",
-                           first.front().quantity + " (" + first.front().unit + ")", frames);
+                           (first.front().quantity == "-sigma_yy" ? "-σ_{yy} (" : "-σ_{zz} (") +
+                               first.front().unit + ")",
+                           frames);
   picture.caption = "Mean over realizations.";
   return picture;
 }
