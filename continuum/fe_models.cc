@@ -66,17 +66,19 @@ std::vector<Parameter> common_parameters() {
           number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
 }
 
-std::vector<Parameter> numerical_parameters(double degree, double tolerance, double refinements) {
-  return {number("degree", "-", "polynomial degree of the elements; cost per unknown grows with it",
-                 "numerics", degree, 1, 4),
-          number("tolerance", "-",
-                 "change of the stress by the last refinement, over F/h or F/depth (3D: their "
-                 "square), at which refinement ends",
-                 "numerics", tolerance, 1e-10, 1),
-          number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements,
-                 1, 20),
-          number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
-                 500, 1, 100000)};
+std::vector<Parameter> numerical_parameters(const std::string& tolerances, double refinements) {
+  return {
+      number("degree", "-",
+             "polynomial degree of the elements, cost per unknown grows with it; 0: 3 in 2D, 2 "
+             "in 3D",
+             "numerics", 0, 0, 4),
+      number("tolerance", "-",
+             "change of the stress by the last refinement at which refinement ends; " + tolerances,
+             "numerics", 0, 0, 1),
+      number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements, 1,
+             20),
+      number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
+             500, 1, 100000)};
 }
 
 std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
@@ -104,26 +106,29 @@ ModelInfo fe_elastic_layer_info() {
                    "without shear, as of a box",
                    "elasticity", {"free", "smooth"}),
             number("cells", "-", "cells over the depth before refinement", "numerics", 2, 1, 1000)},
-           numerical_parameters(3, 2e-4, 6)}),
+           numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
       make_in_plugin<layer_name>};
 }
 
 ModelInfo fe_elastic_half_space_info() {
-  return {half_space_name,
-          "elastic half plane or half space under a small loaded patch, finite elements", 0,
-          joined({common_parameters(),
-                  {number("depth", "m", "depth of interest, to which the mesh is fitted",
-                          "numerics", 0.15, kAboveZero, kUnbounded),
-                   number("patch", "depth", "width of the loaded strip or square, in depths",
-                          "numerics", 0.05, 1e-4, 1),
-                   number("radius", "depth",
-                          "least distance of the mesh's end from the load, in depths; what is felt "
-                          "of the end falls like 1/radius (3D: its square)",
-                          "numerics", 1000, 4, 1e9),
-                   number("cells", "-", "cells per distance from the load before refinement",
-                          "numerics", 2, 1, 100)},
-                  numerical_parameters(3, 2e-3, 4)}),
-          make_in_plugin<half_space_name>};
+  return {
+      half_space_name,
+      "elastic half plane or half space under a small loaded patch, finite elements", 0,
+      joined(
+          {common_parameters(),
+           {number("depth", "m", "depth of interest, to which the mesh is fitted", "numerics", 0.15,
+                   kAboveZero, kUnbounded),
+            number("patch", "depth", "width of the loaded strip or square, in depths", "numerics",
+                   0.05, 1e-4, 1),
+            number("radius", "depth",
+                   "least distance of the mesh's end from the load, in depths; what is felt "
+                   "of the end falls like 1/radius (3D: its square); 0: 10000 in 2D, 50 in 3D",
+                   "numerics", 0, 0, 1e9),
+            number("cells", "-", "cells per distance from the load before refinement", "numerics",
+                   2, 1, 100)},
+           numerical_parameters(
+               "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
+      make_in_plugin<half_space_name>};
 }
 
 }  // namespace grainfield::continuum

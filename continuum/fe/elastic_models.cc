@@ -38,6 +38,12 @@ constexpr double kOnBorder = 1e-9;
 /// Share of the error indicator whose cells are refined in a cycle.
 constexpr double kRefinedShare = 0.8;
 
+/// The parameter's value; 0 stands for the dimension's own default.
+double number_or(const Settings& settings, const std::string& name, double fallback) {
+  const double value = number_of(settings, name);
+  return value == 0 ? fallback : value;
+}
+
 template <int dim>
 Stress<dim> point_load_stress(double F, double nu, const Point<dim>& p) {
   Stress<dim> s;
@@ -69,13 +75,13 @@ Vector<dim> point_load_displacement(double F, double E, double nu, const Point<d
 template <int dim>
 class BoxModel : public Model {
  public:
-  BoxModel(const std::string& name, const Settings& s)
+  BoxModel(const std::string& name, const Settings& s, double tolerance)
       : load_(number_of(s, "F")),
         young_(number_of(s, "E")),
         poisson_(number_of(s, "nu")),
-        tolerance_(number_of(s, "tolerance")),
+        tolerance_(number_or(s, "tolerance", tolerance)),
         refinements_(static_cast<int>(number_of(s, "refinements"))),
-        degree_(static_cast<int>(number_of(s, "degree"))),
+        degree_(static_cast<int>(number_or(s, "degree", dim == 2 ? 3 : 2))),
         iterations_(static_cast<int>(number_of(s, "iterations"))),
         name_(name) {}
 
@@ -130,7 +136,7 @@ class BoxModel : public Model {
   virtual ElasticProblem<dim> problem() const = 0;
   /// Where the stress must stand still, and the stress against which its change is measured.
   virtual std::vector<Point<dim>> probes() const = 0;
-  virtual double scale() const = 0;
+  virtual double scale(const Point<dim>& probe) const = 0;
   /// What the elements' stress is added to.
   virtual Stress<dim> closed_part(const Point<dim>&) const { return {}; }
   virtual double refinement_weight(const Point<dim>&) const { return 1; }
@@ -161,7 +167,12 @@ class BoxModel : public Model {
       const Eigen::MatrixXd after = solver_->stress_at(points);
       figures_["refinement_cycles"] = cycle;
       if (cycle > 0) {
-        const double change = (after - before).cwiseAbs().maxCoeff() / scale();
+        double change = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+          const auto row = static_cast<Eigen::Index>(n);
+          change =
+              std::max(change, (after - before).row(row).cwiseAbs().maxCoeff() / scale(points[n]));
+        }
         figures_["change"] = change;
         if (change <= tolerance_) return;
         if (cycle >= refinements_)
@@ -210,7 +221,7 @@ template <int dim>
 class ElasticLayer : public BoxModel<dim> {
  public:
   explicit ElasticLayer(const Settings& s)
-      : BoxModel<dim>("fe_elastic_layer", s),
+      : BoxModel<dim>("fe_elastic_layer", s, dim == 2 ? 2e-4 : 5e-3),
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
@@ -258,7 +269,7 @@ class ElasticLayer : public BoxModel<dim> {
         if (x <= ratio_) points.push_back(this->horizontal_and_height(x * h_, -depth * h_));
     return points;
   }
-  double scale() const override {
+  double scale(const Point<dim>&) const override {
     return std::max(std::abs(this->load_) / std::pow(h_, dim - 1),
                     std::numeric_limits<double>::min());
   }
@@ -276,13 +287,13 @@ template <int dim>
 class ElasticHalfSpace : public BoxModel<dim> {
  public:
   explicit ElasticHalfSpace(const Settings& s)
-      : BoxModel<dim>("fe_elastic_half_space", s),
+      : BoxModel<dim>("fe_elastic_half_space", s, dim == 2 ? 2e-3 : 1e-2),
         depth_(number_of(s, "depth")),
         patch_(number_of(s, "patch") * depth_),
         cells_(number_of(s, "cells")) {
     // The half patch is a cell of the finest level, so that its border is a cell's border.
-    levels_ =
-        static_cast<int>(std::ceil(std::log2(number_of(s, "radius") * depth_ / (patch_ / 2))));
+    levels_ = static_cast<int>(
+        std::ceil(std::log2(number_or(s, "radius", dim == 2 ? 1e4 : 50) * depth_ / (patch_ / 2))));
   }
 
  protected:
@@ -335,13 +346,13 @@ class ElasticHalfSpace : public BoxModel<dim> {
         points.push_back(this->horizontal_and_height(x * depth * depth_, -depth * depth_));
     return points;
   }
-  double scale() const override {
-    return std::max(std::abs(this->load_) / std::pow(depth_, dim - 1),
+  double scale(const Point<dim>& probe) const override {
+    return std::max(std::abs(this->load_) / std::pow(probe.norm(), dim - 1),
                     std::numeric_limits<double>::min());
   }
   /// Jumps at the patch's border, a local matter, would otherwise draw all the cells.
   double refinement_weight(const Point<dim>& p) const override {
-    return std::min(1., std::pow(p.norm() / depth_, dim));
+    return std::min(1., std::pow(2 * p.norm() / depth_, dim));
   }
 
  private:
