@@ -7,6 +7,8 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
@@ -38,6 +40,14 @@ int parse_and_act(int argc, char** argv) {
   add_average(app, action);
   add_compare(app, action);
   add_info(app, action);
+  if (argc > 1 && argv[1][0] != '-') {
+    std::vector<std::string> names;
+    for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+      return complain(2, fmt::format("unknown command \"{}\"; nearest: {} (grainfield --help)",
+                                     argv[1], continuum::nearest(argv[1], names)));
+    }
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

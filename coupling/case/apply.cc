@@ -89,8 +89,6 @@ void set(const Key& key, const Assignment& a, Case& value) {
 }
 
 [[noreturn]] void unknown(const Assignment& a) {
-  std::vector<std::string> paths;
-  for (const Key& key : keys()) paths.push_back(key.path());
   const std::string section = a.path.substr(0, a.path.find('.'));
   auto names = sections();
   names.insert(names.end(), {"model", "quick"});
@@ -98,20 +96,16 @@ void set(const Key& key, const Assignment& a, Case& value) {
   if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
     reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
   }
-  // A name that exists in another section is nearer than any misspelling.
+  // A name that exists in another section is nearer than any misspelling; else names of this one.
   const std::string name = a.path.substr(a.path.rfind('.') + 1);
-  std::string near = continuum::nearest(a.path, paths);
-  if (const Key* key = find_key(near); key != nullptr && key->section != section && sectioned) {
-    std::vector<std::string> here;
-    for (const Key& k : keys()) {
-      if (k.section == section) here.push_back(k.path());
-    }
-    const auto same =
-        std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
-    near = same != keys().end() ? same->path()
-           : here.empty()       ? near
-                                : continuum::nearest(a.path, here);
+  std::vector<std::string> here, everywhere;
+  std::string near;
+  for (const Key& key : keys()) {
+    everywhere.push_back(key.path());
+    if (sectioned && key.section == section) here.push_back(key.path());
+    if (key.name == name && near.empty()) near = key.path();
   }
+  if (near.empty()) near = continuum::nearest(a.path, here.empty() ? everywhere : here);
   reject(a, a.path, "unknown key; nearest: " + near);
 }
 

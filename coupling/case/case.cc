@@ -128,8 +128,7 @@ std::string write_case(const Case& value) {
           fmt::format("{}{}", p.unit == "-" || p.unit.empty() ? "" : p.unit + "; ", p.meaning);
       if (given != model.settings.end()) {
         out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, given->second));
-      } else if (p.name == "F" || p.name == "h" || p.name == "dim" || p.name == "depth" ||
-                 (p.name == "base" && value.study == "elastic-layer")) {
+      } else if (filled_by_run(p.name, value.study)) {
         out += fmt::format("# {} is filled from the run: {}\n", p.name, remark);
       } else {
         const std::string standard =
@@ -139,6 +138,11 @@ std::string write_case(const Case& value) {
     }
   }
   return out;
+}
+
+bool filled_by_run(const std::string& parameter, const std::string& study) {
+  if (parameter == "base") return study == "elastic-layer";
+  return parameter == "F" || parameter == "h" || parameter == "dim" || parameter == "depth";
 }
 
 std::string case_title(const std::string& file) {

@@ -35,7 +35,7 @@ struct ElasticSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
   double height = 0.15;  ///< m; elastic-layer
   std::int64_t dim = 2;
-  std::string base = "smooth";  ///< elastic-layer
+  std::string base = "smooth";                     ///< elastic-layer
   std::vector<double> depths = {0.05, 0.1, 0.15};  ///< m
   double half_width = 0.3;                         ///< m
   std::int64_t points = 61;
@@ -97,6 +97,8 @@ std::vector<SweepCase> sweep_cases(const Case& value);
 /// The whole case as TOML: every key of its study with unit and meaning as a comment. Reading it
 /// back gives the same case.
 std::string write_case(const Case& value);
+/// Whether the run fills this parameter of a model in where the user does not set it.
+bool filled_by_run(const std::string& parameter, const std::string& study);
 /// Only the title of a case file; throws as read_case when it is not TOML.
 std::string case_title(const std::string& file);
 

@@ -32,6 +32,17 @@ void check_sections(const Draft& draft) {
   }
 }
 
+// A setting that says what holds anyway; labels and comparisons of cases do without it.
+bool is_default(const continuum::ModelInfo& info, const std::string& name,
+                const std::string& value) {
+  for (const auto& p : info.parameters) {
+    if (p.name != name) continue;
+    if (!p.choices.empty()) return value == p.choices.front();
+    return std::stod(value) == p.value;
+  }
+  return false;
+}
+
 // Every [model.LABEL] table, whether it is used or not.
 std::map<std::string, ModelChoice> read_models(const Draft& draft) {
   std::map<std::string, ModelChoice> out;
@@ -57,7 +68,9 @@ std::map<std::string, ModelChoice> read_models(const Draft& draft) {
       } catch (const continuum::BadParameter& e) {
         reject(a, a.path, e.what());
       }
-      choice.settings[parameter] = value;
+      if (!is_default(*info, parameter, value) || filled_by_run(parameter, draft.value.study)) {
+        choice.settings[parameter] = value;
+      }
     }
     out.emplace(label, choice);
   }

@@ -71,10 +71,11 @@ void material(Section s) {
            "linear: normal force of the dashpot per reduced mass and approach velocity");
   s.number("tangential_damping", "1/s", +IN(double, material.tangential_damping), kNotNegative,
            "linear: the same, tangential");
-  s.number("friction", "-", +IN(double, material.friction), {0, 10},
-           "Coulomb coefficient grain on grain; more merges the two peaks of the √3 lattice into "
-           "one",
-           kRoul);
+  s.number(
+      "friction", "-", +IN(double, material.friction), {0, 10},
+      "Coulomb coefficient grain on grain; more merges the two peaks of the sqrt(3) lattice into "
+      "one",
+      kRoul);
   s.number("floor_friction", "-", +IN(double, material.floor_friction), {0, 10},
            "Coulomb coefficient grain on flat floor", kRoul);
   s.number("wall_friction", "-", +IN(double, material.wall_friction), {0, 10},

@@ -196,6 +196,7 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
   continuum::solve_on(value.study == "point-load" ? continuum::Ranks::own : continuum::Ranks::all);
   std::vector<StudyResult> results;
   for (const auto& member : members) {
+    if (interrupted()) throw Interrupted("stopped");
     options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",
                              member.suffix));
     results.push_back(analyse(member, place, options.threads));

@@ -25,9 +25,11 @@ void write_any(hid_t group, const std::string& name, const std::vector<T>& value
   const hsize_t rows = values.size() / static_cast<std::size_t>(columns);
   const hsize_t shape[2] = {rows, static_cast<hsize_t>(columns)};
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, shape, nullptr), H5Sclose);
+  // Without the time of writing: the same data give the same bits.
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
   const Handle set(
-      H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      H5Dclose);
+      H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
   if (!set.valid()) fail_write(name);
   if (rows > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     fail_write(name);

@@ -1,0 +1,84 @@
+// The declarations of case keys and summary keys, and the pages generated from them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "coupling/case/keys.h"
+#include "coupling/run/summary_keys.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Keys, EveryPathIsDeclaredOnceWithMeaningUnitAndDefault) {
+  std::set<std::string> seen;
+  const Case defaults;
+  for (const Key& key : keys()) {
+    EXPECT_TRUE(seen.insert(key.path()).second) << key.path();
+    EXPECT_FALSE(key.meaning.empty()) << key.path();
+    EXPECT_FALSE(key.unit.empty()) << key.path();
+    EXPECT_FALSE(value_text(key, defaults).empty()) << key.path();
+    EXPECT_EQ(find_key(key.path()), &key);
+  }
+  EXPECT_GT(keys().size(), 50U);
+}
+
+TEST(Keys, TwoKeysNeverShareAMember) {
+  std::set<const void*> seen;
+  Case value;
+  for (const Key& key : keys()) {
+    const void* where = std::visit([&](auto f) -> const void* { return &f(value); }, key.where);
+    EXPECT_TRUE(seen.insert(where).second) << key.path();
+  }
+}
+
+TEST(Keys, EveryDefaultIsAllowed) {
+  // The written-out default case of every study is valid.
+  const testing::Folder folder;
+  for (const char* study : {"point-load", "elastic-layer", "elastic-half-space"}) {
+    Case value;
+    value.study = study;
+    value.title = "defaults";
+    const std::string file = folder.write(std::string(study) + ".toml", write_case(value));
+    EXPECT_NO_THROW(read_case(file, false, {})) << study;
+  }
+}
+
+TEST(Keys, TextNamesUnitRangeAndSource) {
+  const std::string text = keys_text("material");
+  EXPECT_THAT(text, HasSubstr("[material]"));
+  EXPECT_THAT(text, HasSubstr("friction = 0.5  (number; no unit; 0 to 10)"));
+  EXPECT_THAT(text, HasSubstr("[Roul table 5.1]"));
+  EXPECT_EQ(text.find("[packing]"), std::string::npos);
+}
+
+TEST(Keys, UnknownSectionNamesTheNearest) {
+  try {
+    keys_text("materiel");
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), HasSubstr("no section 'materiel'; nearest: material"));
+  }
+}
+
+TEST(Keys, ThePagesInDocsAreThoseOfTheDeclarations) {
+  const std::string docs = std::string(GRAINFIELD_CASES) + "/../docs/";
+  EXPECT_EQ(testing::read_text(docs + "keys.md"), keys_markdown())
+      << "regenerate: grainfield keys --markdown > docs/keys.md";
+  EXPECT_EQ(testing::read_text(docs + "summary-keys.md"), summary_keys_markdown())
+      << "regenerate: grainfield keys --summary --markdown > docs/summary-keys.md";
+}
+
+TEST(SummaryKeys, PatternsMatchWholeNames) {
+  ASSERT_NE(find_summary_key("compare.layer_rough.base.rel_l2"), nullptr);
+  EXPECT_EQ(find_summary_key("compare.layer.rel_l2")->pattern, "compare.*.rel_l2");
+  EXPECT_EQ(find_summary_key("dem.grainz"), nullptr);
+  EXPECT_EQ(find_summary_key("compare..rel"), nullptr);
+  EXPECT_THROW(require_documented({{"nobody.knows", 1.0}}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

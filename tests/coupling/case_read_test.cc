@@ -1,0 +1,294 @@
+// Reading case files: values, overrides, and one clear line for every mistake.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "coupling/case/case.h"
+#include "coupling/case/document.h"
+#include "coupling/case/keys.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using ::testing::EndsWith;
+using testing::Folder;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// What reading says of a file with this text; "" when it is accepted.
+std::string complaint(const std::string& text, const Overrides& set = {}, bool quick = false) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", text);
+  try {
+    read_case(file, quick, set);
+  } catch (const std::invalid_argument& e) {
+    const std::string what = e.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    // The folder differs from run to run.
+    return what.compare(0, file.size(), file) == 0 ? "x.toml" + what.substr(file.size()) : what;
+  }
+  return "";
+}
+
+Case accepted(const std::string& text, const Overrides& set = {}, bool quick = false) {
+  const Folder folder;
+  return read_case(folder.write("x.toml", text), quick, set);
+}
+
+TEST(ReadCase, FillsTheStructsAndKeepsDefaults) {
+  const Case value = accepted(R"(title = "t"
+[packing]
+radius_max = 0.006
+[material]
+friction = 1
+[ensemble]
+realizations = 7
+[average]
+depths = [0.1, 0.9]
+[output]
+vtu = false
+)");
+  EXPECT_EQ(value.name, "x");
+  EXPECT_EQ(value.title, "t");
+  EXPECT_EQ(value.layer.packing.radius_max, 0.006);
+  EXPECT_EQ(value.layer.packing.radius_min, dem::PackingSetup().radius_min);
+  EXPECT_EQ(value.layer.material.friction, 1.0);
+  EXPECT_EQ(value.ensemble.realizations, 7);
+  EXPECT_EQ(value.average.depths, (std::vector<double>{0.1, 0.9}));
+  EXPECT_FALSE(value.output.vtu);
+  ASSERT_EQ(value.models.size(), 3U);
+  EXPECT_EQ(value.models[0].name, "flamant");
+}
+
+TEST(ReadCase, OverridesComeLast) {
+  const std::string text = "[material]\nfriction = 0.1\n[quick.material]\nfriction = 0.2\n";
+  EXPECT_EQ(accepted(text).layer.material.friction, 0.1);
+  EXPECT_EQ(accepted(text, {}, true).layer.material.friction, 0.2);
+  EXPECT_EQ(accepted(text, {"material.friction=0.3"}, true).layer.material.friction, 0.3);
+  EXPECT_EQ(accepted(text, {"material.friction=0.3"}).layer.material.friction, 0.3);
+}
+
+TEST(ReadCase, OverridesTakeBareWordsListsAndTitles) {
+  const Case value =
+      accepted("", {"packing.floor=rough", "compare.models=flamant", "average.depths=[0.2, 0.4]",
+                    "title=5 grains", "motion.time_step = 0"});
+  EXPECT_EQ(value.layer.packing.floor, "rough");
+  EXPECT_EQ(value.compare.models, std::vector<std::string>{"flamant"});
+  EXPECT_EQ(value.average.depths.size(), 2U);
+  EXPECT_EQ(value.title, "5 grains");
+}
+
+TEST(ReadCase, ModelTablesByLabel) {
+  const Case value = accepted(R"([compare]
+models = ["layer", "r"]
+[model.r]
+name = "layer"
+base = "rough"
+nu = 0.2
+)");
+  ASSERT_EQ(value.models.size(), 2U);
+  EXPECT_EQ(value.models[1].label, "r");
+  EXPECT_EQ(value.models[1].name, "layer");
+  EXPECT_EQ(value.models[1].settings.at("base"), "rough");
+  EXPECT_EQ(std::stod(value.models[1].settings.at("nu")), 0.2);
+}
+
+TEST(ReadCase, TheWrittenCaseReadsBackToItself) {
+  const Folder folder;
+  const Case value = accepted(testing::tiny_case());
+  const std::string once = write_case(value);
+  const Case again = read_case(folder.write("x.toml", once), false, {});
+  EXPECT_EQ(write_case(again), once);
+  EXPECT_EQ(again.layer.packing.jitter, value.layer.packing.jitter);
+  // Every key of the study is spelled out.
+  for (const Key& key : keys()) {
+    if (!section_applies(key.section, "point-load") || key.section == "sweep") continue;
+    EXPECT_THAT(once, HasSubstr("\n" + key.name + " = ")) << key.path();
+  }
+}
+
+TEST(ReadCase, SweepMembers) {
+  const Case value = accepted("[sweep]\nkey = \"material.friction\"\nvalues = [0.3, 0.6]\n");
+  const auto members = sweep_cases(value);
+  ASSERT_EQ(members.size(), 2U);
+  EXPECT_EQ(members[1].suffix, "friction_0.6");
+  EXPECT_EQ(members[1].value.layer.material.friction, 0.6);
+  EXPECT_TRUE(members[1].value.sweep.key.empty());
+  EXPECT_EQ(members[1].value.models.size(), value.models.size());
+  // The written-out case has the sweep.
+  const Folder folder;
+  EXPECT_EQ(sweep_cases(read_case(folder.write("x.toml", write_case(value)), false, {})).size(),
+            2U);
+}
+
+TEST(CaseErrors, UnknownNames) {
+  EXPECT_EQ(complaint("\n[material]\nfrction = 0.5\n"),
+            "x.toml:3: material.frction: unknown key; nearest: material.friction");
+  EXPECT_EQ(complaint("[materiel]\nfriction = 0.5\n"),
+            "x.toml:2: materiel: unknown section; nearest: material");
+  EXPECT_EQ(complaint("[materiel]\n"), "x.toml:1: materiel: unknown section; nearest: material");
+  EXPECT_EQ(complaint("tittle = \"a\"\n"), "x.toml:1: tittle: unknown key; nearest: title");
+  // A key in the wrong section is found where it belongs.
+  EXPECT_EQ(complaint("[packing]\nfriction = 0.5\n"),
+            "x.toml:2: packing.friction: unknown key; nearest: material.friction");
+}
+
+TEST(CaseErrors, EveryKeyIsFoundFromAMisspelling) {
+  std::mt19937 random(7);
+  for (const Key& key : keys()) {
+    if (key.name.size() < 5) continue;
+    std::string wrong = key.name;
+    std::swap(wrong[2], wrong[3]);
+    if (wrong == key.name || find_key(key.section + "." + wrong) != nullptr) continue;
+    const std::string text =
+        key.section.empty() ? wrong + " = 1\n" : "[" + key.section + "]\n" + wrong + " = 1\n";
+    EXPECT_THAT(complaint(text), EndsWith("nearest: " + key.path())) << wrong;
+  }
+}
+
+TEST(CaseErrors, WrongTypes) {
+  EXPECT_EQ(complaint("[material]\nfriction = \"high\"\n"),
+            "x.toml:2: material.friction: found \"high\" (text), expected a number");
+  EXPECT_EQ(complaint("[packing]\nrows = 2.5\n"),
+            "x.toml:2: packing.rows: found 2.5 (number), expected an integer");
+  EXPECT_EQ(complaint("[output]\nvtu = 1\n"),
+            "x.toml:2: output.vtu: found 1 (integer), expected a boolean");
+  EXPECT_EQ(complaint("[packing]\nfloor = true\n"),
+            "x.toml:2: packing.floor: found true (boolean), expected a word");
+  EXPECT_EQ(complaint("[packing]\nradius = [1, 2]\n"),
+            "x.toml:2: packing.radius: found a list [1, 2], expected a number");
+  EXPECT_EQ(complaint("[packing]\nradius = 1979-05-27\n"),
+            "x.toml:2: packing.radius: found a date or time, expected a number");
+  EXPECT_EQ(complaint("material = 3\n"), "x.toml:1: material: unknown key; nearest: material.law");
+}
+
+TEST(CaseErrors, OutOfRange) {
+  EXPECT_EQ(complaint("[material]\nfriction = -1\n"),
+            "x.toml:2: material.friction: found -1, allowed: 0 to 10");
+  EXPECT_EQ(complaint("[material]\nyoung = 0\n"),
+            "x.toml:2: material.young: found 0, allowed: above 0");
+  EXPECT_EQ(complaint("[material]\nyoung = nan\n"),
+            "x.toml:2: material.young: found nan, allowed: above 0");
+  EXPECT_EQ(complaint("[material]\nyoung = inf\n"),
+            "x.toml:2: material.young: found inf, allowed: above 0");
+  EXPECT_EQ(complaint("[packing]\nfloor = \"rouhg\"\n"),
+            "x.toml:2: packing.floor: found \"rouhg\", allowed: smooth | rough; nearest: rough");
+  EXPECT_EQ(complaint("[average]\ndepths = [0.5, 1.5]\n"),
+            "x.toml:2: average.depths: found 1.5, allowed: above 0, up to 1");
+  EXPECT_EQ(complaint("[average]\ndepths = []\n"),
+            "x.toml:2: average.depths: found an empty list, expected numbers");
+}
+
+TEST(CaseErrors, BetweenKeys) {
+  EXPECT_EQ(complaint("[packing]\nradius_min = 0.01\n"),
+            "x.toml:2: packing.radius_min: found 0.01, allowed: up to packing.radius_max = 0.0054");
+  EXPECT_THAT(complaint("study = \"elastic-layer\"\n[packing]\nrows = 3\n"),
+              HasSubstr("x.toml:3: packing.rows: has no meaning for study = \"elastic-layer\""));
+  EXPECT_THAT(
+      complaint("study = \"elastic-layer\"\n[elastic]\nheight = 0.1\ndepths = [0.2]\n"),
+      HasSubstr("x.toml:4: elastic.depths: found 0.2, allowed: up to elastic.height = 0.1"));
+}
+
+TEST(CaseErrors, TimeStepAboveTheStableLimitNamesTheLimit) {
+  const std::string what = complaint("[motion]\n\ntime_step = 0.1\n");
+  EXPECT_THAT(what, HasSubstr("x.toml:3: motion.time_step: found 0.1 s, allowed: at most"));
+  EXPECT_THAT(what, HasSubstr("stable limit of"));
+}
+
+TEST(CaseErrors, Models) {
+  EXPECT_THAT(complaint("[compare]\nmodels = [\"flamand\"]\n"),
+              HasSubstr("x.toml:2: compare.models: no model 'flamand'; did you mean 'flamant'?"));
+  EXPECT_THAT(complaint("[compare]\nmodels = [\"layer\", \"layer\"]\n"),
+              HasSubstr("\"layer\" twice"));
+  EXPECT_THAT(complaint("[compare]\nmodels = [\"boussinesq\"]\n"),
+              HasSubstr("x.toml:2: compare.models: \"boussinesq\" is three-dimensional"));
+  EXPECT_THAT(
+      complaint("[model.layer]\nnuu = 0.3\n"),
+      HasSubstr("x.toml:2: model.layer.nuu: model layer: no parameter 'nuu'; did you mean 'nu'?"));
+  EXPECT_THAT(complaint("[model.layer]\nnu = 0.7\n"),
+              HasSubstr("x.toml:2: model.layer.nu: model layer: nu = 0.7 is out of range"));
+  EXPECT_THAT(complaint("[model.mine]\nnu = 0.3\n"), HasSubstr("no model 'mine'"));
+}
+
+TEST(CaseErrors, Sweeps) {
+  EXPECT_THAT(complaint("[sweep]\nkey = \"material.frction\"\nvalues = [1]\n"),
+              HasSubstr("x.toml:2: sweep.key: material.frction: unknown key; nearest: "
+                        "material.friction"));
+  EXPECT_THAT(complaint("[sweep]\nkey = \"material.friction\"\nvalues = [0.1, -1]\n"),
+              HasSubstr("x.toml:3: sweep.values: material.friction: found -1, allowed: 0 to 10"));
+  EXPECT_THAT(complaint("[sweep]\nkey = \"material.friction\"\n"), HasSubstr("needs sweep.values"));
+  EXPECT_THAT(complaint("[sweep]\nkey = \"material.friction\"\nvalues = [1, 1]\n"),
+              HasSubstr("twice"));
+}
+
+TEST(CaseErrors, TomlSyntaxAndDuplicates) {
+  EXPECT_THAT(complaint("[material\nfriction = 1\n"), HasSubstr("x.toml:1: not valid TOML: "));
+  EXPECT_THAT(complaint("[material]\nfriction = 1\nfriction = 2\n"),
+              HasSubstr("x.toml:3: not valid TOML: "));
+  EXPECT_THAT(complaint("a = 1\n\xff\xfe"), HasSubstr("not valid TOML: "));
+}
+
+TEST(CaseErrors, QuickIsCheckedEvenWhenUnused) {
+  EXPECT_EQ(complaint("[quick.material]\nfrction = 0.5\n"),
+            "x.toml:2: material.frction: unknown key; nearest: material.friction");
+  EXPECT_THAT(complaint("quick = 1\n"), HasSubstr("x.toml:1: quick: found a value"));
+}
+
+TEST(CaseErrors, Overrides) {
+  EXPECT_EQ(complaint("", {"material.frction=1"}),
+            "--set: material.frction: unknown key; nearest: material.friction");
+  EXPECT_EQ(complaint("", {"material.friction=-1"}),
+            "--set: material.friction: found -1, allowed: 0 to 10");
+  EXPECT_EQ(complaint("", {"material.friction=much"}),
+            "--set: material.friction: found \"much\" (text), expected a number");
+  EXPECT_EQ(complaint("", {"material.friction"}),
+            "--set: found \"material.friction\", expected key.path=value");
+  EXPECT_EQ(complaint("", {"=3"}), "--set: found \"=3\", expected key.path=value");
+}
+
+TEST(CaseErrors, FilesThatCannotBeRead) {
+  const Folder folder;
+  EXPECT_THROW(read_case(folder / "none.toml", false, {}), std::invalid_argument);
+  try {
+    read_case(folder.path(), false, {});
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), HasSubstr("is a folder, expected a case file"));
+  }
+}
+
+// Random bytes and random cuts of a valid file: always a case or one line, never anything else.
+TEST(CaseErrors, RandomDamageGivesOneLine) {
+  std::mt19937 random(11);
+  const std::string good = testing::tiny_case();
+  int refused = 0;
+  for (int n = 0; n < 300; ++n) {
+    std::string text = good;
+    const int changes = 1 + static_cast<int>(random() % 3);
+    for (int c = 0; c < changes; ++c)
+      text[random() % text.size()] = static_cast<char>(32 + random() % 95);
+    if (n % 3 == 0) text.resize(random() % text.size());
+    refused += complaint(text).empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(ShippedCases, AreValidWithTitleAndQuickSetting) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(GRAINFIELD_CASES)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const std::string file = entry.path().string();
+    EXPECT_NO_THROW(read_case(file, false, {})) << file;
+    EXPECT_NO_THROW(read_case(file, true, {})) << file;
+    EXPECT_FALSE(case_title(file).empty()) << file;
+    EXPECT_NE(write_case(read_case(file, true, {})), write_case(read_case(file, false, {})))
+        << file;
+  }
+  EXPECT_GE(count, 6);
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
