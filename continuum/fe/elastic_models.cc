@@ -87,8 +87,8 @@ class BoxModel : public Model {
 
   Stresses stress(const Points& points) override {
     if (!solver_) {
-      solver_ =
-          std::make_unique<ElasticSolver<dim>>(fe::communicator(), degree_, iterations_, name_);
+      solver_ = std::make_unique<ElasticSolver<dim>>(fe::communicator(ranks_), degree_, iterations_,
+                                                     name_);
       try {
         build_mesh(solver_->mesh());
         solve();
@@ -214,6 +214,7 @@ class BoxModel : public Model {
   double tolerance_;
   int refinements_, degree_, iterations_;
   std::string name_;
+  Ranks ranks_ = fe::chosen_ranks();
   std::unique_ptr<ElasticSolver<dim>> solver_;
 };
 

@@ -44,9 +44,11 @@ class MpiSession {
 
 void fe::choose_ranks(Ranks ranks) { g_ranks = ranks; }
 
-MPI_Comm fe::communicator() {
+Ranks fe::chosen_ranks() { return g_ranks; }
+
+MPI_Comm fe::communicator(Ranks ranks) {
   static const MpiSession session;
-  return g_ranks == Ranks::all ? MPI_COMM_WORLD : MPI_COMM_SELF;
+  return ranks == Ranks::all ? MPI_COMM_WORLD : MPI_COMM_SELF;
 }
 
 }  // namespace grainfield::continuum

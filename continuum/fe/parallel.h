@@ -2,10 +2,15 @@
 #pragma once
 #include <mpi.h>
 
+#include "continuum/fe/elastic.h"
+
 namespace grainfield::continuum::fe {
 
-/// The communicator of solve_on() in elastic.h, with MPI and p4est ready. Starts MPI when the
-/// program has not, and then also ends it at exit.
-MPI_Comm communicator();
+/// What choose_ranks() (plugin.h) last chose.
+Ranks chosen_ranks();
+
+/// The communicator of these ranks, with MPI and p4est ready. Starts MPI when the program has not,
+/// and then also ends it at exit.
+MPI_Comm communicator(Ranks ranks);
 
 }  // namespace grainfield::continuum::fe
