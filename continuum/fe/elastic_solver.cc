@@ -268,7 +268,7 @@ void ElasticSolver<dim>::solve_linear() {
   data.elliptic = true;
   data.higher_order_elements = degree_ > 1;
   data.smoother_sweeps = 2;
-  data.aggregation_threshold = 0.02;
+  data.aggregation_threshold = 0;  // every coupling counts: regular grids have no weak ones
   Teuchos::ParameterList parameters;
   std::unique_ptr<Epetra_MultiVector> constant;
   data.set_parameters(parameters, constant, matrix_);
