@@ -128,12 +128,14 @@ std::string family_of(const std::string& model_name) {
 }
 
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
-                   double depth) {
+                   double depth, int realizations) {
   check(profiles, models);
   Comparison c;
   c.load = load;
   c.depth = depth;
-  c.realizations = std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
+  c.realizations = realizations > 0
+                       ? realizations
+                       : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
   for (const Profile& p : profiles) c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
   for (const ModelProfiles& model : models) {
     ModelComparison result{model.key, model.label, model.family, {}, {}, {}};

@@ -75,10 +75,11 @@ struct Comparison {
   double depth = 0;  ///< h, m; F/h is the unit of normalised profiles
 };
 
-/// Throws std::invalid_argument for no profile, no model, sizes that differ, or a simulation that
-/// is nan everywhere.
+/// `realizations`: behind the profiles' errors; 0: as many as the profiles have samples. Throws
+/// std::invalid_argument for no profile, no model, sizes that differ, or a simulation that is nan
+/// everywhere.
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
-                   double depth);
+                   double depth, int realizations = 0);
 
 /// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,dof}, also per profile as
 /// compare.MODEL.PROFILE.*, verdict.position, verdict.position_error, and of the profile `main`

@@ -20,6 +20,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double confidence = 0.95;
 // With fewer realizations the errors are too uncertain to weigh points by: rank by relative L2.
 constexpr int least_for_chi2 = 4;
+// Errors below this share of the signal are rounding: the realizations are copies of one.
+constexpr double rounding = 1e-9;
+// A model fits when its chi2/dof is within so many standard deviations sqrt(2/dof) of 1.
+constexpr double chi2_sigmas = 3;
 // A model that misses by more than half of the signal describes nothing, even when others do worse.
 constexpr double most_rel_l2 = 0.5;
 
@@ -62,6 +66,20 @@ bool beyond_spread(const Projection& p, int realizations) {
   return p.position - 0.5 > quantile(t, (1 + confidence) / 2) * p.error;
 }
 
+// Whether the realizations differ at all (those of a perfect lattice do not).
+bool has_spread(const Comparison& c) {
+  double error = 0, signal = 0;
+  for (const Profile& p : c.profiles) {
+    for (Eigen::Index i = 0; i < p.error.size(); ++i) {
+      if (std::isfinite(p.error[i])) error = std::max(error, p.error[i]);
+    }
+    for (Eigen::Index i = 0; i < p.mean.size(); ++i) {
+      if (std::isfinite(p.mean[i])) signal = std::max(signal, std::fabs(p.mean[i]));
+    }
+  }
+  return error > rounding * signal;
+}
+
 double score(const ModelComparison& result, bool by_chi2) {
   const double value = by_chi2 ? result.overall.chi2_per_dof : result.overall.rel_l2;
   return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
@@ -78,7 +96,8 @@ std::string describe(const ModelComparison& result, bool by_chi2) {
 
 Verdict judge(const Comparison& c) {
   Verdict v;
-  const bool by_chi2 = c.realizations >= least_for_chi2 &&
+  const bool spread = has_spread(c);
+  const bool by_chi2 = spread && c.realizations >= least_for_chi2 &&
                        std::all_of(c.results.begin(), c.results.end(), [](const auto& r) {
                          return std::isfinite(r.overall.chi2_per_dof);
                        });
@@ -110,7 +129,8 @@ Verdict judge(const Comparison& c) {
                              describe(best, by_chi2), runner_up);
     return v;
   }
-  const Projection p = project(c, c.models[*other], c.models[order.front()]);
+  Projection p = project(c, c.models[*other], c.models[order.front()]);
+  if (!spread) p.error = nan;
   v.position = p.position;
   v.position_error = p.error;
   v.distinguishable = beyond_spread(p, c.realizations);
@@ -132,9 +152,22 @@ Verdict judge(const Comparison& c) {
     v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
   } else {
     v.sentence = fmt::format(
-        "One realization, spread unknown: the grains are nearest to {}, against {}; on the line "
-        "from {} (0) to {} (1) they stand at {:.2f}.",
+        "{}: the grains are nearest to {}, against {}; on the line from {} (0) to {} (1) they "
+        "stand "
+        "at {:.2f}.",
+        c.realizations < 2 ? "One realization, spread unknown"
+        : spread ? fmt::format("Mean of {} realizations without their single values, spread of the "
+                               "position unknown",
+                               c.realizations)
+                 : fmt::format("All {} realizations are equal, spread unknown", c.realizations),
         describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
+  }
+  const double excess = chi2_sigmas * std::sqrt(2 / best.overall.dof);
+  if (by_chi2 && !none && best.overall.chi2_per_dof > 1 + excess) {
+    v.sentence += fmt::format(
+        " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
+        "would be chance.",
+        best.overall.chi2_per_dof, 1 + excess);
   }
   if (none) {
     v.sentence = fmt::format(

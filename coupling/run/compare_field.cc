@@ -150,7 +150,7 @@ std::string compare_field(const CompareRequest& request) {
     }
   }
   const Comparison comparison =
-      compare(std::move(profiles), std::move(models), facts.force, facts.height);
+      compare(std::move(profiles), std::move(models), facts.force, facts.height, realizations);
   result.summary["version"] = std::string(GRAINFIELD_VERSION);
   result.summary["ensemble.realizations"] = static_cast<std::int64_t>(realizations);
   result.summary["layer.depth"] = facts.height;

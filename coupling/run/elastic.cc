@@ -122,6 +122,14 @@ StudyResult analyse_elastic(const Case& value) {
   }
   out.summary["time.continuum_s"] = seconds;
   out.comparison = compare(std::move(profiles), std::move(models), facts.force, facts.height);
+  // No grains here: the first model is the reference, and there is nothing to support.
+  std::string sentence;
+  for (const auto& result : out.comparison.results) {
+    sentence +=
+        fmt::format("{}{} differs from {} by {:.2g} % (relative L2)", sentence.empty() ? "" : "; ",
+                    result.label, choices.front().label, 100 * result.overall.rel_l2);
+  }
+  out.comparison.verdict.sentence = sentence + ".";
   add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
   return out;
 }

@@ -88,8 +88,26 @@ class Workplace {
     write_text_file((checkpoint_ / "case.toml").string(), identity(value));
   }
 
-  // Moves everything that is complete to its place, summary.json last.
+  // Finished or half-done realizations that --resume could go on from.
+  bool holds_work() const noexcept {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(checkpoint_, error)) {
+      if (entry.path().filename() != "case.toml") return true;
+    }
+    return false;
+  }
+
+  // Moves everything that is complete to its place. An earlier run's results go first, its
+  // summary.json before all: a summary never stands beside another run's data.
   void publish() {
+    fs::remove(folder_ / "summary.json");
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      const bool ours = name == "report.html" || name == "snapshots.h5" || name == "fields.h5" ||
+                        name == "fields.xdmf" || name.starts_with("profiles.") ||
+                        name.ends_with(".vtu");
+      if (ours && entry.is_regular_file()) fs::remove(entry.path());
+    }
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
       if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), partial_));
@@ -233,7 +251,7 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
                     "command and --resume",
                     options.folder));
   } catch (...) {
-    if (ranks.first() && opened) place.abandon(false);
+    if (ranks.first() && opened) place.abandon(place.holds_work());
     throw;
   }
 }

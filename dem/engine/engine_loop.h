@@ -115,6 +115,7 @@ class EngineLoop final : public Engine {
   void sweep(int rank, long step_index, double dt);
   bool pair_force(int i, int k, double dt, ContactForce& force);
   std::array<double, 2> applied_at(double t) const;
+  void start_new_grains();
   void check_motion();
   ContactForce evaluate(const Body& a, const Body& b, const Overlap& o, double mu, double dt,
                         double& spring) const;
@@ -314,15 +315,8 @@ void EngineLoop<Shape, Law, Integrator>::step(long n) {
   const double dt = settings_.time_step;
   const long start = steps_;
   moved_ = false;
+  if (first_new_ < static_cast<std::int64_t>(ids_.size())) start_new_grains();
   team_.run([&](int rank) {
-    if (first_new_ < static_cast<std::int64_t>(ids_.size())) {
-      // Grains added since the last step get the acceleration of where they stand, so that the
-      // first step is as accurate as any other. A zero step leaves the springs as they are.
-      incoming(rank, 0);
-      team_.meet();
-      sweep<SweepKind::start>(rank, start - 1, 0);
-      team_.meet();
-    }
     begin_all(rank);
     for (long s = 0; s < n; ++s) {
       team_.meet();
@@ -348,8 +342,22 @@ void EngineLoop<Shape, Law, Integrator>::step(long n) {
     }
   });
   if (diverged_) report_divergence();
-  first_new_ = static_cast<std::int64_t>(ids_.size());
   steps_ = start + n;
+}
+
+/// Grains added since the last step get the acceleration of where they stand, so that their first
+/// step is as accurate as any other. The contacts' memories stay as they are.
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::start_new_grains() {
+  const std::vector<Pair> pairs = pairs_, wall_pairs = wall_pairs_;
+  team_.run([&](int rank) {
+    incoming(rank, 0);
+    team_.meet();
+    sweep<SweepKind::start>(rank, steps_ - 1, 0);
+  });
+  pairs_ = pairs;
+  wall_pairs_ = wall_pairs;
+  first_new_ = static_cast<std::int64_t>(ids_.size());
 }
 
 template <class Shape, class Law, class Integrator>

@@ -20,9 +20,11 @@ struct OverlapAreaLaw {
   double tangential_stiffness() const { return young * (2.0 / 7); }
 
   /// Decay rate of the fastest dashpot mode of a packing of equal disks of mass m, 1/s: six
-  /// neighbours spinning alike, 24 c/m with c = sqrt((2/7) E m/6).
+  /// neighbours spinning alike, 24 c/m with c = sqrt((2/7) E m/6), or moving against each other,
+  /// 6 c/m with c = gamma (chord/l) sqrt(E m/2) and a chord of 0.6 l (an overlap of 2 % of r).
   double viscous_rate(double mass) const {
-    return 24 * std::sqrt(tangential_stiffness() / (6 * mass));
+    return std::max(24 * std::sqrt(tangential_stiffness() / (6 * mass)),
+                    6 * 0.6 * damping * std::sqrt(young / (2 * mass)));
   }
 
   LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,

@@ -255,6 +255,27 @@ TEST(Compare, VerdictWhenNoModelFits) {
                              HasSubstr("nearer to the"), Not(HasSubstr("support"))));
 }
 
+TEST(Compare, EqualRealizationsProveNothing) {
+  Scene s = scene(4, 0.92, 0.05);
+  for (Profile& p : s.profiles) {
+    for (Eigen::Index r = 0; r < p.samples.cols(); ++r) p.samples.col(r) = p.mean;
+    p.error.setZero();
+  }
+  const Comparison c = compared(s);
+  EXPECT_FALSE(c.verdict.distinguishable);
+  EXPECT_EQ(c.verdict.ranked_by, "rel_l2");
+  EXPECT_THAT(c.verdict.sentence, testing::StartsWith("All 4 realizations are equal"));
+}
+
+TEST(Compare, FilesWithoutSamplesKeepTheirCount) {
+  Scene s = scene(8, 0.92, 0.05);
+  for (Profile& p : s.profiles) p.samples.resize(0, 0);
+  const Comparison c = compare(s.profiles, s.models, 300, 0.15, 8);
+  EXPECT_EQ(c.realizations, 8);
+  EXPECT_EQ(c.verdict.ranked_by, "chi2_per_dof");
+  EXPECT_THAT(c.verdict.sentence, testing::StartsWith("Mean of 8 realizations"));
+}
+
 TEST(Compare, VerdictWithinTheSpread) {
   const Comparison c = compared(scene(4, 0.8, 4));
   EXPECT_FALSE(c.verdict.distinguishable);
