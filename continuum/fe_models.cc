@@ -66,19 +66,20 @@ std::vector<Parameter> common_parameters() {
           number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
 }
 
-std::vector<Parameter> numerical_parameters(const std::string& tolerances, double refinements) {
+std::vector<Parameter> numerical_parameters(const std::string& tolerances, int refinements) {
   return {
-      number("degree", "-",
-             "polynomial degree of the elements, cost per unknown grows with it; 0: 3 in 2D, 2 "
-             "in 3D",
-             "numerics", 0, 0, 4),
+      whole_number(
+          "degree",
+          "polynomial degree of the elements, cost per unknown grows with it; 0: 3, but 2 for "
+          "the layer in 3D",
+          "numerics", 0, 0, 4),
       number("tolerance", "-",
              "change of the stress by the last refinement at which refinement ends; " + tolerances,
              "numerics", 0, 0, 1),
       number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements, 1,
              20),
-      number("iterations", "-", "most iterations of conjugate gradients in a solve", "numerics",
-             500, 1, 100000)};
+      whole_number("iterations", "most iterations of conjugate gradients in a solve", "numerics",
+                   500, 1, 100000)};
 }
 
 std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
@@ -94,19 +95,19 @@ void solve_on(Ranks ranks) { g_ranks = ranks; }
 ModelInfo fe_elastic_layer_info() {
   return {
       layer_name, "elastic layer on a rigid base under a point load, finite elements", 0,
-      joined(
-          {common_parameters(),
-           {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
-            choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
-                   {"smooth", "rough"}),
-            number("half_width", "h", "half the width of the domain, in depths", "numerics", 8, 1,
-                   1000),
-            choice("sides",
-                   "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
-                   "without shear, as of a box",
-                   "elasticity", {"free", "smooth"}),
-            number("cells", "-", "cells over the depth before refinement", "numerics", 2, 1, 1000)},
-           numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
+      joined({common_parameters(),
+              {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+               choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
+                      {"smooth", "rough"}),
+               number("half_width", "h", "half the width of the domain, in depths", "numerics", 8,
+                      1, 1000),
+               choice("sides",
+                      "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
+                      "without shear, as of a box",
+                      "elasticity", {"free", "smooth"}),
+               whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1,
+                            1000)},
+              numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
       make_in_plugin<layer_name>};
 }
 
@@ -124,8 +125,9 @@ ModelInfo fe_elastic_half_space_info() {
                    "least distance of the mesh's end from the load, in depths; what is felt "
                    "of the end falls like 1/radius (3D: its square); 0: 10000 in 2D, 50 in 3D",
                    "numerics", 0, 0, 1e9),
-            number("cells", "-", "cells per distance from the load before refinement", "numerics",
-                   2, 1, 100)},
+            number("cells", "-",
+                   "cells per distance from the load before refinement; 0: 2 in 2D, 1 in 3D",
+                   "numerics", 0, 0, 100)},
            numerical_parameters(
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
       make_in_plugin<half_space_name>};

@@ -31,6 +31,7 @@ struct Parameter {
   double value = 0;                  ///< default of a numerical parameter
   double least = 0, most = 0;        ///< allowed range, inclusive unless the meaning says otherwise
   std::vector<std::string> choices;  ///< not empty: a parameter of words; the first is the default
+  bool whole = false;                ///< only whole numbers
 };
 
 /// Values chosen by the user: numbers as text or words, by parameter name.

@@ -55,7 +55,8 @@ std::string allowed(const Parameter& parameter) {
     return fmt::format("above 0 and at most {}{}", parameter.most, unit);
   if (above_zero) return "above 0" + unit;
   if (bounded_below && bounded_above)
-    return fmt::format("{} to {}{}", parameter.least, parameter.most, unit);
+    return fmt::format("{}{} to {}{}", parameter.whole ? "whole numbers " : "", parameter.least,
+                       parameter.most, unit);
   if (bounded_below) return fmt::format("at least {}{}", parameter.least, unit);
   if (bounded_above) return fmt::format("at most {}{}", parameter.most, unit);
   return "any number" + unit;
@@ -63,19 +64,29 @@ std::string allowed(const Parameter& parameter) {
 
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
                  double value, double least, double most) {
-  return {std::move(name),
-          std::move(unit),
-          std::move(meaning),
-          std::move(source),
-          value,
-          least,
-          most,
-          {}};
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.unit = std::move(unit);
+  parameter.meaning = std::move(meaning);
+  parameter.source = std::move(source);
+  parameter.value = value;
+  parameter.least = least;
+  parameter.most = most;
+  return parameter;
+}
+
+Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
+                       int least, int most) {
+  Parameter parameter =
+      number(std::move(name), "-", std::move(meaning), std::move(source), value, least, most);
+  parameter.whole = true;
+  return parameter;
 }
 
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices) {
-  return {std::move(name), "-", std::move(meaning), std::move(source), 0, 0, 0, std::move(choices)};
+  return {std::move(name),    "-",  std::move(meaning), std::move(source), 0, 0, 0,
+          std::move(choices), false};
 }
 
 Settings complete(const ModelInfo& info, const Settings& settings) {
@@ -102,7 +113,8 @@ Settings complete(const ModelInfo& info, const Settings& settings) {
       full[parameter.name] = fmt::format("{}", parameter.value);
     } else {
       const double value = parse(info, parameter, found->second);
-      if (value < parameter.least || value > parameter.most)
+      if (value < parameter.least || value > parameter.most ||
+          (parameter.whole && value != std::round(value)))
         throw BadParameter(fmt::format("model {}: {} = {} is out of range; allowed: {}", info.name,
                                        parameter.name, found->second, allowed(parameter)));
       full[parameter.name] = found->second;

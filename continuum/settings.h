@@ -15,6 +15,9 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 /// A numerical parameter.
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
                  double value, double least, double most);
+/// A numerical parameter that takes whole numbers only.
+Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
+                       int least, int most);
 /// A parameter of words; the first choice is the default.
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices);

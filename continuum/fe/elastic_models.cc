@@ -75,13 +75,13 @@ Vector<dim> point_load_displacement(double F, double E, double nu, const Point<d
 template <int dim>
 class BoxModel : public Model {
  public:
-  BoxModel(const std::string& name, const Settings& s, double tolerance)
+  BoxModel(const std::string& name, const Settings& s, double tolerance, int degree)
       : load_(number_of(s, "F")),
         young_(number_of(s, "E")),
         poisson_(number_of(s, "nu")),
         tolerance_(number_or(s, "tolerance", tolerance)),
         refinements_(static_cast<int>(number_of(s, "refinements"))),
-        degree_(static_cast<int>(number_or(s, "degree", dim == 2 ? 3 : 2))),
+        degree_(static_cast<int>(number_or(s, "degree", degree))),
         iterations_(static_cast<int>(number_of(s, "iterations"))),
         name_(name) {}
 
@@ -222,7 +222,7 @@ template <int dim>
 class ElasticLayer : public BoxModel<dim> {
  public:
   explicit ElasticLayer(const Settings& s)
-      : BoxModel<dim>("fe_elastic_layer", s, dim == 2 ? 2e-4 : 5e-3),
+      : BoxModel<dim>("fe_elastic_layer", s, dim == 2 ? 2e-4 : 5e-3, dim == 2 ? 3 : 2),
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
@@ -288,13 +288,17 @@ template <int dim>
 class ElasticHalfSpace : public BoxModel<dim> {
  public:
   explicit ElasticHalfSpace(const Settings& s)
-      : BoxModel<dim>("fe_elastic_half_space", s, dim == 2 ? 2e-3 : 1e-2),
+      : BoxModel<dim>("fe_elastic_half_space", s, dim == 2 ? 2e-3 : 1e-2, 3),
         depth_(number_of(s, "depth")),
         patch_(number_of(s, "patch") * depth_),
-        cells_(number_of(s, "cells")) {
+        cells_(number_or(s, "cells", dim == 2 ? 2 : 1)) {
+    const double reach = number_or(s, "radius", dim == 2 ? 1e4 : 50);
+    if (reach < 4)
+      throw BadParameter(fmt::format(
+          "model fe_elastic_half_space: radius = {} is out of range; allowed: 0, or at least 4",
+          reach));
     // The half patch is a cell of the finest level, so that its border is a cell's border.
-    levels_ = static_cast<int>(
-        std::ceil(std::log2(number_or(s, "radius", dim == 2 ? 1e4 : 50) * depth_ / (patch_ / 2))));
+    levels_ = static_cast<int>(std::ceil(std::log2(reach * depth_ / (patch_ / 2))));
   }
 
  protected:

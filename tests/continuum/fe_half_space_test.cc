@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "continuum/model.h"
 
@@ -9,12 +10,16 @@ using namespace grainfield::continuum;
 
 namespace {
 
-/// Points at some depths of interest, up to three depths aside.
+/// Random points between half and twice the depth of interest, and below the load.
 Points cone() {
-  Points points(3 * 13, 2);
-  int n = 0;
-  for (const double depth : {0.5, 1., 2.})
-    for (int i = -6; i <= 6; ++i) points.row(n++) << 0.5 * i * depth * 0.15, -depth * 0.15;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> any(0, 1);
+  Points points(2000, 2);
+  for (int n = 0; n < points.rows(); ++n) {
+    const double depth = 0.15 * 0.5 * std::pow(4, any(random));
+    points.row(n) << 3 * depth * (2 * any(random) - 1), -depth;
+  }
+  points.topRows(200).col(0) *= 0.05;
   return points;
 }
 

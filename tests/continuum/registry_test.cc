@@ -39,6 +39,13 @@ TEST(Registry, OutOfRangeSaysWhatIsAllowed) {
   EXPECT_THAT(refusal("layer", {{"h", "0"}}), HasSubstr("allowed: above 0 m"));
 }
 
+TEST(Registry, CountsAreWholeNumbers) {
+  EXPECT_THAT(refusal("fe_elastic_layer", {{"degree", "2.5"}}),
+              HasSubstr("degree = 2.5 is out of range; allowed: whole numbers 0 to 4"));
+  EXPECT_THAT(refusal("fe_elastic_half_space", {{"radius", "2"}}),
+              HasSubstr("radius = 2 is out of range; allowed: 0, or at least 4"));
+}
+
 TEST(Registry, NotANumber) {
   for (const char* text : {"", "1x", "deep", "nan", "inf", "1e999"})
     EXPECT_THAT(refusal("layer", {{"h", text}}), HasSubstr("is not a number")) << text;
