@@ -23,6 +23,22 @@ double stable_time_step(const EngineSettings& settings, double least_mass) {
       settings.law);
 }
 
+double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes) {
+  double limit = stable_time_step(settings, extremes.least_mass);
+  if (extremes.steepest_edge > 0) {
+    const double share = settings.integrator == IntegratorKind::gear ? 0.16 : 1.4;
+    std::visit(
+        [&](const auto& law) {
+          // Positive root of c dt + k dt^2/2 = share.
+          const double k = law.edge_stiffness(extremes.steepest_edge) / extremes.least_mass;
+          const double c = law.edge_rate(extremes.least_mass, extremes.steepest_edge);
+          limit = std::min(limit, 2 * share / (c + std::sqrt(c * c + 2 * k * share)));
+        },
+        settings.law);
+  }
+  return limit;
+}
+
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
   if (!(settings.time_step > 0)) {
     throw std::invalid_argument(

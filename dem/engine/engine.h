@@ -29,6 +29,19 @@ class ComputationFailed : public std::runtime_error {
 
 enum class IntegratorKind { verlet, gear };
 
+/// Grains at rest may sleep: their places are frozen, contacts between them keep their forces, and
+/// the cost of a step follows the grains in motion. A sleeper wakes when the forces from its moving
+/// neighbours leave it out of balance, or when one of them touches it at speed.
+struct SleepSettings {
+  bool on = false;
+  double quiet_time =
+      5e-3;  ///< s that a grain must be quiet before it sleeps; longer: fewer errors
+  double quiet_move = 6e-3;  ///< quiet: moved less than this share of its diameter in quiet_time
+  double quiet_force = 0.1;  ///< quiet: resultant below this share of the forces on it
+  double wake_force = 0.15;  ///< wakes: resultant above this share of the forces on it
+  double wake_speed = 0.2;   ///< wakes: touched at more than this times sqrt(g d)
+};
+
 struct EngineSettings {
   std::variant<OverlapAreaLaw, LinearLaw> law;
   IntegratorKind integrator = IntegratorKind::verlet;
@@ -37,6 +50,8 @@ struct EngineSettings {
   double gravity_x = 0, gravity_y = -9.81;  ///< m/s2
   double skin = 0;  ///< m; gap kept in the neighbour list; 0 = chosen from the radii
   int threads = 1;
+  bool polygons = false;  ///< grains may have outlines; false is faster and takes disks only
+  SleepSettings sleep;
 };
 
 /// A grain to be added.
@@ -46,6 +61,7 @@ struct NewGrain {
   double density = 0;  ///< kg/m2
   bool fixed = false;
   bool rotates = true;  ///< false: a block that slides but never spins
+  Outline outline;      ///< body frame (polygon.h: centred); empty: a disk of `radius`
 };
 
 /// A force on one grain that rises from 0 to its full value along a smooth ramp (3 s^2 - 2 s^3).
@@ -68,6 +84,7 @@ struct Diagnostics {
   double height = 0;                  ///< top of the highest free grain, m
   int contacts = 0;                   ///< that carry force, with walls
   int sliding = 0;
+  int awake = 0;  ///< free grains that do not sleep
 };
 
 class Engine {
@@ -81,6 +98,10 @@ class Engine {
   virtual void apply(const AppliedForce& force) = 0;
   /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
   virtual void set_background_damping(double rate) = 0;
+  /// From now on; every grain wakes.
+  virtual void set_gravity(double gx, double gy) = 0;
+  /// Switches sleeping on or off; off wakes every grain.
+  virtual void set_sleep(bool on) = 0;
   /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges.
   virtual void step(long n) = 0;
 
@@ -105,6 +126,18 @@ class Engine {
 ///    is allowed. For Roul's law this is what makes Gear need steps of 5e-6 s where Verlet takes
 ///    5e-5.
 double stable_time_step(const EngineSettings& settings, double least_mass);
+
+/// What of a population of grains bounds the time step.
+struct GrainExtremes {
+  double least_mass = 0;     ///< kg
+  double steepest_edge = 0;  ///< largest edge_steepness (polygon.h) of the polygons; 0: disks only
+};
+/// The same with polygons: two parallel edges of length e at arms a give the contact the stiffness
+/// E e/l <= E s, s = 2 max(e/a), and the dashpot gamma s sqrt(E m_eff). In a chain of equal light
+/// grains hemmed in between others the fastest mode feels four times both, and velocity Verlet with
+/// forces at the half-step velocity is stable while c dt + k dt^2/2 < 2 (k, c per mass); 0.7 of it
+/// is allowed.
+double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes);
 
 /// Throws std::invalid_argument for settings out of range.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);

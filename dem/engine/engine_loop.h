@@ -82,6 +82,12 @@ class EngineLoop final : public Engine {
 
   void set_background_damping(double rate) override { background_ = rate; }
 
+  void set_gravity(double gx, double gy) override {
+    settings_.gravity_x = gx;
+    settings_.gravity_y = gy;
+  }
+  void set_sleep(bool on) override { settings_.sleep.on = on; }
+
   void step(long n) override;
 
   double time() const override { return static_cast<double>(steps_) * settings_.time_step; }

@@ -24,6 +24,10 @@ struct LinearLaw {
     return std::max(12 * tangential_damping, 3 * normal_damping);
   }
 
+  /// Of a chain of grains edge on edge; the law takes no notice of the edges' width.
+  double edge_stiffness(double) const { return 4 * normal_stiffness; }
+  double edge_rate(double, double) const { return 2 * normal_damping; }
+
   LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
                       double& spring) const {
     const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);

@@ -27,6 +27,13 @@ struct OverlapAreaLaw {
                     6 * 0.6 * damping * std::sqrt(young / (2 * mass)));
   }
 
+  /// Stiffness (N/m) and decay rate (1/s) that the fastest mode of a chain of grains feels which
+  /// lie edge on edge, with chord / l up to `steepness`.
+  double edge_stiffness(double steepness) const { return 4 * young * steepness; }
+  double edge_rate(double mass, double steepness) const {
+    return 4 * damping * steepness * std::sqrt(young / (2 * mass));
+  }
+
   LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
                       double& spring) const {
     const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;

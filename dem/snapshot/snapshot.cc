@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "dem/snapshot/hdf5_file.h"
@@ -98,6 +99,18 @@ void write_snapshot(const std::string& file, const std::string& group_name, cons
               s.dim == 2 ? "m2" : "m3");
   hdf5::write(g, "fixed", gather_integers(s.grains, [](const Grain& a) { return a.fixed ? 1 : 0; }),
               1, "1");
+  // Outlines one after another: grain k has corners start[k] .. start[k+1].
+  std::vector<long long> start{0};
+  std::vector<double> corners;
+  for (const Grain& a : s.grains) {
+    for (const auto& corner : a.outline)
+      corners.insert(corners.end(), corner.begin(), corner.end());
+    start.push_back(static_cast<long long>(corners.size() / 2));
+  }
+  if (!corners.empty()) {
+    hdf5::write(g, "outline_start", start, 1, "1");
+    hdf5::write(g, "outline", corners, 2, "m");
+  }
 
   const hdf5::Handle c = create_group(group, "contacts");
   hdf5::write(c, "i", gather_integers(s.contacts, [](const Contact& a) { return a.i; }), 1, "1");
@@ -193,7 +206,23 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
                      mass[k],
                      inertia[k],
                      volume[k],
-                     fixed[k] != 0};
+                     fixed[k] != 0,
+                     {}};
+    }
+    if (H5Lexists(g, "outline_start", H5P_DEFAULT) > 0) {
+      const auto start = hdf5::read_integers(g, "outline_start", 1, at);
+      const auto corners = hdf5::read_doubles(g, "outline", 2, at);
+      same_length(start.size(), n + 1, "outline_start");
+      const auto total = static_cast<long long>(corners.size() / 2);
+      if (start.front() != 0 || start.back() != total ||
+          !std::is_sorted(start.begin(), start.end())) {
+        throw std::invalid_argument(fmt::format("{}: outline_start does not fit outline", at));
+      }
+      for (std::size_t k = 0; k < n; ++k) {
+        for (long long v = start[k]; v < start[k + 1]; ++v) {
+          s.grains[k].outline.push_back({corners[2 * v], corners[2 * v + 1]});
+        }
+      }
     }
   }
   {

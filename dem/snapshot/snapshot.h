@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dem/shapes/outline.h"
+
 namespace grainfield::dem {
 
 using Vec3 = Eigen::Vector3d;
@@ -18,11 +20,12 @@ struct Grain {
   Vec3 velocity{0, 0, 0};  ///< m/s
   double angle = 0;        ///< rotation about z, rad
   double spin = 0;         ///< rad/s
-  double radius = 0;       ///< m
+  double radius = 0;       ///< m; of a polygon: from its centroid to the farthest corner
   double mass = 0;         ///< kg
   double inertia = 0;      ///< polar moment about the centroid, kg m2
   double volume = 0;       ///< m2 in 2D
   bool fixed = false;      ///< part of the apparatus (rough floor): takes force, does not move
+  Outline outline;         ///< corners in the body frame (rotate by `angle`); empty: a disk
 };
 
 /// A rigid immobile half plane: the grains are on the side the normal points to.

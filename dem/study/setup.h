@@ -2,8 +2,20 @@
 // areal density in kg/m2, stiffness and Young's modulus in N/m.
 #pragma once
 #include <string>
+#include <vector>
 
 namespace grainfield::dem {
+
+/// What a grain looks like.
+struct ShapeSetup {
+  std::string kind = "rand1";  ///< disk | rand1 | regular | irregular | outline
+  double radius = 0.00275;  ///< m; of the circle that the corners lie on (ellipse: of equal area)
+  double polydispersity = 0.3;  ///< radius uniform in radius (1 -+ this)
+  int corners_min = 6, corners_max = 8;
+  double axis_ratio = 1;  ///< rand1: major over minor axis of the ellipse that carries the corners
+  double side = 0;        ///< m; irregular: mean side (pentagons of Roul table 5.1); 0: from radius
+  std::vector<double> outline;  ///< outline: x1, y1, x2, y2, ... in units of `radius`
+};
 
 struct PackingSetup {
   std::string kind = "layered";   ///< triangular | sqrt3 | layered
@@ -56,6 +68,53 @@ struct LoadSetup {
   double force = 300;      ///< N, downwards on one grain
   double ramp_time = 0.5;  ///< s from 0 to the full force (smooth ramp)
   double position = 0.5;   ///< of the width: the top grain nearest to it carries the force
+};
+
+/// How a pile is poured (Roul 3.1, table 2).
+struct SourceSetup {
+  std::string kind = "point";  ///< point: grain by grain from above | line: layer by layer
+  int grains = 6500;           ///< line: whole layers are dropped until this many are there
+  double height = 0.5;         ///< m above the floor; point: of the funnel's mouth
+  double speed = 0.2;          ///< m/s downwards at the start
+  double interval = 0.1;       ///< s from one grain to the next; point
+  double clearance = 0.008;    ///< m above the pile from which a layer falls; line
+  double length = 0.5;         ///< m; line: length of the first layer
+  double move = 0;             ///< m; point: the funnel moves this far to the right while it pours;
+                    ///< line: each layer's middle lies this share of the pile's shrinking
+                    ///< plateau further to the right (asymmetric piles)
+};
+
+struct FloorSetup {
+  double length = 1.2;  ///< m; side walls at the ends only catch grains that roll off the heap
+};
+
+struct SleepSetup {
+  bool on = true;
+  double quiet_time = 5e-3, quiet_move = 6e-3, quiet_force = 0.1;
+  double wake_force = 0.15, wake_speed = 0.2;
+};
+
+/// After the rest: gravity is changed, slowly, and the pile comes to rest again.
+struct ChangeSetup {
+  std::vector<double> gravity;    ///< m/s2, one snapshot for each; empty: none
+  std::string method = "newton";  ///< newton: quasi-static solver | damped: slow damped dynamics
+};
+
+/// A pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" -> for
+/// each changed gravity a snapshot "gravity_G".
+struct PileSetup {
+  ShapeSetup shape;
+  SourceSetup source;
+  FloorSetup floor;
+  MaterialSetup material = [] {
+    MaterialSetup m;
+    m.friction = m.floor_friction = 0.54;
+    return m;
+  }();
+  MotionSetup motion;
+  RestSetup rest;
+  SleepSetup sleep;
+  ChangeSetup change;
 };
 
 struct PointLoadSetup {

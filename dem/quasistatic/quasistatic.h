@@ -1,0 +1,35 @@
+// Quasi-static relaxation: a packing is carried to equilibrium by an implicit solver on its contact
+// network instead of by damped dynamics.
+//
+// Unknowns: centroids and angles of the free grains. Residual: contact forces of the law without
+// its dashpots (tangential spring advanced from its stored value by the increment of slip, capped
+// by Coulomb), gravity and the applied force. Newton's method with KINSOL, the tangent stiffness
+// with stick and slip assembled per contact and factorized sparse; loads in adaptive steps.
+#pragma once
+#include "dem/engine/engine.h"
+
+namespace grainfield::dem {
+
+struct QuasistaticSettings {
+  double unbalanced_force_ratio = 1e-8;  ///< to be reached, mean resultant / mean contact force
+  int max_iterations = 50;               ///< Newton steps of one load step
+  int first_steps = 1;                   ///< equal load steps to begin with; halved when one fails
+  double least_step = 1e-3;              ///< share of the whole change below which it gives up
+};
+
+struct QuasistaticResult {
+  Snapshot state;                     ///< at rest: velocities are 0, springs are kept
+  double unbalanced_force_ratio = 0;  ///< reached
+  int steps = 0, iterations = 0;
+  int contacts_gained = 0, contacts_lost = 0, newly_sliding = 0;  ///< against the start
+};
+
+/// The packing `start` at rest under the gravity and the force given (start.applied_force is
+/// replaced). `law`: contact law and friction of the grains (time step and integrator are not
+/// used); walls keep their own friction. Throws std::invalid_argument for a start that does not
+/// fit, and ComputationFailed saying how far it came (share of the change, ratio reached) and what
+/// to try.
+QuasistaticResult relax(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+                        const AppliedForce& force, const QuasistaticSettings& settings);
+
+}  // namespace grainfield::dem
