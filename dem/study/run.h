@@ -19,6 +19,7 @@ struct Progress {
   double simulated_time = 0;  ///< s
   long steps = 0;
   int grains = 0;             ///< grains in motion or at rest so far, without fixed ones
+  int awake = 0;              ///< of these, those that do not sleep
   double kinetic_energy = 0;  ///< J
   double unbalanced_force_ratio = 0;
 };
@@ -50,5 +51,9 @@ class Run {
 /// ("motion.time_step"). The bits of the result do not depend on threads.
 std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint64_t seed,
                                          int threads);
+
+/// A pile: poured, settled, at rest ("pile"), and at rest under each changed gravity
+/// ("gravity_8.829"). Throws as make_point_load_run.
+std::unique_ptr<Run> make_pile_run(const PileSetup& setup, std::uint64_t seed, int threads);
 
 }  // namespace grainfield::dem

@@ -6,15 +6,19 @@
 
 namespace grainfield::dem {
 
-/// What a grain looks like.
+/// What a grain looks like. Outlines have their centroid at the origin and lie at random angles.
 struct ShapeSetup {
-  std::string kind = "rand1";  ///< disk | rand1 | regular | irregular | outline
-  double radius = 0.00275;  ///< m; of the circle that the corners lie on (ellipse: of equal area)
-  double polydispersity = 0.3;  ///< radius uniform in radius (1 -+ this)
-  int corners_min = 6, corners_max = 8;
+  std::string kind = "rand1";   ///< disk | rand1 (corners at random on a circle or ellipse, Roul) |
+                                ///< regular | irregular (pentagons) | outline (given)
+  double radius = 0.00275;      ///< m; disk; or of the circle that the corners lie on (rand1 with
+                                ///< axis_ratio: ellipse of equal area)
+  double polydispersity = 0.3;  ///< sizes uniform in (1 -+ this) times radius or side; below 1
+  int corners_min = 6;          ///< rand1, regular: corners, uniform between these two; 3 or more
+  int corners_max = 8;
   double axis_ratio = 1;  ///< rand1: major over minor axis of the ellipse that carries the corners
-  double side = 0;        ///< m; irregular: mean side (pentagons of Roul table 5.1); 0: from radius
-  std::vector<double> outline;  ///< outline: x1, y1, x2, y2, ... in units of `radius`
+  double side = 0;        ///< m; irregular: mean length of a side; 0: of the regular pentagon whose
+                          ///< corners lie on `radius`
+  std::vector<double> outline;  ///< outline: x1, y1, x2, y2, ... in units of `radius`, convex
 };
 
 struct PackingSetup {
@@ -34,6 +38,8 @@ struct PackingSetup {
   double drop_height = 0.008;     ///< m above the surface from which a row is dropped
   std::string floor = "smooth";   ///< smooth (flat wall with friction) | rough (fixed grains)
   double jitter = 0;              ///< lattices: relative spread of radii, uniform +- (0 = perfect)
+  std::string shape = "disk";     ///< layered: disk | irregular (pentagons; `sizes` is not used)
+  double side = 0.009;            ///< m; irregular: mean length of a side (Roul 5.1)
 };
 
 struct MaterialSetup {
@@ -70,38 +76,51 @@ struct LoadSetup {
   double position = 0.5;   ///< of the width: the top grain nearest to it carries the force
 };
 
-/// How a pile is poured (Roul 3.1, table 2).
+/// How a pile is poured (Roul 3.1, 3.11, table 2).
 struct SourceSetup {
   std::string kind = "point";  ///< point: grain by grain from above | line: layer by layer
-  int grains = 6500;           ///< line: whole layers are dropped until this many are there
+  int grains = 6500;           ///< 3 or more; line: fewer when the pile has come to a point before
+  double speed = 0.2;          ///< m/s downwards at the start, of both
   double height = 0.5;         ///< m above the floor; point: of the funnel's mouth
-  double speed = 0.2;          ///< m/s downwards at the start
   double interval = 0.1;       ///< s from one grain to the next; point
-  double clearance = 0.008;    ///< m above the pile from which a layer falls; line
-  double length = 0.5;         ///< m; line: length of the first layer
-  double move = 0;             ///< m; point: the funnel moves this far to the right while it pours;
-                    ///< line: each layer's middle lies this share of the pile's shrinking
-                    ///< plateau further to the right (asymmetric piles)
+  double spread = 0.5;  ///< mean radii; point: grains start within +- this from the funnel's axis
+  double move = 0;      ///< m; point: the funnel moves this far to the right while it pours,
+                        ///< from -move/2 to move/2 (asymmetric piles)
+  double clearance = 0.008;  ///< m above the pile from which a layer falls; line
+  double length = 1.1;  ///< m; line: length of the first layer; later ones cover the pile's plateau
+  double shift = 0;     ///< m; line: each layer lies this far to the right of the plateau's middle
+                        ///< (asymmetric piles)
 };
 
+/// The ground, y = 0, with side walls at its ends that only catch stray grains: a pile that leans
+/// on them is refused.
 struct FloorSetup {
-  double length = 1.2;  ///< m; side walls at the ends only catch grains that roll off the heap
+  std::string kind = "smooth";  ///< smooth: flat, with material.floor_friction | rough: fixed
+                                ///< grains like those of the pile, side by side below y = 0
+  double length = 1.6;  ///< m
 };
 
+/// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).
 struct SleepSetup {
   bool on = true;
-  double quiet_time = 5e-3, quiet_move = 6e-3, quiet_force = 0.1;
-  double wake_force = 0.15, wake_speed = 0.2;
+  double quiet_time = 5e-3;  ///< s
+  double quiet_move = 6e-3;  ///< diameters within quiet_time
+  double quiet_force = 0.1;  ///< resultant over the forces on the grain
+  double wake_force = 0.15;  ///< likewise
+  double wake_speed = 0.2;   ///< sqrt(g d)
 };
 
-/// After the rest: gravity is changed, slowly, and the pile comes to rest again.
+/// After the rest: gravity is changed, slowly, and the pile comes to rest again. Every change
+/// starts from the pile at material.gravity.
 struct ChangeSetup {
-  std::vector<double> gravity;    ///< m/s2, one snapshot for each; empty: none
+  std::vector<double> gravity;    ///< m/s2, above 0, one snapshot for each; empty: none
   std::string method = "newton";  ///< newton: quasi-static solver | damped: slow damped dynamics
+  double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
+  double ramp_time = 0.5;  ///< s from the old to the new gravity (smooth ramp); damped
 };
 
 /// A pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" -> for
-/// each changed gravity a snapshot "gravity_G".
+/// each changed gravity a snapshot "gravity_G", G as {:g} prints it ("gravity_8.829").
 struct PileSetup {
   ShapeSetup shape;
   SourceSetup source;
