@@ -1,5 +1,6 @@
 // Keys of everything around the grains: the study, ensemble, averaging, models, output, sweep.
 #include "coupling/case/declare.h"
+#include "coupling/run/studies.h"
 
 #define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.MEMBER; }
 
@@ -13,9 +14,13 @@ using Integer = std::int64_t;
 
 void top(Section s) {
   s.word("title", +IN(string, title), {}, "one line for people: what the study shows");
-  s.word("study", +IN(string, study), {"point-load", "elastic-layer", "elastic-half-space"},
-         "point-load: grains against continuum models; elastic-*: the finite-element model against "
-         "its closed form, without grains");
+  std::vector<string> names;
+  string meaning = "kind of study";
+  for (const Study& study : studies()) {
+    names.push_back(study.name);
+    meaning += (names.size() == 1 ? ": " : "; ") + study.name + ": " + study.meaning;
+  }
+  s.word("study", +IN(string, study), names, meaning);
 }
 
 void ensemble(Section s) {

@@ -9,6 +9,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
+#include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -68,6 +69,13 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
   Draft draft;
   draft.file = file;
   draft.value.name = stem(file);
+  // Some keys mean another member in another study, wherever the study is named.
+  for (const auto* list : {&base, &fast, &set}) {
+    if (list == &fast && !quick) continue;
+    for (const auto& a : *list) {
+      if (a.path == "study") apply(draft, a);
+    }
+  }
   put(draft, base);
   // The quick setting is checked even where it is not used: a mistake shows before it is needed.
   Draft with_quick = draft;
@@ -107,7 +115,7 @@ std::vector<SweepCase> sweep_cases(const Case& value) {
 std::string write_case(const Case& value) {
   std::string out, current;
   for (const Key& key : keys()) {
-    if (!section_applies(key.section, value.study)) continue;
+    if (!key_applies(key, value.study)) continue;
     if (key.section == "sweep" && value.sweep.key.empty()) continue;
     if (key.section != current) {
       current = key.section;
@@ -141,8 +149,9 @@ std::string write_case(const Case& value) {
 }
 
 bool filled_by_run(const std::string& parameter, const std::string& study) {
-  if (parameter == "base") return study == "elastic-layer";
-  return parameter == "F" || parameter == "h" || parameter == "dim" || parameter == "depth";
+  const Study* known = find_study(study);
+  return known != nullptr &&
+         std::find(known->fills.begin(), known->fills.end(), parameter) != known->fills.end();
 }
 
 std::string case_title(const std::string& file) {

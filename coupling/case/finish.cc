@@ -8,7 +8,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
-#include "dem/study/run.h"
+#include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -26,7 +26,7 @@ Assignment written(const Draft& draft, const std::string& path) {
 void check_sections(const Draft& draft) {
   for (const auto& [path, a] : draft.last) {
     const Key* key = find_key(path);
-    if (!section_applies(key->section, draft.value.study)) {
+    if (!key_applies(*key, draft.value.study)) {
       reject(a, path, fmt::format("has no meaning for study = \"{}\"", draft.value.study));
     }
   }
@@ -89,7 +89,7 @@ void choose_models(Draft& draft) {
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
     try {
       const auto& info = continuum::find_model(choice.name);
-      if (value.study == "point-load" && continuum::dimension(info, choice.settings) != 2) {
+      if (study_of(value).has_grains() && continuum::dimension(info, choice.settings) != 2) {
         reject(where, "compare.models",
                fmt::format("\"{}\" is three-dimensional, the grains are not", label));
       }
@@ -98,7 +98,8 @@ void choose_models(Draft& draft) {
     }
     value.models.push_back(std::move(choice));
   }
-  if (value.models.empty()) reject(where, "compare.models", "found no model, expected one or more");
+  if (value.models.empty() && !study_of(value).models_optional)
+    reject(where, "compare.models", "found no model, expected one or more");
 }
 
 void check_elastic(const Draft& draft) {
@@ -129,10 +130,11 @@ void check_sizes(const Draft& draft) {
 
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
-  if (draft.value.study != "point-load") return;
-  check_sizes(draft);
+  const Study& study = study_of(draft.value);
+  if (!study.has_grains()) return;
+  if (section_applies("packing", study.name)) check_sizes(draft);
   try {
-    dem::make_point_load_run(draft.value.layer, 1, 1);
+    study.make_run(draft.value, 1, 1);
   } catch (const std::invalid_argument& e) {
     const std::string what = e.what();
     const std::string path = what.substr(0, what.find(':'));

@@ -10,6 +10,7 @@
 
 #include "continuum/model.h"
 #include "coupling/case/declare.h"
+#include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -48,13 +49,55 @@ std::string heading(const std::string& section) {
   return section.empty() ? "top level" : "[" + section + "]";
 }
 
+const std::vector<std::string>& sections_of_every_study() {
+  static const std::vector<std::string> names{"", "compare", "output", "sweep"};
+  return names;
+}
+
 std::string note_of(const std::string& section) {
-  if (section.empty()) return "";
-  std::vector<std::string> studies;
-  for (const char* study : {"point-load", "elastic-layer", "elastic-half-space"}) {
-    if (section_applies(section, study)) studies.emplace_back(study);
+  std::vector<std::string> names;
+  for (const Study& study : studies()) {
+    if (section_applies(section, study.name)) names.push_back(study.name);
   }
-  return studies.size() == 3 ? "" : fmt::format("Studies: {}.", fmt::join(studies, ", "));
+  return names.size() == studies().size() ? ""
+                                          : fmt::format("Studies: {}.", fmt::join(names, ", "));
+}
+
+// The key's own studies where they are fewer than its section's, with the remark's end.
+std::string own_studies(const Key& key) {
+  std::vector<std::string> names;
+  bool fewer = false;
+  for (const Study& study : studies()) {
+    if (key_applies(key, study.name)) {
+      names.push_back(study.name);
+    } else {
+      fewer = fewer || section_applies(key.section, study.name);
+    }
+  }
+  return fewer ? fmt::format("{}: ", fmt::join(names, ", ")) : "";
+}
+
+// The default, and those of studies that differ from the first one to which the key applies.
+struct Defaults {
+  std::string first;
+  std::vector<std::pair<std::string, std::string>> others;  // study, default
+};
+
+Defaults defaults_of(const Key& key) {
+  Defaults out;
+  for (const Study& study : studies()) {
+    if (!key_applies(key, study.name)) continue;
+    Case value;
+    value.study = study.name;
+    const std::string text =
+        key.path() == "study" ? value_text(key, Case()) : value_text(key, value);
+    if (out.first.empty()) {
+      out.first = text;
+    } else if (text != out.first) {
+      out.others.emplace_back(study.name, text);
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -91,14 +134,19 @@ std::vector<std::string> sections() {
 }
 
 bool section_applies(const std::string& section, const std::string& study) {
-  const auto in = [&](std::initializer_list<const char*> names) {
-    return std::find(names.begin(), names.end(), section) != names.end();
-  };
-  if (in({"packing", "material", "motion", "rest", "load", "ensemble", "average"})) {
-    return study == "point-load";
-  }
-  if (in({"elastic"})) return study != "point-load";
-  return true;
+  const auto& always = sections_of_every_study();
+  if (std::find(always.begin(), always.end(), section) != always.end()) return true;
+  const Study* known = find_study(study);
+  if (known == nullptr) return false;
+  return std::find(known->sections.begin(), known->sections.end(), section) !=
+         known->sections.end();
+}
+
+bool key_applies(const Key& key, const std::string& study) {
+  if (!section_applies(key.section, study)) return false;
+  const Study* known = find_study(study);
+  return known == nullptr || std::find(known->without.begin(), known->without.end(), key.path()) ==
+                                 known->without.end();
 }
 
 std::string type_name(const Key& key) {
@@ -154,7 +202,6 @@ std::string keys_text(const std::string& section) {
                                             section, continuum::nearest(section, names),
                                             fmt::join(names, ", ")));
   }
-  const Case defaults;
   std::string out, current = "-";
   for (const Key& key : keys()) {
     if (!section.empty() && key.section != section) continue;
@@ -163,15 +210,19 @@ std::string keys_text(const std::string& section) {
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", heading(current));
       if (const auto note = note_of(current); !note.empty()) out += "  # " + note + "\n";
     }
-    out += fmt::format("  {} = {}  ({}; {}; {})\n      {}{}\n", key.name, value_text(key, defaults),
-                       type_name(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
-                       key.meaning, key.source.empty() ? "" : " [" + key.source + "]");
+    const Defaults defaults = defaults_of(key);
+    std::string others;
+    for (const auto& [study, text] : defaults.others)
+      others += fmt::format("; {}: {}", study, text);
+    out += fmt::format("  {} = {}{}  ({}; {}; {})\n      {}{}{}\n", key.name, defaults.first,
+                       others, type_name(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
+                       own_studies(key), key.meaning,
+                       key.source.empty() ? "" : " [" + key.source + "]");
   }
   return out;
 }
 
 std::string keys_markdown() {
-  const Case defaults;
   std::string out =
       "# Case keys\n\nGenerated by `grainfield keys --markdown` from the declarations in "
       "`coupling/case/`; SI units (2D: areal density in kg/m2, stiffness in N/m). `[quick]` holds "
@@ -193,9 +244,14 @@ std::string keys_markdown() {
       out += "| key | type | unit | default | allowed | meaning | source |\n";
       out += "|---|---|---|---|---|---|---|\n";
     }
-    out += fmt::format("| `{}` | {} | {} | `{}` | {} | {} | {} |\n", key.name, type_name(key),
-                       key.unit, cell(value_text(key, defaults)), cell(allowed(key)),
-                       cell(key.meaning), key.source);
+    const Defaults defaults = defaults_of(key);
+    std::string standard = fmt::format("`{}`", cell(defaults.first));
+    for (const auto& [study, text] : defaults.others) {
+      standard += fmt::format("; {}: `{}`", study, cell(text));
+    }
+    out +=
+        fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_name(key), key.unit,
+                    standard, cell(allowed(key)), own_studies(key) + cell(key.meaning), key.source);
   }
   return out;
 }

@@ -33,8 +33,9 @@ const std::vector<Key>& keys();
 const Key* find_key(const std::string& path);
 /// Sections in order, without the top level.
 std::vector<std::string> sections();
-/// Whether a section means something to a study.
+/// Whether a section, or a key of it, means something to a study (coupling/run/studies.h).
 bool section_applies(const std::string& section, const std::string& study);
+bool key_applies(const Key& key, const std::string& study);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);

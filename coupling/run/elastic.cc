@@ -134,4 +134,30 @@ StudyResult analyse_elastic(const Case& value) {
   return out;
 }
 
+namespace {
+
+Study elastic_study(const char* name, const char* meaning) {
+  Study out;
+  out.name = name;
+  out.meaning = meaning;
+  out.sections = {"elastic"};
+  out.fills = {"F", "h", "dim", "depth"};
+  out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
+    return analyse_elastic(value);
+  };
+  return out;
+}
+
+}  // namespace
+
+Study elastic_layer_study() {
+  Study out = elastic_study("elastic-layer", "finite elements of a loaded layer, closed form");
+  out.fills.emplace_back("base");
+  return out;
+}
+
+Study elastic_half_space_study() {
+  return elastic_study("elastic-half-space", "finite elements of a half space, closed form");
+}
+
 }  // namespace grainfield::coupling

@@ -1,6 +1,7 @@
 // A finite-element model against its closed form, without grains.
 #pragma once
 #include "coupling/case/case.h"
+#include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
@@ -9,5 +10,8 @@ namespace grainfield::coupling {
 /// place of the simulation in the tables; the others are compared with it. Throws what models
 /// throw, and std::invalid_argument for fewer than two models of this dimension.
 StudyResult analyse_elastic(const Case& value);
+
+Study elastic_layer_study();
+Study elastic_half_space_study();
 
 }  // namespace grainfield::coupling

@@ -94,7 +94,7 @@ class Worker {
   Outcome simulate(std::size_t index, int engine_threads) {
     const Task& task = tasks_[index];
     const std::string checkpoint = task.file + ".checkpoint";
-    auto run = dem::make_point_load_run(task.setup, task.seed, engine_threads);
+    const auto run = task.make(engine_threads);
     const auto save = [&] {
       const std::lock_guard lock(files);
       run->save(checkpoint);

@@ -2,13 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "coupling/run/ranks.h"
-#include "dem/snapshot/snapshot.h"
-#include "dem/study/setup.h"
+#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 
@@ -18,15 +17,9 @@ std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index);
 
 /// One realization to be done.
 struct Task {
-  dem::PointLoadSetup setup;
-  std::uint64_t seed = 0;
+  /// The simulation at its beginning; its bits do not depend on the threads.
+  std::function<std::unique_ptr<dem::Run>(int threads)> make;
   std::string file;  ///< where its result goes; beside it FILE.checkpoint while it runs
-};
-
-/// A finished realization as it stands in its file.
-struct Realization {
-  dem::Snapshot unloaded, loaded;
-  std::map<std::string, double> figures;
 };
 
 struct EnsembleProgress {
@@ -52,8 +45,5 @@ struct EnsembleOptions {
 /// Continues from checkpoints beside the files. Throws what the first failing task (by number)
 /// threw, on every rank; Interrupted, after all runs are saved, when stopped.
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options);
-
-/// Reads a finished task's file.
-Realization read_realization(const std::string& file);
 
 }  // namespace grainfield::coupling

@@ -19,7 +19,8 @@ struct RunFacts {
   std::string base;   ///< parameter base; empty: the model's default
 };
 
-/// The choice's settings with F, h, dim and depth filled in where the model has them and the user did not.
+/// The choice's settings with F, h, dim and depth filled in where the model has them and the user
+/// did not.
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);

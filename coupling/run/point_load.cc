@@ -15,6 +15,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/models.h"
+#include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -30,9 +31,9 @@ Layer measure(const std::vector<std::string>& files) {
   const auto n = static_cast<double>(files.size());
   for (const auto& file : files) {
     const Realization r = read_realization(file);
-    const LayerFrame frame = layer_frame(r.unloaded, r.loaded.loaded_grain);
+    const LayerFrame frame = layer_frame(r["unloaded"], r["loaded"].loaded_grain);
     out.depth += frame.depth() / n;
-    out.diameter += mean_diameter(r.unloaded) / n;
+    out.diameter += mean_diameter(r["unloaded"]) / n;
     out.half_width =
         std::min({out.half_width, frame.load_x - frame.left, frame.right - frame.load_x});
   }
@@ -129,31 +130,29 @@ class Analysis {
 
  private:
   void add(const Realization& r) {
-    const LayerFrame frame = layer_frame(r.unloaded, r.loaded.loaded_grain);
+    const dem::Snapshot &unloaded = r["unloaded"], &loaded = r["loaded"];
+    const LayerFrame frame = layer_frame(unloaded, loaded.loaded_grain);
     for (auto& a : collected_.methods) {
       for (std::size_t d = 0; d < lines_.size(); ++d) {
-        a.profiles[d].add(
-            in_models_frame(response(r.unloaded, r.loaded, frame.to_packing(lines_[d]), a.options),
-                            lines_[d], 0, 0));
+        a.profiles[d].add(in_models_frame(
+            response(unloaded, loaded, frame.to_packing(lines_[d]), a.options), lines_[d], 0, 0));
       }
       const Eigen::MatrixXd grid = frame.to_packing(grid_);
       a.map.add(
-          in_models_frame(response(r.unloaded, r.loaded, grid, a.options), grid_, columns_, rows_));
+          in_models_frame(response(unloaded, loaded, grid, a.options), grid_, columns_, rows_));
       a.unloaded_map.add(
-          in_models_frame(average(r.unloaded, grid, a.options), grid_, columns_, rows_));
-      const BalanceResidual balance = balance_residual(r.loaded, inner_points(frame), a.options);
+          in_models_frame(average(unloaded, grid, a.options), grid_, columns_, rows_));
+      const BalanceResidual balance = balance_residual(loaded, inner_points(frame), a.options);
       a.balance_rms += balance.rms / static_cast<double>(files_.size());
       a.balance_largest = std::max(a.balance_largest, balance.largest);
     }
     const Eigen::VectorXd x = x_.array() + frame.load_x;
     Eigen::MatrixXd base(x_.size(), 2);
     base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
-    collected_.base.add(
-        in_models_frame(base_response(r.unloaded, r.loaded, x, *kernel_), base, 0, 0));
-    collected_.base_unloaded.add(
-        in_models_frame(base_profile(r.unloaded, x, *kernel_), base, 0, 0));
+    collected_.base.add(in_models_frame(base_response(unloaded, loaded, x, *kernel_), base, 0, 0));
+    collected_.base_unloaded.add(in_models_frame(base_profile(unloaded, x, *kernel_), base, 0, 0));
     for (const auto& [key, figure] : r.figures) collected_.figures[key].push_back(figure);
-    collected_.figures["response.total_over_load"].push_back(total_over_load(r.unloaded, r.loaded));
+    collected_.figures["response.total_over_load"].push_back(total_over_load(unloaded, loaded));
   }
 
   Profile profile(const Ensemble& ensemble, const std::string& name, const std::string& key,
@@ -317,6 +316,19 @@ StudyResult analyse_point_load(const Case& value, const std::vector<std::string>
   StudyResult out = Analysis(value, realizations, threads).run();
   out.summary["time.analysis_s"] =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+Study point_load_study() {
+  Study out;
+  out.name = "point-load";
+  out.meaning = "grains under a load on one of them against continuum models";
+  out.sections = {"packing", "material", "motion", "rest", "load", "ensemble", "average"};
+  out.fills = {"F", "h", "dim", "depth"};
+  out.make_run = [](const Case& value, std::uint64_t seed, int threads) {
+    return dem::make_point_load_run(value.layer, seed, threads);
+  };
+  out.analyse = analyse_point_load;
   return out;
 }
 

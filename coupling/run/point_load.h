@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
@@ -12,5 +13,7 @@ namespace grainfield::coupling {
 /// case's models. The bits do not depend on `threads`. Throws what averaging and models throw.
 StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
                                int threads);
+
+Study point_load_study();
 
 }  // namespace grainfield::coupling

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
@@ -9,37 +10,74 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr std::string_view kFigure = "figure:";
+constexpr const char* kOrder = "realization:order";
+
+// Takes what write_realization added to the attributes out again; returns the order.
+std::size_t strip(dem::Snapshot& snapshot, std::map<std::string, double>& figures) {
+  std::size_t order = 0;
+  auto& attributes = snapshot.attributes;
+  for (auto at = attributes.begin(); at != attributes.end();) {
+    if (at->first == kOrder) {
+      order = std::stoul(at->second);
+    } else if (at->first.compare(0, kFigure.size(), kFigure) == 0) {
+      figures[at->first.substr(kFigure.size())] = std::stod(at->second);
+    } else {
+      ++at;
+      continue;
+    }
+    at = attributes.erase(at);
+  }
+  return order;
+}
 
 }  // namespace
+
+const dem::Snapshot* Realization::find(const std::string& name) const {
+  for (const auto& [own, snapshot] : snapshots) {
+    if (own == name) return &snapshot;
+  }
+  return nullptr;
+}
+
+const dem::Snapshot& Realization::operator[](const std::string& name) const {
+  if (const dem::Snapshot* found = find(name)) return *found;
+  std::string names;
+  for (const auto& entry : snapshots) names += (names.empty() ? "" : ", ") + entry.first;
+  throw std::invalid_argument(
+      fmt::format("no snapshot \"{}\" in the realization; there are: {}", name, names));
+}
 
 void write_realization(const std::string& file, const dem::RunResult& result) {
   const std::string beside = file + ".part";
   std::filesystem::remove(beside);
+  std::size_t order = 0;
   for (const auto& [name, snapshot] : result.snapshots) {
     dem::Snapshot copy = snapshot;
-    if (name == "loaded") {
+    copy.attributes[kOrder] = std::to_string(order);
+    if (order == 0) {
       for (const auto& [key, value] : result.figures) {
         copy.attributes[std::string(kFigure) + key] = fmt::format("{:.17g}", value);
       }
     }
     dem::write_snapshot(beside, "/" + name, copy);
+    ++order;
   }
   std::filesystem::rename(beside, file);
 }
 
 Realization read_realization(const std::string& file) {
+  std::vector<std::pair<std::size_t, std::string>> order;
+  std::map<std::string, dem::Snapshot> found;
   Realization out;
-  out.unloaded = dem::read_snapshot(file, "/unloaded");
-  out.loaded = dem::read_snapshot(file, "/loaded");
-  auto& attributes = out.loaded.attributes;
-  for (auto at = attributes.begin(); at != attributes.end();) {
-    if (at->first.compare(0, kFigure.size(), kFigure) == 0) {
-      out.figures[at->first.substr(kFigure.size())] = std::stod(at->second);
-      at = attributes.erase(at);
-    } else {
-      ++at;
-    }
+  for (const auto& group : dem::list_snapshots(file)) {
+    dem::Snapshot snapshot = dem::read_snapshot(file, group);
+    const std::string name = group.substr(group.rfind('/') + 1);
+    order.emplace_back(strip(snapshot, out.figures), name);
+    found.emplace(name, std::move(snapshot));
   }
+  if (order.empty()) throw std::invalid_argument(file + ": holds no snapshot");
+  std::sort(order.begin(), order.end());
+  for (const auto& [at, name] : order) out.snapshots.emplace_back(name, std::move(found.at(name)));
   return out;
 }
 

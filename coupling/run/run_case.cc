@@ -13,9 +13,8 @@
 
 #include "continuum/fe/elastic.h"
 #include "coupling/output/atomic_file.h"
-#include "coupling/run/elastic.h"
 #include "coupling/run/interrupt.h"
-#include "coupling/run/point_load.h"
+#include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
 
@@ -173,13 +172,16 @@ std::string member_file(const Workplace& place, const std::string& suffix, std::
 double simulate(const std::vector<SweepCase>& members, const Workplace& place, const Ranks& ranks,
                 const RunOptions& options) {
   std::vector<Task> tasks;
-  for (const auto& [suffix, value] : members) {
-    if (value.study != "point-load") continue;
+  for (const auto& member : members) {
+    const Case& value = member.value;
+    const Study& study = study_of(value);
+    if (!study.has_grains()) continue;
     for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
-      tasks.push_back({value.layer,
-                       realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
-                                        static_cast<std::uint64_t>(r)),
-                       member_file(place, suffix, r)});
+      const std::uint64_t seed = realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
+                                                  static_cast<std::uint64_t>(r));
+      tasks.push_back(
+          {[&study, &value, seed](int threads) { return study.make_run(value, seed, threads); },
+           member_file(place, member.suffix, r)});
     }
   }
   const auto start = Clock::now();
@@ -196,12 +198,12 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
 
 StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
   const Case& value = member.value;
-  if (value.study != "point-load") return analyse_elastic(value);
+  const Study& study = study_of(value);
   std::vector<std::string> files;
-  for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
+  for (std::int64_t r = 0; study.has_grains() && r < value.ensemble.realizations; ++r) {
     files.push_back(member_file(place, member.suffix, r));
   }
-  return analyse_point_load(value, files, threads);
+  return study.analyse(value, files, threads);
 }
 
 void compute(const Case& value, const Workplace& place, const Ranks& ranks,
@@ -211,7 +213,7 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
   const double dem_seconds = simulate(members, place, ranks, options);
   // Every rank analyses and one writes. Beside grains each rank solves its own finite elements, so
   // that the bits do not depend on the ranks; a study of models alone is solved by all together.
-  continuum::solve_on(value.study == "point-load" ? continuum::Ranks::own : continuum::Ranks::all);
+  continuum::solve_on(study_of(value).has_grains() ? continuum::Ranks::own : continuum::Ranks::all);
   std::vector<StudyResult> results;
   for (const auto& member : members) {
     if (interrupted()) throw Interrupted("stopped");
@@ -224,7 +226,7 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
     for (std::size_t m = 0; m < members.size(); ++m) {
       fs::create_directories(place.partial(members[m].suffix));
       Summary& summary = results[m].summary;
-      if (members[m].value.study == "point-load") summary["time.dem_s"] = dem_seconds;
+      if (study_of(members[m].value).has_grains()) summary["time.dem_s"] = dem_seconds;
       summary["time.total_s"] = seconds_since(start);
       write_study(place.partial(members[m].suffix), results[m]);
     }

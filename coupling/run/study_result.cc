@@ -7,7 +7,8 @@
 
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/vtu.h"
-#include "coupling/run/ensemble.h"
+#include "coupling/run/realization_file.h"
+#include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
 
 namespace grainfield::coupling {
@@ -63,30 +64,28 @@ void write_grains(const std::string& folder, const StudyResult& result) {
   for (std::size_t r = 0; r < result.realizations.size(); ++r) {
     if (!want.snapshots && !(want.vtu && r == 0)) break;
     const Realization grains = read_realization(result.realizations[r]);
-    if (want.snapshots) {
-      const std::string file = folder + "/snapshots.h5";
-      dem::write_snapshot(file, fmt::format("/realization_{:03}/unloaded", r), grains.unloaded);
-      dem::write_snapshot(file, fmt::format("/realization_{:03}/loaded", r), grains.loaded);
-    }
-    if (want.vtu && r == 0) {
-      write_grains_vtu(folder + "/grains_unloaded.vtu", grains.unloaded);
-      write_grains_vtu(folder + "/grains_loaded.vtu", grains.loaded, &grains.unloaded);
-      write_contacts_vtu(folder + "/contacts_unloaded.vtu", grains.unloaded);
-      write_contacts_vtu(folder + "/contacts_loaded.vtu", grains.loaded);
-      write_chains_vtu(folder + "/chains_unloaded.vtu", grains.unloaded);
-      write_chains_vtu(folder + "/chains_loaded.vtu", grains.loaded);
+    for (const auto& [name, state] : grains.snapshots) {
+      if (want.snapshots) {
+        dem::write_snapshot(folder + "/snapshots.h5", fmt::format("/realization_{:03}/{}", r, name),
+                            state);
+      }
+      if (!want.vtu || r > 0) continue;
+      // Displacements are seen from the first state.
+      const dem::Snapshot& first = grains.snapshots.front().second;
+      write_grains_vtu(fmt::format("{}/grains_{}.vtu", folder, name), state,
+                       &state == &first ? nullptr : &first);
+      write_contacts_vtu(fmt::format("{}/contacts_{}.vtu", folder, name), state);
+      write_chains_vtu(fmt::format("{}/chains_{}.vtu", folder, name), state);
     }
   }
 }
 
-void write_page(const std::string& folder, const StudyResult& result) {
+Report layer_page(const StudyResult& result, const Realization* first) {
   PointLoadReport page;
   page.title = result.value.title.empty() ? result.value.name : result.value.title;
-  Realization first;
-  if (!result.realizations.empty()) {
-    first = read_realization(result.realizations.front());
-    page.unloaded = &first.unloaded;
-    page.loaded = &first.loaded;
+  if (first != nullptr) {
+    page.unloaded = &(*first)["unloaded"];
+    page.loaded = &(*first)["loaded"];
   }
   page.comparison = result.comparison;
   page.base_unloaded = result.base_unloaded;
@@ -94,7 +93,15 @@ void write_page(const std::string& folder, const StudyResult& result) {
   page.models = result.model_maps;
   page.figures = figure_rows(result.summary);
   page.made = origin_rows(result);
-  write_report(folder + "/report.html", point_load_report(page));
+  return point_load_report(page);
+}
+
+void write_page(const std::string& folder, const StudyResult& result) {
+  Realization first;
+  if (!result.realizations.empty()) first = read_realization(result.realizations.front());
+  const auto page = result.page ? result.page : layer_page;
+  write_report(folder + "/report.html",
+               page(result, result.realizations.empty() ? nullptr : &first));
 }
 
 }  // namespace
@@ -113,7 +120,7 @@ void add_identity(Summary& summary, const Case& value) {
   summary["case.study"] = value.study;
   summary["case.hash"] = hash_text(write_case(value));
   summary["version"] = std::string(GRAINFIELD_VERSION);
-  if (value.study == "point-load") {
+  if (study_of(value).has_grains()) {
     summary["ensemble.realizations"] = value.ensemble.realizations;
     summary["ensemble.seed"] = value.ensemble.seed;
   }

@@ -1,5 +1,6 @@
 // What a study leaves, before it is written: the same for every kind of study.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/report/point_load.h"
+#include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {
 
@@ -19,6 +21,9 @@ struct StudyResult {
   Field base_unloaded, map;               ///< for the report; may be empty
   std::vector<ModelMap> model_maps;       ///< on map's points
   std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty
+  /// Builds report.html from this result and its first realization (null without grains). Empty:
+  /// the page of a loaded layer.
+  std::function<Report(const StudyResult&, const Realization*)> page;
 };
 
 /// FNV-1a of a text, 16 hexadecimal digits.

@@ -1,0 +1,32 @@
+#include "coupling/run/studies.h"
+
+#include <stdexcept>
+
+#include "coupling/run/elastic.h"
+#include "coupling/run/point_load.h"
+
+namespace grainfield::coupling {
+
+const std::vector<Study>& studies() {
+  static const std::vector<Study> all{
+      point_load_study(),
+      elastic_layer_study(),
+      elastic_half_space_study(),
+  };
+  return all;
+}
+
+const Study* find_study(const std::string& name) {
+  for (const Study& study : studies()) {
+    if (study.name == name) return &study;
+  }
+  return nullptr;
+}
+
+const Study& study_of(const Case& value) {
+  const Study* study = find_study(value.study);
+  if (study == nullptr) throw std::logic_error("unknown study " + value.study);
+  return *study;
+}
+
+}  // namespace grainfield::coupling
