@@ -8,11 +8,17 @@
 // chord for any number of crossings, and force R = E A / l along n is the one that a smooth
 // potential would give at constant l. The contact point s has the tangential position that makes
 // the torque equal to the area's derivative by rotation,
-//   s . t = sum over A's pieces (|end|^2 - |begin|^2) / (2 |b|)   (= middle of p1p2 for two
-//   crossings)
-// and the normal position of the middle of the crossings. One outline inside the other (b = 0): the
-// normal is the direction of least penetration; s is the inner one's centroid.
-// l = r_i r_j / (r_i + r_j), r_i, r_j the distances of s from the centroids.
+//   s . t = sum over A's pieces (|end|^2 - |begin|^2) / (2 |b|)
+// and the normal position
+//   s . n = sum over A's pieces ((end.t)(end.n) - (begin.t)(begin.n)) / |b|,
+// both the middle of p1p2 for two crossings; of more crossings kept within the overlap's extents.
+// Area, b and s change continuously while corners slide in and out. The depth is the extent of the
+// overlap along n. Where b = 0 (one outline inside the other, two bars crossing symmetrically) the
+// normal is the direction of least penetration, the depth that penetration, the chord 0 and s the
+// middle of the overlap (the inner one's centroid).
+// l = r_i r_j / (r_i + r_j), r_i, r_j the distances of s from the centroids (arm_i, arm_j). In l,
+// and only there, an arm is at least a quarter of the centroid's distance from the nearest edge: l
+// stays positive when s comes near a centroid.
 #pragma once
 #include <cstdint>
 
@@ -20,6 +26,9 @@
 #include "dem/shapes/outline.h"
 
 namespace grainfield::dem {
+
+/// Corners a polygon can have at most.
+inline constexpr int kMostCorners = 64;
 
 /// An outline where it is. n = 0: a disk of `radius` about (cx, cy).
 struct PlacedShape {

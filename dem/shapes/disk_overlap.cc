@@ -1,0 +1,152 @@
+// Overlap of a disk with a convex polygon, and of two disks.
+//
+// Each edge of the polygon is cut by the circle; what lies inside, joined by the arcs between where
+// the outline leaves the disk and where it enters again, bounds the region. Its area is that of the
+// polygon of those points and one circular segment per arc, so that a light contact has no
+// cancellation of sectors.
+#include <numbers>
+#include <stdexcept>
+
+#include "dem/shapes/overlap_region.h"
+
+namespace grainfield::dem::region {
+
+namespace {
+
+// Of the radius: half chords below this are no contact of circle and edge (the disk protrudes by
+// less than 1e-14 of its radius: round-off).
+constexpr double kLeastHalfChord = 1e-7;
+
+// The polygon edge k seen from the disk's centre.
+struct Edge {
+  double px, py, ex, ey, squared, cross;  // cross > 0: centre on the inner side
+
+  Edge(const PlacedShape& polygon, int k, const PlacedShape& disk)
+      : px(polygon.x[k] - disk.cx),
+        py(polygon.y[k] - disk.cy),
+        ex(polygon.x[k + 1] - polygon.x[k]),
+        ey(polygon.y[k + 1] - polygon.y[k]),
+        squared(ex * ex + ey * ey),
+        cross(px * ey - py * ex) {}
+  // The whole disk is on the outer side.
+  bool separates(double radius) const {
+    return cross < 0 && cross * cross >= radius * radius * squared;
+  }
+};
+
+// The region's points, relative to the disk's centre; returns the area of its arcs' segments.
+double arcs_area(const Loop& loop, double arc, double radius, bool centre_inside) {
+  double size = 0;  // of the region's points
+  for (int i = 1; i < loop.n; ++i) {
+    size = std::fmax(size, std::fabs(loop.x[i] - loop.x[0]) + std::fabs(loop.y[i] - loop.y[0]));
+  }
+  double area = 0;
+  for (int i = 0; i < loop.n; ++i) {
+    if (loop.of_b[i] != arc) continue;
+    const int next = i + 1 < loop.n ? i + 1 : 0;
+    const double qx = loop.x[i], qy = loop.y[i];
+    const double dx = loop.x[next] - qx, dy = loop.y[next] - qy;
+    const double chord = std::sqrt(dx * dx + dy * dy);
+    double arm = -(dx * qy - dy * qx);  // its sign: centre to the left of the chord
+    // Of a chord that is round-off, the arc is the whole circle only if nothing else is there.
+    if (chord < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
+    area += segment_area(radius, arm, 0.5 * chord);
+  }
+  return area;
+}
+
+bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& polygon,
+                                 const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
+                                 Overlap& o) {
+  const double radius = disk.radius, radius2 = radius * radius;
+  const auto hint = static_cast<std::uint32_t>(feature.hint);
+  if (hint != 0 && hint <= static_cast<std::uint32_t>(polygon.n) &&
+      Edge(polygon, static_cast<int>(hint) - 1, disk).separates(radius)) {
+    return false;
+  }
+  const double outline = &polygon == &a ? 0.0 : 1.0, arc = 1.0 - outline;
+  Loop loop;
+  bool centre_inside = true, in_disk = false;
+  for (int k = 0; k < polygon.n; ++k) {
+    const Edge e(polygon, k, disk);
+    if (e.separates(radius)) {
+      feature.hint = k + 1;
+      return false;
+    }
+    centre_inside = centre_inside && e.cross > 0;
+    if (k == 0) in_disk = e.px * e.px + e.py * e.py < radius2;
+    const bool begin_in = in_disk;
+    const double qx = polygon.x[k + 1] - disk.cx, qy = polygon.y[k + 1] - disk.cy;
+    const bool end_in = qx * qx + qy * qy < radius2;
+    in_disk = end_in;
+    if (begin_in) loop.add(e.px, e.py, outline);
+    if (begin_in && end_in) continue;
+    // Along the edge, in parts of it: the foot of the centre, and half the chord.
+    const double under = radius2 * e.squared - e.cross * e.cross;
+    const double half2 = under / (e.squared * e.squared);
+    const double foot = -(e.px * e.ex + e.py * e.ey) / e.squared;
+    if (!begin_in && !end_in) {
+      if (!(half2 * e.squared > kLeastHalfChord * kLeastHalfChord * radius2)) continue;
+      if (!(foot > 0 && foot < 1)) continue;
+    }
+    const double half = std::sqrt(std::fmax(half2, 0.0));
+    if (!begin_in) {
+      const double t = std::fmin(std::fmax(foot - half, 0.0), 1.0);
+      loop.add(e.px + t * e.ex, e.py + t * e.ey, outline);
+    }
+    if (!end_in) {
+      const double t = std::fmin(std::fmax(foot + half, 0.0), 1.0);
+      loop.add(e.px + t * e.ex, e.py + t * e.ey, arc);
+    }
+  }
+  feature.hint = 0;
+  if (loop.n == 0) {
+    if (!centre_inside) return false;
+    o.area = std::numbers::pi * radius2;
+    set_least_penetration(a, b, disk.cx - a.cx, disk.cy - a.cy, o);
+    return true;
+  }
+  const auto add_arcs = [&](Extents& extents, double nx, double ny, double n0, double t0) {
+    // An arc reaches beyond the points where the disk's end along n is inside the polygon.
+    for (double end : {radius, -radius}) {
+      bool inside = true;
+      for (int k = 0; k < polygon.n && inside; ++k) {
+        const Edge e(polygon, k, disk);
+        inside = e.ex * (end * ny - e.py) - e.ey * (end * nx - e.px) > 0;
+      }
+      if (inside) extents.include(end - n0, -t0);
+    }
+  };
+  return contact_of_loop(a, b, loop, disk.cx - a.cx, disk.cy - a.cy,
+                         arcs_area(loop, arc, radius, centre_inside), add_arcs, o);
+}
+
+}  // namespace
+
+bool overlap_of_disk_and_polygon(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
+                                 Overlap& overlap) {
+  if (a.n > kMostCorners || b.n > kMostCorners) {
+    throw std::invalid_argument("a polygon has at most 64 corners");
+  }
+  const double dx = b.cx - a.cx, dy = b.cy - a.cy, reach = a.radius + b.radius;
+  if (dx * dx + dy * dy > reach * reach) return false;
+  return a.n == 0 ? overlap_of_disk_and_outline(a, b, a, b, feature, overlap)
+                  : overlap_of_disk_and_outline(b, a, a, b, feature, overlap);
+}
+
+bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Overlap& o) {
+  const double dx = b.cx - a.cx, dy = b.cy - a.cy;
+  if (!overlap_of_disks<true>(dx, dy, a.radius, b.radius, o)) return false;
+  if (o.chord > 0) {
+    o.lever_i = o.arm_i;
+    o.lever_j = o.arm_j;
+  } else {  // one inside the other: s is the smaller one's centre
+    const double distance = std::hypot(dx, dy);
+    o.lever_i = a.radius < b.radius ? 0 : distance;
+    o.lever_j = distance - o.lever_i;
+  }
+  o.shift_i = o.shift_j = 0;
+  return true;
+}
+
+}  // namespace grainfield::dem::region
