@@ -11,9 +11,13 @@
 namespace grainfield::continuum {
 
 const std::vector<ModelInfo>& registry() {
-  static const std::vector<ModelInfo> models = {
-      flamant_info(),     boussinesq_info(),       layer_info(),
-      hydrostatic_info(), fe_elastic_layer_info(), fe_elastic_half_space_info()};
+  static const std::vector<ModelInfo> models = {flamant_info(),
+                                                boussinesq_info(),
+                                                layer_info(),
+                                                hydrostatic_info(),
+                                                liffman_info(),
+                                                fe_elastic_layer_info(),
+                                                fe_elastic_half_space_info()};
   return models;
 }
 

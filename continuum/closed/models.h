@@ -8,5 +8,6 @@ ModelInfo flamant_info();
 ModelInfo boussinesq_info();
 ModelInfo layer_info();
 ModelInfo hydrostatic_info();
+ModelInfo liffman_info();
 
 }  // namespace grainfield::continuum
