@@ -136,6 +136,31 @@ struct PileSetup {
   ChangeSetup change;
 };
 
+/// A pile of equal disks on the triangular lattice (Liffman et al. 1992): rows that shrink upwards
+/// so that the outline follows the slope, on a floor whose friction holds the lowest row.
+struct LatticeSetup {
+  int base_grains = 45;    ///< disks in the lowest row; at 60 degrees also the number of rows
+  double slope_deg = 60;   ///< of the outline, up to 60
+  double radius = 0.0045;  ///< m
+  double gap = 1e-4;       ///< between neighbours of a row / diameter; 0: they may touch, and carry
+                           ///< force where the pile's own weight pushes them together
+};
+
+/// The lattice pile comes to rest under its weight: rest -> snapshot "pile". Disks of the lowest
+/// row do not spin, as Liffman's static friction acts on their centres (eq. 30, 33).
+struct LatticePileSetup {
+  LatticeSetup lattice;
+  MaterialSetup material = [] {
+    MaterialSetup m;
+    m.law = "linear";
+    m.friction = 0;        // at rest Liffman's grains exert no tangential force on each other
+    m.floor_friction = 1;  // above tan 30 degrees, the steepest H/N
+    return m;
+  }();
+  MotionSetup motion;
+  RestSetup rest;
+};
+
 struct PointLoadSetup {
   PackingSetup packing;
   MaterialSetup material;

@@ -1,0 +1,27 @@
+// Disks of a lattice pile at the start: touching their supports, without overlap, on y = 0.
+#pragma once
+#include <vector>
+
+#include "dem/engine/engine.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::dem {
+
+/// Throws std::invalid_argument naming the key ("lattice.slope_deg"), the value and what is
+/// allowed.
+void check_lattice(const LatticeSetup& lattice);
+
+/// Number of disks in each row from the base up: those of the triangular lattice on and under the
+/// slopes that rise from the centres of the outermost base disks. 45 base disks give 45, 44, ..., 1
+/// (1035) at 60 degrees and 45, 42, ..., 3 (360) at 30, as Liffman's piles.
+std::vector<int> lattice_rows(const LatticeSetup& lattice);
+
+/// Distance of neighbours in a row and of neighbouring rows, m: disks of successive rows touch.
+double lattice_spacing(const LatticeSetup& lattice);
+double lattice_rise(const LatticeSetup& lattice);
+
+/// The disks row by row from the base, each row from left to right, the middle at x = 0. Those of
+/// the lowest row do not spin.
+std::vector<NewGrain> lattice_pile_grains(const LatticeSetup& lattice, double density);
+
+}  // namespace grainfield::dem
