@@ -7,10 +7,24 @@
 #include <numbers>
 
 #include "dem/engine/engine_loop.h"
+#include "dem/engine/engine_search.h"
+#include "dem/engine/engine_sleep.h"
+#include "dem/engine/engine_state.h"
 #include "dem/integrators/gear.h"
 #include "dem/integrators/verlet.h"
 
 namespace grainfield::dem {
+namespace {
+
+template <class Shape, class Law>
+std::unique_ptr<Engine> with_shape(const EngineSettings& settings, const Law& law) {
+  if (settings.integrator == IntegratorKind::gear) {
+    return std::make_unique<EngineLoop<Shape, Law, GearIntegrator>>(settings, law);
+  }
+  return std::make_unique<EngineLoop<Shape, Law, VerletIntegrator>>(settings, law);
+}
+
+}  // namespace
 
 double stable_time_step(const EngineSettings& settings, double least_mass) {
   const double viscous_limit = settings.integrator == IntegratorKind::gear ? 0.16 : 1.0;
@@ -51,11 +65,9 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
   // Shapes times laws times integrators, each compiled as one loop. A new law joins the variant in
   // engine.h.
   return std::visit(
-      [&settings]<class Law>(const Law& law) -> std::unique_ptr<Engine> {
-        if (settings.integrator == IntegratorKind::gear) {
-          return std::make_unique<EngineLoop<DiskShape, Law, GearIntegrator>>(settings, law);
-        }
-        return std::make_unique<EngineLoop<DiskShape, Law, VerletIntegrator>>(settings, law);
+      [&settings](const auto& law) {
+        return settings.polygons ? with_shape<PolygonStore>(settings, law)
+                                 : with_shape<DiskStore>(settings, law);
       },
       settings.law);
 }

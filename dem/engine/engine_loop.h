@@ -9,11 +9,14 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <unordered_map>
 
 #include "dem/engine/engine.h"
 #include "dem/engine/image.h"
 #include "dem/engine/thread_team.h"
 #include "dem/neighbours/hierarchical_grid.h"
+#include "dem/shapes/disk_store.h"
+#include "dem/shapes/polygon_store.h"
 
 namespace grainfield::dem {
 
@@ -23,6 +26,13 @@ namespace grainfield::dem {
 // and 0.1 on the settled packings of tests/benchmarks. Step counts alone decide, so the bits stay.
 inline constexpr double kFirstSkin = 0.1, kLeastSkin = 0.03, kMostSkin = 0.4;
 inline constexpr long kOften = 60, kSeldom = 1000;
+// A grain may move half the skin, and at its present speed for this many steps, before the next
+// search; so a few falling grains do not make all others search.
+inline constexpr double kStepsAhead = 100;
+// ... but not further than this many radii.
+inline constexpr double kMostAhead = 3;
+// Sleeping and waking are decided every so many steps.
+inline constexpr long kReviewEvery = 50;
 // How many pairs ahead the sweep asks for the grains it will need; the pair list ends with as many
 // idle entries. Measured: 8 % on packings beyond the second-level cache, none below.
 inline constexpr int kAhead = 16;
@@ -53,19 +63,28 @@ class EngineLoop final : public Engine {
     b.vx = g.fixed ? 0 : g.vx;
     b.vy = g.fixed ? 0 : g.vy;
     b.spin = g.fixed || !g.rotates ? 0 : g.spin;
-    b.radius = g.radius;
-    const double mass = g.density * std::numbers::pi * g.radius * g.radius;
+    b.radius = g.outline.empty() ? g.radius : circumradius_of(g.outline);
+    const double area =
+        g.outline.empty() ? std::numbers::pi * g.radius * g.radius : area_of(g.outline);
+    const double polar =
+        g.outline.empty() ? 0.5 * area * g.radius * g.radius : polar_moment_of(g.outline);
+    shapes_.add(g.outline);
     if (!g.fixed) {
-      b.inverse_mass = 1 / mass;
-      if (g.rotates) b.inverse_inertia = 1 / (0.5 * mass * g.radius * g.radius);
+      b.inverse_mass = 1 / (g.density * area);
+      if (g.rotates) b.inverse_inertia = 1 / (g.density * polar);
       ++free_;
     }
     Memory m;
     m.angle = g.angle;
     bodies_.push_back(b);
     memory_.push_back(m);
-    masses_.push_back(mass);
+    inertias_.push_back({g.density * area, g.density * polar, area});
     ids_.push_back(static_cast<std::int64_t>(ids_.size()));
+    quiet_.push_back({g.x, g.y, g.angle, steps_});
+    rests_.push_back({});
+    touches_.push_back({});
+    asleep_.push_back(g.fixed && settings_.sleep.on ? 1 : 0);
+    shapes_.place(static_cast<int>(bodies_.size()) - 1, b, g.angle);
     search_needed_ = true;
     return ids_.back();
   }
@@ -77,6 +96,7 @@ class EngineLoop final : public Engine {
 
   void apply(const AppliedForce& force) override {
     applied_ = force;
+    wake_all();
     locate_applied();
   }
 
@@ -85,8 +105,12 @@ class EngineLoop final : public Engine {
   void set_gravity(double gx, double gy) override {
     settings_.gravity_x = gx;
     settings_.gravity_y = gy;
+    wake_all();
   }
-  void set_sleep(bool on) override { settings_.sleep.on = on; }
+  void set_sleep(bool on) override {
+    settings_.sleep.on = on;
+    wake_all();
+  }
 
   void step(long n) override;
 
@@ -101,16 +125,48 @@ class EngineLoop final : public Engine {
 
  private:
   struct Pair {
-    double spring = 0;  // N, on the first grain along (-n_y, n_x)
-    int j = 0;          // second grain, or wall; the first is the row's
-    int pad = 0;        // so that an image has no undefined bytes
+    double spring = 0;    // N, on the first grain along (-n_y, n_x)
+    int j = 0;            // second grain, or wall; the first is the row's
+    PairFeature feature;  // where the narrow phase starts; no influence on the result
   };
   struct alignas(32) Sum {
     double fx = 0, fy = 0, torque = 0;
+    double press = 0;  // sum of |fx| + |fy|; of sleepers only
   };
+  struct Inertia {
+    double mass = 0, polar = 0, area = 0;  // kg, kg m2, m2; of fixed grains too
+  };
+  /// Where a grain was at the last search and how far it may go, squared.
+  struct Reference {
+    double x = 0, y = 0, limit = 0;
+  };
+  /// Since when, and from where, a grain has hardly moved.
+  struct Quiet {
+    double x = 0, y = 0, angle = 0;
+    long since = 0;
+  };
+  /// A contact between sleepers (or of one with a wall): its memory and its force, on the grain
+  /// with the lower id.
+  struct Frozen {
+    std::uint64_t key = 0;
+    double spring = 0, fx = 0, fy = 0, torque_low = 0, torque_high = 0;
+  };
+  using Key = std::uint64_t;  // of a pair of ids, or of an id and a wall
 
+  void wake_all();
   void search();
+  void part_sleepers();
+  void swap_bodies(int i, int j);
+  Pair recalled(int i, int j, bool wall, const std::vector<std::pair<Key, double>>& kept);
+  static Key pair_key(std::int64_t a, std::int64_t b);
+  static Key wall_key(std::int64_t id, int wall);
   void adapt_skin();
+  void gather_touches();
+  void review();
+  bool wake_sleepers();
+  bool let_sleep();
+  template <class Visit>
+  void visit_static(const std::vector<unsigned char>& of, Visit visit);
   void index_contacts();
   void sort_bodies(const std::vector<int>& order);
   void locate_applied();
@@ -121,13 +177,16 @@ class EngineLoop final : public Engine {
   void sweep(int rank, long step_index, double dt);
   bool pair_force(int i, int k, double dt, ContactForce& force);
   std::array<double, 2> applied_at(double t) const;
+  std::array<double, 3> weight_of(int i) const;
   void start_new_grains();
   void check_motion();
   ContactForce evaluate(const Body& a, const Body& b, const Overlap& o, double mu, double dt,
                         double& spring) const;
-  bool overlap_with_wall(const Body& a, const Wall& w, Overlap& o) const;
+  bool overlap_with_wall(int i, const Wall& w, Overlap& o) const;
+  static std::array<double, 2> point_of(const Body& a, const Overlap& o);
   template <class Visit>
   void visit_contacts(Visit visit) const;
+  std::vector<Frozen> sorted_frozen() const;
   [[noreturn]] void report_divergence() const;
 
   EngineSettings settings_;
@@ -147,10 +206,23 @@ class EngineLoop final : public Engine {
 
   std::vector<Body> bodies_;
   std::vector<Memory> memory_;
-  std::vector<double> masses_;
+  std::vector<Inertia> inertias_;
   std::vector<std::int64_t> ids_;
   std::vector<Wall> walls_;
-  std::vector<std::array<double, 2>> reference_;  // positions at the last search
+  std::vector<Reference> reference_;  // of the awake
+  Shape shapes_;
+
+  // Grains [0, awake_) move; the others sleep or are fixed. Without sleeping awake_ is their
+  // number.
+  int awake_ = 0;
+  std::vector<unsigned char> asleep_;
+  std::vector<Quiet> quiet_;
+  std::vector<Sum> rests_;    // of sleepers: weight and forces of the frozen contacts
+  std::vector<Sum> touches_;  // of sleepers: forces of awake neighbours, summed over the steps
+  long touch_steps_ = 0;      // ... since the last review
+  std::vector<ContactForce> felt_;  // the same by pair, since the last search
+  std::unordered_map<Key, Frozen> frozen_;
+  bool sleepers_changed_ = true;
 
   // Candidate pairs by first grain (rows pair_start_[i] .. pair_start_[i+1]), likewise with walls.
   std::vector<Pair> pairs_, wall_pairs_;
@@ -159,15 +231,18 @@ class EngineLoop final : public Engine {
   std::vector<Sum> sums_;    // what earlier grains have left for a later one; 0 between steps
   std::vector<int> blocks_;  // first grain of each thread's block, and the end
   std::vector<std::vector<std::pair<int, int>>> incoming_;  // per block: (i, pair)
-  HierarchicalGrid grid_;
+  HierarchicalGrid grid_, sleepers_grid_;
+  std::vector<Reach> reaches_;
 };
 
 template <class Shape, class Law, class Integrator>
 inline void EngineLoop<Shape, Law, Integrator>::begin(int i, bool& moved) {
   Body& b = bodies_[i];
   integrator_.begin(b, memory_[i]);
-  const double dx = b.x - reference_[i][0], dy = b.y - reference_[i][1];
-  moved |= !(dx * dx + dy * dy <= 0.25 * skin_ * skin_);  // also true for nan
+  if constexpr (Shape::outlines) shapes_.place(i, b, memory_[i].angle);
+  const Reference& r = reference_[i];
+  const double dx = b.x - r.x, dy = b.y - r.y;
+  moved |= !(dx * dx + dy * dy <= r.limit);  // also true for nan
 }
 
 template <class Shape, class Law, class Integrator>
@@ -188,13 +263,23 @@ inline std::array<double, 2> EngineLoop<Shape, Law, Integrator>::applied_at(doub
 }
 
 template <class Shape, class Law, class Integrator>
-inline bool EngineLoop<Shape, Law, Integrator>::overlap_with_wall(const Body& a, const Wall& w,
+inline bool EngineLoop<Shape, Law, Integrator>::overlap_with_wall(int i, const Wall& w,
                                                                   Overlap& o) const {
-  const double height = (a.x - w.point.x()) * w.normal.x() + (a.y - w.point.y()) * w.normal.y();
-  return Shape::template overlap_with_plane<Law::needs_area>(a, height, w.normal.x(), w.normal.y(),
-                                                             o);
+  return shapes_.template overlap_plane<Law::needs_area>(i, bodies_[i], w.point.x(), w.point.y(),
+                                                         w.normal.x(), w.normal.y(), o);
 }
 
+/// The contact point, from the first grain.
+template <class Shape, class Law, class Integrator>
+std::array<double, 2> EngineLoop<Shape, Law, Integrator>::point_of(const Body& a,
+                                                                   const Overlap& o) {
+  if constexpr (Shape::outlines) {
+    return {a.x + o.lever_i * o.nx - o.shift_i * o.ny, a.y + o.lever_i * o.ny + o.shift_i * o.nx};
+  }
+  return {a.x + o.arm_i * o.nx, a.y + o.arm_i * o.ny};
+}
+
+/// With levers and shifts as in Overlap: velocities and torques at the contact point.
 template <class Shape, class Law, class Integrator>
 inline ContactForce EngineLoop<Shape, Law, Integrator>::evaluate(const Body& a, const Body& b,
                                                                  const Overlap& o, double mu,
@@ -202,14 +287,24 @@ inline ContactForce EngineLoop<Shape, Law, Integrator>::evaluate(const Body& a, 
   const double vx = a.vx - b.vx, vy = a.vy - b.vy;
   ContactMotion m;
   m.approach = vx * o.nx + vy * o.ny;
-  m.slip = vy * o.nx - vx * o.ny + a.spin * o.arm_i + b.spin * o.arm_j;
+  if constexpr (Shape::outlines) {
+    m.approach += b.spin * o.shift_j - a.spin * o.shift_i;
+    m.slip = vy * o.nx - vx * o.ny + a.spin * o.lever_i + b.spin * o.lever_j;
+  } else {
+    m.slip = vy * o.nx - vx * o.ny + a.spin * o.arm_i + b.spin * o.arm_j;
+  }
   m.inverse_mass_i = a.inverse_mass;
   m.inverse_mass_j = b.inverse_mass;
   m.inverse_inertia_i = a.inverse_inertia;
   m.inverse_inertia_j = b.inverse_inertia;
   const LawForce f = law_(o, m, mu, dt, spring);
-  return {-f.normal * o.nx - f.tangential * o.ny, -f.normal * o.ny + f.tangential * o.nx,
-          o.arm_i * f.tangential, o.arm_j * f.tangential};
+  const double fx = -f.normal * o.nx - f.tangential * o.ny;
+  const double fy = -f.normal * o.ny + f.tangential * o.nx;
+  if constexpr (Shape::outlines) {
+    return {fx, fy, o.lever_i * f.tangential + o.shift_i * f.normal,
+            o.lever_j * f.tangential - o.shift_j * f.normal};
+  }
+  return {fx, fy, o.arm_i * f.tangential, o.arm_j * f.tangential};
 }
 
 /// Force of pair k between grains i and j; 0 and an empty memory when they do not touch.
@@ -220,7 +315,7 @@ inline bool EngineLoop<Shape, Law, Integrator>::pair_force(int i, int k, double 
   const Body& a = bodies_[i];
   const Body& b = bodies_[pair.j];
   Overlap o;
-  if (!Shape::template overlap<Law::needs_area>(a, b, o)) {
+  if (!shapes_.template overlap<Law::needs_area>(i, a, pair.j, b, pair.feature, o)) {
     pair.spring = 0;
     return false;
   }
@@ -265,7 +360,17 @@ void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double
       __builtin_prefetch(&bodies_[later], 1);
       __builtin_prefetch(&sums_[later], 1);
       ContactForce f;
-      if (j >= last) {
+      if (j >= awake_) {  // a sleeper, or fixed: it only remembers what it feels
+        const bool touches = pair_force(i, k, dt, f);
+        if constexpr (kind == SweepKind::last) pair_forces_[k] = f;
+        if (!touches) continue;
+        if constexpr (kind != SweepKind::start) {
+          felt_[k].fx += f.fx;
+          felt_[k].fy += f.fy;
+          felt_[k].torque_j += f.torque_j;
+          felt_[k].torque_i += std::fabs(f.fx) + std::fabs(f.fy);
+        }
+      } else if (j >= last) {
         f = pair_forces_[k];  // the block of j has evaluated it
       } else if (pair_force(i, k, dt, f)) {
         sums_[j].fx -= f.fx;
@@ -287,7 +392,7 @@ void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double
       const Wall& wall = walls_[pair.j];
       Overlap o;
       ContactForce f;
-      if (overlap_with_wall(b, wall, o)) {
+      if (overlap_with_wall(i, wall, o)) {
         f = evaluate(b, kWallBody, o, wall.friction, dt, pair.spring);
         fx += f.fx;
         fy += f.fy;
@@ -326,13 +431,17 @@ void EngineLoop<Shape, Law, Integrator>::step(long n) {
     begin_all(rank);
     for (long s = 0; s < n; ++s) {
       team_.meet();
+      const bool review_due =
+          settings_.sleep.on && start + s > 0 && (start + s) % kReviewEvery == 0;
       const bool smaller_skin = start + s - last_search_ >= kSeldom && skin_share_ > kLeastSkin;
-      if (moved_.load(std::memory_order_relaxed) || smaller_skin) {
+      if (moved_.load(std::memory_order_relaxed) || smaller_skin || review_due) {
         team_.meet();  // all have read the flags
         if (rank == 0) {
+          const bool search_due = moved_.load(std::memory_order_relaxed) || smaller_skin;
           steps_ = start + s;
           check_motion();
-          if (!diverged_) search();
+          if (!diverged_ && review_due) review();
+          if (!diverged_ && (search_due || search_needed_)) search();
           moved_ = false;
         }
         team_.meet();
@@ -368,7 +477,8 @@ void EngineLoop<Shape, Law, Integrator>::start_new_grains() {
 
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::check_motion() {
-  for (const Body& b : bodies_) {
+  for (int i = 0; i < awake_; ++i) {
+    const Body& b = bodies_[i];
     const double move = std::hypot(b.vx, b.vy) * settings_.time_step;
     if (!(move <= kMaxMoveShare * b.radius) || !std::isfinite(b.x) || !std::isfinite(b.y)) {
       diverged_ = true;
@@ -378,7 +488,7 @@ void EngineLoop<Shape, Law, Integrator>::check_motion() {
 
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (int i = 0; i < awake_; ++i) {
     const Body& b = bodies_[i];
     const double speed = std::hypot(b.vx, b.vy);
     if (speed * settings_.time_step <= kMaxMoveShare * b.radius && std::isfinite(b.x) &&
@@ -390,339 +500,9 @@ void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
         "m/s "
         "moves more than half its radius in a step; lower motion.time_step (now {:.3g} s) or the "
         "load",
-        time(), steps_, ids_[i], reference_[i][0], reference_[i][1], speed, settings_.time_step));
+        time(), steps_, ids_[i], reference_[i].x, reference_[i].y, speed, settings_.time_step));
   }
   throw ComputationFailed("diverged");
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::locate_applied() {
-  applied_index_ = -1;
-  for (std::size_t i = 0; i < ids_.size(); ++i) {
-    if (ids_[i] == applied_.id) applied_index_ = static_cast<int>(i);
-  }
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::sort_bodies(const std::vector<int>& order) {
-  const std::size_t n = order.size();
-  const auto permute = [&order, n](auto& values) {
-    auto sorted = values;
-    for (std::size_t k = 0; k < n; ++k) sorted[k] = values[order[k]];
-    values.swap(sorted);
-  };
-  permute(bodies_);
-  permute(memory_);
-  permute(masses_);
-  permute(ids_);
-  locate_applied();
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::adapt_skin() {
-  const long since = steps_ - last_search_;
-  last_search_ = steps_;
-  if (since < kOften) {
-    skin_share_ = std::min(1.5 * skin_share_, kMostSkin);
-  } else if (since >= kSeldom) {
-    skin_share_ = std::max(0.5 * skin_share_, kLeastSkin);
-  }
-  double sum = 0;
-  for (const Body& b : bodies_) sum += b.radius;
-  const double mean = bodies_.empty() ? 0 : sum / static_cast<double>(bodies_.size());
-  skin_ = settings_.skin > 0 ? settings_.skin : skin_share_ * mean;
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::search() {
-  const int n = static_cast<int>(bodies_.size());
-  adapt_skin();
-  // The springs in use, by the grains' ids: the order of the bodies changes below. A spring is the
-  // same seen from either of its grains.
-  struct Kept {
-    std::int64_t i, j;
-    double spring;
-  };
-  const auto less = [](const Kept& a, const Kept& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; };
-  const auto keep = [&](const std::vector<Pair>& pairs, const std::vector<int>& start, bool wall) {
-    std::vector<Kept> kept;
-    for (int i = 0; i + 1 < static_cast<int>(start.size()); ++i) {
-      for (int k = start[i]; k < start[i + 1]; ++k) {
-        if (pairs[k].spring == 0) continue;
-        const std::int64_t j = wall ? pairs[k].j : ids_[pairs[k].j];
-        kept.push_back(wall ? Kept{ids_[i], j, pairs[k].spring}
-                            : Kept{std::min(ids_[i], j), std::max(ids_[i], j), pairs[k].spring});
-      }
-    }
-    std::sort(kept.begin(), kept.end(), less);
-    return kept;
-  };
-  const std::vector<Kept> kept = keep(pairs_, pair_start_, false);
-  const std::vector<Kept> wall_kept = keep(wall_pairs_, wall_start_, true);
-  const auto find = [&](const std::vector<Kept>& list, std::int64_t i, std::int64_t j) {
-    const Kept key{i, j, 0};
-    const auto it = std::lower_bound(list.begin(), list.end(), key, less);
-    return it != list.end() && it->i == i && it->j == j ? it->spring : 0.0;
-  };
-
-  grid_.build(bodies_, skin_);
-  if (n > 0) {
-    sort_bodies(grid_.order(bodies_));
-    grid_.build(bodies_, skin_);
-  }
-  std::vector<std::pair<int, int>> found;
-  grid_.pairs(bodies_, found);
-  pairs_.clear();
-  pair_start_.assign(n + 1, 0);
-  for (const auto& [i, j] : found) {
-    ++pair_start_[i + 1];
-    pairs_.push_back({find(kept, std::min(ids_[i], ids_[j]), std::max(ids_[i], ids_[j])), j, 0});
-  }
-  for (int i = 0; i < n; ++i) pair_start_[i + 1] += pair_start_[i];
-  pairs_.resize(found.size() + kAhead);
-
-  wall_pairs_.clear();
-  wall_start_.assign(1, 0);
-  for (int i = 0; i < n; ++i) {
-    const Body& b = bodies_[i];
-    for (int w = 0; w < static_cast<int>(walls_.size()) && b.inverse_mass != 0; ++w) {
-      const Wall& wall = walls_[w];
-      const double height =
-          (b.x - wall.point.x()) * wall.normal.x() + (b.y - wall.point.y()) * wall.normal.y();
-      if (height < b.radius + skin_) wall_pairs_.push_back({find(wall_kept, ids_[i], w), w, 0});
-    }
-    wall_start_.push_back(static_cast<int>(wall_pairs_.size()));
-  }
-  index_contacts();
-  pair_forces_.assign(pairs_.size(), {});
-  wall_forces_.assign(wall_pairs_.size(), {});
-  reference_.resize(n);
-  for (int i = 0; i < n; ++i) reference_[i] = {bodies_[i].x, bodies_[i].y};
-  search_needed_ = false;
-}
-
-/// Blocks of the threads, with about the same number of pairs in each, and what crosses them.
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::index_contacts() {
-  const int n = static_cast<int>(bodies_.size()), size = team_.size();
-  blocks_.assign(size + 1, n);
-  blocks_[0] = 0;
-  const auto work = [&](int i) { return static_cast<long long>(pair_start_[i]) + 2LL * i; };
-  for (int rank = 1, i = 0; rank < size; ++rank) {
-    while (i < n && work(i) * size < work(n) * rank) ++i;
-    blocks_[rank] = i;
-  }
-  incoming_.assign(size, {});
-  for (int from = 0; from + 1 < size; ++from) {
-    for (int i = blocks_[from]; i < blocks_[from + 1]; ++i) {
-      for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
-        if (pairs_[k].j < blocks_[from + 1]) continue;
-        int to = from + 1;
-        while (pairs_[k].j >= blocks_[to + 1]) ++to;
-        incoming_[to].emplace_back(i, k);
-      }
-    }
-  }
-  sums_.assign(n, Sum{});
-}
-
-/// visit(first grain, pair, force, is a wall, overlap) for every contact that carried force in the
-/// last step.
-template <class Shape, class Law, class Integrator>
-template <class Visit>
-void EngineLoop<Shape, Law, Integrator>::visit_contacts(Visit visit) const {
-  if (search_needed_) return;
-  Overlap o;
-  for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
-    const Body& a = bodies_[i];
-    for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
-      const ContactForce& f = pair_forces_[k];
-      const Body& b = bodies_[pairs_[k].j];
-      if ((f.fx != 0 || f.fy != 0) && Shape::template overlap<Law::needs_area>(a, b, o)) {
-        visit(i, pairs_[k], f, false, o);
-      }
-    }
-    for (int k = wall_start_[i]; k < wall_start_[i + 1]; ++k) {
-      const ContactForce& f = wall_forces_[k];
-      if ((f.fx != 0 || f.fy != 0) && overlap_with_wall(a, walls_[wall_pairs_[k].j], o)) {
-        visit(i, wall_pairs_[k], f, true, o);
-      }
-    }
-  }
-}
-
-template <class Shape, class Law, class Integrator>
-Diagnostics EngineLoop<Shape, Law, Integrator>::measure() const {
-  Diagnostics d;
-  const int n = static_cast<int>(bodies_.size());
-  std::vector<std::array<double, 2>> resultant(n, {0, 0});
-  double force_sum = 0;
-  visit_contacts([&](int i, const Pair& pair, const ContactForce& f, bool wall, const Overlap& o) {
-    ++d.contacts;
-    force_sum += std::hypot(f.fx, f.fy);
-    d.elastic_energy += law_.energy(o, pair.spring);
-    const double radius =
-        wall ? bodies_[i].radius : std::min(bodies_[i].radius, bodies_[pair.j].radius);
-    d.max_overlap_ratio = std::max(d.max_overlap_ratio, o.depth / radius);
-    const double normal = -(f.fx * o.nx + f.fy * o.ny);
-    const double tangential = f.fy * o.nx - f.fx * o.ny;
-    const double mu = wall ? walls_[pair.j].friction : settings_.friction;
-    if (mu > 0 && std::fabs(tangential) >= mu * normal * (1 - kSlidingMargin)) ++d.sliding;
-    resultant[i][0] += f.fx;
-    resultant[i][1] += f.fy;
-    if (!wall) {
-      resultant[pair.j][0] -= f.fx;
-      resultant[pair.j][1] -= f.fy;
-    }
-  });
-  d.height = -std::numeric_limits<double>::infinity();
-  const auto [load_x, load_y] = applied_at(time());
-  for (int i = 0; i < n; ++i) {
-    const Body& b = bodies_[i];
-    if (b.inverse_mass == 0) continue;
-    d.kinetic_energy += 0.5 * masses_[i] * (b.vx * b.vx + b.vy * b.vy) +
-                        (b.inverse_inertia > 0 ? 0.5 * b.spin * b.spin / b.inverse_inertia : 0.0);
-    double fx = resultant[i][0] + masses_[i] * settings_.gravity_x;
-    double fy = resultant[i][1] + masses_[i] * settings_.gravity_y;
-    if (i == applied_index_) {
-      fx += load_x;
-      fy += load_y;
-    }
-    const double size = std::hypot(fx, fy);
-    d.mean_unbalanced_force += size;
-    d.max_unbalanced_force = std::max(d.max_unbalanced_force, size);
-    d.height = std::max(d.height, b.y + b.radius);
-  }
-  if (free_ > 0) d.mean_unbalanced_force /= free_;
-  if (d.contacts > 0) d.mean_contact_force = force_sum / d.contacts;
-  d.unbalanced_force_ratio = d.mean_contact_force > 0
-                                 ? d.mean_unbalanced_force / d.mean_contact_force
-                                 : std::numeric_limits<double>::infinity();
-  return d;
-}
-
-template <class Shape, class Law, class Integrator>
-Snapshot EngineLoop<Shape, Law, Integrator>::snapshot() const {
-  Snapshot s;
-  s.time = time();
-  s.gravity = Vec3(settings_.gravity_x, settings_.gravity_y, 0);
-  s.walls = walls_;
-  const int n = static_cast<int>(bodies_.size());
-  s.grains.resize(n);
-  for (int i = 0; i < n; ++i) {
-    const Body& b = bodies_[i];
-    Grain& g = s.grains[ids_[i]];  // ids are 0..n-1
-    g.id = ids_[i];
-    g.position = Vec3(b.x, b.y, 0);
-    g.velocity = Vec3(b.vx, b.vy, 0);
-    g.angle = memory_[i].angle;
-    g.spin = b.spin;
-    g.radius = b.radius;
-    g.mass = masses_[i];
-    g.inertia = 0.5 * masses_[i] * b.radius * b.radius;
-    g.volume = std::numbers::pi * b.radius * b.radius;
-    g.fixed = b.inverse_mass == 0;
-  }
-  if (applied_index_ >= 0) {
-    const auto [fx, fy] = applied_at(time());
-    s.loaded_grain = applied_.id;
-    s.applied_force = Vec3(fx, fy, 0);
-  }
-  visit_contacts([&](int i, const Pair& pair, const ContactForce& f, bool wall, const Overlap& o) {
-    const Body& a = bodies_[i];
-    Contact c;
-    c.i = ids_[i];
-    c.point = Vec3(a.x + o.arm_i * o.nx, a.y + o.arm_i * o.ny, 0);
-    c.normal = Vec3(o.nx, o.ny, 0);
-    c.force = Vec3(f.fx, f.fy, 0);
-    c.j = wall ? -1 - pair.j : ids_[pair.j];
-    if (!wall && c.j < c.i) {
-      std::swap(c.i, c.j);
-      c.normal = -c.normal;
-      c.force = -c.force;
-    }
-    c.normal_force = -(f.fx * o.nx + f.fy * o.ny);
-    c.tangential_force = f.fy * o.nx - f.fx * o.ny;
-    c.spring = pair.spring;
-    c.friction = wall ? walls_[pair.j].friction : settings_.friction;
-    c.sliding = c.friction > 0 &&
-                std::fabs(c.tangential_force) >= c.friction * c.normal_force * (1 - kSlidingMargin);
-    s.contacts.push_back(c);
-  });
-  std::sort(s.contacts.begin(), s.contacts.end(),
-            [](const Contact& a, const Contact& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
-  s.attributes["integrator"] = Integrator::name;
-  s.attributes["law"] = Law::name;
-  s.attributes["time_step"] = fmt::format("{:.17g}", settings_.time_step);
-  return s;
-}
-
-template <class Shape, class Law, class Integrator>
-std::string EngineLoop<Shape, Law, Integrator>::image() const {
-  ImageWriter w;
-  w.put(background_);
-  w.put(applied_);
-  w.put(steps_);
-  w.put(free_);
-  w.put(first_new_);
-  w.put(skin_);
-  w.put(skin_share_);
-  w.put(last_search_);
-  w.put(search_needed_);
-  w.put(bodies_);
-  w.put(memory_);
-  w.put(masses_);
-  w.put(ids_);
-  w.put(reference_);
-  w.put(pair_start_);
-  w.put(wall_start_);
-  w.put(pairs_);
-  w.put(wall_pairs_);
-  w.put(pair_forces_);
-  w.put(wall_forces_);
-  return w.bytes();
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::restore(const std::string& image) {
-  ImageReader r(image);
-  r.get(background_);
-  r.get(applied_);
-  r.get(steps_);
-  r.get(free_);
-  r.get(first_new_);
-  r.get(skin_);
-  r.get(skin_share_);
-  r.get(last_search_);
-  r.get(search_needed_);
-  r.get(bodies_);
-  r.get(memory_);
-  r.get(masses_);
-  r.get(ids_);
-  r.get(reference_);
-  r.get(pair_start_);
-  r.get(wall_start_);
-  r.get(pairs_);
-  r.get(wall_pairs_);
-  r.get(pair_forces_);
-  r.get(wall_forces_);
-  r.finish();
-  const int n = static_cast<int>(bodies_.size());
-  for (const Pair& p : pairs_) r.require(p.j >= 0 && p.j < n);
-  for (const Pair& p : wall_pairs_) r.require(p.j >= 0 && p.j < static_cast<int>(walls_.size()));
-  if (!search_needed_) {
-    r.require(static_cast<int>(pair_start_.size()) == n + 1 && pair_start_.front() == 0 &&
-              pair_start_.back() + kAhead == static_cast<int>(pairs_.size()) &&
-              std::is_sorted(pair_start_.begin(), pair_start_.end()) &&
-              static_cast<int>(wall_start_.size()) == n + 1 && wall_start_.front() == 0 &&
-              wall_start_.back() == static_cast<int>(wall_pairs_.size()) &&
-              std::is_sorted(wall_start_.begin(), wall_start_.end()));
-  }
-  r.require(memory_.size() == bodies_.size() && ids_.size() == bodies_.size() &&
-            masses_.size() == bodies_.size() && pair_forces_.size() == pairs_.size() &&
-            wall_forces_.size() == wall_pairs_.size());
-  if (!search_needed_) index_contacts();
-  locate_applied();
 }
 
 }  // namespace grainfield::dem

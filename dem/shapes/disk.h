@@ -111,16 +111,4 @@ inline bool overlap_with_plane(double height, double radius, double wx, double w
   return true;
 }
 
-/// The shape as the step loop takes it: what two bodies, or a body and a half plane, overlap in.
-struct DiskShape {
-  template <bool with_area>
-  static bool overlap(const Body& a, const Body& b, Overlap& o) {
-    return overlap_of_disks<with_area>(b.x - a.x, b.y - a.y, a.radius, b.radius, o);
-  }
-  template <bool with_area>
-  static bool overlap_with_plane(const Body& a, double height, double wx, double wy, Overlap& o) {
-    return dem::overlap_with_plane<with_area>(height, a.radius, wx, wy, o);
-  }
-};
-
 }  // namespace grainfield::dem

@@ -10,13 +10,13 @@
 namespace grainfield::dem {
 namespace {
 
-std::vector<std::pair<int, int>> all_pairs(const std::vector<Body>& bodies, double skin) {
+std::vector<std::pair<int, int>> all_pairs(const std::vector<Reach>& grains) {
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < static_cast<int>(bodies.size()); ++i) {
-    for (int j = i + 1; j < static_cast<int>(bodies.size()); ++j) {
-      const Body &a = bodies[i], &b = bodies[j];
-      if (a.inverse_mass == 0 && b.inverse_mass == 0) continue;
-      const double dx = b.x - a.x, dy = b.y - a.y, sum = a.radius + b.radius + skin;
+  for (int i = 0; i < static_cast<int>(grains.size()); ++i) {
+    for (int j = i + 1; j < static_cast<int>(grains.size()); ++j) {
+      const Reach &a = grains[i], &b = grains[j];
+      if (a.fixed && b.fixed) continue;
+      const double dx = b.x - a.x, dy = b.y - a.y, sum = a.reach + b.reach;
       if (dx * dx + dy * dy < sum * sum) pairs.emplace_back(i, j);
     }
   }
@@ -27,22 +27,34 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
   for (const double ratio : {1.0, 3.0, 20.0, 100.0}) {
     for (int seed = 0; seed < 20; ++seed) {
       Random random(seed);
-      std::vector<Body> bodies(200);
-      for (Body& b : bodies) {
-        b.radius = 0.01 * std::pow(ratio, random.uniform());
-        b.x = random.uniform(-1, 1) * (seed % 3 == 0 ? 30 : 1);  // dense, and thinly spread
-        b.y = random.uniform(-0.2, 0.2);
-        b.inverse_mass = random.uniform() < 0.1 ? 0 : 1;
+      std::vector<Reach> grains(200);
+      const double gap = seed % 2 == 0 ? 0 : 0.0025;
+      for (Reach& g : grains) {
+        g.reach = 0.01 * std::pow(ratio, random.uniform()) + gap;
+        g.x = random.uniform(-1, 1) * (seed % 3 == 0 ? 30 : 1);  // dense, and thinly spread
+        g.y = random.uniform(-0.2, 0.2);
+        g.fixed = random.uniform() < 0.1;
       }
-      bodies[1].x = bodies[0].x;  // same place
-      bodies[1].y = bodies[0].y;
-      const double skin = seed % 2 == 0 ? 0 : 0.005;
+      grains[1].x = grains[0].x;  // same place
+      grains[1].y = grains[0].y;
       HierarchicalGrid grid;
-      grid.build(bodies, skin);
+      grid.build(grains);
       std::vector<std::pair<int, int>> found;
-      grid.pairs(bodies, found);
-      EXPECT_EQ(found, all_pairs(bodies, skin)) << "ratio " << ratio << " seed " << seed;
-      auto order = grid.order(bodies);
+      grid.pairs(found);
+      EXPECT_EQ(found, all_pairs(grains)) << "ratio " << ratio << " seed " << seed;
+      for (int probe = 0; probe < 50; ++probe) {
+        const Reach g{random.uniform(-1, 1), random.uniform(-0.2, 0.2),
+                      0.01 * std::pow(ratio, random.uniform()), probe % 5 == 0};
+        std::vector<int> near, expected;
+        grid.near(g, near);
+        for (int j = 0; j < 200; ++j) {
+          const double dx = grains[j].x - g.x, dy = grains[j].y - g.y;
+          const double sum = g.reach + grains[j].reach;
+          if (dx * dx + dy * dy < sum * sum && !(g.fixed && grains[j].fixed)) expected.push_back(j);
+        }
+        EXPECT_EQ(near, expected) << "ratio " << ratio << " seed " << seed;
+      }
+      auto order = grid.order();
       std::sort(order.begin(), order.end());
       for (int i = 0; i < 200; ++i) ASSERT_EQ(order[i], i);
     }
@@ -51,15 +63,15 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
 
 TEST(Neighbours, EmptyAndSingle) {
   HierarchicalGrid grid;
-  std::vector<Body> bodies;
+  std::vector<Reach> grains;
   std::vector<std::pair<int, int>> found{{1, 2}};
-  grid.build(bodies, 0.1);
-  grid.pairs(bodies, found);
+  grid.build(grains);
+  grid.pairs(found);
   EXPECT_TRUE(found.empty());
-  bodies.resize(1);
-  bodies[0].radius = 1;
-  grid.build(bodies, 0.1);
-  grid.pairs(bodies, found);
+  grains.resize(1);
+  grains[0].reach = 1;
+  grid.build(grains);
+  grid.pairs(found);
   EXPECT_TRUE(found.empty());
 }
 

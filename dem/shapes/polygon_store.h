@@ -1,0 +1,124 @@
+// Polygons (and disks among them) as the engine keeps them: corners in the body frame and where
+// they are now, in blocks of equal length, in the order of the bodies.
+#pragma once
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "dem/engine/body.h"
+#include "dem/engine/image.h"
+#include "dem/shapes/polygon.h"
+
+namespace grainfield::dem {
+
+class PolygonStore {
+ public:
+  static constexpr bool outlines = true;
+
+  void add(const Outline& outline) {
+    const int n = static_cast<int>(outline.size());
+    if (outline.size() + 1 > stride_) widen(n + 1);
+    count_.push_back(n);
+    corners_.resize(corners_.size() + kBlocks * stride_, 0.0);
+    double* block = block_of(static_cast<int>(count_.size()) - 1);
+    for (int k = 0; k <= n && n > 0; ++k) {
+      block[k] = outline[k % n][0];
+      block[stride_ + k] = outline[k % n][1];
+    }
+  }
+
+  /// Turns and moves the corners to where the body is.
+  void place(int i, const Body& b, double angle) {
+    const int n = count_[i];
+    if (n == 0) return;
+    double* block = block_of(i);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double *bx = block, *by = block + stride_;
+    double *x = block + 2 * stride_, *y = block + 3 * stride_;
+    for (int k = 0; k <= n; ++k) {
+      x[k] = b.x + (c * bx[k] - s * by[k]);
+      y[k] = b.y + (s * bx[k] + c * by[k]);
+    }
+  }
+
+  void swap(int i, int j) {
+    std::swap(count_[i], count_[j]);
+    std::swap_ranges(block_of(i), block_of(i) + kBlocks * stride_, block_of(j));
+  }
+  /// The first order.size() grains in this order.
+  void sort(const std::vector<int>& order) {
+    const std::size_t size = kBlocks * stride_;
+    scratch_.resize(order.size() * size);
+    counts_.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const double* from = block_of(order[k]);
+      std::copy(from, from + size, scratch_.begin() + static_cast<std::ptrdiff_t>(k * size));
+      counts_[k] = count_[order[k]];
+    }
+    std::copy(scratch_.begin(), scratch_.end(), corners_.begin());
+    std::copy(counts_.begin(), counts_.end(), count_.begin());
+  }
+
+  Outline outline(int i) const {
+    Outline out;
+    const double* block = block_of(i);
+    for (int k = 0; k < count_[i]; ++k) out.push_back({block[k], block[stride_ + k]});
+    return out;
+  }
+
+  PlacedShape placed(int i, const Body& b) const {
+    const double* block = block_of(i);
+    return {block + 2 * stride_, block + 3 * stride_, count_[i], b.x, b.y, b.radius};
+  }
+  template <bool>
+  bool overlap(int i, const Body& a, int j, const Body& b, PairFeature& feature, Overlap& o) const {
+    const double dx = b.x - a.x, dy = b.y - a.y, reach = a.radius + b.radius;
+    if (dx * dx + dy * dy >= reach * reach) return false;
+    return overlap_of_shapes(placed(i, a), placed(j, b), feature, o);
+  }
+  template <bool>
+  bool overlap_plane(int i, const Body& a, double px, double py, double wx, double wy,
+                     Overlap& o) const {
+    if ((a.x - px) * wx + (a.y - py) * wy >= a.radius) return false;
+    return overlap_with_half_plane(placed(i, a), px, py, wx, wy, o);
+  }
+
+  void write(ImageWriter& w) const {
+    w.put(stride_);
+    w.put(count_);
+    w.put(corners_);
+  }
+  void read(ImageReader& r, std::size_t grains) {
+    r.get(stride_);
+    r.get(count_);
+    r.get(corners_);
+    r.require(count_.size() == grains && corners_.size() == grains * kBlocks * stride_);
+    for (const int n : count_) r.require(n >= 0 && static_cast<std::size_t>(n) < stride_);
+  }
+
+ private:
+  static constexpr std::size_t kBlocks = 4;  // body x, body y, placed x, placed y
+
+  double* block_of(int i) {
+    return corners_.data() + static_cast<std::size_t>(i) * kBlocks * stride_;
+  }
+  const double* block_of(int i) const {
+    return corners_.data() + static_cast<std::size_t>(i) * kBlocks * stride_;
+  }
+  void widen(int corners) {
+    const std::size_t stride = static_cast<std::size_t>(corners + 3) / 4 * 4;
+    std::vector<double> wide(count_.size() * kBlocks * stride, 0.0);
+    for (std::size_t b = 0; b < count_.size() * kBlocks; ++b) {
+      std::copy_n(corners_.begin() + static_cast<std::ptrdiff_t>(b * stride_), stride_,
+                  wide.begin() + static_cast<std::ptrdiff_t>(b * stride));
+    }
+    corners_.swap(wide);
+    stride_ = stride;
+  }
+
+  std::size_t stride_ = 4;
+  std::vector<int> count_, counts_;
+  std::vector<double> corners_, scratch_;
+};
+
+}  // namespace grainfield::dem
