@@ -1,0 +1,144 @@
+// Sleeping grains: they stay where they are, wake when they must, and change nothing that counts.
+#include <gmock/gmock.h>
+
+#include "tests/dem/polygon_engine_scene.h"
+
+namespace grainfield::dem {
+namespace {
+
+double ground_force(const Snapshot& s) {
+  double sum = 0;
+  for (const Contact& c : s.contacts) {
+    if (c.j < 0) sum += c.force.y();
+  }
+  return sum;
+}
+
+double weight(const Snapshot& s) {
+  double sum = 0;
+  for (const Grain& g : s.grains) sum += g.mass * 9.81;
+  return sum;
+}
+
+TEST(Sleep, SettledBoxFallsAsleepAndKeepsItsForces) {
+  const auto engine = polygon_box(polygon_settings(1, true), 8, 6);
+  engine->step(60000);
+  const Diagnostics asleep = engine->measure();
+  EXPECT_LE(asleep.awake, 4);
+  const Snapshot before = engine->snapshot();
+  EXPECT_NEAR(ground_force(before), weight(before), 0.03 * weight(before));
+  engine->step(1000);
+  const Snapshot after = engine->snapshot();
+  ASSERT_EQ(before.contacts.size(), after.contacts.size());
+  // Awake again, every spring is there: the packing goes on from the same forces.
+  engine->set_sleep(false);
+  engine->set_background_damping(20);
+  engine->step(1);
+  EXPECT_EQ(engine->measure().awake, 48);
+  EXPECT_NEAR(ground_force(engine->snapshot()), ground_force(after), 0.05 * weight(after));
+  engine->step(30000);
+  EXPECT_LT(engine->measure().unbalanced_force_ratio, 1e-6);
+  const Snapshot rest = engine->snapshot();
+  EXPECT_NEAR(ground_force(rest), weight(rest), 1e-5 * weight(rest));
+  for (std::size_t k = 0; k < rest.grains.size(); ++k) {
+    EXPECT_LT((rest.grains[k].position - after.grains[k].position).norm(),
+              0.05 * rest.grains[k].radius);
+  }
+}
+
+TEST(Sleep, ImpactAndLostSupportWake) {
+  const Outline block{{-0.02, -0.01}, {0.02, -0.01}, {0.02, 0.01}, {-0.02, 0.01}};
+  const auto tower = [&](bool second) {
+    EngineSettings s = polygon_settings(1, true);
+    auto engine = make_engine(s);
+    engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+    NewGrain g;
+    g.density = 5000;
+    g.outline = block;
+    g.y = 0.01;
+    engine->add(g);
+    g.y = 0.03;
+    if (second) engine->add(g);
+    engine->step(5000);
+    EXPECT_EQ(engine->measure().awake, 0);
+    return engine;
+  };
+  // A block dropped on the sleeping tower wakes it, and all come to sleep again with their weight.
+  auto hit = tower(true);
+  NewGrain falling;
+  falling.density = 5000;
+  falling.outline = block;
+  falling.x = 0.005;
+  falling.y = 0.08;
+  hit->add(falling);
+  bool woke = false;
+  for (int k = 0; k < 200; ++k) {
+    hit->step(50);
+    woke |= hit->measure().awake == 3;
+  }
+  EXPECT_TRUE(woke);
+  hit->step(10000);
+  EXPECT_EQ(hit->measure().awake, 0);
+  const Snapshot s = hit->snapshot();
+  EXPECT_NEAR(ground_force(s), weight(s), 0.1 * weight(s));
+
+  // A block pushed against the lower one at speed: the upper one loses its balance and follows.
+  auto pushed = tower(true);
+  const double before = pushed->snapshot().grains[1].position.x();
+  NewGrain ram = falling;
+  ram.x = -0.06;
+  ram.y = 0.0101;
+  ram.vx = 3;
+  pushed->add(ram);
+  pushed->step(3000);
+  EXPECT_GT(pushed->snapshot().grains[1].position.x(), before + 0.001);
+}
+
+TEST(Sleep, GravityWakesAll) {
+  const auto engine = polygon_box(polygon_settings(1, true), 4, 3);
+  engine->step(60000);
+  ASSERT_LE(engine->measure().awake, 2);
+  engine->set_gravity(0, -5);
+  engine->step(1);
+  EXPECT_EQ(engine->measure().awake, 12);
+}
+
+TEST(Sleep, PouringGivesTheSameBitsOnAnyThreadsAndAfterRestarts) {
+  const auto pour = [](int threads, int restart_at) {
+    auto engine = polygon_box(polygon_settings(threads, true), 6, 2);
+    Random random(9);
+    for (int k = 0; k < 24; ++k) {
+      NewGrain g = polygon_grain(random, random.uniform(0.03, 0.11), 0.2);
+      g.vy = -0.3;
+      engine->add(g);
+      engine->step(700);
+      if (k == restart_at) {
+        const std::string image = engine->image();
+        auto fresh = make_engine(polygon_settings(threads, true));
+        fresh->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+        fresh->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
+        fresh->add_wall({"right", {6 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
+        fresh->restore(image);
+        engine = std::move(fresh);
+      }
+    }
+    engine->step(4000);
+    const Snapshot s = engine->snapshot();
+    std::vector<double> state;
+    for (const Grain& g : s.grains) {
+      state.insert(state.end(), {g.position.x(), g.position.y(), g.angle, g.velocity.x(), g.spin});
+    }
+    for (const Contact& c : s.contacts) state.insert(state.end(), {c.force.x(), c.spring});
+    state.push_back(engine->measure().awake);
+    return state;
+  };
+  const auto one = pour(1, -1);
+  EXPECT_LT(one.back(), 36) << "some sleep while others fall";
+  EXPECT_TRUE(pour(2, -1) == one);
+  EXPECT_TRUE(pour(3, -1) == one);
+  EXPECT_TRUE(pour(1, 7) == one);
+  EXPECT_TRUE(pour(2, 20) == one);
+}
+
+}  // namespace
+}  // namespace grainfield::dem
