@@ -156,6 +156,8 @@ void require_same_grains(const dem::Snapshot& unloaded, const dem::Snapshot& loa
     if (a.radius != b.radius)
       refuse(fmt::format("grain id {} has radius {} m unloaded, {} m loaded", a.id, a.radius,
                          b.radius));
+    if (a.outline != b.outline)
+      refuse(fmt::format("grain id {} has another outline loaded than unloaded", a.id));
     if (a.fixed != b.fixed) refuse(fmt::format("grain id {} is fixed in one of them only", a.id));
   }
 }

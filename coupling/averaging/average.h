@@ -41,7 +41,7 @@ Field response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                const Eigen::MatrixXd& points, const AverageOptions& options);
 
 /// Throws std::invalid_argument "snapshots do not belong together: ..." unless both hold the same
-/// grains by id, radius and fixedness, and the same walls.
+/// grains by id, radius, outline and fixedness, and the same walls.
 void require_same_grains(const dem::Snapshot& unloaded, const dem::Snapshot& loaded);
 
 /// How well an averaging obeys div sigma + density g + traction + load = 0 at the points.

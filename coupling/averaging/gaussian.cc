@@ -18,6 +18,7 @@ class Gaussian : public Kernel {
     const double a = r / width_;
     return a < 3 ? factor_ * std::exp(-a * a / 2) : 0;
   }
+  double slope(double r) const override { return -r / (width_ * width_) * value(r); }
   double along_line(double d, double s0, double s1) const override {
     const double a = d / width_, scale = width_ * std::numbers::sqrt2;
     return factor_ * std::exp(-a * a / 2) * width_ * std::sqrt(std::numbers::pi / 2) *

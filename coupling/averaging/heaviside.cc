@@ -13,6 +13,7 @@ class Heaviside : public Kernel {
   std::string name() const override { return "heaviside"; }
   double range() const override { return width_; }
   double value(double r) const override { return r < width_ ? factor_ : 0; }
+  double slope(double /*r*/) const override { return 0; }
   double along_line(double /*d*/, double s0, double s1) const override {
     return factor_ * (s1 - s0);
   }

@@ -38,6 +38,11 @@ double Kernel::along_line(double d, double s0, double s1) const {
   return Gauss::integrate(weight, s0, 0.0) + Gauss::integrate(weight, 0.0, s1);
 }
 
+double Kernel::slope(double r) const {
+  const double step = 1e-5 * range();  // error of the difference near 1e-10 of value / range
+  return (value(r + step) - value(std::abs(r - step))) / (2 * step);
+}
+
 double Kernel::standard_deviation() const {
   // Variance along one axis: half of the mean of r^2.
   const auto weight = [&](double r) { return std::numbers::pi * r * r * r * value(r); };

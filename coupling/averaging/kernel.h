@@ -17,6 +17,9 @@ class Kernel {
   virtual double range() const = 0;
   /// The weight at distance r, 1/m2.
   virtual double value(double r) const = 0;
+  /// Derivative of value() with respect to r, 1/m3; a jump at the edge is left out. The default is
+  /// a central difference.
+  virtual double slope(double r) const;
   /// Integral of the weight over s in [s0, s1] along a straight line that passes the point at
   /// distance d (s is the arc length from the foot of the perpendicular), 1/m. The limits are
   /// already inside the kernel's support. The default is Gauss-Legendre quadrature with 30 points

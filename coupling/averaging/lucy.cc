@@ -20,6 +20,10 @@ class Lucy : public Kernel {
     const double a = r / range_;
     return a < 1 ? factor_ * (1 + 3 * a) * (1 - a) * (1 - a) * (1 - a) : 0;
   }
+  double slope(double r) const override {
+    const double a = r / range_;
+    return a < 1 ? -12 * factor_ / range_ * a * (1 - a) * (1 - a) : 0;
+  }
   double along_line(double d, double s0, double s1) const override {
     const double c = range_;
     return factor_ * c * (primitive(d / c, s1 / c) - primitive(d / c, s0 / c));
