@@ -1,0 +1,198 @@
+// import: packings of other programs as snapshots.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "coupling/app/commands.h"
+#include "coupling/import/format.h"
+#include "coupling/import/import.h"
+#include "coupling/output/atomic_file.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Given {
+  ImportOptions options;
+  std::string output, gravity, fixed, load;
+  std::vector<std::string> walls, steps;
+  bool add = false;
+};
+
+// "1,2" or "1,2,3"
+dem::Vec3 parse_vector(const std::string& text, const char* option) {
+  std::vector<std::string_view> parts;
+  split(text, ',', parts);
+  dem::Vec3 v(0, 0, 0);
+  try {
+    if (parts.size() != 2 && parts.size() != 3) throw std::invalid_argument("");
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      std::size_t used = 0;
+      v[static_cast<Eigen::Index>(k)] = std::stod(std::string(parts[k]), &used);
+      if (used != parts[k].size() || !std::isfinite(v[static_cast<Eigen::Index>(k)]))
+        throw std::invalid_argument("");
+    }
+  } catch (const std::exception&) {
+    throw std::invalid_argument(
+        fmt::format("{}: found \"{}\", expected X,Y or X,Y,Z", option, text));
+  }
+  return v;
+}
+
+long long parse_whole(const std::string& text, const std::string& option) {
+  try {
+    std::size_t used = 0;
+    const long long value = std::stoll(text, &used);
+    if (used == text.size() && value >= 0) return value;
+  } catch (const std::exception&) {
+  }
+  throw std::invalid_argument(
+      fmt::format("{}: found \"{}\", expected a whole number from 0", option, text));
+}
+
+void parse(Given& given) {
+  ImportOptions& options = given.options;
+  if (!given.gravity.empty()) options.gravity = parse_vector(given.gravity, "--gravity");
+  for (const std::string& wall : given.walls) options.walls.push_back(parse_wall(wall));
+  for (const std::string& step : given.steps) {
+    if (step == "last") continue;
+    if (step == "all") {
+      options.all_steps = true;
+      continue;
+    }
+    const std::size_t equals = step.find('=');
+    StepChoice choice;
+    choice.step = parse_whole(step.substr(0, equals), "--step");
+    if (equals != std::string::npos) choice.group = step.substr(equals + 1);
+    options.steps.push_back(choice);
+  }
+  if (given.steps.size() > 1 && options.steps.size() != given.steps.size())
+    throw std::invalid_argument("--step: last and all stand alone");
+  if (!given.fixed.empty()) {
+    const std::size_t equals = given.fixed.find('=');
+    if (equals == std::string::npos)
+      throw std::invalid_argument(fmt::format(
+          "--fixed: found \"{}\", expected COLUMN=VALUE,..., such as type=2", given.fixed));
+    options.fixed_column = given.fixed.substr(0, equals);
+    std::vector<std::string_view> values;
+    const std::string list = given.fixed.substr(equals + 1);
+    split(list, ',', values);
+    options.fixed_values.assign(values.begin(), values.end());
+  }
+  if (!given.load.empty()) {
+    const std::size_t equals = given.load.find('=');
+    if (equals == std::string::npos)
+      throw std::invalid_argument(
+          fmt::format("--load: found \"{}\", expected ID=FX,FY[,FZ]", given.load));
+    options.loaded_grain = parse_whole(given.load.substr(0, equals), "--load");
+    options.applied_force = parse_vector(given.load.substr(equals + 1), "--load");
+  }
+  if (options.density < 0 || !std::isfinite(options.density))
+    throw std::invalid_argument(
+        fmt::format("--density: found {:g}, allowed: above 0", options.density));
+  if (options.friction < 0)
+    throw std::invalid_argument(
+        fmt::format("--friction: found {:g}, allowed: 0 and above", options.friction));
+}
+
+std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
+  if (dim == 2)
+    return fmt::format("xx {:.15g} yy {:.15g} xy {:.15g} yx {:.15g}", m(0, 0), m(1, 1), m(0, 1),
+                       m(1, 0));
+  return fmt::format("xx {:.15g} yy {:.15g} zz {:.15g} xy {:.15g} xz {:.15g} yz {:.15g}", m(0, 0),
+                     m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2));
+}
+
+void show(const ImportedSnapshot& imported, bool default_gravity) {
+  const dem::Snapshot& s = imported.snapshot;
+  std::size_t fixed = 0, at_walls = 0;
+  for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
+  for (const auto& c : s.contacts) at_walls += c.j < 0 ? 1 : 0;
+  fmt::print("{}: {}D, {} grains ({} fixed), {} contacts ({} with walls), {} walls\n",
+             imported.group, s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls,
+             s.walls.size());
+  if (imported.left_out > 0)
+    fmt::print("  left out: {} contacts across periodic boundaries\n", imported.left_out);
+  fmt::print("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
+             default_gravity ? " (default; --gravity changes it)" : "");
+  if (s.contacts.empty()) return;
+  const PackingCheck check = check_packing(s);
+  fmt::print("  stress x volume (N m, tension positive), pairs: {}\n",
+             tensor_text(check.pairs, s.dim));
+  if (at_walls > 0)
+    fmt::print("  stress x volume (N m, tension positive), walls: {}\n",
+               tensor_text(check.walls, s.dim));
+  fmt::print("  unbalanced force ratio: {:.3g}{}\n", check.unbalanced_force_ratio,
+             check.unbalanced_force_ratio > 0.1
+                 ? " (large: not at rest, or contacts with walls or gravity are missing)"
+                 : "");
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("import", "packings of LAMMPS, LIGGGHTS, YADE or CSV as snapshots");
+  auto given = std::make_shared<Given>();
+  ImportOptions& o = given->options;
+  command->add_option("files", o.files, "grains and contacts (walls): told apart by what they hold")
+      ->required();
+  command->add_option("--from", o.format, "lammps | liggghts | yade | csv")->required();
+  command->add_option("-o,--output", given->output, "SNAPSHOT.h5")->required();
+  command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
+  command
+      ->add_option("--column", o.columns,
+                   "OURS=THEIRS, OURS=NUMBER, or lists such as \"i,j=c_id[1..2]\"")
+      ->allow_extra_args(false);
+  command->add_option("--dim", o.dim, "2 | 3; default 2 where every z is the same");
+  command->add_option("--gravity", given->gravity, "X,Y[,Z] in m/s2; default 9.81 down");
+  command->add_option("--density", o.density,
+                      "kg/m3 (2D: kg/m2), without a column mass or density");
+  command->add_option("--friction", o.friction, "Coulomb coefficient, without a column friction");
+  command
+      ->add_option("--wall", given->walls,
+                   "NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID], such as floor:y=0")
+      ->allow_extra_args(false);
+  command->add_option("--fixed", given->fixed, "COLUMN=VALUE,...: those grains are apparatus");
+  command->add_option("--step", given->steps, "last (default) | all | N | N=GROUP, repeatable")
+      ->allow_extra_args(false);
+  command->add_option("--time-step", o.time_step, "s; time of a dump = step times this");
+  command->add_option("--group", o.group, "of the snapshot; default /step_N or /packing");
+  command->add_option("--load", given->load, "ID=FX,FY[,FZ]: the force applied to a grain, N");
+  command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
+  command->add_flag("--leave-out-distant", o.leave_out_distant,
+                    "leave out contacts across periodic boundaries");
+  command->callback([=, &action] {
+    action = [=] {
+      parse(*given);
+      const ImportOptions& options = given->options;
+      AtomicFile file(given->output);
+      if (given->add && fs::exists(given->output)) {
+        dem::list_snapshots(given->output);  // an HDF5 file of ours, or a clear refusal
+        fs::copy_file(given->output, file.temporary());
+      }
+      std::set<std::string> groups;
+      if (given->add && fs::exists(given->output))
+        for (const auto& group : dem::list_snapshots(given->output)) groups.insert(group);
+      import_snapshots(options, [&](ImportedSnapshot&& imported) {
+        std::string& group = imported.group;
+        if (group.front() != '/') group.insert(group.begin(), '/');
+        if (!groups.insert(group).second)
+          throw std::invalid_argument(fmt::format(
+              "{}: holds a snapshot {} already; --group or --step N=GROUP names another",
+              given->output, group));
+        dem::write_snapshot(file.temporary(), group, imported.snapshot);
+        show(imported, !options.gravity);
+      });
+      file.commit();
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

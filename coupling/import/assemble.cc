@@ -1,0 +1,240 @@
+// Grains and walls. Contacts are in assemble_contacts.cc.
+#include "coupling/import/assemble.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "coupling/import/outline_text.h"
+#include "dem/shapes/polygon.h"
+
+namespace grainfield::coupling {
+
+std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file, line); }
+
+void Assembly::add_grains(const ForeignTable& table) {
+  const TableColumns columns(table, names_);
+  const ForeignColumn id = columns.need("id"), x = columns.need("x"), y = columns.need("y");
+  const ForeignColumn z = options_.dim == 3 ? columns.need("z") : columns.find("z");
+  has_z_ = has_z_ || z;
+  const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
+  const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
+  const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
+  const ForeignColumn diameter = radius ? ForeignColumn{} : columns.find("diameter");
+  if (!radius && !diameter && !outline) columns.missing("radius");
+  const ForeignColumn mass = columns.find("mass");
+  const ForeignColumn density = mass ? ForeignColumn{} : columns.find("density");
+  if (!mass && !density && !(options_.density > 0)) {
+    try {
+      columns.missing("mass");
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(std::string(e.what()) + "; or --density");
+    }
+  }
+  const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
+  const ForeignColumn fixed = columns.find("fixed");
+  const ForeignColumn mark =
+      options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
+  std::vector<std::array<ForeignColumn, 7>> wall_columns;
+  for (const WallChoice& wall : options_.walls) {
+    wall_columns.emplace_back();
+    for (std::size_t k = 0; !wall.fix.empty() && k < 7; ++k)
+      wall_columns.back()[k] = columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1));
+  }
+  reader_.read(table, [&](const ForeignRow& row) {
+    const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
+    GrainRow r{{}, 0, false, {row.file, row.line}};
+    dem::Grain& g = r.grain;
+    g.id = row.whole(id);
+    g.position = {row.number(x), row.number(y), z ? row.number(z) : 0};
+    g.velocity = {value(vx), value(vy), value(vz)};
+    g.angle = value(angle);
+    g.spin = value(spin);
+    if (!row.empty(outline)) {
+      try {
+        g.outline = parse_outline(row.text(outline));
+      } catch (const std::invalid_argument& e) {
+        row.refuse(fmt::format("grain {}: {}", g.id, e.what()));
+      }
+    } else {
+      if (row.empty(radius) && row.empty(diameter))
+        row.refuse(fmt::format("grain {} has neither a radius nor an outline", g.id));
+      g.radius = row.empty(radius) ? row.number(diameter) / 2 : row.number(radius);
+      if (!(g.radius > 0))
+        row.refuse(fmt::format("grain {}: found radius {} m, allowed: above 0", g.id, g.radius));
+    }
+    g.fixed = value(fixed) != 0;
+    if (mark) {
+      const auto& values = options_.fixed_values;
+      g.fixed = g.fixed || std::find(values.begin(), values.end(), row.text(mark)) != values.end();
+    }
+    g.mass = value(mass);
+    r.density = mass ? 0 : density ? row.number(density) : options_.density;
+    const double given = mass ? g.mass : r.density;
+    if (!(given > 0) && !(g.fixed && given == 0))
+      row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
+                             mass ? "mass" : "density", given));
+    r.has_inertia = !row.empty(inertia);
+    g.inertia = value(inertia);
+    g.volume = value(volume);
+    if (g.volume < 0 || g.inertia < 0)
+      row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
+                             g.volume < 0 ? "volume" : "inertia", std::min(g.volume, g.inertia)));
+    for (std::size_t w = 0; w < wall_columns.size(); ++w) {
+      const auto& c = wall_columns[w];
+      if (!c[0] || row.number(c[0]) == 0) continue;
+      wall_forces_.push_back(
+          {g.id, w, dem::Vec3(row.number(c[1]), row.number(c[2]), row.number(c[3])),
+           dem::Vec3(row.number(c[4]), row.number(c[5]), row.number(c[6])), r.source});
+    }
+    rows_.push_back(std::move(r));
+  });
+}
+
+void Assembly::add_walls(const ForeignTable& table) {
+  const TableColumns columns(table, names_);
+  const ForeignColumn name = columns.need("name"), x = columns.need("x"), y = columns.need("y"),
+                      nx = columns.need("nx"), ny = columns.need("ny"), z = columns.find("z"),
+                      nz = columns.find("nz"), friction = columns.find("friction");
+  reader_.read(table, [&](const ForeignRow& row) {
+    dem::Wall wall;
+    wall.name = std::string(row.text(name));
+    if (wall.name.empty()) row.refuse("the wall has no name");
+    wall.point = {row.number(x), row.number(y), z ? row.number(z) : 0};
+    wall.normal = {row.number(nx), row.number(ny), nz ? row.number(nz) : 0};
+    wall.friction = row.empty(friction) ? options_.friction : row.number(friction);
+    const double length = wall.normal.norm();
+    if (!(length > 0)) row.refuse(fmt::format("wall {}: its normal has length 0", wall.name));
+    // A normal that is a unit vector up to rounding keeps its bits.
+    if (std::abs(length - 1) > 1e-12) wall.normal /= length;
+    out_.snapshot.walls.push_back(wall);
+  });
+}
+
+void Assembly::settle_dimension() {
+  dem::Snapshot& s = out_.snapshot;
+  const double z = rows_.front().grain.position.z();
+  const auto other = std::find_if(rows_.begin(), rows_.end(),
+                                  [&](const GrainRow& row) { return row.grain.position.z() != z; });
+  s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
+  if (s.dim == 2 && other != rows_.end())
+    throw std::invalid_argument(fmt::format(
+        "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "
+        "in space",
+        other->source.where(), other->grain.id, other->grain.position.z(), rows_.front().grain.id,
+        z));
+  const auto polygon = std::find_if(rows_.begin(), rows_.end(),
+                                    [](const GrainRow& row) { return !row.grain.outline.empty(); });
+  if (s.dim == 3 && polygon != rows_.end())
+    throw std::invalid_argument(fmt::format("{}: grain {} is a polygon; 3D takes spheres",
+                                            polygon->source.where(), polygon->grain.id));
+}
+
+// Outline to the body frame, then volume, mass and inertia that the file does not give.
+void Assembly::complete(GrainRow& row) const {
+  dem::Grain& g = row.grain;
+  double gyration = 0;  // inertia over mass, m2
+  double volume = 0;
+  if (!g.outline.empty()) {
+    try {
+      const std::array<double, 2> c = dem::centroid_of(g.outline);
+      g.outline = dem::centred_outline(g.outline);
+      const double cosine = std::cos(g.angle), sine = std::sin(g.angle);
+      g.position.x() += cosine * c[0] - sine * c[1];
+      g.position.y() += sine * c[0] + cosine * c[1];
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(
+          fmt::format("{}: grain {}: {}", row.source.where(), g.id, e.what()));
+    }
+    g.radius = dem::circumradius_of(g.outline);
+    volume = dem::area_of(g.outline);
+    gyration = dem::polar_moment_of(g.outline) / volume;
+  } else {
+    const bool plane = out_.snapshot.dim == 2;
+    volume = std::numbers::pi * g.radius * g.radius * (plane ? 1 : 4.0 / 3 * g.radius);
+    gyration = (plane ? 0.5 : 0.4) * g.radius * g.radius;
+  }
+  if (g.volume == 0) g.volume = volume;
+  if (row.density > 0) g.mass = row.density * g.volume;
+  if (!row.has_inertia) g.inertia = g.mass * gyration;
+}
+
+void Assembly::settle() {
+  dem::Snapshot& s = out_.snapshot;
+  if (rows_.empty()) throw std::invalid_argument("there is no grain in the files");
+  settle_dimension();
+  std::stable_sort(rows_.begin(), rows_.end(),
+                   [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });
+  for (std::size_t k = 1; k < rows_.size(); ++k)
+    if (rows_[k].grain.id == rows_[k - 1].grain.id)
+      throw std::invalid_argument(fmt::format("{}: grain {} is there already, at {}",
+                                              rows_[k].source.where(), rows_[k].grain.id,
+                                              rows_[k - 1].source.where()));
+  dem::Vec3 middle(0, 0, 0);
+  for (GrainRow& row : rows_) {
+    if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
+    complete(row);
+    middle += row.grain.position / static_cast<double>(rows_.size());
+    s.grains.push_back(std::move(row.grain));
+  }
+  rows_ = {};
+  const std::size_t tables = s.walls.size();
+  for (const WallChoice& choice : options_.walls) {
+    if (choice.axis >= s.dim)
+      throw std::invalid_argument(
+          fmt::format("--wall {}: a wall across z in a packing in 2D", choice.name));
+    dem::Wall wall;
+    wall.name = choice.name;
+    wall.point.setZero();
+    wall.normal.setZero();
+    wall.point[choice.axis] = choice.position;
+    wall.normal[choice.axis] = middle[choice.axis] < choice.position ? -1 : 1;
+    wall.friction = options_.friction;
+    s.walls.push_back(wall);
+  }
+  for (const WallForce& force : wall_forces_) {
+    ContactRow row{{}, force.source};
+    row.contact.i = index_of(force.grain);
+    row.contact.j = -1 - static_cast<std::int64_t>(tables + force.choice);
+    row.contact.force = force.force;
+    row.contact.point = force.point;
+    row.contact.friction = options_.friction;
+    add_contact(std::move(row), false, true, true);
+  }
+  wall_forces_ = {};
+}
+
+std::int64_t Assembly::index_of(std::int64_t id) const {
+  const auto& grains = out_.snapshot.grains;
+  const auto at = std::lower_bound(grains.begin(), grains.end(), id,
+                                   [](const dem::Grain& g, std::int64_t v) { return g.id < v; });
+  return at == grains.end() || at->id != id ? -1 : at - grains.begin();
+}
+
+std::int64_t Assembly::wall_of(std::string_view text) const {
+  const auto& walls = out_.snapshot.walls;
+  const std::size_t tables = walls.size() - options_.walls.size();
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    bool same = walls[w].name == text;
+    if (w >= tables)
+      for (const std::string& id : options_.walls[w - tables].ids) same = same || id == text;
+    if (same) return -1 - static_cast<std::int64_t>(w);
+  }
+  return 0;
+}
+
+std::string Assembly::known_grains() const {
+  const auto& s = out_.snapshot;
+  std::vector<std::string> walls;
+  for (const dem::Wall& wall : s.walls) walls.push_back(wall.name);
+  return fmt::format(
+      "known: {} grains with ids from {} to {}{}", s.grains.size(), s.grains.front().id,
+      s.grains.back().id,
+      walls.empty() ? ", no walls (--wall)" : fmt::format(", walls {}", fmt::join(walls, ", ")));
+}
+
+}  // namespace grainfield::coupling

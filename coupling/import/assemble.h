@@ -1,0 +1,68 @@
+// Tables of one step to a snapshot.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/import/format.h"
+#include "coupling/import/import.h"
+
+namespace grainfield::coupling {
+
+class Assembly {
+ public:
+  Assembly(const ImportOptions& options, const ImportFormat& format, ColumnNames& names,
+           TableReader& reader)
+      : options_(options), format_(format), names_(names), reader_(reader) {}
+
+  /// In this order: grains and walls, settle(), contacts, finish(). All throw as
+  /// import_snapshots().
+  void add_grains(const ForeignTable& table);
+  void add_walls(const ForeignTable& table);
+  /// Decides the dimension, sorts the grains, places the walls, takes the walls' forces.
+  void settle();
+  void add_contacts(const ForeignTable& table);
+  ImportedSnapshot finish();
+
+ private:
+  /// Where a row stands, for messages.
+  struct Source {
+    const std::string* file;
+    long long line;
+    std::string where() const;
+  };
+  struct GrainRow {
+    dem::Grain grain;
+    double density = 0;  ///< 0: has its mass
+    bool has_inertia = false;
+    Source source;
+  };
+  struct WallForce {  ///< of a "fix wall/gran ... contacts"
+    std::int64_t grain = 0;
+    std::size_t choice = 0;
+    dem::Vec3 force, point;
+    Source source;
+  };
+  struct ContactRow {
+    dem::Contact contact;
+    Source source;
+  };
+
+  void settle_dimension();
+  void complete(GrainRow& row) const;
+  std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
+  std::int64_t wall_of(std::string_view text) const;  ///< -1 - w; 0: unknown
+  void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
+  std::string known_grains() const;
+
+  const ImportOptions& options_;
+  const ImportFormat& format_;
+  ColumnNames& names_;
+  TableReader& reader_;
+  std::vector<GrainRow> rows_;
+  std::vector<WallForce> wall_forces_;
+  std::vector<ContactRow> contacts_;
+  bool has_z_ = false;
+  ImportedSnapshot out_;
+};
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,200 @@
+// Contacts under our conventions: force on i, normal from i to j, i < j.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/import/assemble.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using dem::Vec3;
+
+// A contact point farther than this many radii from a grain's centre lies across a periodic
+// boundary: contacts of stiff grains lie within one radius, of very soft ones slightly beyond.
+constexpr double kDistant = 2;
+// Of the Coulomb limit: a contact this near to it slides.
+constexpr double kSliding = 1e-6;
+
+// Three columns of a vector; the third is needed in 3D only.
+struct Triple {
+  ForeignColumn x, y, z;
+  explicit operator bool() const { return bool(x); }
+  Vec3 of(const ForeignRow& row) const {
+    return {row.number(x), row.number(y), z ? row.number(z) : 0};
+  }
+};
+
+Triple need_triple(const TableColumns& columns, const std::string& stem, int dim) {
+  return {columns.need(stem + "x"), columns.need(stem + "y"),
+          dim == 3 ? columns.need(stem + "z") : columns.find(stem + "z")};
+}
+Triple find_triple(const TableColumns& columns, const std::string& stem, int dim) {
+  return columns.find(stem + "x") ? need_triple(columns, stem, dim) : Triple{};
+}
+
+}  // namespace
+
+void Assembly::add_contacts(const ForeignTable& table) {
+  const dem::Snapshot& s = out_.snapshot;
+  const TableColumns columns(table, names_);
+  const ForeignColumn i = columns.need("i"), wall = columns.find("wall");
+  const ForeignColumn j = wall ? columns.find("j") : columns.need("j");
+  const Triple force = find_triple(columns, "f", s.dim);
+  Triple normal_part, tangential_part;
+  if (!force) {
+    if (!columns.find("fnx")) columns.missing(columns.find("ftx") ? "fnx" : "fx");
+    normal_part = need_triple(columns, "fn", s.dim);
+    if (!columns.find("ftx")) {
+      try {
+        columns.missing("ftx");
+      } catch (const std::invalid_argument& e) {
+        throw std::invalid_argument(std::string(e.what()) +
+                                    "; without friction: --column ftx,fty,ftz=0,0,0");
+      }
+    }
+    tangential_part = need_triple(columns, "ft", s.dim);
+  }
+  const Triple point = find_triple(columns, "p", s.dim), normal = find_triple(columns, "n", s.dim);
+  const ForeignColumn friction = columns.find("friction"), spring = columns.find("spring"),
+                      sliding = columns.find("sliding");
+  reader_.read(table, [&](const ForeignRow& row) {
+    ContactRow r{{}, {row.file, row.line}};
+    dem::Contact& c = r.contact;
+    const auto grain = [&](const ForeignColumn& column) {
+      const std::int64_t id = row.whole(column), index = index_of(id);
+      if (index < 0)
+        row.refuse(fmt::format("contact of the unknown grain {}; {}", id, known_grains()));
+      return index;
+    };
+    // A number is a grain's id before it is a wall's.
+    const auto grain_or_wall = [&](const ForeignColumn& column) {
+      const std::string_view text = row.text(column);
+      if (!column.constant && text.find_first_not_of("0123456789+-.eE") == std::string_view::npos) {
+        const std::int64_t index = index_of(row.whole(column)), known = wall_of(text);
+        return index < 0 && known < 0 ? known : grain(column);
+      }
+      if (wall_of(text) == 0)
+        row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}", text, known_grains()));
+      return wall_of(text);
+    };
+    c.i = grain(i);
+    if (!row.empty(wall)) {
+      c.j = wall_of(row.text(wall));
+      if (c.j == 0)
+        row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}", row.text(wall),
+                               known_grains()));
+    } else {
+      c.j = grain_or_wall(j);
+    }
+    c.force = format_.force_sign *
+              (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
+    if (s.dim == 2 && c.force.z() != 0)
+      row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
+                             c.force.z()));
+    if (point) c.point = point.of(row);
+    if (s.dim == 2) c.point.z() = 0;
+    if (normal) c.normal = normal.of(row);
+    if (s.dim == 2) c.normal.z() = 0;
+    c.friction = row.empty(friction) ? options_.friction : row.number(friction);
+    c.spring = row.empty(spring) ? std::numeric_limits<double>::quiet_NaN() : row.number(spring);
+    c.sliding = !row.empty(sliding) && row.number(sliding) != 0;
+    add_contact(std::move(r), bool(normal), bool(point), row.empty(sliding));
+  });
+}
+
+void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding) {
+  const dem::Snapshot& s = out_.snapshot;
+  dem::Contact& c = row.contact;
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(row.source.where() + ": " + what);
+  };
+  const auto at = [&](std::int64_t k) -> const dem::Grain& {
+    return s.grains[static_cast<std::size_t>(k)];
+  };
+  if (c.i == c.j) refuse(fmt::format("grain {} in contact with itself", at(c.i).id));
+  if (c.j >= 0 && c.i > c.j) {
+    std::swap(c.i, c.j);
+    c.force = -c.force;
+    c.normal = -c.normal;
+  }
+  const dem::Grain& a = at(c.i);
+  if (c.j < 0) {
+    const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+    c.normal = -wall.normal;
+    if (!has_point) {
+      if (!a.outline.empty())
+        refuse(fmt::format("grain {} is a polygon: its contacts need px and py", a.id));
+      c.point = a.position - (a.position - wall.point).dot(wall.normal) * wall.normal;
+    }
+  } else {
+    const dem::Grain& b = at(c.j);
+    const Vec3 branch = b.position - a.position;
+    const double d = branch.norm();
+    const bool polygons = !a.outline.empty() || !b.outline.empty();
+    if (polygons && !(has_normal && has_point))
+      refuse(fmt::format("contact of grains {} and {}: those of polygons need px, py, nx and ny",
+                         a.id, b.id));
+    if (!(d > 0)) refuse(fmt::format("grains {} and {} have the same centre", a.id, b.id));
+    if (!has_normal) c.normal = branch / d;
+    // The middle of the chord in which two overlapping circles cross.
+    const double arm = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
+    if (!has_point) c.point = a.position + arm * c.normal;
+    if ((c.point - a.position).norm() > kDistant * a.radius ||
+        (c.point - b.position).norm() > kDistant * b.radius) {
+      if (options_.leave_out_distant) {
+        ++out_.left_out;
+        return;
+      }
+      refuse(fmt::format(
+          "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
+          "periodic boundary? --leave-out-distant imports the packing without such contacts",
+          a.id, b.id, a.radius, b.radius, d));
+    }
+  }
+  const double length = c.normal.norm();
+  if (!(length > 0)) refuse("the contact's normal has length 0");
+  if (std::abs(length - 1) > 1e-12) c.normal /= length;
+  c.normal_force = -c.force.dot(c.normal);
+  c.tangential_force = s.dim == 2 ? c.force.y() * c.normal.x() - c.force.x() * c.normal.y()
+                                  : (c.force + c.normal_force * c.normal).norm();
+  // False where the coefficient is unknown (nan).
+  if (tell_sliding)
+    c.sliding = std::abs(c.tangential_force) >= (1 - kSliding) * c.friction * c.normal_force;
+  contacts_.push_back(std::move(row));
+}
+
+ImportedSnapshot Assembly::finish() {
+  dem::Snapshot& s = out_.snapshot;
+  std::stable_sort(
+      contacts_.begin(), contacts_.end(), [](const ContactRow& a, const ContactRow& b) {
+        return std::pair(a.contact.i, a.contact.j) < std::pair(b.contact.i, b.contact.j);
+      });
+  for (std::size_t k = 1; k < contacts_.size(); ++k) {
+    const dem::Contact &a = contacts_[k - 1].contact, &b = contacts_[k].contact;
+    // Two facets of one wall may touch a grain, and so may two polygons at two points.
+    if (a.i != b.i || a.j != b.j || a.j < 0) continue;
+    const dem::Grain& i = s.grains[static_cast<std::size_t>(a.i)];
+    const dem::Grain& j = s.grains[static_cast<std::size_t>(a.j)];
+    if (!i.outline.empty() && !j.outline.empty() && a.point != b.point) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: the contact of grains {} and {} is there already, at {}",
+                    contacts_[k].source.where(), i.id, j.id, contacts_[k - 1].source.where()));
+  }
+  s.contacts.reserve(contacts_.size());
+  for (ContactRow& row : contacts_) s.contacts.push_back(std::move(row.contact));
+  contacts_ = {};
+  s.gravity = options_.gravity ? *options_.gravity
+              : s.dim == 2     ? Vec3(0, -9.81, 0)
+                               : Vec3(0, 0, -9.81);
+  s.loaded_grain = options_.loaded_grain;
+  s.applied_force = options_.applied_force;
+  if (s.loaded_grain >= 0 && index_of(s.loaded_grain) < 0)
+    throw std::invalid_argument(
+        fmt::format("--load: unknown grain {}; {}", s.loaded_grain, known_grains()));
+  return std::move(out_);
+}
+
+}  // namespace grainfield::coupling

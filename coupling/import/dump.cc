@@ -1,0 +1,144 @@
+// Dump files of LAMMPS and LIGGGHTS: for every step "ITEM: ..." headers, then a known number of
+// rows.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <stdexcept>
+
+#include "coupling/import/format.h"
+
+namespace grainfield::coupling {
+namespace {
+
+class DumpScan {
+ public:
+  explicit DumpScan(const std::string& file) : lines_(file) { table_.file = file; }
+
+  std::vector<ForeignTable> tables() {
+    std::string_view line;
+    while (lines_.next(line)) {
+      if (lines_.unfinished()) {
+        truncated_ = lines_.where() + ": truncated: the file ends in the middle of a line";
+        break;
+      }
+      if (!line.starts_with("ITEM: "))
+        refuse(fmt::format("found \"{}\", expected \"ITEM: ...\"; is this a dump file?",
+                           line.substr(0, 60)));
+      if (!item(std::string(trimmed(line.substr(6))))) break;
+    }
+    if (open_ && truncated_.empty())
+      truncated_ = fmt::format("{}: truncated: the file ends before the rows of step {}",
+                               lines_.where(), *table_.step);
+    if (found_.empty() && truncated_.empty())
+      throw std::invalid_argument(table_.file + ": is empty, expected a dump file");
+    if (!truncated_.empty()) {
+      table_.broken = truncated_;
+      found_.push_back(table_);
+    }
+    return found_;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::invalid_argument(fmt::format("{}: {}", lines_.where(), what));
+  }
+
+  // False at the end of the file, which is then truncated.
+  bool next(std::string_view& line, const char* what) {
+    if (lines_.next(line) && !lines_.unfinished()) return true;
+    truncated_ = fmt::format("{}: truncated: the file ends before {}", lines_.where(), what);
+    return false;
+  }
+
+  bool whole(long long& value, const char* what) {
+    std::string_view line;
+    if (!next(line, what)) return false;
+    line = trimmed(line);
+    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error != std::errc() || stop != line.data() + line.size() || value < 0)
+      refuse(fmt::format("found \"{}\", expected {}", line.substr(0, 60), what));
+    return true;
+  }
+
+  bool item(const std::string& name) {
+    std::string_view line;
+    if (name == "TIMESTEP") {
+      long long step = 0;
+      table_.time.reset();
+      rows_ = -1;
+      table_.columns = std::make_shared<const std::vector<std::string>>();
+      if (!whole(step, "the number of the time step")) return false;
+      table_.step = step;
+      open_ = true;
+      return true;
+    }
+    if (name == "TIME") {
+      if (!next(line, "the time")) return false;
+      line = trimmed(line);
+      double time = 0;
+      const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), time);
+      if (error != std::errc() || stop != line.data() + line.size())
+        refuse(fmt::format("found \"{}\", expected the time", line.substr(0, 60)));
+      table_.time = time;
+      return true;
+    }
+    if (name == "UNITS") {
+      if (!next(line, "the units")) return false;
+      if (trimmed(line) != "si")
+        refuse(fmt::format("units \"{}\", expected si (m, kg, s, N)", trimmed(line)));
+      return true;
+    }
+    if (name.starts_with("LABEL")) return next(line, "the label");
+    if (name.starts_with("NUMBER OF ")) return whole(rows_, "the number of rows");
+    if (name.starts_with("BOX BOUNDS")) {
+      for (int k = 0; k < 3; ++k)
+        if (!next(line, "the box bounds")) return false;
+      return true;
+    }
+    return rows(name);
+  }
+
+  // "ATOMS id x y ..." and its rows.
+  bool rows(const std::string& name) {
+    if (rows_ < 0 || !table_.step)
+      refuse(fmt::format("found \"ITEM: {}\" before ITEM: TIMESTEP and ITEM: NUMBER OF ...",
+                         name.substr(0, 60)));
+    std::vector<std::string_view> words;
+    split(name, ' ', words);
+    const std::vector<std::string> columns(words.begin() + 1, words.end());
+    if (!columns_ || *columns_ != columns)
+      columns_ = std::make_shared<const std::vector<std::string>>(columns);
+    table_.columns = columns_;
+    table_.kind = words.front() == "ATOMS" ? TableKind::grains : TableKind::contacts;
+    table_.header_line = lines_.line();
+    table_.first = lines_.place();
+    table_.rows = rows_;
+    std::string_view line;
+    for (long long n = 0; n < rows_; ++n) {
+      const bool there = lines_.next(line);
+      if (there && !line.starts_with("ITEM:") && !(n + 1 == rows_ && lines_.unfinished())) continue;
+      truncated_ = fmt::format(
+          "{}: truncated: step {} has {} rows announced, {} there{}", lines_.where(), *table_.step,
+          rows_, n, there && n + 1 == rows_ ? " (the last one ends without a line end)" : "");
+      return false;
+    }
+    found_.push_back(table_);
+    open_ = false;
+    rows_ = -1;
+    return true;
+  }
+
+  Lines lines_;
+  ForeignTable table_;
+  long long rows_ = -1;
+  bool open_ = false;  ///< a step has begun and its rows have not been met
+  std::shared_ptr<const std::vector<std::string>> columns_;
+  std::vector<ForeignTable> found_;
+  std::string truncated_;
+};
+
+}  // namespace
+
+std::vector<ForeignTable> scan_dump(const std::string& file) { return DumpScan(file).tables(); }
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,36 @@
+// A foreign format: how its tables are found and what its columns are called. A new format is one
+// file with a function that returns this, and one line in formats.cc.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupling/import/table.h"
+
+namespace grainfield::coupling {
+
+struct ImportFormat {
+  std::string name, summary;
+  /// Finds the tables of a file without keeping their rows. Throws std::invalid_argument naming
+  /// file and line.
+  std::vector<ForeignTable> (*scan)(const std::string& file);
+  /// Our columns under their names, (ours, theirs); several for one of ours: the first found
+  /// counts.
+  std::vector<std::pair<std::string, std::string>> columns;
+  double force_sign = 1;  ///< times the file's force of a contact = force on grain i
+};
+
+/// Every format, in the order of the documentation.
+const std::vector<ImportFormat>& import_formats();
+/// Throws std::invalid_argument with the nearest name and all names.
+const ImportFormat& find_import_format(const std::string& name);
+
+ImportFormat lammps_format();
+ImportFormat liggghts_format();
+ImportFormat yade_format();
+ImportFormat csv_format();
+
+/// Tables of a LAMMPS or LIGGGHTS dump file.
+std::vector<ForeignTable> scan_dump(const std::string& file);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,185 @@
+#include "coupling/import/import.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "coupling/import/assemble.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The tables of one time step; of a format without steps all of them.
+struct StepTables {
+  std::vector<ForeignTable> grains, contacts, walls;
+};
+using Steps = std::map<long long, StepTables>;
+
+TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
+  if (table.kind != TableKind::unknown) return table.kind;
+  const TableColumns columns(table, names);
+  if (columns.find("i").index >= 0) return TableKind::contacts;
+  return columns.find("name") && columns.find("nx") ? TableKind::walls : TableKind::grains;
+}
+
+// Which are there, briefly.
+std::string names_of(const Steps& steps) {
+  std::vector<long long> all;
+  for (const auto& [step, tables] : steps) all.push_back(step);
+  if (all.size() <= 8) return fmt::format("{}", fmt::join(all, ", "));
+  return fmt::format("{}, {}, {}, ..., {} ({} steps)", all[0], all[1], all[2], all.back(),
+                     all.size());
+}
+
+std::vector<StepChoice> chosen_steps(const ImportOptions& options, const Steps& steps) {
+  std::vector<StepChoice> out = options.steps;
+  if (options.all_steps)
+    for (const auto& [step, tables] : steps) out.push_back({step, ""});
+  if (out.empty()) out.push_back({steps.rbegin()->first, ""});
+  for (StepChoice& choice : out) {
+    if (steps.find(choice.step) == steps.end())
+      throw std::invalid_argument(
+          fmt::format("--step {}: no such time step; there are: {}", choice.step, names_of(steps)));
+    if (choice.group.empty() && out.size() == 1) choice.group = options.group;
+  }
+  return out;
+}
+
+std::string list_of(const ImportOptions& options) {
+  return fmt::format("{}", fmt::join(options.files, ", "));
+}
+
+}  // namespace
+
+WallChoice parse_wall(const std::string& text) {
+  std::vector<std::string_view> parts;
+  split(text, ':', parts);
+  WallChoice wall;
+  bool good = parts.size() >= 2 && !parts[0].empty() && parts[1].size() > 2 && parts[1][1] == '=' &&
+              parts[1][0] >= 'x' && parts[1][0] <= 'z';
+  if (good) {
+    wall.name = std::string(parts[0]);
+    wall.axis = parts[1][0] - 'x';
+    const std::string_view number = parts[1].substr(2);
+    const auto [stop, error] =
+        std::from_chars(number.data(), number.data() + number.size(), wall.position);
+    good = error == std::errc() && stop == number.data() + number.size() &&
+           std::isfinite(wall.position);
+  }
+  for (std::size_t k = 2; good && k < parts.size(); ++k) {
+    const std::string_view part = parts[k];
+    if (part.starts_with("ids=")) {
+      std::vector<std::string_view> ids;
+      split(part.substr(4), ',', ids);
+      wall.ids.assign(ids.begin(), ids.end());
+    } else if (part.starts_with("fix=")) {
+      wall.fix = std::string(part.substr(4));
+    } else {
+      good = false;
+    }
+  }
+  if (!good)
+    throw std::invalid_argument(fmt::format(
+        "--wall: found \"{}\", expected NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID], such as floor:y=0",
+        text));
+  return wall;
+}
+
+void import_snapshots(const ImportOptions& options,
+                      const std::function<void(ImportedSnapshot&&)>& take) {
+  const ImportFormat& format = find_import_format(options.format);
+  if (options.dim != 0 && options.dim != 2 && options.dim != 3)
+    throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", options.dim));
+  ColumnNames names(format.columns);
+  for (const std::string& text : options.columns) names.choose(text);
+  Steps steps;
+  bool stepped = false;
+  for (const std::string& file : options.files) {
+    for (ForeignTable& table : format.scan(file)) {
+      stepped = stepped || table.step.has_value();
+      StepTables& tables = steps[table.step.value_or(0)];
+      switch (kind_of(table, names)) {
+        case TableKind::contacts:
+          tables.contacts.push_back(std::move(table));
+          break;
+        case TableKind::walls:
+          tables.walls.push_back(std::move(table));
+          break;
+        default:
+          tables.grains.push_back(std::move(table));
+      }
+    }
+  }
+  if (!stepped && (options.all_steps || !options.steps.empty()))
+    throw std::invalid_argument("--step: the files of " + format.name + " hold no time steps");
+  TableReader reader;
+  for (const StepChoice& choice : chosen_steps(options, steps)) {
+    const StepTables& tables = steps.at(choice.step);
+    for (const auto* list : {&tables.grains, &tables.contacts, &tables.walls})
+      for (const ForeignTable& table : *list)
+        if (!table.broken.empty()) throw std::invalid_argument(table.broken);
+    const std::string which = stepped ? fmt::format(" of step {}", choice.step) : "";
+    if (tables.grains.empty())
+      throw std::invalid_argument(
+          fmt::format("no table of grains{} in {}", which, list_of(options)));
+    if (tables.contacts.empty() && !options.without_contacts)
+      throw std::invalid_argument(
+          fmt::format("no table of contacts{} in {}; --without-contacts imports the grains alone",
+                      which, list_of(options)));
+    Assembly assembly(options, format, names, reader);
+    for (const ForeignTable& table : tables.grains) assembly.add_grains(table);
+    for (const ForeignTable& table : tables.walls) assembly.add_walls(table);
+    assembly.settle();
+    for (const ForeignTable& table : tables.contacts) assembly.add_contacts(table);
+    ImportedSnapshot done = assembly.finish();
+    names.require_all_used();
+    const std::string plain = stepped ? fmt::format("/step_{}", choice.step) : "/packing";
+    done.group =
+        choice.group.empty() ? (options.group.empty() ? plain : options.group) : choice.group;
+    const std::optional<double>& time = tables.grains.front().time;
+    done.snapshot.time = time ? *time : static_cast<double>(choice.step) * options.time_step;
+    auto& attributes = done.snapshot.attributes;
+    attributes["imported_from"] = format.name;
+    attributes["imported_files"] = list_of(options);
+    if (stepped) attributes["imported_step"] = fmt::format("{}", choice.step);
+    take(std::move(done));
+  }
+}
+
+PackingCheck check_packing(const dem::Snapshot& s) {
+  PackingCheck check;
+  std::vector<dem::Vec3> resultant(s.grains.size(), dem::Vec3::Zero());
+  std::vector<bool> touched(s.grains.size(), false);
+  double force = 0;
+  const auto add = [&](Eigen::Matrix3d& sum, std::int64_t grain, const dem::Vec3& point,
+                       const dem::Vec3& f) {
+    const auto g = static_cast<std::size_t>(grain);
+    sum += f * (point - s.grains[g].position).transpose();
+    resultant[g] += f;
+    touched[g] = true;
+  };
+  for (const dem::Contact& c : s.contacts) {
+    Eigen::Matrix3d& sum = c.j >= 0 ? check.pairs : check.walls;
+    add(sum, c.i, c.point, c.force);
+    if (c.j >= 0) add(sum, c.j, c.point, -c.force);
+    force += c.force.norm() / static_cast<double>(s.contacts.size());
+  }
+  double total = 0;
+  int count = 0;
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    if (s.grains[g].fixed || !touched[g]) continue;
+    dem::Vec3 f = resultant[g] + s.grains[g].mass * s.gravity;
+    if (s.grains[g].id == s.loaded_grain) f += s.applied_force;
+    total += f.norm();
+    ++count;
+  }
+  if (force > 0 && count > 0) check.unbalanced_force_ratio = total / count / force;
+  return check;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,78 @@
+// Packings of other programs as snapshots (docs/import.md).
+#pragma once
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// A flat wall across an axis that the files do not describe themselves.
+struct WallChoice {
+  std::string name;              ///< floor, left, right, ...
+  int axis = 1;                  ///< 0, 1, 2: x, y, z
+  double position = 0;           ///< m
+  std::vector<std::string> ids;  ///< what contacts call it; its name always counts
+  std::string fix;  ///< LAMMPS "fix wall/gran ... contacts": columns FIX[1..7] of the grains' dump
+};
+/// "NAME:AXIS=POSITION[:ids=3,4][:fix=f_floor]". Throws std::invalid_argument.
+WallChoice parse_wall(const std::string& text);
+
+/// A time step to import.
+struct StepChoice {
+  long long step = 0;
+  std::string group;  ///< of the snapshot file; empty: /step_N
+};
+
+struct ImportOptions {
+  std::string format;                ///< lammps | liggghts | yade | csv
+  std::vector<std::string> files;    ///< told apart by what they hold
+  std::vector<std::string> columns;  ///< "ours=theirs", "ours=number", "i,j=c_id[1..2]"
+  int dim = 0;                       ///< 0: 2 when there is no z or every z is the same, else 3
+  std::optional<dem::Vec3> gravity;  ///< m/s2; default 9.81 down (2D: -y, 3D: -z)
+  double density = 0;  ///< kg/m3 (2D: kg/m2), where there is no column mass or density
+  double friction = std::numeric_limits<double>::quiet_NaN();  ///< where there is no column
+  std::vector<WallChoice> walls;
+  std::string fixed_column;  ///< grains with one of these values there are fixed
+  std::vector<std::string> fixed_values;
+  std::vector<StepChoice> steps;  ///< empty: the last, or all
+  bool all_steps = false;
+  double time_step = 0;  ///< s; a dump's time = step times this, where it gives no time itself
+  std::string group;     ///< of a single snapshot; default /step_N, or /packing without steps
+  bool without_contacts = false;     ///< grains alone are enough
+  bool leave_out_distant = false;    ///< pairs across periodic boundaries are left out, not refused
+  std::int64_t loaded_grain = -1;    ///< id of the grain that carries the applied force, or -1
+  dem::Vec3 applied_force{0, 0, 0};  ///< N
+};
+
+struct ImportedSnapshot {
+  std::string group;
+  dem::Snapshot snapshot;
+  long long left_out = 0;  ///< distant pairs
+};
+
+/// Reads step by step and hands each on: memory for one step, whatever the files' size. Units: SI.
+/// Throws std::invalid_argument naming file, line, what was found and what is allowed: a missing
+/// column (with those found and the nearest), contacts of unknown grains or with themselves or
+/// twice, values that are not finite, ids that repeat, a truncated file, 2D mixed with 3D, radius
+/// or mass not above 0, polygons that are not convex, steps that are not there.
+void import_snapshots(const ImportOptions& options,
+                      const std::function<void(ImportedSnapshot&&)>& take);
+
+/// How an imported packing can be checked against the program that made it.
+struct PackingCheck {
+  /// Sum over grains and their contacts of F (outer) x, x from the centroid to the contact point, N
+  /// m (2D: N m as well, stress in N/m times area): stress times volume, tension positive; first
+  /// index the force.
+  Eigen::Matrix3d pairs = Eigen::Matrix3d::Zero();  ///< contacts between grains
+  Eigen::Matrix3d walls = Eigen::Matrix3d::Zero();  ///< contacts with walls
+  /// Mean resultant of free grains with contacts (weight and applied force included) over the mean
+  /// contact force; nan without contacts.
+  double unbalanced_force_ratio = std::numeric_limits<double>::quiet_NaN();
+};
+PackingCheck check_packing(const dem::Snapshot& snapshot);
+
+}  // namespace grainfield::coupling

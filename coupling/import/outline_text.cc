@@ -1,0 +1,42 @@
+#include "coupling/import/outline_text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "coupling/import/lines.h"
+
+namespace grainfield::coupling {
+
+dem::Outline parse_outline(std::string_view text) {
+  dem::Outline outline;
+  std::vector<std::string_view> corners, numbers;
+  split(text, ';', corners);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    split(corners[k], ' ', numbers);
+    std::array<double, 2> corner{};
+    bool good = numbers.size() == 2;
+    for (std::size_t d = 0; good && d < 2; ++d) {
+      const char* end = numbers[d].data() + numbers[d].size();
+      const auto [stop, error] = std::from_chars(numbers[d].data(), end, corner[d]);
+      good = error == std::errc() && stop == end && std::isfinite(corner[d]);
+    }
+    if (!good)
+      throw std::invalid_argument(
+          fmt::format("corner {} of the outline: found \"{}\", expected two finite numbers \"x y\"",
+                      k + 1, corners[k]));
+    outline.push_back(corner);
+  }
+  return outline;
+}
+
+std::string outline_text(const dem::Outline& outline) {
+  std::string text;
+  for (const auto& [x, y] : outline) text += fmt::format("{}{} {}", text.empty() ? "" : ";", x, y);
+  return text;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,15 @@
+// Outlines of polygons as text: "x1 y1;x2 y2;...".
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "dem/shapes/outline.h"
+
+namespace grainfield::coupling {
+
+/// Corners, m. Throws std::invalid_argument saying which corner is no pair of finite numbers.
+dem::Outline parse_outline(std::string_view text);
+/// With all digits.
+std::string outline_text(const dem::Outline& outline);
+
+}  // namespace grainfield::coupling

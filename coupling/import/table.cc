@@ -1,0 +1,272 @@
+#include "coupling/import/table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "continuum/model.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::optional<double> parse(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// "a,c_id[1..3]" -> a, c_id[1], c_id[2], c_id[3]
+std::vector<std::string> expanded(const std::string& list) {
+  std::vector<std::string_view> parts;
+  split(list, ',', parts);
+  std::vector<std::string> out;
+  for (const std::string_view part : parts) {
+    const std::size_t open = part.rfind('['), dots = part.rfind("..");
+    std::optional<double> first, last;
+    if (open != std::string_view::npos && dots != std::string_view::npos && part.back() == ']') {
+      first = parse(part.substr(open + 1, dots - open - 1));
+      last = parse(part.substr(dots + 2, part.size() - dots - 3));
+    }
+    if (!first || !last || *first < 0 || *last < *first || *last > 1000) {
+      out.emplace_back(part);
+      continue;
+    }
+    for (int k = static_cast<int>(*first); k <= static_cast<int>(*last); ++k)
+      out.push_back(fmt::format("{}[{}]", part.substr(0, open), k));
+  }
+  return out;
+}
+
+std::vector<std::string> all_our_names() {
+  std::vector<std::string> names;
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
+    for (const OurColumn& column : our_columns(kind)) names.push_back(column.name);
+  return names;
+}
+
+}  // namespace
+
+const std::vector<OurColumn>& our_columns(TableKind kind) {
+  static const std::vector<OurColumn> grains{
+      {"id", "1", "whole number, each once"},
+      {"x", "m", "centroid"},
+      {"y", "m", "centroid"},
+      {"z", "m", "centroid; 2D: may be missing"},
+      {"vx", "m/s", "velocity, default 0"},
+      {"vy", "m/s", "velocity, default 0"},
+      {"vz", "m/s", "velocity, default 0"},
+      {"angle", "rad", "rotation about z, default 0"},
+      {"spin", "rad/s", "about z, default 0"},
+      {"radius", "m", "of a disk or sphere"},
+      {"diameter", "m", "instead of radius"},
+      {"mass", "kg", "2D: with an areal density"},
+      {"density", "kg/m3", "instead of mass; 2D: kg/m2"},
+      {"inertia", "kg m2", "about the centroid; default: of a disk, sphere or polygon"},
+      {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon"},
+      {"fixed", "1", "1: part of the apparatus, default 0"},
+      {"outline", "m", "x1 y1;x2 y2;... of a convex polygon about (x, y), turned by angle"},
+  };
+  static const std::vector<OurColumn> contacts{
+      {"i", "1", "id of a grain"},
+      {"j", "1", "id of the other grain, or name of a wall"},
+      {"wall", "1", "instead of j: name or id of a wall"},
+      {"px", "m", "contact point; default: on the line of centres, in the overlap's middle"},
+      {"py", "m", "contact point"},
+      {"pz", "m", "contact point"},
+      {"nx", "1", "normal from i to j; default: along the line of centres"},
+      {"ny", "1", "normal"},
+      {"nz", "1", "normal"},
+      {"fx", "N", "force on i"},
+      {"fy", "N", "force on i"},
+      {"fz", "N", "force on i"},
+      {"fnx", "N", "normal part of the force on i, instead of fx"},
+      {"fny", "N", "normal part"},
+      {"fnz", "N", "normal part"},
+      {"ftx", "N", "tangential part of the force on i"},
+      {"fty", "N", "tangential part"},
+      {"ftz", "N", "tangential part"},
+      {"friction", "1", "Coulomb coefficient of the contact; default nan (unknown)"},
+      {"spring", "N", "elastic part of the tangential force; default nan (unknown)"},
+      {"sliding", "1", "1: at the Coulomb limit; default: told from friction"},
+  };
+  static const std::vector<OurColumn> walls{
+      {"name", "", "floor, left, right or any other"},
+      {"x", "m", "a point of the wall"},
+      {"y", "m", "a point of the wall"},
+      {"z", "m", "a point of the wall"},
+      {"nx", "1", "normal into the grains"},
+      {"ny", "1", "normal"},
+      {"nz", "1", "normal"},
+      {"friction", "1", "grain against wall; default nan (unknown)"},
+  };
+  static const std::vector<OurColumn> none;
+  switch (kind) {
+    case TableKind::grains:
+      return grains;
+    case TableKind::contacts:
+      return contacts;
+    case TableKind::walls:
+      return walls;
+    case TableKind::unknown:
+      break;
+  }
+  return none;
+}
+
+ColumnNames::ColumnNames(std::vector<std::pair<std::string, std::string>> format)
+    : format_(std::move(format)) {}
+
+void ColumnNames::choose(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos)
+    throw std::invalid_argument(
+        fmt::format("--column: found \"{}\", expected OURS=THEIRS, such as radius=c_r", text));
+  const std::vector<std::string> ours = expanded(text.substr(0, equals)),
+                                 theirs = expanded(text.substr(equals + 1)),
+                                 known = all_our_names();
+  if (ours.size() != theirs.size())
+    throw std::invalid_argument(fmt::format("--column {}: {} names on the left, {} on the right",
+                                            text, ours.size(), theirs.size()));
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    if (std::find(known.begin(), known.end(), ours[k]) == known.end())
+      throw std::invalid_argument(fmt::format("--column {}: unknown name \"{}\"; nearest: {}", text,
+                                              ours[k], continuum::nearest(ours[k], known)));
+    chosen_.emplace_back(ours[k], theirs[k]);
+  }
+}
+
+std::vector<ColumnNames::Candidate> ColumnNames::candidates(const std::string& ours) const {
+  std::vector<Candidate> out;
+  for (const auto& [name, theirs] : chosen_)
+    if (name == ours) out.push_back({theirs, true});
+  for (const auto& [name, theirs] : format_)
+    if (name == ours) out.push_back({theirs, false});
+  return out;
+}
+
+void ColumnNames::mark_used(const std::string& ours, const std::string& theirs) {
+  used_.insert(ours + "=" + theirs);
+}
+
+void ColumnNames::require_all_used() const {
+  for (const auto& [ours, theirs] : chosen_)
+    if (used_.find(ours + "=" + theirs) == used_.end())
+      throw std::invalid_argument(
+          fmt::format("--column {}={}: no table that needs {} has a column \"{}\"", ours, theirs,
+                      ours, theirs));
+}
+
+TableColumns::TableColumns(const ForeignTable& table, ColumnNames& names)
+    : table_(table), names_(names) {}
+
+ForeignColumn TableColumns::find(const std::string& ours) const {
+  for (const auto& candidate : names_.candidates(ours)) {
+    const auto& columns = *table_.columns;
+    const auto at = std::find(columns.begin(), columns.end(), candidate.theirs);
+    std::optional<double> constant;
+    if (at == columns.end() && candidate.chosen) constant = parse(candidate.theirs);
+    if (at == columns.end() && !constant) continue;
+    if (candidate.chosen) names_.mark_used(ours, candidate.theirs);
+    const int index = at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
+    return {ours, index, constant};
+  }
+  return {ours, -1, std::nullopt};
+}
+
+void TableColumns::missing(const std::string& what) const {
+  const auto& columns = *table_.columns;
+  const std::string nearest = continuum::nearest(what, columns);
+  throw std::invalid_argument(
+      fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS",
+                  table_.file, table_.header_line, what,
+                  columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, " ")),
+                  nearest.empty() ? "" : "; nearest: " + nearest, what));
+}
+
+ForeignColumn TableColumns::need(const std::string& ours) const {
+  ForeignColumn column = find(ours);
+  if (!column) missing(ours);
+  return column;
+}
+
+ForeignColumn TableColumns::need_theirs(const std::string& theirs) const {
+  const auto& columns = *table_.columns;
+  const auto at = std::find(columns.begin(), columns.end(), theirs);
+  if (at == columns.end())
+    throw std::invalid_argument(fmt::format(
+        "{}:{}: no column \"{}\"; found: {}; nearest: {}", table_.file, table_.header_line, theirs,
+        fmt::join(columns, " "), continuum::nearest(theirs, columns)));
+  return {theirs, static_cast<int>(at - columns.begin()), std::nullopt};
+}
+
+std::string_view ForeignRow::text(const ForeignColumn& column) const {
+  return column.index >= 0 ? fields[static_cast<std::size_t>(column.index)] : std::string_view();
+}
+
+bool ForeignRow::empty(const ForeignColumn& column) const {
+  return !column || (!column.constant && text(column).empty());
+}
+
+std::string ForeignRow::name_of(const ForeignColumn& column) const {
+  const std::string& theirs = (*columns)[static_cast<std::size_t>(column.index)];
+  return theirs == column.name ? theirs : fmt::format("{} ({})", theirs, column.name);
+}
+
+void ForeignRow::refuse(const std::string& what) const {
+  throw std::invalid_argument(fmt::format("{}:{}: {}", *file, line, what));
+}
+
+double ForeignRow::number(const ForeignColumn& column) const {
+  if (column.constant) return *column.constant;
+  const std::optional<double> value = parse(text(column));
+  if (!value || !std::isfinite(*value))
+    refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
+                       text(column)));
+  return *value;
+}
+
+long long ForeignRow::whole(const ForeignColumn& column) const {
+  if (!column.constant) {
+    const std::string_view digits = text(column);
+    long long value = 0;
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc() && stop == digits.data() + digits.size()) return value;
+  }
+  const double value = number(column);
+  if (value != std::floor(value) || std::abs(value) > 9e15)
+    refuse(fmt::format("column {}: found \"{}\", expected a whole number",
+                       column.constant ? column.name : name_of(column),
+                       column.constant ? fmt::format("{}", value) : std::string(text(column))));
+  return static_cast<long long>(value);
+}
+
+void TableReader::read(const ForeignTable& table,
+                       const std::function<void(const ForeignRow&)>& take) {
+  auto& lines = files_[table.file];
+  if (!lines) lines = std::make_unique<Lines>(table.file);
+  lines->seek(table.first);
+  ForeignRow row;
+  row.file = &table.file;
+  row.columns = table.columns.get();
+  std::string_view line;
+  for (long long n = 0; (table.rows < 0 || n < table.rows) && lines->next(line); ++n) {
+    row.line = lines->line();
+    if (table.rows < 0) {
+      const std::string_view text = trimmed(line);
+      if (text.empty() || text.front() == '#') continue;
+    }
+    split(line, table.separator, row.fields);
+    if (row.fields.size() != table.columns->size())
+      row.refuse(fmt::format("{} values where the header at line {} names {} columns",
+                             row.fields.size(), table.header_line, table.columns->size()));
+    take(row);
+  }
+}
+
+}  // namespace grainfield::coupling

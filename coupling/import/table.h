@@ -1,0 +1,121 @@
+// Tables of grains, contacts and walls in foreign files: where they stand, and their columns under
+// our names.
+#pragma once
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coupling/import/lines.h"
+
+namespace grainfield::coupling {
+
+enum class TableKind { unknown, grains, contacts, walls };
+
+/// A table as a format's scan() finds it. Its rows are not read yet.
+struct ForeignTable {
+  std::string file;
+  TableKind kind = TableKind::unknown;                      ///< unknown: told from the columns
+  std::optional<long long> step;                            ///< time step of a dump
+  std::optional<double> time;                               ///< s, where the file says it
+  std::shared_ptr<const std::vector<std::string>> columns;  ///< names in the file's order
+  long long header_line = 0;                                ///< line that holds the names
+  Lines::Place first;                                       ///< of the rows
+  long long rows = -1;                                      ///< -1: up to the end of the file
+  char separator = ' ';
+  std::string broken;  ///< not empty: why the table cannot be read (truncated)
+};
+
+/// Our column names and what they mean; the first list is of grains, then contacts, then walls.
+struct OurColumn {
+  std::string name, unit, meaning;
+};
+const std::vector<OurColumn>& our_columns(TableKind kind);
+
+/// Their names for our columns. The choices of the user come before those of the format.
+class ColumnNames {
+ public:
+  /// `format`: ours to theirs, any number for one of ours.
+  explicit ColumnNames(std::vector<std::pair<std::string, std::string>> format);
+  /// One --column: "ours=theirs", "ours=number", or lists "i,j=c_id[1..2]". Throws
+  /// std::invalid_argument: no "=", unknown name (with the nearest), lists of different length.
+  void choose(const std::string& text);
+  /// Throws std::invalid_argument when a chosen name was met in no table at all.
+  void require_all_used() const;
+
+  struct Candidate {
+    std::string theirs;
+    bool chosen = false;
+  };
+  std::vector<Candidate> candidates(const std::string& ours) const;
+  void mark_used(const std::string& ours, const std::string& theirs);
+
+ private:
+  std::vector<std::pair<std::string, std::string>> chosen_, format_;
+  std::set<std::string> used_;
+};
+
+/// A column of a table, or a constant for every row, or nothing.
+struct ForeignColumn {
+  std::string name;  ///< ours
+  int index = -1;
+  std::optional<double> constant;
+  explicit operator bool() const { return index >= 0 || constant.has_value(); }
+};
+
+/// The columns of one table under our names.
+class TableColumns {
+ public:
+  TableColumns(const ForeignTable& table, ColumnNames& names);
+  /// Empty when the table has no such column.
+  ForeignColumn find(const std::string& ours) const;
+  /// Throws std::invalid_argument "FILE:LINE: no column ...; found: ...; nearest ...".
+  ForeignColumn need(const std::string& ours) const;
+  /// By the file's own name; throws as need().
+  ForeignColumn need_theirs(const std::string& theirs) const;
+  [[noreturn]] void missing(const std::string& what) const;
+
+ private:
+  const ForeignTable& table_;
+  ColumnNames& names_;
+};
+
+/// A row of a table being read.
+class ForeignRow {
+ public:
+  const std::string* file = nullptr;
+  long long line = 0;
+  const std::vector<std::string>* columns = nullptr;
+  std::vector<std::string_view> fields;
+
+  /// "" for a constant.
+  std::string_view text(const ForeignColumn& column) const;
+  bool empty(const ForeignColumn& column) const;
+  /// Throws std::invalid_argument naming file, line and column unless it is a finite number.
+  double number(const ForeignColumn& column) const;
+  /// The same for whole numbers ("7", "7.0", "1e3").
+  long long whole(const ForeignColumn& column) const;
+  /// Throws std::invalid_argument "FILE:LINE: what".
+  [[noreturn]] void refuse(const std::string& what) const;
+
+ private:
+  std::string name_of(const ForeignColumn& column) const;
+};
+
+/// Calls take(row) for every row; comments (#) and blank lines are passed over where the table runs
+/// to the end of the file. Files stay open between tables. Throws std::invalid_argument for rows of
+/// another length than the header and for what `take` throws.
+class TableReader {
+ public:
+  void read(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
+
+ private:
+  std::map<std::string, std::unique_ptr<Lines>> files_;
+};
+
+}  // namespace grainfield::coupling
