@@ -100,12 +100,12 @@ void parse(Given& given) {
         fmt::format("--friction: found {:g}, allowed: 0 and above", options.friction));
 }
 
+// First letter: force, second: branch.
 std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
-  if (dim == 2)
-    return fmt::format("xx {:.15g} yy {:.15g} xy {:.15g} yx {:.15g}", m(0, 0), m(1, 1), m(0, 1),
-                       m(1, 0));
-  return fmt::format("xx {:.15g} yy {:.15g} zz {:.15g} xy {:.15g} xz {:.15g} yz {:.15g}", m(0, 0),
-                     m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2));
+  std::string text;
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b) text += fmt::format(" {}{} {:.15g}", "xyz"[a], "xyz"[b], m(a, b));
+  return text;
 }
 
 void show(const ImportedSnapshot& imported, bool default_gravity) {
@@ -122,10 +122,10 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
              default_gravity ? " (default; --gravity changes it)" : "");
   if (s.contacts.empty()) return;
   const PackingCheck check = check_packing(s);
-  fmt::print("  stress x volume (N m, tension positive), pairs: {}\n",
+  fmt::print("  stress x volume (N m, tension positive), pairs:{}\n",
              tensor_text(check.pairs, s.dim));
   if (at_walls > 0)
-    fmt::print("  stress x volume (N m, tension positive), walls: {}\n",
+    fmt::print("  stress x volume (N m, tension positive), walls:{}\n",
                tensor_text(check.walls, s.dim));
   fmt::print("  unbalanced force ratio: {:.3g}{}\n", check.unbalanced_force_ratio,
              check.unbalanced_force_ratio > 0.1

@@ -86,6 +86,8 @@ void Assembly::add_contacts(const ForeignTable& table) {
       if (c.j == 0)
         row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}", row.text(wall),
                                known_grains()));
+    } else if (!j) {
+      row.refuse("the contact names no wall");
     } else {
       c.j = grain_or_wall(j);
     }
