@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Grain-steps per second on the 10,000-disk packing: this engine (1 and 2 threads) against LAMMPS
-# gran/hooke/history (Debian package lammps, serial), five interleaved rounds, medians.
+# gran/hooke/history (Debian package lammps, serial), five interleaved rounds, medians; and this
+# engine's 5,000 settled heptagons, all awake, beside LAMMPS' disks.
 # Usage: tests/benchmarks/against_lammps.sh [build/release]      needs: apt-get install lammps
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -37,13 +38,16 @@ run 200
 run $steps
 IN
 median() { sort -g | awk '{a[NR]=$1} END {print a[int((NR+1)/2)]}'; }
-own() { "$program" --benchmark_filter="disks_10k/$1/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
-  awk -F, 'NR==1{for(i=1;i<=NF;i++){gsub(/"/,"",$i); if($i=="grain_steps") k=i}} /disks_10k/{print $k/1e6}'; }
+own() { "$program" --benchmark_filter="$1/$2/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
+  awk -F, -v n="$1" 'NR==1{for(i=1;i<=NF;i++){gsub(/"/,"",$i); if($i=="grain_steps") k=i}} index($0,n){print $k/1e6}'; }
 for round in 1 2 3 4 5; do
   (cd "$work" && OMP_NUM_THREADS=1 lmp -log none -screen "$work/out" -in in.disks) || { tail -3 "$work/out" >&2; exit 1; }
   awk '/^Loop time/{t=$4} END{print '$steps'*10000/t/1e6}' "$work/out" >> "$work/lammps"
-  own 1 >> "$work/one"; own 2 >> "$work/two"
-  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), grainfield 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two") million grain-steps/s"
+  own disks_10k 1 >> "$work/one"; own disks_10k 2 >> "$work/two"
+  own heptagons_5k 1 >> "$work/seven"; own heptagons_5k 2 >> "$work/seven_two"
+  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two") million grain-steps/s"
 done
 l=$(median < "$work/lammps") a=$(median < "$work/one") b=$(median < "$work/two")
 awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "median: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
+h=$(median < "$work/seven") t=$(median < "$work/seven_two")
+awk -v l="$l" -v h="$h" -v t="$t" 'BEGIN {printf "heptagons: 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 disks %.2f; two threads over one %.2f\n", h, t, h/l, t/h}'
