@@ -38,7 +38,7 @@ struct Edge {
 double arcs_area(const Loop& loop, double arc, double radius, bool centre_inside) {
   double size = 0;  // of the region's points
   for (int i = 1; i < loop.n; ++i) {
-    size = std::fmax(size, std::fabs(loop.x[i] - loop.x[0]) + std::fabs(loop.y[i] - loop.y[0]));
+    size = std::max(size, std::fabs(loop.x[i] - loop.x[0]) + std::fabs(loop.y[i] - loop.y[0]));
   }
   double area = 0;
   for (int i = 0; i < loop.n; ++i) {
@@ -46,11 +46,14 @@ double arcs_area(const Loop& loop, double arc, double radius, bool centre_inside
     const int next = i + 1 < loop.n ? i + 1 : 0;
     const double qx = loop.x[i], qy = loop.y[i];
     const double dx = loop.x[next] - qx, dy = loop.y[next] - qy;
-    const double chord = std::sqrt(dx * dx + dy * dy);
-    double arm = -(dx * qy - dy * qx);  // its sign: centre to the left of the chord
+    const double half = 0.5 * std::sqrt(dx * dx + dy * dy);
+    // Distance of the centre from the chord, to its left.
+    double arm = half > 0 ? -(dx * qy - dy * qx) / (2 * half) : radius;
     // Of a chord that is round-off, the arc is the whole circle only if nothing else is there.
-    if (chord < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
-    area += segment_area(radius, arm, 0.5 * chord);
+    if (half < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
+    // Near a diameter the half chord alone says little about the angle.
+    area += half < 0.7 * radius ? segment_area(radius, arm, half)
+                                : radius * radius * std::atan2(half, arm) - half * arm;
   }
   return area;
 }
@@ -89,13 +92,13 @@ bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& pol
       if (!(half2 * e.squared > kLeastHalfChord * kLeastHalfChord * radius2)) continue;
       if (!(foot > 0 && foot < 1)) continue;
     }
-    const double half = std::sqrt(std::fmax(half2, 0.0));
+    const double half = std::sqrt(half2 > 0 ? half2 : 0.0);
     if (!begin_in) {
-      const double t = std::fmin(std::fmax(foot - half, 0.0), 1.0);
+      const double t = std::clamp(foot - half, 0.0, 1.0);
       loop.add(e.px + t * e.ex, e.py + t * e.ey, outline);
     }
     if (!end_in) {
-      const double t = std::fmin(std::fmax(foot + half, 0.0), 1.0);
+      const double t = std::clamp(foot + half, 0.0, 1.0);
       loop.add(e.px + t * e.ex, e.py + t * e.ey, arc);
     }
   }

@@ -56,7 +56,7 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
     const double h1 = height(k + 1);
     if (h0 < 0) {
       add(x0, y0);
-      deepest = std::fmin(deepest, h0);
+      deepest = std::min(deepest, h0);
     }
     if ((h0 < 0) != (h1 < 0)) {
       const double t = h0 / (h0 - h1);
@@ -74,7 +74,7 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
   o.area = area;
   o.depth = -deepest;
   // t = (-n_y, n_x) = (w_y, -w_x)
-  o.chord = crossings > 0 ? std::fmax(bx * wy - by * wx, 0.0) : 0.0;
+  o.chord = crossings > 0 ? std::max(bx * wy - by * wx, 0.0) : 0.0;
   if (crossings > 0) {
     set_plane_contact(a, wx, wy, crossing_x / crossings, crossing_y / crossings, o);
   } else {

@@ -11,6 +11,7 @@
 // vanish together, as they do when a corner slides through an outline. Both positions move with the
 // origin, so that it can be chosen near the contact, where nothing cancels.
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "dem/shapes/polygon.h"
@@ -157,8 +158,8 @@ inline bool contact_of_loop(const PlacedShape& a, const PlacedShape& b, const Lo
   // Of more than two crossings the sums can leave the region: then its border is as far as s goes.
   double along_t = 0.5 * (s.sxx + s.syy) * inverse;
   double along_n = (tx * ty * (s.sxx - s.syy) + s.sxy * (ty * ty - tx * tx)) * inverse;
-  along_t = std::fmin(std::fmax(along_t, e.low_t), e.high_t);
-  along_n = std::fmin(std::fmax(along_n, e.low_n), e.high_n);
+  along_t = std::min(std::max(along_t, e.low_t), e.high_t);
+  along_n = std::min(std::max(along_n, e.low_n), e.high_n);
   set_contact_point(a, b, ox + x0 + along_t * tx + along_n * ty,
                     oy + y0 + along_t * ty - along_n * tx, o);
   return true;

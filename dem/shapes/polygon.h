@@ -12,7 +12,8 @@
 // and the normal position
 //   s . n = sum over A's pieces ((end.t)(end.n) - (begin.t)(begin.n)) / |b|,
 // both the middle of p1p2 for two crossings; of more crossings kept within the overlap's extents.
-// Area, b and s change continuously while corners slide in and out. The depth is the extent of the
+// Area, b and s change continuously while corners slide in and out (b jumps only where sides are
+// parallel; coincident sides that face the same way count as B's). The depth is the extent of the
 // overlap along n. Where b = 0 (one outline inside the other, two bars crossing symmetrically) the
 // normal is the direction of least penetration, the depth that penetration, the chord 0 and s the
 // middle of the overlap (the inner one's centroid).

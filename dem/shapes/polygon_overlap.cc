@@ -158,8 +158,9 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, Overlap& o,
   const double ox = a.x[far], oy = a.y[far];
   start_loop(a, far, dx, dy, low, ox, oy, *loop);
   const auto cut = [&](int k) {
-    Loop* result =
-        clip(loop, spare, b.x[k] - ox, b.y[k] - oy, b.x[k + 1] - b.x[k], b.y[k + 1] - b.y[k]);
+    // From the same differences as the loop's corners: coincident corners are exactly on the line.
+    const double qx = b.x[k] - ox, qy = b.y[k] - oy;
+    Loop* result = clip(loop, spare, qx, qy, (b.x[k + 1] - ox) - qx, (b.y[k + 1] - oy) - qy);
     if (result != loop) std::swap(loop, spare);
     return loop->n > 2;
   };

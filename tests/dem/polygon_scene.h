@@ -102,10 +102,12 @@ inline Outline random_outline(Random& random, int corners, double radius, double
   }
 }
 
-/// Area of the overlap in long double: A clipped by every edge of B, no short cuts.
-inline double area_in_long_double(const Outline& a, const Outline& b) {
+using LongLoop = std::vector<std::array<long double, 2>>;
+
+/// The overlap in long double: A clipped by every edge of B, no short cuts.
+inline LongLoop overlap_in_long_double(const Outline& a, const Outline& b) {
   using Point = std::array<long double, 2>;
-  std::vector<Point> loop;
+  LongLoop loop;
   for (const auto& p : a) loop.push_back({p[0], p[1]});
   for (std::size_t k = 0; k < b.size(); ++k) {
     const Point q = {b[k][0], b[k][1]}, r = {b[(k + 1) % b.size()][0], b[(k + 1) % b.size()][1]};
@@ -124,10 +126,15 @@ inline double area_in_long_double(const Outline& a, const Outline& b) {
     }
     loop = next;
   }
+  return loop;
+}
+
+inline double area_in_long_double(const Outline& a, const Outline& b) {
+  const LongLoop loop = overlap_in_long_double(a, b);
   long double twice = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Point &p = loop[i], &e = loop[(i + 1) % loop.size()];
-    twice += (p[0] - loop[0][0]) * (e[1] - loop[0][1]) - (e[0] - loop[0][0]) * (p[1] - loop[0][1]);
+    const auto &o = loop[0], &p = loop[i], &e = loop[(i + 1) % loop.size()];
+    twice += (p[0] - o[0]) * (e[1] - o[1]) - (e[0] - o[0]) * (p[1] - o[1]);
   }
   return static_cast<double>(twice / 2);
 }
