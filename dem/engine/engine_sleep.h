@@ -19,13 +19,13 @@ template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::wake_all() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const bool fixed = bodies_[i].inverse_mass == 0;
-    if (asleep_[i] && !fixed) {
-      quiet_[i] = {bodies_[i].x, bodies_[i].y, memory_[i].angle, steps_};
-    }
-    asleep_[i] = fixed && settings_.sleep.on ? 1 : 0;
+    const unsigned char state = fixed && settings_.sleep.on ? 1 : 0;
+    if (asleep_[i] == state) continue;
+    asleep_[i] = state;
+    quiet_[i] = {bodies_[i].x, bodies_[i].y, memory_[i].angle, steps_};
+    search_needed_ = true;
   }
   locate_applied();
-  search_needed_ = true;
 }
 
 /// Weight, and the applied force at its full size (its grain does not sleep).
