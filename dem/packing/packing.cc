@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/heap/surface.h"
+
 namespace grainfield::dem {
 namespace {
 
@@ -33,18 +35,20 @@ double row_to_row(const PackingSetup& p) {
   return std::sqrt(1 - half * half);
 }
 
-// Radii side by side until no further grain fits into the width, and what is left over.
-std::vector<double> fill_width(const PackingSetup& packing, double width, Random& random,
-                               double& slack) {
-  std::vector<double> radii;
-  slack = width;
-  while (true) {
-    const double r = draw_radius(packing, random);
-    if (2 * r > slack * (1 + 1e-9)) break;  // rounding must not cost a row its last grain
-    radii.push_back(r);
-    slack -= 2 * r;
-  }
-  return radii;
+// Circumscribed and inscribed radius of irregular pentagons (grain_family.h) over their mean side,
+// bounds: the regular one has 0.851 and 0.688.
+constexpr double kPentagonCircumradius = 1.25, kPentagonInradius = 0.4;
+// Their mean area over side^2 is 1.6, less is taken.
+constexpr double kPentagonArea = 1.4;
+
+bool pentagons(const PackingSetup& p) { return p.kind == "layered" && p.shape == "irregular"; }
+
+ShapeSetup pentagon(const PackingSetup& p) {
+  ShapeSetup s;
+  s.kind = "irregular";
+  s.polydispersity = 0;
+  s.side = p.side;
+  return s;
 }
 
 }  // namespace
@@ -54,7 +58,13 @@ void check_packing(const PackingSetup& p) {
     require(p.width >= 4 * largest_radius(p), "width", p.width, "at least two grain diameters");
     require(p.depth >= 2 * largest_radius(p), "depth", p.depth, "at least one grain diameter");
     require(p.drop_height >= 0, "drop_height", p.drop_height, "0 or more");
+    if (p.shape == "irregular") require(p.side > 0, "side", p.side, "above 0");
   } else {
+    if (p.shape != "disk") {
+      throw std::invalid_argument(fmt::format(
+          "packing.shape: found {}, allowed: disk, because packing.kind = {} is a lattice", p.shape,
+          p.kind));
+    }
     require(p.columns >= 2, "columns", p.columns, "2 or more");
     require(p.rows >= 1, "rows", p.rows, "1 or more");
     if (p.sizes != "mono") {
@@ -81,11 +91,13 @@ double draw_radius(const PackingSetup& p, Random& random) {
 }
 
 double largest_radius(const PackingSetup& p) {
+  if (pentagons(p)) return kPentagonCircumradius * p.side;
   if (p.sizes == "bidisperse") return std::max(p.radius, p.radius_small);
   return p.sizes == "uniform" ? p.radius_max : p.radius;
 }
 
 double smallest_radius(const PackingSetup& p) {
+  if (pentagons(p)) return kPentagonInradius * p.side;
   if (p.sizes == "bidisperse") return std::min(p.radius, p.radius_small);
   return p.sizes == "uniform" ? p.radius_min : p.radius * (1 - 2 * p.jitter);
 }
@@ -125,7 +137,44 @@ void add_row(const PackingSetup& p, bool shifted, double y, double density, bool
 
 }  // namespace
 
-std::vector<NewGrain> floor_grains(const PackingSetup& p, double density, Random& random) {
+GrainSupply::GrainSupply(const PackingSetup& packing, Random& random) : packing_(packing) {
+  if (!pentagons(packing)) return;
+  const ShapeSetup shape = pentagon(packing);
+  // A layer's worth at a volume fraction of 1, and three rows more: what lies above the depth at
+  // the end, and a rough floor.
+  const double area = packing.width * (packing.depth + 6 * largest_radius(packing));
+  const auto count = static_cast<std::size_t>(area / (kPentagonArea * packing.side * packing.side));
+  while (drawn_.size() < count) drawn_.push_back(draw_grain(shape, random));
+}
+
+std::vector<ShapedGrain> GrainSupply::fill(double width, Random& random) {
+  std::vector<ShapedGrain> out;
+  double slack = width;
+  while (true) {
+    if (pentagons(packing_) && taken_ == static_cast<long>(drawn_.size())) {
+      throw ComputationFailed(fmt::format(
+          "the layer does not reach packing.depth = {:g} m with {} grains; lower packing.depth",
+          packing_.depth, taken_));
+    }
+    const ShapedGrain next =
+        pentagons(packing_) ? drawn_[taken_] : disk_grain(draw_radius(packing_, random));
+    // Rounding must not cost a row its last grain.
+    if (2 * next.radius > slack * (1 + 1e-9)) return out;
+    ++taken_;
+    slack -= 2 * next.radius;
+    out.push_back(next);
+  }
+}
+
+GrainExtremes GrainSupply::extremes(double density) const {
+  if (!drawn_.empty()) return extremes_of(drawn_, density);
+  GrainExtremes e;
+  e.least_mass = density * disk_grain(smallest_radius(packing_)).area;
+  return e;
+}
+
+std::vector<NewGrain> floor_grains(const PackingSetup& p, GrainSupply& supply, double density,
+                                   Random& random) {
   std::vector<NewGrain> grains;
   if (p.floor != "rough") return grains;
   if (p.kind != "layered") {
@@ -133,15 +182,16 @@ std::vector<NewGrain> floor_grains(const PackingSetup& p, double density, Random
     return grains;
   }
   const double width = layer_width(p);
-  double slack = 0;
-  const std::vector<double> radii = fill_width(p, width, random, slack);
-  const double gap = radii.empty() ? 0 : slack / static_cast<double>(radii.size());
+  const std::vector<ShapedGrain> row = supply.fill(width, random);
+  double slack = width;
+  for (const ShapedGrain& g : row) slack -= 2 * g.radius;
+  const double gap = row.empty() ? 0 : slack / static_cast<double>(row.size());
   double x = -0.5 * width;
-  for (const double r : radii) {
-    NewGrain g = grain_at(x + 0.5 * gap + r, -r, r, density);
+  for (const ShapedGrain& shaped : row) {
+    NewGrain g = shaped.at(x + 0.5 * gap + shaped.radius, -shaped.radius, density);
     g.fixed = true;
     grains.push_back(g);
-    x += 2 * r + gap;
+    x += 2 * shaped.radius + gap;
   }
   return grains;
 }
@@ -158,23 +208,10 @@ std::vector<NewGrain> lattice_grains(const PackingSetup& p, double density, Rand
   return grains;
 }
 
-std::vector<NewGrain> row_of_grains(const PackingSetup& p, double density, double y,
-                                    Random& random) {
-  const double width = layer_width(p);
-  double slack = 0;
-  const std::vector<double> radii = fill_width(p, width, random, slack);
-  // Gaps: shares of the slack by uniform weights.
-  std::vector<double> weights(radii.size() + 1);
-  double total = 0;
-  for (double& w : weights) total += w = random.uniform();
-  std::vector<NewGrain> grains;
-  double x = -0.5 * width;
-  for (std::size_t k = 0; k < radii.size(); ++k) {
-    x += slack * weights[k] / total;
-    grains.push_back(grain_at(x + radii[k], y + radii[k], radii[k], density));
-    x += 2 * radii[k];
-  }
-  return grains;
+std::vector<NewGrain> row_of_grains(const PackingSetup& p, GrainSupply& supply, double density,
+                                    double y, Random& random) {
+  const double half = 0.5 * layer_width(p);
+  return side_by_side(supply.fill(2 * half, random), -half, half, y, density, random);
 }
 
 double surface_height(const Snapshot& snapshot, double width) {
@@ -192,7 +229,7 @@ double surface_height(const Snapshot& snapshot, double width) {
     if (g.fixed) continue;
     const int k =
         std::clamp(static_cast<int>((g.position.x() / width + 0.5) * strips), 0, strips - 1);
-    top[k] = std::max(top[k], g.position.y() + g.radius);
+    top[k] = std::max(top[k], top_of(g));
   }
   double sum = 0;
   for (const double t : top) sum += t;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
+#include "dem/heap/grain_family.h"
 #include "dem/random/random.h"
 #include "dem/study/setup.h"
 
@@ -16,6 +17,7 @@ void check_packing(const PackingSetup& packing);
 /// Radius of the next grain, m: mono, bidisperse (by number) or uniform in [radius_min,
 /// radius_max].
 double draw_radius(const PackingSetup& packing, Random& random);
+/// Bounds of the radii, of pentagons: of their circumscribed and inscribed circles.
 double largest_radius(const PackingSetup& packing);
 double smallest_radius(const PackingSetup& packing);
 
@@ -25,9 +27,32 @@ double layer_width(const PackingSetup& packing);
 /// Floor, left and right wall with their friction.
 std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& material);
 
-/// The fixed grains of a rough floor, their tops at y = 0: under a lattice a row of it, under a
-/// layered packing grains of its sizes side by side from wall to wall. Empty for a smooth floor.
-std::vector<NewGrain> floor_grains(const PackingSetup& packing, double density, Random& random);
+/// The grains of a packing in the order they are used. Disks are drawn when they are asked for.
+/// Pentagons are drawn beforehand, more than the layer can hold, so that the time step can be
+/// chosen for exactly these.
+class GrainSupply {
+ public:
+  GrainSupply(const PackingSetup& packing, Random& random);
+
+  /// The next grains, as many as fit side by side into the width by their bounding circles. Throws
+  /// ComputationFailed when the supply is used up.
+  std::vector<ShapedGrain> fill(double width, Random& random);
+  GrainExtremes extremes(double density) const;
+
+  long taken() const { return taken_; }
+  void set_taken(long taken) { taken_ = taken; }
+
+ private:
+  PackingSetup packing_;
+  std::vector<ShapedGrain> drawn_;
+  long taken_ = 0;
+};
+
+/// The fixed grains of a rough floor, their bounding circles' tops at y = 0: under a lattice a row
+/// of it, under a layered packing grains like its own side by side from wall to wall. Empty for a
+/// smooth floor.
+std::vector<NewGrain> floor_grains(const PackingSetup& packing, GrainSupply& supply, double density,
+                                   Random& random);
 
 /// All grains of a lattice, touching and without overlap.
 /// triangular: rows offset by half a diameter, six neighbours; odd rows have one grain less.
@@ -39,8 +64,8 @@ std::vector<NewGrain> lattice_grains(const PackingSetup& packing, double density
 
 /// One row to drop: grains side by side with random gaps from wall to wall, their lowest points at
 /// height y.
-std::vector<NewGrain> row_of_grains(const PackingSetup& packing, double density, double y,
-                                    Random& random);
+std::vector<NewGrain> row_of_grains(const PackingSetup& packing, GrainSupply& supply,
+                                    double density, double y, Random& random);
 
 /// Height of the free surface, m: mean over vertical strips four mean radii wide of the highest
 /// grain top. 0 without free grains.

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 
-#include "dem/engine/image.h"
 #include "dem/packing/packing.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/study/common.h"
 #include "dem/study/contact_changes.h"
 #include "dem/study/run.h"
 
@@ -42,7 +40,6 @@ class PointLoadRun final : public Run {
   void enter(Phase phase);
   void decide();
   void drop_row();
-  bool at_rest() const;
   void add(const std::vector<NewGrain>& grains);
   std::string fingerprint() const;
   Snapshot take_snapshot(const char* state) const;
@@ -51,7 +48,8 @@ class PointLoadRun final : public Run {
   PointLoadSetup setup_;
   std::uint64_t seed_;
   Random random_;
-  double width_;
+  GrainSupply supply_;
+  double width_ = 0;
   std::unique_ptr<Engine> engine_;
   Phase phase_ = Phase::deposit;
   long phase_steps_ = 0;
@@ -59,50 +57,26 @@ class PointLoadRun final : public Run {
   std::optional<Snapshot> unloaded_, loaded_;
 };
 
-EngineSettings engine_settings(const PointLoadSetup& s, int threads) {
-  const MaterialSetup& m = s.material;
-  EngineSettings e;
-  if (m.law == "linear") {
-    e.law = LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
-                      m.tangential_damping};
-  } else {
-    e.law = OverlapAreaLaw{m.young, m.damping};
-  }
-  e.integrator = s.motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
-  const double r = smallest_radius(s.packing);
-  const double limit = stable_time_step(e, m.density * std::numbers::pi * r * r);
-  e.time_step = s.motion.time_step > 0 ? s.motion.time_step : s.motion.time_step_fraction * limit;
-  if (e.time_step > limit) {
-    throw std::invalid_argument(
-        fmt::format("{}: found {:.4g} s, allowed: at most the stable limit of {:.4g} s for {} with "
-                    "this material",
-                    s.motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction",
-                    e.time_step, limit, s.motion.integrator));
-  }
-  e.friction = m.friction;
-  e.gravity_x = 0;
-  e.gravity_y = -m.gravity;
-  e.threads = threads;
-  return e;
+const PackingSetup& checked(const PackingSetup& packing) {
+  check_packing(packing);
+  return packing;
 }
 
 PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), random_(seed) {
-  check_packing(setup_.packing);
-  if (!(setup_.material.gravity > 0)) {
-    throw std::invalid_argument(fmt::format(
-        "material.gravity: found {:g}, allowed: above 0 (a layer needs weight to come to rest)",
-        setup_.material.gravity));
-  }
+    : setup_(setup), seed_(seed), random_(seed), supply_(checked(setup_.packing), random_) {
+  const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
-  engine_ = make_engine(engine_settings(setup_, threads));
+  EngineSettings settings =
+      engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads);
+  settings.polygons = setup_.packing.shape != "disk";
+  engine_ = make_engine(settings);
   for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
-  add(floor_grains(setup_.packing, setup_.material.density, random_));
+  add(floor_grains(setup_.packing, supply_, density, random_));
   if (setup_.packing.kind == "layered") {
     enter(Phase::deposit);
     drop_row();
   } else {
-    add(lattice_grains(setup_.packing, setup_.material.density, random_));
+    add(lattice_grains(setup_.packing, density, random_));
     enter(Phase::rest);
   }
 }
@@ -113,8 +87,8 @@ void PointLoadRun::add(const std::vector<NewGrain>& grains) {
 
 void PointLoadRun::drop_row() {
   const double top = rows_dropped_ == 0 ? 0.0 : engine_->measure().height;
-  add(row_of_grains(setup_.packing, setup_.material.density, top + setup_.packing.drop_height,
-                    random_));
+  add(row_of_grains(setup_.packing, supply_, setup_.material.density,
+                    top + setup_.packing.drop_height, random_));
   ++rows_dropped_;
 }
 
@@ -122,12 +96,6 @@ void PointLoadRun::enter(Phase phase) {
   phase_ = phase;
   phase_steps_ = 0;
   engine_->set_background_damping(phase == Phase::deposit ? 0 : setup_.rest.background_damping);
-}
-
-bool PointLoadRun::at_rest() const {
-  const Diagnostics d = engine_->measure();
-  return d.unbalanced_force_ratio <= setup_.rest.unbalanced_force_ratio &&
-         d.kinetic_energy <= setup_.rest.kinetic_to_elastic_energy * d.elastic_energy;
 }
 
 void PointLoadRun::advance(long steps) {
@@ -162,7 +130,7 @@ void PointLoadRun::decide() {
     }
     case Phase::rest:
     case Phase::hold:
-      if (at_rest()) {
+      if (const Diagnostics d = engine_->measure(); at_rest(d, setup_.rest)) {
         if (phase_ == Phase::hold) {
           loaded_ = take_snapshot("loaded");
           phase_ = Phase::done;
@@ -177,14 +145,8 @@ void PointLoadRun::decide() {
         engine_->apply(force);
         enter(Phase::load);
       } else if (in_phase > setup_.rest.max_time) {
-        const Diagnostics d = engine_->measure();
-        throw ComputationFailed(fmt::format(
-            "no rest within rest.max_time = {:g} s ({} the load): unbalanced force ratio {:.2g}, "
-            "kinetic/elastic energy {:.2g}; raise rest.max_time or rest.background_damping, or "
-            "lower "
-            "load.force",
-            setup_.rest.max_time, phase_ == Phase::hold ? "after" : "before",
-            d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy));
+        fail_to_rest(d, setup_.rest, phase_ == Phase::hold ? "after the load" : "before the load",
+                     ", or lower load.force");
       }
       return;
     case Phase::load:
@@ -232,14 +194,12 @@ Progress PointLoadRun::progress() const {
   p.simulated_time = engine_->time();
   p.steps = engine_->steps();
   p.grains = engine_->grains();
+  p.awake = d.awake;
   p.kinetic_energy = d.kinetic_energy;
   p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   const bool layered = setup_.packing.kind == "layered";
   const double in_phase = static_cast<double>(phase_steps_) * engine_->time_step();
-  // How far a rest has come, on the logarithm of the unbalanced force ratio, from 1 down.
-  const double rest = std::clamp(std::log(std::max(d.unbalanced_force_ratio, 1e-300)) /
-                                     std::log(setup_.rest.unbalanced_force_ratio),
-                                 0.0, 1.0);
+  const double rest = rest_progress(d, setup_.rest);
   const double built = layered ? 0.4 : 0.0;
   switch (phase_) {
     case Phase::deposit:
@@ -271,61 +231,43 @@ Progress PointLoadRun::progress() const {
 
 std::string PointLoadRun::fingerprint() const {
   const PackingSetup& p = setup_.packing;
-  const MaterialSetup& m = setup_.material;
   return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} {} {} {} {} {} {} {} {} {} {} {} | {} {} "
-      "| "
-      "{} {} {} {} | "
-      "{} {} {} | {}",
-      p.kind, p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max,
-      p.columns, p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, m.law,
-      m.density, m.young, m.damping, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
-      m.tangential_damping, m.friction, m.floor_friction, m.wall_friction, m.gravity,
-      setup_.motion.integrator, engine_->time_step(), setup_.rest.unbalanced_force_ratio,
-      setup_.rest.kinetic_to_elastic_energy, setup_.rest.background_damping, setup_.rest.max_time,
-      setup_.load.force, setup_.load.ramp_time, setup_.load.position, seed_);
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} | {} | {} | {} {} {} | {}", p.kind,
+      p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max, p.columns,
+      p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, p.shape, p.side,
+      describe(setup_.material), describe(setup_.motion, engine_->time_step()),
+      describe(setup_.rest), setup_.load.force, setup_.load.ramp_time, setup_.load.position, seed_);
 }
 
 void PointLoadRun::save(const std::string& file) const {
-  const std::string beside = file + ".part";
-  std::filesystem::remove(beside);
-  {
-    ImageWriter w;
-    w.put(fingerprint());
-    w.put(phase_);
-    w.put(phase_steps_);
-    w.put(rows_dropped_);
-    w.put(random_.state());
-    w.put(engine_->image());
-    const hdf5::Handle handle = hdf5::open_for_adding(beside);
-    hdf5::write_bytes(handle, "checkpoint", w.bytes());
-  }
-  if (unloaded_) write_snapshot(beside, "/unloaded", *unloaded_);
-  if (loaded_) write_snapshot(beside, "/loaded", *loaded_);
-  std::filesystem::rename(beside, file);
+  ImageWriter w;
+  w.put(phase_);
+  w.put(phase_steps_);
+  w.put(rows_dropped_);
+  w.put(random_.state());
+  w.put(supply_.taken());
+  w.put(engine_->image());
+  NamedSnapshots snapshots;
+  if (unloaded_) snapshots.emplace_back("unloaded", *unloaded_);
+  if (loaded_) snapshots.emplace_back("loaded", *loaded_);
+  write_checkpoint(file, fingerprint(), w, snapshots);
 }
 
 void PointLoadRun::restore(const std::string& file) {
-  std::string bytes;
-  {
-    const hdf5::Handle handle = hdf5::open_for_reading(file);
-    bytes = hdf5::read_bytes(handle, "checkpoint", file);
-  }
+  const std::string bytes = read_checkpoint(file, fingerprint());
   ImageReader r(bytes);
-  std::string of, image;
-  r.get(of);
-  if (of != fingerprint()) {
-    throw std::invalid_argument(
-        fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
-  }
+  std::string image;
   std::uint64_t random_state = 0;
+  long taken = 0;
   r.get(phase_);
   r.get(phase_steps_);
   r.get(rows_dropped_);
   r.get(random_state);
+  r.get(taken);
   r.get(image);
   r.finish();
   random_.set_state(random_state);
+  supply_.set_taken(taken);
   engine_->restore(image);
   unloaded_.reset();
   loaded_.reset();

@@ -97,7 +97,7 @@ struct SourceSetup {
 struct FloorSetup {
   std::string kind = "smooth";  ///< smooth: flat, with material.floor_friction | rough: fixed
                                 ///< grains like those of the pile, side by side below y = 0
-  double length = 1.6;  ///< m
+  double length = 1.6;          ///< m
 };
 
 /// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).

@@ -146,7 +146,8 @@ TEST(Packing, LatticesTouchWithoutOverlap) {
       PackingSetup p = small(kind).packing;
       p.floor = floor;
       Random random(1);
-      std::vector<NewGrain> all = floor_grains(p, 1, random);
+      GrainSupply supply(p, random);
+      std::vector<NewGrain> all = floor_grains(p, supply, 1, random);
       const std::size_t fixed = all.size();
       for (const NewGrain& g : lattice_grains(p, 1, random)) all.push_back(g);
       const double d = 2 * p.radius;

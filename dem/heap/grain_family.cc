@@ -1,0 +1,235 @@
+#include "dem/heap/grain_family.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "dem/shapes/polygon.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Neighbouring corners of a RAND1 polygon lie between these shares of the mean gap apart: no two
+// corners at one place, no side that cuts half the grain away.
+constexpr double kLeastGap = 0.5, kMostGap = 2;
+// Corners of an irregular pentagon are turned by up to this share of the mean gap.
+constexpr double kTurn = 0.25;
+constexpr int kPentagon = 5;
+// A given outline must not be so slender that its area vanishes beside its size; centred_outline
+// bounds it at 20, an ellipse is held to less.
+constexpr double kMostAxisRatio = 10;
+
+template <class Value>
+void require(bool holds, const char* key, const Value& found, const std::string& allowed) {
+  if (!holds) {
+    throw std::invalid_argument(
+        fmt::format("shape.{}: found {:g}, allowed: {}", key, 1.0 * found, allowed));
+  }
+}
+
+// n gaps (radians, sum 2 pi) between independent uniform angles, given that each lies between
+// kLeastGap and kMostGap mean gaps. Given the lower bound alone they are the least gap plus shares
+// of the rest at uniform spacings (normalised exponentials); the upper bound is by rejection.
+std::vector<double> draw_gaps(int n, Random& random) {
+  std::vector<double> gaps(n);
+  const double mean = 2 * std::numbers::pi / n;
+  while (true) {
+    double sum = 0;
+    for (double& g : gaps) sum += g = -std::log1p(-random.uniform());
+    if (!(sum > 0)) continue;
+    bool fits = true;
+    for (double& g : gaps) {
+      g = mean * (kLeastGap + (1 - kLeastGap) * n * g / sum);
+      fits &= g <= kMostGap * mean;
+    }
+    if (fits) return gaps;
+  }
+}
+
+Outline on_ellipse(const std::vector<double>& angles, double a, double b) {
+  Outline out;
+  out.reserve(angles.size());
+  for (const double t : angles) out.push_back({a * std::cos(t), b * std::sin(t)});
+  return out;
+}
+
+int draw_corners(const ShapeSetup& s, Random& random) {
+  const int kinds = s.corners_max - s.corners_min + 1;
+  return s.corners_min + std::min(kinds - 1, static_cast<int>(kinds * random.uniform()));
+}
+
+Outline rand1(const ShapeSetup& s, double radius, Random& random) {
+  const std::vector<double> gaps = draw_gaps(draw_corners(s, random), random);
+  std::vector<double> angles;
+  double t = random.uniform(0, 2 * std::numbers::pi);
+  for (const double gap : gaps) {
+    angles.push_back(t);
+    t += gap;
+  }
+  const double stretch = std::sqrt(s.axis_ratio);
+  return on_ellipse(angles, radius * stretch, radius / stretch);
+}
+
+Outline regular(int corners, double radius) {
+  std::vector<double> angles;
+  for (int k = 0; k < corners; ++k) angles.push_back(2 * std::numbers::pi * k / corners);
+  return on_ellipse(angles, radius, radius);
+}
+
+Outline irregular_pentagon(double side, Random& random) {
+  const double gap = 2 * std::numbers::pi / kPentagon;
+  std::vector<double> angles;
+  for (int k = 0; k < kPentagon; ++k) {
+    angles.push_back(gap * (k + kTurn * random.uniform(-1, 1)));
+  }
+  Outline unit = on_ellipse(angles, 1, 1);
+  double around = 0;
+  for (int k = 0; k < kPentagon; ++k) {
+    const auto& p = unit[k];
+    const auto& q = unit[(k + 1) % kPentagon];
+    around += std::hypot(q[0] - p[0], q[1] - p[1]);
+  }
+  for (auto& p : unit) {
+    p[0] *= kPentagon * side / around;
+    p[1] *= kPentagon * side / around;
+  }
+  return unit;
+}
+
+Outline given(const ShapeSetup& s, double radius) {
+  Outline out;
+  for (std::size_t k = 0; k + 1 < s.outline.size(); k += 2) {
+    out.push_back({radius * s.outline[k], radius * s.outline[k + 1]});
+  }
+  return out;
+}
+
+double side_of(const ShapeSetup& s) {
+  return s.side > 0 ? s.side : 2 * s.radius * std::sin(std::numbers::pi / kPentagon);
+}
+
+}  // namespace
+
+NewGrain ShapedGrain::at(double x, double y, double density) const {
+  NewGrain g;
+  g.x = x;
+  g.y = y;
+  g.angle = angle;
+  g.radius = radius;
+  g.density = density;
+  g.outline = outline;
+  return g;
+}
+
+void check_shape(const ShapeSetup& s) {
+  require(s.radius > 0 && std::isfinite(s.radius), "radius", s.radius, "above 0");
+  require(s.polydispersity >= 0 && s.polydispersity < 1, "polydispersity", s.polydispersity,
+          "0 to below 1 (radii are uniform in radius (1 -+ polydispersity))");
+  if (s.kind == "rand1" || s.kind == "regular") {
+    require(s.corners_min >= 3, "corners_min", s.corners_min, "3 or more");
+    require(s.corners_max >= s.corners_min, "corners_max", s.corners_max,
+            fmt::format("at least shape.corners_min = {}", s.corners_min));
+  }
+  if (s.kind == "rand1") {
+    require(s.axis_ratio >= 1 && s.axis_ratio <= kMostAxisRatio, "axis_ratio", s.axis_ratio,
+            fmt::format("1 to {:g} (major over minor axis)", kMostAxisRatio));
+  } else if (s.kind == "irregular") {
+    require(s.side >= 0 && std::isfinite(s.side), "side", s.side,
+            "above 0, or 0 to take it from shape.radius");
+  } else if (s.kind == "outline") {
+    if (s.outline.size() % 2 != 0) {
+      throw std::invalid_argument(fmt::format(
+          "shape.outline: found {} numbers, allowed: pairs x1, y1, x2, y2, ... of three or more "
+          "corners",
+          s.outline.size()));
+    }
+    try {
+      centred_outline(given(s, 1));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("shape.outline: {}", error.what()));
+    }
+  }
+}
+
+ShapedGrain disk_grain(double radius) {
+  ShapedGrain g;
+  g.radius = radius;
+  g.area = std::numbers::pi * radius * radius;
+  return g;
+}
+
+ShapedGrain draw_grain(const ShapeSetup& s, Random& random) {
+  const double size = 1 + s.polydispersity * random.uniform(-1, 1);
+  const double radius = s.radius * size;
+  if (s.kind == "disk") return disk_grain(radius);
+  Outline corners;
+  if (s.kind == "rand1") {
+    corners = rand1(s, radius, random);
+  } else if (s.kind == "regular") {
+    corners = regular(draw_corners(s, random), radius);
+  } else if (s.kind == "irregular") {
+    corners = irregular_pentagon(side_of(s) * size, random);
+  } else {
+    corners = given(s, radius);
+  }
+  ShapedGrain g;
+  g.outline = centred_outline(corners);
+  g.radius = circumradius_of(g.outline);
+  g.area = area_of(g.outline);
+  g.angle = random.uniform(-std::numbers::pi, std::numbers::pi);
+  return g;
+}
+
+GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density) {
+  GrainExtremes e;
+  e.least_mass = std::numeric_limits<double>::infinity();
+  for (const ShapedGrain& g : grains) {
+    e.least_mass = std::min(e.least_mass, density * g.area);
+    if (!g.outline.empty()) {
+      e.steepest_edge = std::max(e.steepest_edge, edge_steepness(g.outline));
+    }
+  }
+  return e;
+}
+
+double largest_radius(const std::vector<ShapedGrain>& grains) {
+  double r = 0;
+  for (const ShapedGrain& g : grains) r = std::max(r, g.radius);
+  return r;
+}
+
+double mean_radius(const std::vector<ShapedGrain>& grains) {
+  double sum = 0;
+  for (const ShapedGrain& g : grains) sum += g.radius;
+  return sum / static_cast<double>(grains.size());
+}
+
+double total_area(const std::vector<ShapedGrain>& grains) {
+  double sum = 0;
+  for (const ShapedGrain& g : grains) sum += g.area;
+  return sum;
+}
+
+std::vector<NewGrain> side_by_side(const std::vector<ShapedGrain>& grains, double left,
+                                   double right, double bottom, double density, Random& random) {
+  double slack = right - left;
+  for (const ShapedGrain& g : grains) slack -= 2 * g.radius;
+  slack = std::max(slack, 0.0);
+  // Gaps: shares of the slack by uniform weights.
+  std::vector<double> weights(grains.size() + 1);
+  double total = 0;
+  for (double& w : weights) total += w = random.uniform();
+  std::vector<NewGrain> out;
+  double x = left;
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    x += slack * weights[k] / total;
+    out.push_back(grains[k].at(x + grains[k].radius, bottom + grains[k].radius, density));
+    x += 2 * grains[k].radius;
+  }
+  return out;
+}
+
+}  // namespace grainfield::dem

@@ -1,0 +1,57 @@
+#include "dem/heap/source.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainfield::dem {
+
+PointSource::PointSource(const SourceSetup& source, double gravity, double time_step)
+    : source_(source), gravity_(gravity), time_step_(time_step) {}
+
+long PointSource::release_step(int k) const {
+  return std::lround(k * source_.interval / time_step_);
+}
+
+long PointSource::arrival_step(int k, double y) const {
+  const double fall = source_.height - y;
+  if (fall <= 0) return release_step(k);
+  return release_step(k) +
+         static_cast<long>(least_interval(source_.speed, gravity_, fall) / time_step_);
+}
+
+void PointSource::place(NewGrain& grain, int k, long step) const {
+  const double t = static_cast<double>(step - release_step(k)) * time_step_;
+  grain.y = source_.height - source_.speed * t - 0.5 * gravity_ * t * t;
+  grain.vy = -source_.speed - gravity_ * t;
+}
+
+double PointSource::axis(int k) const {
+  return source_.move * (static_cast<double>(k) / (source_.grains - 1) - 0.5);
+}
+
+double least_interval(double speed, double gravity, double diameter) {
+  // The positive root without cancellation.
+  return 2 * diameter / (speed + std::sqrt(speed * speed + 2 * gravity * diameter));
+}
+
+Stretch plateau_of(const Surface& surface, const Stretch& last, double drop) {
+  std::vector<double> tops;
+  std::size_t first = surface.top.size(), end = 0;
+  for (std::size_t k = 0; k < surface.top.size(); ++k) {
+    if (surface.middle(k) < last.left || surface.middle(k) > last.right) continue;
+    first = std::min(first, k);
+    end = k + 1;
+    tops.push_back(surface.top[k]);
+  }
+  const double middle = 0.5 * (last.left + last.right);
+  if (tops.empty()) return {middle, middle};
+  std::nth_element(tops.begin(), tops.begin() + tops.size() / 2, tops.end());
+  const double least = tops[tops.size() / 2] - drop;
+  while (surface.top[first] < least) ++first;
+  while (surface.top[end - 1] < least) --end;
+  // A column whose middle is in the stretch may reach beyond it.
+  return {std::max(last.left, surface.left + static_cast<double>(first) * surface.column),
+          std::min(last.right, surface.left + static_cast<double>(end) * surface.column)};
+}
+
+}  // namespace grainfield::dem

@@ -1,0 +1,44 @@
+// Where the grains of a pile come from: one by one out of a funnel, or in layers on its top.
+#pragma once
+#include "dem/heap/grain_family.h"
+#include "dem/heap/surface.h"
+
+namespace grainfield::dem {
+
+/// Point source (Roul 3.1.1). Grain k leaves the mouth at k intervals and falls freely. It joins
+/// the simulation where it comes near the pile: the flight before has a closed form, and one grain
+/// in flight alone would cost a neighbour search every few steps.
+class PointSource {
+ public:
+  PointSource(const SourceSetup& source, double gravity, double time_step);
+
+  /// Step at which grain k leaves the mouth, from the start of the pour.
+  long release_step(int k) const;
+  /// Step at which its centre has come down to height y, m; not before its release.
+  long arrival_step(int k, double y) const;
+  /// Height (m) and velocity (m/s, downwards negative) of its centre at a step after its release.
+  void place(NewGrain& grain, int k, long step) const;
+  /// Abscissa of the funnel's axis when grain k leaves it, m.
+  double axis(int k) const;
+
+ private:
+  SourceSetup source_;
+  double gravity_, time_step_;
+};
+
+/// Least interval, s, between grains of largest diameter d so that one has cleared the mouth by d
+/// when the next one starts: v t + g t^2/2 = d.
+double least_interval(double speed, double gravity, double diameter);
+
+/// A stretch of the x axis, m.
+struct Stretch {
+  double left = 0, right = 0;
+  double length() const { return right - left; }
+};
+
+/// Line source (Roul 3.1.2): the part of `last`, where the last layer fell, that is still a
+/// plateau: between the outermost columns that are not more than `drop` below the median of all.
+/// Of length 0 when no column lies in `last`.
+Stretch plateau_of(const Surface& surface, const Stretch& last, double drop);
+
+}  // namespace grainfield::dem

@@ -1,0 +1,112 @@
+#include "dem/study/common.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "dem/snapshot/hdf5_file.h"
+
+namespace grainfield::dem {
+
+EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
+                               const GrainExtremes& extremes, int threads) {
+  if (!(m.gravity > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "material.gravity: found {:g}, allowed: above 0 (grains need weight to come to rest)",
+        m.gravity));
+  }
+  EngineSettings e;
+  if (m.law == "linear") {
+    e.law = LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+                      m.tangential_damping};
+  } else {
+    e.law = OverlapAreaLaw{m.young, m.damping};
+  }
+  e.integrator = motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
+  const double limit = stable_time_step(e, extremes);
+  e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
+  if (e.time_step > limit) {
+    throw std::invalid_argument(
+        fmt::format("{}: found {:.4g} s, allowed: at most the stable limit of {:.4g} s for {} with "
+                    "this material",
+                    motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction",
+                    e.time_step, limit, motion.integrator));
+  }
+  e.friction = m.friction;
+  e.gravity_x = 0;
+  e.gravity_y = -m.gravity;
+  e.threads = threads;
+  return e;
+}
+
+bool at_rest(const Diagnostics& d, const RestSetup& rest) {
+  return d.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
+         d.kinetic_energy <= rest.kinetic_to_elastic_energy * d.elastic_energy;
+}
+
+double rest_progress(const Diagnostics& d, const RestSetup& rest) {
+  return std::clamp(
+      std::log(std::max(d.unbalanced_force_ratio, 1e-300)) / std::log(rest.unbalanced_force_ratio),
+      0.0, 1.0);
+}
+
+void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string& when,
+                  const std::string& remedy) {
+  throw ComputationFailed(fmt::format(
+      "no rest within rest.max_time = {:g} s ({}): unbalanced force ratio {:.2g}, "
+      "kinetic/elastic energy {:.2g}; raise rest.max_time or rest.background_damping{}",
+      rest.max_time, when, d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy, remedy));
+}
+
+std::string describe(const MaterialSetup& m) {
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", m.law, m.density, m.young, m.damping,
+                     m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+                     m.tangential_damping, m.friction, m.floor_friction, m.wall_friction,
+                     m.gravity);
+}
+
+std::string describe(const MotionSetup& m, double time_step) {
+  return fmt::format("{} {}", m.integrator, time_step);
+}
+
+std::string describe(const RestSetup& r) {
+  return fmt::format("{} {} {} {}", r.unbalanced_force_ratio, r.kinetic_to_elastic_energy,
+                     r.background_damping, r.max_time);
+}
+
+void write_checkpoint(const std::string& file, const std::string& fingerprint,
+                      const ImageWriter& state, const NamedSnapshots& snapshots) {
+  const std::string beside = file + ".part";
+  std::filesystem::remove(beside);
+  {
+    ImageWriter w;
+    w.put(fingerprint);
+    w.put(state.bytes());
+    const hdf5::Handle handle = hdf5::open_for_adding(beside);
+    hdf5::write_bytes(handle, "checkpoint", w.bytes());
+  }
+  for (const auto& [name, snapshot] : snapshots) write_snapshot(beside, "/" + name, snapshot);
+  std::filesystem::rename(beside, file);
+}
+
+std::string read_checkpoint(const std::string& file, const std::string& fingerprint) {
+  std::string bytes;
+  {
+    const hdf5::Handle handle = hdf5::open_for_reading(file);
+    bytes = hdf5::read_bytes(handle, "checkpoint", file);
+  }
+  ImageReader r(bytes);
+  std::string of, state;
+  r.get(of);
+  if (of != fingerprint) {
+    throw std::invalid_argument(
+        fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
+  }
+  r.get(state);
+  r.finish();
+  return state;
+}
+
+}  // namespace grainfield::dem

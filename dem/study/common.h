@@ -1,0 +1,41 @@
+// What every study of grains does alike: engine settings and their time step, the criterion of
+// rest, and checkpoints.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dem/engine/engine.h"
+#include "dem/engine/image.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::dem {
+
+/// Settings of the engine, without polygons and sleeping. Throws std::invalid_argument naming the
+/// key when there is no gravity or the time step is above the stable limit of these grains.
+EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
+                               const GrainExtremes& extremes, int threads);
+
+bool at_rest(const Diagnostics& state, const RestSetup& rest);
+/// How far a rest has come, in [0, 1], on the logarithm of the unbalanced force ratio.
+double rest_progress(const Diagnostics& state, const RestSetup& rest);
+/// Throws ComputationFailed: no rest within rest.max_time; `when` completes "(...)", `remedy`
+/// completes "raise rest.max_time or rest.background_damping".
+[[noreturn]] void fail_to_rest(const Diagnostics& state, const RestSetup& rest,
+                               const std::string& when, const std::string& remedy);
+
+/// All settings as text, to tell checkpoints of different setups apart.
+std::string describe(const MaterialSetup& material);
+std::string describe(const MotionSetup& motion, double time_step);
+std::string describe(const RestSetup& rest);
+
+using NamedSnapshots = std::vector<std::pair<std::string, Snapshot>>;
+/// Writes a checkpoint beside `file` and renames it: the fingerprint of the setup, the state's bits
+/// and the snapshots taken so far.
+void write_checkpoint(const std::string& file, const std::string& fingerprint,
+                      const ImageWriter& state, const NamedSnapshots& snapshots);
+/// The state's bits. Throws std::invalid_argument naming the file when it is broken or has another
+/// fingerprint.
+std::string read_checkpoint(const std::string& file, const std::string& fingerprint);
+
+}  // namespace grainfield::dem

@@ -1,0 +1,165 @@
+#include "dem/study/pile_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dem/engine/engine.h"
+#include "dem/heap/source.h"
+#include "dem/heap/surface.h"
+
+namespace grainfield::dem {
+namespace {
+
+constexpr double kExpectedVolumeFraction = 0.8;
+constexpr double kExpectedSlope = std::numbers::inv_sqrt3;  // 30 degrees
+// The floor reaches this much beyond the expected heap: slopes differ, grains roll off.
+constexpr double kFloorReserve = 1.15;
+// A line holds the grains of the expected heap on its length and this much more, because grains
+// that roll off its ends widen the heap.
+constexpr double kLineReserve = 1.5;
+constexpr double kMostNotPoured = 0.1;
+constexpr double kMostLean = 1e-3;
+
+void require(bool holds, const char* key, double found, const std::string& allowed) {
+  if (!holds) {
+    throw std::invalid_argument(fmt::format("{}: found {:g}, allowed: {}", key, found, allowed));
+  }
+}
+
+void require_word(const std::string& found, const char* key,
+                  const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), found) == allowed.end()) {
+    throw std::invalid_argument(
+        fmt::format("{}: found \"{}\", allowed: {}", key, found, fmt::join(allowed, ", ")));
+  }
+}
+
+}  // namespace
+
+ExpectedHeap expected_heap(double grain_area) {
+  const double area = grain_area / kExpectedVolumeFraction;
+  return {std::sqrt(area * kExpectedSlope), 2 * std::sqrt(area / kExpectedSlope)};
+}
+
+void check_pile(const PileSetup& s) {
+  require_word(s.shape.kind, "shape.kind", {"disk", "rand1", "regular", "irregular", "outline"});
+  check_shape(s.shape);
+  require_word(s.source.kind, "source.kind", {"point", "line"});
+  require(s.source.grains >= 3, "source.grains", s.source.grains, "3 or more");
+  require(s.source.speed >= 0, "source.speed", s.source.speed, "0 or more (downwards)");
+  require(s.source.interval > 0, "source.interval", s.source.interval, "above 0");
+  require(s.source.spread >= 0, "source.spread", s.source.spread, "0 or more");
+  require(s.source.clearance > 0, "source.clearance", s.source.clearance, "above 0");
+  require(std::isfinite(s.source.move), "source.move", s.source.move, "a finite number");
+  require(std::isfinite(s.source.shift), "source.shift", s.source.shift, "a finite number");
+  require_word(s.floor.kind, "floor.kind", {"smooth", "rough"});
+  require(s.floor.length > 0, "floor.length", s.floor.length, "above 0");
+  require_word(s.change.method, "change.method", {"newton", "damped"});
+  require(s.change.ramp_time > 0, "change.ramp_time", s.change.ramp_time, "above 0");
+  for (std::size_t k = 0; k < s.change.gravity.size(); ++k) {
+    const double g = s.change.gravity[k];
+    require(g > 0 && std::isfinite(g), "change.gravity", g, "above 0");
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      require(fmt::format("{:g}", s.change.gravity[earlier]) != fmt::format("{:g}", g),
+              "change.gravity", g, "every value once");
+    }
+  }
+}
+
+void check_source(const PileSetup& s, const std::vector<ShapedGrain>& grains) {
+  const double diameter = 2 * largest_radius(grains);
+  const ExpectedHeap heap = expected_heap(total_area(grains));
+  double base = heap.base;
+  if (s.source.kind == "point") {
+    const double interval = least_interval(s.source.speed, s.material.gravity, diameter);
+    require(s.source.interval >= interval, "source.interval", s.source.interval,
+            fmt::format("at least {:.3g} s, or the next grain leaves the source before the last "
+                        "one has cleared it by a largest diameter of {:.3g} m; raise "
+                        "source.interval or source.speed",
+                        interval, diameter));
+    const double height = heap.height + 2 * diameter;
+    require(s.source.height >= height, "source.height", s.source.height,
+            fmt::format("at least {:.3g} m, above the pile that {} grains make (30 degrees, volume "
+                        "fraction 0.8); raise source.height or lower source.grains",
+                        height, s.source.grains));
+    base += std::fabs(s.source.move);
+  } else {
+    const double length = std::max(heap.base / std::sqrt(kLineReserve), 4 * diameter);
+    require(s.source.length >= length, "source.length", s.source.length,
+            fmt::format("at least {:.3g} m: on a shorter line {} grains pile up to a point before "
+                        "all are poured; raise source.length or lower source.grains",
+                        length, s.source.grains));
+    base = std::max(base, s.source.length);
+  }
+  const double floor = kFloorReserve * base + 2 * diameter;
+  require(s.floor.length >= floor, "floor.length", s.floor.length,
+          fmt::format("at least {:.3g} m, or the pile of {} grains runs off its floor; raise "
+                      "floor.length or lower source.grains",
+                      floor, s.source.grains));
+}
+
+double resting_top(const Snapshot& s) {
+  std::vector<char> touched(s.grains.size(), 0);
+  for (const Contact& c : s.contacts) {
+    touched[c.i] = 1;
+    if (c.j >= 0) touched[c.j] = 1;
+  }
+  double top = 0;
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Grain& g = s.grains[k];
+    // Slower than a fall over its own diameter.
+    const double slow = 2 * std::fabs(s.gravity.y()) * 2 * g.radius;
+    if (g.fixed || !touched[k] || g.velocity.squaredNorm() > slow) continue;
+    top = std::max(top, top_of(g));
+  }
+  return top;
+}
+
+void check_mouth(const PileSetup& setup, double top, double diameter) {
+  if (top + 2 * diameter < setup.source.height) return;
+  throw ComputationFailed(
+      fmt::format("the pile, {:.3g} m high, has reached the mouth of the source at source.height = "
+                  "{:g} m; raise source.height or lower source.grains",
+                  top, setup.source.height));
+}
+
+void check_walls_free(const PileSetup& setup, const Snapshot& snapshot, double diameter,
+                      double share) {
+  const double reach = 0.5 * setup.floor.length - diameter;
+  for (const Grain& g : snapshot.grains) {
+    if (g.fixed || std::fabs(g.position.x()) < reach || g.position.y() < 2.5 * diameter) continue;
+    throw ComputationFailed(fmt::format(
+        "the pile runs off its floor: it stands at a side wall after {:.0f} % of source.grains; "
+        "raise floor.length, now {:g} m, to at least {:.3g} m, or lower source.grains",
+        100 * share, setup.floor.length, 1.2 * setup.floor.length / std::sqrt(share)));
+  }
+}
+
+void check_not_leaning(const PileSetup& setup, const Snapshot& snapshot) {
+  double lean = 0, weight = 0;
+  for (const Contact& c : snapshot.contacts) {
+    if (c.j < 0 && snapshot.walls[-1 - c.j].name != "floor") lean += std::fabs(c.force.x());
+  }
+  for (const Grain& g : snapshot.grains) {
+    if (!g.fixed) weight += g.mass * std::fabs(snapshot.gravity.y());
+  }
+  if (lean <= kMostLean * weight) return;
+  throw ComputationFailed(fmt::format(
+      "the pile leans on the side walls with {:.2g} of its weight (allowed: {:g}); raise "
+      "floor.length, now {:g} m, to at least {:.3g} m, or lower source.grains",
+      lean / weight, kMostLean, setup.floor.length, 1.2 * setup.floor.length));
+}
+
+void check_line_long_enough(const PileSetup& setup, int poured) {
+  const double share = static_cast<double>(poured) / setup.source.grains;
+  if (share >= 1 - kMostNotPoured) return;
+  throw ComputationFailed(fmt::format(
+      "the pile came to a point after {} of {} grains; raise source.length, now {:g} "
+      "m, to at least {:.3g} m, or lower source.grains",
+      poured, setup.source.grains, setup.source.length, setup.source.length / std::sqrt(share)));
+}
+
+}  // namespace grainfield::dem
