@@ -18,9 +18,9 @@ constexpr double kLeastGap = 0.5, kMostGap = 2;
 // Corners of an irregular pentagon are turned by up to this share of the mean gap.
 constexpr double kTurn = 0.25;
 constexpr int kPentagon = 5;
-// A given outline must not be so slender that its area vanishes beside its size; centred_outline
-// bounds it at 20, an ellipse is held to less.
-constexpr double kMostAxisRatio = 10;
+// Triangles with gaps at their bounds are 3.5 times as long as wide; on an ellipse of this ratio
+// none is a sliver for centred_outline, which refuses 20.
+constexpr double kMostAxisRatio = 5;
 
 template <class Value>
 void require(bool holds, const char* key, const Value& found, const std::string& allowed) {
@@ -132,6 +132,8 @@ void check_shape(const ShapeSetup& s) {
     require(s.corners_min >= 3, "corners_min", s.corners_min, "3 or more");
     require(s.corners_max >= s.corners_min, "corners_max", s.corners_max,
             fmt::format("at least shape.corners_min = {}", s.corners_min));
+    require(s.corners_max <= kMostCorners, "corners_max", s.corners_max,
+            fmt::format("at most {}", kMostCorners));
   }
   if (s.kind == "rand1") {
     require(s.axis_ratio >= 1 && s.axis_ratio <= kMostAxisRatio, "axis_ratio", s.axis_ratio,

@@ -37,6 +37,12 @@ void require_word(const std::string& found, const char* key,
   }
 }
 
+// To three digits, never down: the value that a message names must be accepted.
+double round_up(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::ceil(value / unit * (1 - 1e-12)) * unit;
+}
+
 }  // namespace
 
 ExpectedHeap expected_heap(double grain_area) {
@@ -76,29 +82,29 @@ void check_source(const PileSetup& s, const std::vector<ShapedGrain>& grains) {
   if (s.source.kind == "point") {
     const double interval = least_interval(s.source.speed, s.material.gravity, diameter);
     require(s.source.interval >= interval, "source.interval", s.source.interval,
-            fmt::format("at least {:.3g} s, or the next grain leaves the source before the last "
+            fmt::format("at least {:g} s, or the next grain leaves the source before the last "
                         "one has cleared it by a largest diameter of {:.3g} m; raise "
                         "source.interval or source.speed",
-                        interval, diameter));
+                        round_up(interval), diameter));
     const double height = heap.height + 2 * diameter;
     require(s.source.height >= height, "source.height", s.source.height,
-            fmt::format("at least {:.3g} m, above the pile that {} grains make (30 degrees, volume "
+            fmt::format("at least {:g} m, above the pile that {} grains make (30 degrees, volume "
                         "fraction 0.8); raise source.height or lower source.grains",
-                        height, s.source.grains));
+                        round_up(height), s.source.grains));
     base += std::fabs(s.source.move);
   } else {
     const double length = std::max(heap.base / std::sqrt(kLineReserve), 4 * diameter);
     require(s.source.length >= length, "source.length", s.source.length,
-            fmt::format("at least {:.3g} m: on a shorter line {} grains pile up to a point before "
+            fmt::format("at least {:g} m: on a shorter line {} grains pile up to a point before "
                         "all are poured; raise source.length or lower source.grains",
-                        length, s.source.grains));
+                        round_up(length), s.source.grains));
     base = std::max(base, s.source.length);
   }
   const double floor = kFloorReserve * base + 2 * diameter;
   require(s.floor.length >= floor, "floor.length", s.floor.length,
-          fmt::format("at least {:.3g} m, or the pile of {} grains runs off its floor; raise "
+          fmt::format("at least {:g} m, or the pile of {} grains runs off its floor; raise "
                       "floor.length or lower source.grains",
-                      floor, s.source.grains));
+                      round_up(floor), s.source.grains));
 }
 
 double resting_top(const Snapshot& s) {
@@ -133,8 +139,8 @@ void check_walls_free(const PileSetup& setup, const Snapshot& snapshot, double d
     if (g.fixed || std::fabs(g.position.x()) < reach || g.position.y() < 2.5 * diameter) continue;
     throw ComputationFailed(fmt::format(
         "the pile runs off its floor: it stands at a side wall after {:.0f} % of source.grains; "
-        "raise floor.length, now {:g} m, to at least {:.3g} m, or lower source.grains",
-        100 * share, setup.floor.length, 1.2 * setup.floor.length / std::sqrt(share)));
+        "raise floor.length, now {:g} m, to at least {:g} m, or lower source.grains",
+        100 * share, setup.floor.length, round_up(1.2 * setup.floor.length / std::sqrt(share))));
   }
 }
 
@@ -149,8 +155,8 @@ void check_not_leaning(const PileSetup& setup, const Snapshot& snapshot) {
   if (lean <= kMostLean * weight) return;
   throw ComputationFailed(fmt::format(
       "the pile leans on the side walls with {:.2g} of its weight (allowed: {:g}); raise "
-      "floor.length, now {:g} m, to at least {:.3g} m, or lower source.grains",
-      lean / weight, kMostLean, setup.floor.length, 1.2 * setup.floor.length));
+      "floor.length, now {:g} m, to at least {:g} m, or lower source.grains",
+      lean / weight, kMostLean, setup.floor.length, round_up(1.2 * setup.floor.length)));
 }
 
 void check_line_long_enough(const PileSetup& setup, int poured) {
@@ -158,7 +164,7 @@ void check_line_long_enough(const PileSetup& setup, int poured) {
   if (share >= 1 - kMostNotPoured) return;
   throw ComputationFailed(fmt::format(
       "the pile came to a point after {} of {} grains; raise source.length, now {:g} "
-      "m, to at least {:.3g} m, or lower source.grains",
+      "m, to at least {:g} m, or lower source.grains",
       poured, setup.source.grains, setup.source.length, setup.source.length / std::sqrt(share)));
 }
 

@@ -1,0 +1,366 @@
+// The pile study: balance, restart to the same bits, any number of threads, and what it refuses.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "dem/random/random.h"
+#include "dem/study/contact_changes.h"
+#include "dem/study/pile_checks.h"
+#include "dem/study/run.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Grains ten times Roul's, so that a step is ten times as long.
+PileSetup small(const std::string& source, const std::string& shape) {
+  PileSetup s;
+  s.shape.kind = shape;
+  s.shape.radius = 0.0275;
+  s.source.kind = source;
+  s.source.grains = 80;
+  s.source.height = 1;
+  s.source.interval = 0.15;
+  s.source.length = 1.3;
+  s.source.clearance = 0.08;
+  s.floor.length = 4;
+  s.floor.kind = shape == "disk" ? "rough" : "smooth";  // disks roll away on a flat floor
+  // Disks without rolling resistance creep: a modest rest will do.
+  s.rest.unbalanced_force_ratio = 1e-3;
+  s.rest.kinetic_to_elastic_energy = 1e-4;
+  return s;
+}
+
+void finish(Run& run) {
+  while (!run.done()) run.advance(5000);
+}
+
+TEST(Pile, BaseCarriesTheWeight) {
+  for (const char* shape : {"disk"}) {
+    for (const char* source : {"point", "line"}) {
+      const PileSetup s = small(source, shape);
+      const auto run = make_pile_run(s, 3, 1);
+      finish(*run);
+      const RunResult r = run->result();
+      EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << shape << " " << source;
+      EXPECT_LE(r.figures.at("dem.unbalanced_force_ratio"), 1e-3);
+      EXPECT_EQ(r.figures.at("dem.grains") + r.figures.at("pile.grains_not_poured"), 80);
+      ASSERT_EQ(r.snapshots.size(), 1u);
+      EXPECT_EQ(r.snapshots[0].first, "pile");
+      EXPECT_EQ(r.snapshots[0].second.attributes.at("source"), source);
+      EXPECT_GT(r.figures.at("pile.height"), 5 * s.shape.radius);
+      const Progress p = run->progress();
+      EXPECT_EQ(p.fraction, 1);
+      EXPECT_EQ(p.phase, "done");
+    }
+  }
+}
+
+TEST(Pile, FunnelMovesAndDropsOneGrainPerInterval) {
+  PileSetup s = small("point", "disk");
+  s.source.move = 1.5;
+  const auto run = make_pile_run(s, 3, 1);
+  finish(*run);
+  const RunResult r = run->result();
+  EXPECT_GT(r.figures.at("pile.pour_time"), 79 * s.source.interval);
+  EXPECT_LT(r.figures.at("pile.pour_time"), 79 * s.source.interval + 0.5);
+  const Snapshot& pile = r.snapshots[0].second;
+  std::size_t first = 0;
+  while (pile.grains[first].fixed) ++first;
+  // The early grains lie further to the left than the late ones.
+  double early = 0, late = 0;
+  for (int k = 0; k < 20; ++k) {
+    early += pile.grains[first + k].position.x() / 20;
+    late += pile.grains[pile.grains.size() - 1 - k].position.x() / 20;
+  }
+  EXPECT_LT(early, -0.2);
+  EXPECT_GT(late, 0.2);
+}
+
+bool same(const Snapshot& a, const Snapshot& b) {
+  if (a.grains.size() != b.grains.size() || a.contacts.size() != b.contacts.size()) return false;
+  for (std::size_t k = 0; k < a.grains.size(); ++k) {
+    if (a.grains[k].position != b.grains[k].position || a.grains[k].angle != b.grains[k].angle ||
+        a.grains[k].velocity != b.grains[k].velocity ||
+        a.grains[k].outline != b.grains[k].outline) {
+      return false;
+    }
+  }
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    if (a.contacts[k].force != b.contacts[k].force ||
+        a.contacts[k].spring != b.contacts[k].spring) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Same figures, where nan equals nan.
+bool same_figures(const RunResult& a, const RunResult& b) {
+  if (a.figures.size() != b.figures.size()) return false;
+  for (const auto& [key, value] : a.figures) {
+    const double other = b.figures.at(key);
+    if (value != other && !(std::isnan(value) && std::isnan(other))) return false;
+  }
+  return true;
+}
+
+PileSetup with_changes(const std::string& source, const std::string& shape) {
+  PileSetup s = small(source, shape);
+  s.source.grains = 30;
+  s.source.interval = 0.11;
+  s.source.length = 0.8;
+  s.change.method = "damped";
+  s.change.gravity = {5, 8.829};
+  s.change.ramp_time = 0.05;
+  return s;
+}
+
+TEST(Pile, SameBitsOnAnyNumberOfThreads) {
+  for (const char* shape : {"disk"}) {
+    for (const char* source : {"point", "line"}) {
+      RunResult first;
+      for (const int threads : {1, 2, 3}) {
+        const auto run = make_pile_run(with_changes(source, shape), 5, threads);
+        finish(*run);
+        const RunResult r = run->result();
+        ASSERT_EQ(r.snapshots.size(), 3u);
+        if (threads == 1) first = r;
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_TRUE(same(r.snapshots[k].second, first.snapshots[k].second))
+              << shape << " " << source << " " << threads << " threads";
+        }
+        EXPECT_TRUE(same_figures(r, first));
+      }
+    }
+  }
+}
+
+TEST(Pile, ResumesToTheSameBitsFromAnyStep) {
+  const std::string file = (std::filesystem::temp_directory_path() /
+                            ("grainfield_pile_" + std::to_string(getpid()) + ".h5"))
+                               .string();
+  Random random(1);
+  for (const char* shape : {"disk"}) {
+    for (const char* source : {"point", "line"}) {
+      const PileSetup s = with_changes(source, shape);
+      const auto whole = make_pile_run(s, 9, 1);
+      long total = 0;
+      while (!whole->done()) {
+        whole->advance(1000);
+        total += 1000;
+      }
+      const RunResult expected = whole->result();
+      for (int trial = 0; trial < 4; ++trial) {
+        const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
+        {
+          const auto first = make_pile_run(s, 9, 1 + trial % 2);
+          first->advance(stop);
+          first->save(file);
+        }
+        const auto second = make_pile_run(s, 9, 2 - trial % 2);
+        second->restore(file);
+        finish(*second);
+        const RunResult got = second->result();
+        ASSERT_EQ(got.snapshots.size(), expected.snapshots.size());
+        for (std::size_t k = 0; k < got.snapshots.size(); ++k) {
+          EXPECT_TRUE(same(got.snapshots[k].second, expected.snapshots[k].second))
+              << shape << " " << source << ": " << got.snapshots[k].first << ", stopped at "
+              << stop;
+        }
+        EXPECT_TRUE(same_figures(got, expected)) << "stopped at " << stop;
+      }
+      PileSetup changed = s;
+      changed.source.spread = 0.25;
+      EXPECT_THROW(make_pile_run(changed, 9, 1)->restore(file), std::invalid_argument);
+      EXPECT_THROW(make_pile_run(s, 10, 1)->restore(file), std::invalid_argument);
+      std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+      EXPECT_THROW(make_pile_run(s, 9, 1)->restore(file), std::invalid_argument);
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(Pile, EveryChangeOfGravityStartsFromThePile) {
+  PileSetup s = with_changes("point", "disk");
+  const auto both = make_pile_run(s, 2, 1);
+  finish(*both);
+  s.change.gravity = {8.829};
+  const auto one = make_pile_run(s, 2, 1);
+  finish(*one);
+  const RunResult r = both->result();
+  ASSERT_EQ(r.snapshots[2].first, "gravity_8.829");
+  EXPECT_TRUE(same(r.snapshots[2].second, one->result().snapshots[1].second));
+  const double weight = base_force(r.snapshots[0].second).y();
+  EXPECT_EQ(r.snapshots[1].second.gravity.y(), -5);
+  EXPECT_NEAR(base_force(r.snapshots[1].second).y() / weight, 5 / 9.81, 2e-3);
+  EXPECT_NEAR(base_force(r.snapshots[2].second).y() / weight, 0.9, 2e-3);
+  EXPECT_GT(r.figures.at("change.gravity_5.max_displacement_over_radius"), 1e-6);
+}
+
+std::string refusal(const PileSetup& s) {
+  try {
+    make_pile_run(s, 1, 1);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Pile, RefusesWhatCannotBe) {
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal(small("point", "disk")), "accepted");
+  PileSetup s = small("point", "disk");
+  s.motion.time_step = 1;
+  EXPECT_THAT(refusal(s),
+              HasSubstr("motion.time_step: found 1 s, allowed: at most the stable limit"));
+  s = small("point", "disk");
+  s.shape.polydispersity = 1;
+  EXPECT_THAT(refusal(s), HasSubstr("shape.polydispersity"));
+  s = small("point", "disk");
+  s.material.gravity = 0;
+  EXPECT_THAT(refusal(s), HasSubstr("material.gravity"));
+  s = small("point", "disk");
+  s.source.grains = 2;
+  EXPECT_THAT(refusal(s), HasSubstr("source.grains: found 2, allowed: 3 or more"));
+  s = small("point", "disk");
+  s.source.kind = "circle";
+  EXPECT_THAT(refusal(s), HasSubstr("source.kind: found \"circle\", allowed: point, line"));
+  s = small("point", "disk");
+  s.source.interval = 0.02;
+  EXPECT_THAT(refusal(s), HasSubstr("source.interval: found 0.02, allowed: at least 0.102 s"));
+  EXPECT_THAT(refusal(s), HasSubstr("raise source.interval or source.speed"));
+  s = small("point", "disk");
+  s.source.height = 0.3;
+  EXPECT_THAT(refusal(s), HasSubstr("source.height: found 0.3, allowed: at least 0."));
+  EXPECT_THAT(refusal(s), HasSubstr("raise source.height or lower source.grains"));
+  s = small("point", "disk");
+  s.floor.length = 1;
+  EXPECT_THAT(refusal(s), HasSubstr("floor.length: found 1, allowed: at least 1."));
+  EXPECT_THAT(refusal(s), HasSubstr("runs off its floor; raise floor.length"));
+  s = small("line", "disk");
+  s.source.length = 0.5;
+  EXPECT_THAT(refusal(s), HasSubstr("source.length: found 0.5, allowed: at least"));
+  s = small("point", "disk");
+  s.change.gravity = {5, -1};
+  EXPECT_THAT(refusal(s), HasSubstr("change.gravity: found -1, allowed: above 0"));
+  s.change.gravity = {5, 5};
+  EXPECT_THAT(refusal(s), HasSubstr("change.gravity: found 5, allowed: every value once"));
+}
+
+// The value that a message names is accepted.
+TEST(Pile, RemediesHelp) {
+  PileSetup s = small("point", "disk");
+  s.source.interval = s.source.height = s.floor.length = 1e-3;
+  PileSetup line = small("line", "disk");
+  line.source.length = line.floor.length = 1e-3;
+  const auto named = [](const PileSetup& setup, const std::string& key) {
+    const std::string text = refusal(setup), before = "allowed: at least ";
+    EXPECT_THAT(text, testing::StartsWith(key));
+    return std::stod(text.substr(text.find(before) + before.size()));
+  };
+  s.source.interval = named(s, "source.interval");
+  s.source.height = named(s, "source.height");
+  s.floor.length = named(s, "floor.length");
+  EXPECT_EQ(refusal(s), "accepted");
+  line.source.length = named(line, "source.length");
+  line.floor.length = named(line, "floor.length");
+  EXPECT_EQ(refusal(line), "accepted");
+}
+
+TEST(Pile, LimitsOfTheSourceAreTheClosedForms) {
+  for (const double share : {1.01, 0.99}) {
+    PileSetup s = small("point", "disk");
+    s.shape.polydispersity = 0;
+    // v t + g t^2/2 = 2 r.
+    const double v = s.source.speed, g = s.material.gravity;
+    s.source.interval = share * (std::sqrt(v * v + 2 * g * 0.055) - v) / g;
+    EXPECT_EQ(refusal(s) == "accepted", share > 1) << refusal(s);
+    s = small("point", "disk");
+    s.shape.polydispersity = 0;
+    const double area = 80 * 3.14159265358979 * 0.0275 * 0.0275 / 0.8;
+    s.source.height = share * (std::sqrt(area / std::sqrt(3)) + 4 * 0.0275);
+    EXPECT_EQ(refusal(s) == "accepted", share > 1) << refusal(s);
+  }
+}
+
+std::string failure(Run& run) {
+  try {
+    finish(run);
+  } catch (const ComputationFailed& error) {
+    return error.what();
+  }
+  return "finished";
+}
+
+TEST(Pile, SaysWhenItDoesNotComeToRest) {
+  PileSetup s = small("line", "disk");
+  s.rest.max_time = 0.001;
+  s.rest.unbalanced_force_ratio = 1e-9;
+  const auto run = make_pile_run(s, 1, 1);
+  EXPECT_THAT(failure(*run), testing::HasSubstr("no rest within rest.max_time = 0.001 s (after"));
+}
+
+TEST(Pile, SaysWhenItLeansOnTheWalls) {
+  PileSetup s = small("line", "disk");
+  s.floor.kind = "smooth";
+  s.floor.length = 1.8;
+  s.material.floor_friction = 0;  // nothing holds the foot
+  const auto run = make_pile_run(s, 1, 1);
+  const std::string text = failure(*run);
+  EXPECT_THAT(text, testing::HasSubstr("side wall"));
+  EXPECT_THAT(text, testing::HasSubstr("raise floor.length, now 1.8 m, to at least"));
+}
+
+template <class Check>
+std::string failed_check(Check check) {
+  try {
+    check();
+  } catch (const ComputationFailed& error) {
+    return error.what();
+  }
+  return "passed";
+}
+
+TEST(PileChecks, WhileThePileGrows) {
+  PileSetup s = small("point", "disk");
+  EXPECT_EQ(failed_check([&] { check_mouth(s, 0.88, 0.055); }), "passed");
+  EXPECT_THAT(failed_check([&] { check_mouth(s, 0.9, 0.055); }),
+              testing::HasSubstr("has reached the mouth of the source at source.height = 1 m"));
+  EXPECT_EQ(failed_check([&] { check_line_long_enough(s, 75); }), "passed");
+  EXPECT_THAT(failed_check([&] { check_line_long_enough(s, 20); }),
+              testing::HasSubstr("came to a point after 20 of 80 grains; raise source.length, now "
+                                 "1.3 m, to at least 2.6 m"));
+  Snapshot wall;
+  wall.grains.resize(1);
+  wall.grains[0].position = Vec3(-1.98, 0.1, 0);
+  EXPECT_EQ(failed_check([&] { check_walls_free(s, wall, 0.055, 0.25); }), "passed");
+  wall.grains[0].position.y() = 0.2;
+  EXPECT_THAT(failed_check([&] { check_walls_free(s, wall, 0.055, 0.25); }),
+              testing::HasSubstr("after 25 % of source.grains; raise floor.length, now 4 m, to at "
+                                 "least 9.6 m"));
+}
+
+TEST(PileChecks, RestingTopLeavesOutWhatFlies) {
+  Snapshot s;
+  s.gravity = Vec3(0, -9.81, 0);
+  s.grains.resize(4);
+  const double heights[] = {0.01, 0.03, 0.2, 0.3};
+  for (int k = 0; k < 4; ++k) {
+    s.grains[k].radius = 0.01;
+    s.grains[k].position.y() = heights[k];
+  }
+  Contact c;
+  c.i = 0;
+  c.j = 1;
+  s.contacts.push_back(c);
+  c.i = 2;
+  s.contacts.push_back(c);
+  s.grains[2].velocity = Vec3(0, 2, 0);  // bounces off
+  EXPECT_DOUBLE_EQ(resting_top(s), 0.04);
+  EXPECT_EQ(resting_top(Snapshot{}), 0);
+}
+
+}  // namespace
+}  // namespace grainfield::dem
