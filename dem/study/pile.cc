@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "dem/heap/source.h"
-#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/common.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/pile_figures.h"
@@ -396,17 +395,7 @@ void PileRun::hold() {
 }
 
 void PileRun::solve() {
-  const double gravity = setup_.change.gravity[changed_.size()];
-  QuasistaticSettings settings;
-  settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
-  QuasistaticResult r;
-  try {
-    r = relax(*pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
-  } catch (const ComputationFailed& failure) {
-    throw ComputationFailed(fmt::format("change.gravity = {:g}: {}; or set change.method = damped",
-                                        gravity, failure.what()));
-  }
-  end_change(std::move(r.state), r.unbalanced_force_ratio);
+  throw ComputationFailed("change.method: newton cannot be used yet; set change.method = damped");
 }
 
 void PileRun::end_change(Snapshot state, double unbalanced_force_ratio) {
