@@ -7,6 +7,7 @@
 
 #include "dem/engine/body.h"
 #include "dem/engine/image.h"
+#include "dem/engine/rotation.h"
 #include "dem/shapes/polygon.h"
 
 namespace grainfield::dem {
@@ -32,7 +33,7 @@ class PolygonStore {
     const int n = count_[i];
     if (n == 0) return;
     double* block = block_of(i);
-    const double c = std::cos(angle), s = std::sin(angle);
+    const auto [c, s] = rotation_of(angle);
     const double *bx = block, *by = block + stride_;
     double *x = block + 2 * stride_, *y = block + 3 * stride_;
     for (int k = 0; k <= n; ++k) {
