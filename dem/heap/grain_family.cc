@@ -14,7 +14,7 @@ namespace {
 
 // Neighbouring corners of a RAND1 polygon lie between these shares of the mean gap apart: no two
 // corners at one place, no side that cuts half the grain away.
-constexpr double kLeastGap = 0.5, kMostGap = 2;
+constexpr double kLeastGap = 0.6, kMostGap = 1.6;
 // Corners of an irregular pentagon are turned by up to this share of the mean gap.
 constexpr double kTurn = 0.25;
 constexpr int kPentagon = 5;

@@ -26,7 +26,7 @@ void check_shape(const ShapeSetup& shape);
 /// Draws one grain: size uniform in (1 -+ polydispersity), then corners, then its angle, uniform.
 /// - rand1: n corners, n uniform in corners_min..corners_max, at parameter angles on an ellipse of
 ///   area pi R^2. They are independent and uniform but for one condition: neighbouring ones lie
-///   between half and twice the mean gap 2 pi/n apart.
+///   between 0.6 and 1.6 mean gaps 2 pi/n apart.
 /// - irregular: pentagon whose corners lie on a circle, each turned by up to a quarter of the mean
 ///   gap from the regular pentagon's, with the mean side asked for.
 ShapedGrain draw_grain(const ShapeSetup& shape, Random& random);

@@ -28,6 +28,8 @@ inline EngineSettings polygon_settings(int threads = 1, bool sleep = false) {
   s.polygons = true;
   s.threads = threads;
   s.sleep.on = sleep;
+  s.sleep.quiet_time = 5e-3;  // these grains are softer than Roul's, their contacts swing slower
+  s.sleep.quiet_move = 6e-3;
   s.time_step = 4e-5;
   return s;
 }
