@@ -9,8 +9,10 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
+#include "coupling/averaging/layer.h"
 #include "coupling/run/average_files.h"
 #include "coupling/run/compare_field.h"
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -69,52 +71,107 @@ void parse_grid(const std::string& text, AverageRequest& request) {
 
 }  // namespace
 
+namespace {
+
+// Warns of points without a value; they are nan in the file.
+void print_gaps(const Gaps& gaps, const Field& field) {
+  const std::string text = gaps.text(field.points);
+  if (!text.empty()) fmt::print(stderr, "grainfield: {}\n", text);
+}
+
+// Every averaging on each snapshot, side by side.
+void print_balance(const std::vector<SnapshotName>& names, AverageOptions options, double width) {
+  for (const auto& name : names) {
+    const dem::Snapshot snapshot = dem::read_snapshot(name.file, name.group);
+    const double diameter = mean_diameter(snapshot);
+    options.width = width > 0 ? width / diameter : 1;
+    fmt::print(
+        "{}:{}: {} grains, {} contacts, mean diameter {:.4g} m; residual of div sigma + rho "
+        "g over rho g\n{}",
+        name.file, name.group, snapshot.grains.size(), snapshot.contacts.size(), diameter,
+        balance_markdown(balance_table(snapshot, options)));
+  }
+}
+
+}  // namespace
+
 void add_average(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("average", "average snapshots into a field");
   struct Given {
     std::vector<std::string> snapshots;
     std::string output, points, grid;
+    bool balance = false;
     AverageRequest request;
   };
   auto given = std::make_shared<Given>();
-  AverageOptions& options = given->request.options;
+  AverageRequest& wanted = given->request;
+  AverageOptions& options = wanted.options;
   command->add_option("snapshots", given->snapshots, "FILE.h5 (all in it) or FILE.h5:group")
       ->required();
-  command->add_option("-o,--output", given->output, "FIELD.h5; FIELD.xdmf comes beside it")
-      ->required();
-  command->add_flag("--response", given->request.response,
-                    "loaded - unloaded of the snapshots so named");
-  auto* method =
-      command->add_option("--method", options.method, "coarse_graining | particle_centre");
-  auto* kernel =
-      command->add_option("--kernel", options.kernel,
-                          "lucy | gaussian | heaviside; of particle_centre: circle | square");
+  command->add_option("-o,--output", given->output, "FIELD.h5; FIELD.xdmf comes beside it");
+  command->add_flag("--response", wanted.response, "loaded - unloaded of the snapshots so named");
+  command->add_option("--method", options.method, "coarse_graining | particle_centre | area_exact");
+  auto* kernel = command->add_option(
+      "--kernel", options.kernel,
+      "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
   command->add_option("--width", options.width,
-                      "m; default one mean diameter (particle_centre: 2.5)");
-  command->add_option("--points", given->points,
-                      "CSV with columns x,y (m; load at 0,0, surface y = 0)");
-  command->add_option("--grid", given->grid, "COLUMNSxROWS over the layer; default 81x31");
+                      "m; default one mean diameter (particle_centre, area_exact: 2.5)");
+  command->add_option("--frame", wanted.frame,
+                      "layer: load at 0,0, surface y = 0; heap: apex at 0,0, lengths over its "
+                      "height; packing: as it is");
+  command->add_option("--points", given->points, "CSV with columns x,y (3D: x,y,z) in the frame");
+  command->add_option("--grid", given->grid, "COLUMNSxROWS over the packing; default 81x31");
+  command
+      ->add_option("--cuts", wanted.cuts,
+                   "horizontal cuts instead of a grid: shares of the height, 0 floor, 1 surface")
+      ->delimiter(',');
+  command->add_option("--quantities", options.quantities, "only these (docs/averaging.md)")
+      ->delimiter(',');
+  command->add_option("--free-surface", options.free_surface,
+                      "coarse_graining: open | normalised (docs/averaging.md)");
+  command->add_option("--least-grains", options.least_grains,
+                      "fewer grains in the averaging volume: nan; default 3");
+  command->add_flag("--balance", given->balance,
+                    "print how well every averaging carries the weight; --width is the kernels', "
+                    "RVEs take 2.5 times as much");
   command->add_option("--threads", options.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
       AverageRequest& request = given->request;
-      if (method->count() > 0 && request.options.method == "particle_centre" &&
-          kernel->count() == 0) {
+      if (request.options.method != "coarse_graining" && kernel->count() == 0) {
         request.options.kernel = "circle";
       }
       if (!(request.options.width >= 0)) {
         throw std::invalid_argument(
             fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
       }
+      if (given->output.empty() && !given->balance) {
+        throw std::invalid_argument("average: give -o FIELD.h5, or --balance, or both");
+      }
+      for (const double share : request.cuts) {
+        if (!(share >= 0 && share <= 1))
+          throw std::invalid_argument(
+              fmt::format("--cuts: found {:g}, allowed: 0 (floor) to 1 (surface)", share));
+      }
       if (!given->grid.empty()) parse_grid(given->grid, request);
-      if (!given->points.empty()) request.points = read_points_csv(given->points, 2);
       request.snapshots = parse_snapshot_names(given->snapshots);
-      const NamedFields fields = average_files(request);
+      if (!given->points.empty()) {
+        const int dim =
+            dem::read_snapshot(request.snapshots[0].file, request.snapshots[0].group).dim;
+        request.points = read_points_csv(given->points, dim);
+      }
+      if (given->balance) {
+        print_balance(request.snapshots, request.options, request.options.width);
+      }
+      if (given->output.empty()) return 0;
+      Gaps gaps;
+      const NamedFields fields = average_files(request, &gaps);
       write_fields(given->output, fields);
       for (const auto& [name, field] : fields) {
         fmt::print("{}: {} points, {} realization{}\n", name, field.points.rows(),
                    field.realizations, field.realizations == 1 ? "" : "s");
       }
+      print_gaps(gaps, fields.front().second);
       return 0;
     };
   });

@@ -7,86 +7,83 @@
 // the apparatus leaves -F phi(r - end): the traction.
 #include <cmath>
 
+#include "coupling/averaging/branches.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/weights.h"
 
 namespace grainfield::coupling {
 namespace {
 
-using Eigen::Vector2d;
-
-Vector2d plane(const dem::Vec3& v) { return v.head<2>(); }
-
-void add_branch(const Kernel& kernel, const PointCells& cells, const Eigen::MatrixXd& points,
-                const Vector2d& a, const Vector2d& b, const Vector2d& force, Sums& sums) {
-  const Vector2d reach = Vector2d::Constant(kernel.range()), l = b - a;
-  cells.near(a.cwiseMin(b) - reach, a.cwiseMax(b) + reach, [&](Eigen::Index p) {
-    const double w = branch_weight(kernel, points.row(p).transpose(), a, b);
-    if (w == 0) return;
-    sums(p, kXX) += w * force.x() * l.x();
-    sums(p, kYY) += w * force.y() * l.y();
-    sums(p, kXY) += w * force.x() * l.y();
-    sums(p, kYX) += w * force.y() * l.x();
-  });
+// Divides by the share of the kernel inside the packing: what grains carry by the share inside the
+// whole region, the stress by that below the free surface where its branches go on into the walls.
+void normalise(const Job& job, const Kernel& kernel, Eigen::Index first, Eigen::Index last,
+               Sums& sums) {
+  const int tensor = job.layout.dim() * job.layout.dim(), carried = job.layout.carried();
+  for (Eigen::Index p = first; p < last; ++p) {
+    const Eigen::Vector2d at = job.points.row(p).transpose();
+    const double inside = job.region.share(kernel, at, false);
+    const double below =
+        job.options.extend_into_walls ? job.region.share(kernel, at, true) : inside;
+    sums.outside[static_cast<std::size_t>(p)] = inside < least_share || below < least_share;
+    sums.rows.row(p).head(tensor) /= below;
+    sums.rows.row(p).tail(sums.rows.cols() - carried) /= inside;
+  }
 }
 
-template <class Add>
-void add_at(const Kernel& kernel, const PointCells& cells, const Eigen::MatrixXd& points,
-            const Vector2d& at, Add&& add) {
-  const Vector2d reach = Vector2d::Constant(kernel.range());
-  cells.near(at - reach, at + reach, [&](Eigen::Index p) {
-    const double r = (points.row(p).transpose() - at).norm();
-    if (r < kernel.range()) add(p, kernel.value(r));
-  });
+template <int D>
+void add(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  const dem::Snapshot& snapshot = job.snapshot;
+  const Eigen::MatrixXd& points = job.points;
+  const auto kernel = make_kernel(job.options.kernel, job.options.width, D);
+  const PointCells<D> cells(points, first, last, kernel->range());
+  const Vector reach = Vector::Constant(kernel->range());
+  const auto near_point = [&](const Vector& at, auto&& act) {
+    cells.near(at - reach, at + reach, [&](Eigen::Index p) {
+      const double r = (points.row(p).transpose() - at).norm();
+      if (r < kernel->range()) act(p, kernel->value(r));
+    });
+  };
+  const int count = job.layout.count(), carried = job.layout.carried();
+  const Eigen::Index tail = job.layout.size() - carried;
+  for (std::size_t g = 0; g < snapshot.grains.size(); ++g) {
+    if (snapshot.grains[g].fixed) continue;
+    near_point(snapshot.grains[g].position.head<D>(), [&](Eigen::Index p, double weight) {
+      sums.rows(p, count) += 1;
+      sums.rows.row(p).tail(tail) +=
+          weight * job.carried.row(static_cast<Eigen::Index>(g)).tail(tail);
+    });
+  }
+  // Far enough that the end of an extended branch is out of reach of every point of the packing.
+  const BranchEnds ends{job.options.extend_into_walls, job.region.floor(), 2 * kernel->range()};
+  for_each_branch(
+      snapshot, ends,
+      [&](const dem::Vec3& from, const dem::Vec3& to, const dem::Vec3& force) {
+        const Vector a = from.head<D>(), b = to.head<D>();
+        const Eigen::Matrix<double, D, D, Eigen::RowMajor> stress =
+            force.head<D>() * (b - a).transpose();
+        cells.near(a.cwiseMin(b) - reach, a.cwiseMax(b) + reach, [&](Eigen::Index p) {
+          const double w = branch_weight(*kernel, Vector(points.row(p).transpose()), a, b);
+          if (w == 0) return;
+          double* row = sums.rows.row(p).data();
+          for (int k = 0; k < D * D; ++k) row[k] += w * stress.data()[k];
+        });
+      },
+      [&](const dem::Vec3& at, const dem::Vec3& force) {
+        near_point(at.head<D>(), [&](Eigen::Index p, double weight) {
+          for (int a = 0; a < D; ++a) sums.rows(p, D * D + a) += weight * force[a];
+        });
+      });
+  if (job.options.free_surface == "normalised") normalise(job, *kernel, first, last, sums);
 }
 
 }  // namespace
 
-void add_coarse_graining(const dem::Snapshot& snapshot, const LayerFrame& frame,
-                         const Eigen::MatrixXd& points, Eigen::Index first, Eigen::Index last,
-                         const AverageOptions& options, Sums& sums) {
-  const auto kernel = make_kernel(options.kernel, options.width);
-  const PointCells cells(points, first, last, kernel->range());
-  for (const dem::Grain& grain : snapshot.grains) {
-    if (grain.fixed) continue;
-    add_at(*kernel, cells, points, plane(grain.position),
-           [&](Eigen::Index p, double weight) { add_grain(snapshot, grain, weight, p, sums); });
-  }
-  // Far enough that the end of an extended branch is out of reach of every point of the layer, also
-  // where contacts with a rough floor lie above its mean height.
-  const double beyond = 2 * kernel->range();
-  const Vector2d gravity = plane(snapshot.gravity);
-  const Vector2d down = gravity.norm() > 0 ? Vector2d(gravity.normalized()) : Vector2d(0, -1);
-  for (const dem::Contact& contact : snapshot.contacts) {
-    const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
-    const dem::Grain* gj =
-        contact.j >= 0 ? &snapshot.grains[static_cast<std::size_t>(contact.j)] : nullptr;
-    if (gi.fixed && (!gj || gj->fixed)) continue;
-    if (gj && !gi.fixed && !gj->fixed) {
-      add_branch(*kernel, cells, points, plane(gi.position), plane(gj->position),
-                 plane(contact.force), sums);
-      continue;
-    }
-    const dem::Grain& free = gi.fixed ? *gj : gi;
-    const Vector2d force = gi.fixed ? Vector2d(-plane(contact.force)) : plane(contact.force);
-    Vector2d end = plane(contact.point);
-    add_branch(*kernel, cells, points, plane(free.position), end, force, sums);
-    if (options.extend_into_walls) {
-      Vector2d into = down;
-      double length = beyond;
-      if (!gj)
-        into = -plane(snapshot.walls[static_cast<std::size_t>(-1 - contact.j)].normal);
-      else
-        length += std::max(0.0, end.y() - frame.floor);
-      const Vector2d far = end + length * into;
-      add_branch(*kernel, cells, points, end, far, force, sums);
-      end = far;
-    }
-    add_at(*kernel, cells, points, end, [&](Eigen::Index p, double weight) {
-      sums(p, kTractionX) += weight * force.x();
-      sums(p, kTractionY) += weight * force.y();
-    });
-  }
+void add_coarse_graining(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
+  if (job.layout.dim() == 2)
+    add<2>(job, first, last, sums);
+  else
+    add<3>(job, first, last, sums);
 }
 
 }  // namespace grainfield::coupling

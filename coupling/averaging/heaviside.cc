@@ -1,4 +1,4 @@
-// A disk of constant weight: sharp; the line integral is a chord.
+// A disk (3D: ball) of constant weight: sharp; the line integral is a chord.
 #include <numbers>
 
 #include "coupling/averaging/kernels.h"
@@ -8,8 +8,11 @@ namespace {
 
 class Heaviside : public Kernel {
  public:
-  explicit Heaviside(double width)
-      : width_(width), factor_(1 / (std::numbers::pi * width * width)) {}
+  Heaviside(double width, int dim)
+      : width_(width),
+        dim_(dim),
+        factor_((dim == 2 ? 1 : 3 / (4 * width)) / (std::numbers::pi * width * width)) {}
+  int dim() const override { return dim_; }
   std::string name() const override { return "heaviside"; }
   double range() const override { return width_; }
   double value(double r) const override { return r < width_ ? factor_ : 0; }
@@ -19,11 +22,15 @@ class Heaviside : public Kernel {
   }
 
  private:
-  double width_, factor_;
+  double width_;
+  int dim_;
+  double factor_;
 };
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_heaviside(double width) { return std::make_unique<Heaviside>(width); }
+std::unique_ptr<Kernel> make_heaviside(double width, int dim) {
+  return std::make_unique<Heaviside>(width, dim);
+}
 
 }  // namespace grainfield::coupling

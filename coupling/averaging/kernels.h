@@ -6,8 +6,8 @@
 
 namespace grainfield::coupling {
 
-std::unique_ptr<Kernel> make_lucy(double width);
-std::unique_ptr<Kernel> make_gaussian(double width);
-std::unique_ptr<Kernel> make_heaviside(double width);
+std::unique_ptr<Kernel> make_lucy(double width, int dim);
+std::unique_ptr<Kernel> make_gaussian(double width, int dim);
+std::unique_ptr<Kernel> make_heaviside(double width, int dim);
 
 }  // namespace grainfield::coupling

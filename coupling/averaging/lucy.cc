@@ -1,6 +1,6 @@
-// Lucy's bell in the plane, a = r/c, c = 2 w (Weinhart et al. 2012 eq. 22, with the plane's
-// factor):
-//   5/(pi c^2) (1 + 3 a)(1 - a)^3 = 5/(pi c^2) (1 - 6 a^2 + 8 a^3 - 3 a^4)
+// Lucy's bell, a = r/c, c = 2 w (Weinhart et al. 2012 eq. 22):
+//   f (1 + 3 a)(1 - a)^3 = f (1 - 6 a^2 + 8 a^3 - 3 a^4)
+// with f = 5/(pi c^2) in the plane and 105/(16 pi c^3) in space.
 // Twice continuously differentiable at its edge; its line integrals are closed.
 #include <cmath>
 #include <numbers>
@@ -12,8 +12,11 @@ namespace {
 
 class Lucy : public Kernel {
  public:
-  explicit Lucy(double width)
-      : range_(2 * width), factor_(5 / (std::numbers::pi * range_ * range_)) {}
+  Lucy(double width, int dim)
+      : range_(2 * width),
+        dim_(dim),
+        factor_((dim == 2 ? 5 : 105 / (16 * range_)) / (std::numbers::pi * range_ * range_)) {}
+  int dim() const override { return dim_; }
   std::string name() const override { return "lucy"; }
   double range() const override { return range_; }
   double value(double r) const override {
@@ -39,11 +42,15 @@ class Lucy : public Kernel {
     return s * (1 - 6 * (d2 + s2 / 3) - 3 * (d2 * d2 + 2 * d2 * s2 / 3 + s2 * s2 / 5)) + 8 * cube;
   }
 
-  double range_, factor_;
+  double range_;
+  int dim_;
+  double factor_;
 };
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_lucy(double width) { return std::make_unique<Lucy>(width); }
+std::unique_ptr<Kernel> make_lucy(double width, int dim) {
+  return std::make_unique<Lucy>(width, dim);
+}
 
 }  // namespace grainfield::coupling

@@ -1,50 +1,57 @@
-// The two ways of averaging, and what they share. Used by average.cc only.
+// The ways of averaging, and what they share. Used by average.cc only.
 #pragma once
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "coupling/averaging/average.h"
+#include "coupling/averaging/options.h"
 #include "coupling/averaging/point_cells.h"
+#include "coupling/averaging/quantities.h"
+#include "coupling/averaging/region.h"
 
 namespace grainfield::coupling {
 
-/// Sums per point, in the order of the columns of average(); density-like ones per area.
-enum Sum {
-  kXX,
-  kYY,
-  kXY,
-  kYX,  // contact stress: force, branch
-  kMass,
-  kVolume,  // density, volume fraction
-  kMomentumX,
-  kMomentumY,  // momentum density
-  kFluxXX,
-  kFluxYY,
-  kFluxXY,  // density of m v v
-  kTractionX,
-  kTractionY,
-  kLoadX,
-  kLoadY,
-  kGrains,
-  kSums
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What is averaged. `carried`: Layout::carried_by, one row per grain.
+struct Job {
+  const dem::Snapshot& snapshot;
+  const Region& region;
+  const Eigen::MatrixXd& points;
+  const AverageOptions& options;
+  const Layout& layout;
+  const RowMatrix& carried;
 };
-using Sums = Eigen::Matrix<double, Eigen::Dynamic, kSums, Eigen::RowMajor>;
 
-/// Adds what the grains give to the points [first, last) into `sums` (one row per point). Points
-/// where the weight has no meaning become nan.
-using AddBand = void (*)(const dem::Snapshot&, const LayerFrame&, const Eigen::MatrixXd& points,
-                         Eigen::Index first, Eigen::Index last, const AverageOptions&, Sums&);
+/// One row per point, as Layout says. `outside`: where the weight has no meaning.
+struct Sums {
+  RowMatrix rows;
+  std::vector<char> outside;
+};
 
-void add_coarse_graining(const dem::Snapshot&, const LayerFrame&, const Eigen::MatrixXd& points,
-                         Eigen::Index first, Eigen::Index last, const AverageOptions&, Sums&);
-void add_particle_centre(const dem::Snapshot&, const LayerFrame&, const Eigen::MatrixXd& points,
-                         Eigen::Index first, Eigen::Index last, const AverageOptions&, Sums&);
+/// A support cut by the packing's edges to less than this share is not averaged over: its few
+/// grains stand for an area that their own size exceeds.
+constexpr double least_share = 0.1;
 
-/// Adds mass, volume, momentum, momentum flux and the applied force of one grain, times `weight`.
-void add_grain(const dem::Snapshot&, const dem::Grain&, double weight, Eigen::Index point, Sums&);
+/// Adds what the snapshot gives to the points [first, last). Every point sums in the order of
+/// grains and contacts.
+using AddBand = void (*)(const Job&, Eigen::Index first, Eigen::Index last, Sums&);
 
-/// Names of the supports of particle_centre: "circle", "square".
+void add_coarse_graining(const Job&, Eigen::Index first, Eigen::Index last, Sums&);
+void add_particle_centre(const Job&, Eigen::Index first, Eigen::Index last, Sums&);
+void add_area_exact(const Job&, Eigen::Index first, Eigen::Index last, Sums&);
+
+struct Method {
+  std::string name;
+  AddBand add;
+  const std::vector<std::string>& (*kernels)();
+};
+/// Every method, in the order of the documentation.
+const std::vector<Method>& methods();
+/// Throws std::invalid_argument for an unknown method or a kernel that it does not have.
+const Method& find_method(const AverageOptions& options);
+
+/// Names of the supports: "circle", "square".
 const std::vector<std::string>& support_names();
 
 }  // namespace grainfield::coupling

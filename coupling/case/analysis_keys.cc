@@ -31,7 +31,8 @@ void ensemble(Section s) {
 }
 
 void average(Section s) {
-  s.word("methods", +IN(Words, average.methods), {"coarse_graining", "particle_centre"},
+  s.word("methods", +IN(Words, average.methods),
+         {"coarse_graining", "particle_centre", "area_exact"},
          "averagings to report; the first one is compared with the models",
          "Weinhart et al. 2012; Roul 2.6");
   s.word("kernel", +IN(string, average.kernel), {"lucy", "gaussian", "heaviside"},
@@ -42,11 +43,12 @@ void average(Section s) {
   s.number("width_diameters", "-", +IN(double, average.width_diameters), {0, 100, true},
            "the same in mean grain diameters, used where width is 0");
   s.word("rve_shape", +IN(string, average.rve_shape), {"circle", "square"},
-         "particle_centre: shape of the representative volume element");
-  s.number("rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
-           "particle_centre: radius or half side; larger is smoother; 0: rve_diameters mean "
-           "diameters",
-           "Roul 3.2");
+         "particle_centre, area_exact: shape of the representative volume element");
+  s.number(
+      "rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
+      "particle_centre, area_exact: radius or half side; larger is smoother; 0: rve_diameters mean "
+      "diameters",
+      "Roul 3.2");
   s.number("rve_diameters", "-", +IN(double, average.rve_diameters), {0, 100, true},
            "the same in mean grain diameters, used where rve_radius is 0");
   s.number("depths", "-", +IN(Numbers, average.depths), {0, 1, true},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -13,10 +14,13 @@
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/averaging/nearest.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 namespace {
+
+const std::vector<std::string> frames{"layer", "heap", "packing"};
 
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
@@ -55,6 +59,76 @@ std::vector<Item> items_of(const AverageRequest& request) {
 
 dem::Snapshot read(const SnapshotName& name) { return dem::read_snapshot(name.file, name.group); }
 
+// The packings of all snapshots, as one.
+struct Extents {
+  double depth = 0, left = -std::numeric_limits<double>::infinity(),
+         right = std::numeric_limits<double>::infinity(), diameter = 0, load = 0;
+  int dim = 2;
+};
+
+// From the request's frame to the packing's axes, and the extents in the request's frame.
+struct Placed {
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> to_packing;
+  double left = 0, right = 0, depth = 0;
+};
+
+Placed place(const dem::Snapshot& s, const std::string& frame) {
+  if (frame == "packing" && s.dim == 3) return {[](const auto& points) { return points; }, 0, 0, 0};
+  const LayerFrame layer = layer_frame(s);
+  if (frame == "heap") {
+    const HeapFrame heap = heap_frame(s);
+    return {[heap](const auto& points) { return heap.to_packing(points); },
+            (heap.left - heap.apex_x) / heap.height, (heap.right - heap.apex_x) / heap.height,
+            heap.height};
+  }
+  if (frame == "packing")
+    return {[](const auto& points) { return points; }, layer.left, layer.right, layer.depth()};
+  const double half = std::min(layer.load_x - layer.left, layer.right - layer.load_x);
+  return {[layer](const auto& points) { return layer.to_packing(points); }, -half, half,
+          layer.depth()};
+}
+
+Extents measure(const std::vector<Item>& items, const AverageRequest& request) {
+  Extents out;
+  const auto n = static_cast<double>(items.size());
+  for (const auto& item : items) {
+    const dem::Snapshot s = read(item.state);
+    out.dim = s.dim;
+    const Placed placed = place(s, request.frame);
+    out.depth += placed.depth / n;
+    out.diameter += mean_diameter(s) / n;
+    out.left = std::max(out.left, placed.left);
+    out.right = std::min(out.right, placed.right);
+    const double force = -s.applied_force.y();
+    if (request.response && &item != &items.front() && force != out.load) {
+      throw std::invalid_argument(
+          fmt::format("{}:{}: its load is {:g} N, that of the others {:g} N", item.state.file,
+                      item.state.group, force, out.load));
+    }
+    out.load = &item == &items.front() || force == out.load ? force : 0;
+  }
+  return out;
+}
+
+// Points in the request's frame.
+Eigen::MatrixXd points_of(const AverageRequest& request, const Extents& all,
+                          const dem::Snapshot& first) {
+  if (request.points.size() != 0) return request.points;
+  if (all.dim == 3)
+    throw std::invalid_argument("the snapshot is 3D; give --points with x,y,z and --frame packing");
+  double bottom = -all.depth, top = 0;
+  if (request.frame == "heap") bottom = -1;
+  if (request.frame == "packing") {
+    bottom = layer_frame(first).floor;
+    top = bottom + all.depth;
+  }
+  if (request.cuts.empty())
+    return grid_points(all.left, all.right, request.nx, bottom, top, request.ny);
+  std::vector<double> heights;
+  for (const double share : request.cuts) heights.push_back(bottom + share * (top - bottom));
+  return cut_points(all.left, all.right, request.nx, heights);
+}
+
 }  // namespace
 
 std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& texts) {
@@ -72,61 +146,49 @@ std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& t
   return out;
 }
 
-NamedFields average_files(AverageRequest request) {
+NamedFields average_files(AverageRequest request, Gaps* gaps) {
   const std::vector<Item> items = items_of(request);
   if (items.empty()) throw std::invalid_argument("no snapshot to average");
-  // The layers as one rectangle in the models' frame.
-  double depth = 0, half = std::numeric_limits<double>::infinity(), diameter = 0, load = 0;
-  const auto n = static_cast<double>(items.size());
-  for (const auto& item : items) {
-    const dem::Snapshot s = read(item.state);
-    const LayerFrame frame = layer_frame(s);
-    depth += frame.depth() / n;
-    diameter += mean_diameter(s) / n;
-    half = std::min({half, frame.load_x - frame.left, frame.right - frame.load_x});
-    const double force = -s.applied_force.y();
-    if (request.response && &item != &items.front() && force != load) {
-      throw std::invalid_argument(
-          fmt::format("{}:{}: its load is {:g} N, that of the others {:g} N", item.state.file,
-                      item.state.group, force, load));
-    }
-    load = &item == &items.front() || force == load ? force : 0;
-  }
+  if (std::find(frames.begin(), frames.end(), request.frame) == frames.end())
+    throw std::invalid_argument(unknown_name("frame", request.frame, frames));
+  const Extents all = measure(items, request);
   AverageOptions& options = request.options;
   if (options.width == 0) {
-    options.width = (options.method == "particle_centre" ? 2.5 : 1.0) * diameter;
+    options.width = (options.method == "coarse_graining" ? 1.0 : 2.5) * all.diameter;
   }
-  const bool grid = request.points.size() == 0;
-  const Eigen::MatrixXd points =
-      grid ? grid_points(-half, half, request.nx, -depth, 0, request.ny) : request.points;
-  const bool base = request.response && options.method == "coarse_graining";
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, -half, half);
+  const bool grid = request.points.size() == 0 && request.cuts.empty();
+  const Eigen::MatrixXd points = points_of(request, all, read(items.front().state));
+  const bool base =
+      request.response && options.method == "coarse_graining" && request.frame == "layer";
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
     field.attributes["method"] = options.method;
     field.attributes["kernel"] = options.kernel;
     field.attributes["width"] = fmt::format("{}", options.width);
-    field.attributes["h"] = fmt::format("{}", depth);
-    if (load > 0) field.attributes["F"] = fmt::format("{}", load);
-    field.attributes["frame"] = "models: load at (0, 0), surface y = 0";
+    field.attributes["h"] = fmt::format("{}", all.depth);
+    if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
+    field.attributes["frame"] = request.frame == "layer" ? "models: load at (0, 0), surface y = 0"
+                                : request.frame == "heap"
+                                    ? "heap: apex at (0, 0), lengths over its height h"
+                                    : "packing";
     return field;
   };
 
   Ensemble fields, base_fields;
   for (const auto& item : items) {
     const dem::Snapshot state = read(item.state);
-    const LayerFrame frame = layer_frame(state);
-    const Eigen::MatrixXd there = frame.to_packing(points);
-    Field field = request.response ? response(read(item.unloaded), state, there, options)
-                                   : average(state, there, options);
+    const Eigen::MatrixXd there = place(state, request.frame).to_packing(points);
+    Field field = request.response ? response(read(item.unloaded), state, there, options, gaps)
+                                   : average(state, there, options, gaps);
     field.points = points;
     field.nx = grid ? request.nx : 0;
     field.ny = grid ? request.ny : 0;
     fields.add(field);
     if (base) {
-      Field line = base_response(read(item.unloaded), state, x.array() + frame.load_x,
+      Field line = base_response(read(item.unloaded), state, x.array() + layer_frame(state).load_x,
                                  *make_kernel(options.kernel, options.width));
       line.points.resize(x.size(), 2);
-      line.points << x, Eigen::VectorXd::Constant(x.size(), -depth);
+      line.points << x, Eigen::VectorXd::Constant(x.size(), -all.depth);
       base_fields.add(line);
     }
   }

@@ -20,15 +20,21 @@ std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& t
 struct AverageRequest {
   std::vector<SnapshotName> snapshots;
   bool response = false;   ///< loaded - unloaded of the pairs PREFIX/unloaded, PREFIX/loaded
-  AverageOptions options;  ///< width 0: one mean diameter (particle_centre: 2.5)
-  Eigen::MatrixXd points;  ///< models' frame (load or middle at x = 0, surface at y = 0); or empty
-  int nx = 81, ny = 31;    ///< grid over the layer, where points is empty
+  AverageOptions options;  ///< width 0: one mean diameter (RVE methods: 2.5)
+  /// "layer": models' frame, load or middle at x = 0, surface at y = 0, m. "heap": origin at the
+  /// apex, in units of each heap's own height (points.h). "packing": the packing's own axes, m.
+  std::string frame = "layer";
+  Eigen::MatrixXd points;    ///< in the frame; or empty
+  std::vector<double> cuts;  ///< horizontal cuts, as shares of the height above the floor, nx
+                             ///< points each; used where points is empty
+  int nx = 81, ny = 31;      ///< grid over the packing, where points and cuts are empty
 };
 
-/// Mean and standard error over the snapshots (or pairs), in the models' frame: field "average" or
-/// "response", and with a response also "base_response". Attributes: method, kernel, width, h, and
-/// F where a load is known. Throws std::invalid_argument for snapshots without a partner, different
-/// loads, and what averaging throws.
-NamedFields average_files(AverageRequest request);
+/// Mean and standard error over the snapshots (or pairs), in the frame: field "average" or
+/// "response", and with a response in the layer's frame also "base_response". Attributes: method,
+/// kernel, width, h, and F where a load is known. `gaps` (may be null) is told which points have no
+/// value. Throws std::invalid_argument for snapshots without a partner, different loads, an unknown
+/// frame, 3D snapshots without points in the packing's frame, and what averaging throws.
+NamedFields average_files(AverageRequest request, Gaps* gaps = nullptr);
 
 }  // namespace grainfield::coupling

@@ -328,10 +328,9 @@ TEST(Averaging, RefusesWithOneLine) {
     change(o);
     return refusal([&] { average(s, p, o); });
   };
-  EXPECT_EQ(
-      with([](auto& o) { o.method = "coarse_grain"; }),
-      "unknown averaging method \"coarse_grain\"; known: coarse_graining, particle_centre; did "
-      "you mean \"coarse_graining\"?");
+  EXPECT_EQ(with([](auto& o) { o.method = "coarse_grain"; }),
+            "unknown averaging method \"coarse_grain\"; known: coarse_graining, particle_centre, "
+            "area_exact; did you mean \"coarse_graining\"?");
   EXPECT_EQ(
       with([](auto& o) { o.kernel = "circle"; }),
       "unknown kernel of coarse_graining \"circle\"; known: lucy, gaussian, heaviside; did you "
@@ -349,7 +348,7 @@ TEST(Averaging, RefusesWithOneLine) {
   dem::Snapshot solid = s;
   solid.dim = 3;
   EXPECT_EQ(refusal([&] { average(solid, p, coarse("lucy", 1)); }),
-            "the snapshot is 3D; averaging on points of the plane needs a 2D one");
+            "points have 2 coordinates; averaging needs 3");
   dem::Snapshot empty;
   EXPECT_EQ(refusal([&] { average(empty, p, coarse("lucy", 1)); }),
             "the snapshot has no free grain");

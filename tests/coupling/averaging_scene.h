@@ -33,9 +33,9 @@ inline void add_wall(dem::Snapshot& s, const char* name, dem::Vec3 point, dem::V
 }
 
 /// Gives every contact the forces of least size that balance every free grain in x and y, under
-/// gravity and the applied force: exact equilibrium of forces (not of moments), forces not along
-/// the normals, as with friction.
-inline void balance_forces(dem::Snapshot& s) {
+/// gravity, the applied force and the forces of `given` contacts: exact equilibrium of forces (not
+/// of moments), forces not along the normals, as with friction.
+inline void balance_forces(dem::Snapshot& s, const std::vector<dem::Contact>& given = {}) {
   std::vector<int> row(s.grains.size(), -1);
   int rows = 0;
   for (std::size_t g = 0; g < s.grains.size(); ++g)
@@ -59,6 +59,8 @@ inline void balance_forces(dem::Snapshot& s) {
       if (s.grains[g].id == s.loaded_grain) b[row[g] + d] -= s.applied_force[d];
     }
   }
+  for (const dem::Contact& contact : given)
+    for (int d = 0; d < 2; ++d) b[row[static_cast<std::size_t>(contact.i)] + d] -= contact.force[d];
   const Eigen::VectorXd f = a.completeOrthogonalDecomposition().solve(b);
   for (std::size_t c = 0; c < s.contacts.size(); ++c) {
     dem::Contact& contact = s.contacts[c];

@@ -1,0 +1,159 @@
+#include "coupling/averaging/balance.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/averaging/average.h"
+#include "coupling/averaging/kernel.h"
+#include "coupling/averaging/region.h"
+#include "coupling/averaging/weights.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Differences {
+  std::vector<double> offset, weight;  // in steps; over the step
+};
+
+Differences differences(int order) {
+  if (order == 2) return {{-1, 1}, {-0.5, 0.5}};
+  if (order == 4) return {{-2, -1, 1, 2}, {1. / 12, -8. / 12, 8. / 12, -1. / 12}};
+  throw std::invalid_argument(
+      fmt::format("differences of order {} for the balance; known: 2, 4", order));
+}
+
+std::string component(const char* name, int a, int b) {
+  const char axes[] = "xyz";
+  return fmt::format("{}_{}{}", name, axes[a], axes[b]);
+}
+
+std::string component(const char* name, int a) { return fmt::format("{}_{}", name, "xyz"[a]); }
+
+}  // namespace
+
+BalanceResidual balance_residual(const dem::Snapshot& snapshot, const MatrixXd& points,
+                                 const AverageOptions& given, double step, int order) {
+  AverageOptions options = given;
+  options.quantities = {"sigma", "kinetic", "density", "traction", "load", "grains"};
+  if (step <= 0) step = options.width * (options.method == "coarse_graining" ? 0.05 : 0.5);
+  const Differences d = differences(order);
+  const int dim = snapshot.dim;
+  // The point itself, then its neighbours along every axis.
+  const auto arm = static_cast<Index>(d.offset.size());
+  const Index n = points.rows(), stride = 1 + dim * arm;
+  MatrixXd stencil(stride * n, points.cols());
+  for (Index p = 0; p < n; ++p) {
+    stencil.middleRows(stride * p, stride).rowwise() = points.row(p);
+    for (int axis = 0; axis < std::min<Index>(dim, points.cols()); ++axis)
+      for (Index k = 0; k < arm; ++k)
+        stencil(stride * p + 1 + axis * arm + k, axis) +=
+            d.offset[static_cast<std::size_t>(k)] * step;
+  }
+  const Field field = average(snapshot, stencil, options);
+  BalanceResidual result;
+  result.step = step;
+  MatrixXd residual(n, dim);
+  const VectorXd& density = field.find("density")->value;
+  for (int a = 0; a < dim; ++a) {
+    const VectorXd body = density * snapshot.gravity[a] +
+                          field.find(component("traction", a))->value +
+                          field.find(component("load", a))->value;
+    for (Index p = 0; p < n; ++p) residual(p, a) = body[stride * p];
+    for (int b = 0; b < dim; ++b) {
+      const VectorXd stress =
+          field.find(component("sigma", a, b))->value +
+          field.find(component("kinetic", std::min(a, b), std::max(a, b)))->value;
+      for (Index p = 0; p < n; ++p)
+        for (Index k = 0; k < arm; ++k)
+          residual(p, a) +=
+              d.weight[static_cast<std::size_t>(k)] / step * stress[stride * p + 1 + b * arm + k];
+    }
+  }
+  double mass = 0, squares = 0, largest = 0;
+  for (Index p = 0; p < n; ++p) {
+    if (!residual.row(p).allFinite()) continue;
+    ++result.points;
+    mass += density[stride * p];
+    squares += residual.row(p).squaredNorm();
+    largest = std::max(largest, residual.row(p).norm());
+  }
+  result.rho_g = mass / result.points * snapshot.gravity.norm();
+  result.rms = std::sqrt(squares / (dim * result.points)) / result.rho_g;
+  result.largest = largest / result.rho_g;
+  return result;
+}
+
+std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options) {
+  const double diameter = mean_diameter(snapshot), width = options.width;
+  const Region region(snapshot);
+  const LayerFrame frame = layer_frame(snapshot);
+  // Points over the packing, a third of a diameter apart near its edges' heights.
+  constexpr int columns = 41;
+  const double low = region.left() + diameter, high = region.right() - diameter;
+  MatrixXd base = line_points(low, high, columns, 0), surface = base;
+  MatrixXd inside(columns * 9, 2);
+  Index rows = 0, tops = 0, bottoms = 0;
+  for (Index k = 0; k < columns; ++k) {
+    const double x = base(k, 0), height = region.surface(x) - region.floor();
+    if (height < 4 * diameter) continue;
+    base.row(bottoms++) << x, region.floor() + diameter / 2;
+    surface.row(tops++) << x, region.surface(x) - diameter / 2;
+    for (int j = 0; j < 9; ++j)
+      inside.row(rows++) << x, region.floor() + diameter + (height - 2 * diameter) * (j + 0.5) / 9;
+  }
+  if (rows == 0)
+    throw std::invalid_argument(
+        "the packing is nowhere four mean diameters high; too low to "
+        "compare averagings on");
+  std::vector<BalanceRow> out;
+  for (const Method& method : methods())
+    for (const std::string& kernel : method.kernels()) {
+      options.method = method.name;
+      options.kernel = kernel;
+      // Lucy with w: standard deviation 0.845 w; close enough to share one width.
+      options.width = width * diameter * (method.name == "coarse_graining" ? 1 : 2.5);
+      BalanceRow row;
+      row.method = method.name;
+      row.kernel = kernel;
+      row.width = options.width;
+      // RVEs: short arms, so that the stencil near the edges keeps part of the RVE inside.
+      const bool kernels = method.name == "coarse_graining";
+      const double step = kernels ? 0 : options.width / 4;
+      const int order = kernels ? 4 : 2;
+      row.base = balance_residual(snapshot, base.topRows(bottoms), options, step, order);
+      row.inside = balance_residual(snapshot, inside.topRows(rows), options, step, order);
+      row.surface = balance_residual(snapshot, surface.topRows(tops), options, step, order);
+      for (int k = 0; k < 9; ++k) {
+        const double share = 0.1 * k;
+        const CutForce cut =
+            cut_force(snapshot, frame.floor + share * (region.highest() - frame.floor), options);
+        if (std::abs(cut.error()) > std::abs(row.worst_cut)) row.worst_cut = cut.error();
+        const double sharp = cut.force / cut.sharp - 1;
+        if (std::abs(sharp) > std::abs(row.worst_sharp)) row.worst_sharp = sharp;
+      }
+      out.push_back(row);
+    }
+  return out;
+}
+
+std::string balance_markdown(const std::vector<BalanceRow>& rows) {
+  std::string text =
+      "| method | weight | width (m) | rms near the floor | rms inside | rms near the surface | "
+      "worst cut | worst cut, sharp |\n|---|---|---|---|---|---|---|---|\n";
+  const auto rms = [](const BalanceResidual& r) {
+    return r.points > 0 ? fmt::format("{:.2g}", r.rms) : std::string("none");
+  };
+  for (const BalanceRow& row : rows)
+    text += fmt::format("| {} | {} | {:.4g} | {} | {} | {} | {:+.2g} % | {:+.2g} % |\n", row.method,
+                        row.kernel, row.width, rms(row.base), rms(row.inside), rms(row.surface),
+                        100 * row.worst_cut, 100 * row.worst_sharp);
+  return text;
+}
+
+}  // namespace grainfield::coupling

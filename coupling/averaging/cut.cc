@@ -1,0 +1,145 @@
+// Vertical force through horizontal cuts.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/averaging/average.h"
+#include "coupling/averaging/branches.h"
+#include "coupling/averaging/clip.h"
+#include "coupling/averaging/extent.h"
+#include "coupling/averaging/kernel.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+
+// Share of the grain's area above y.
+double share_above(const dem::Grain& grain, double y) {
+  if (bottom_of(grain) >= y) return 1;
+  if (top_of(grain) <= y) return 0;
+  if (grain.outline.empty())
+    return disk_above(grain.radius, y - grain.position.y()) /
+           disk_above(grain.radius, -grain.radius);
+  const Corners corners = placed_outline(grain);
+  const double reach = grain.radius + std::abs(y - grain.position.y());
+  const Vector2d at = grain.position.head<2>();
+  return area_in_box(corners, {at.x() - reach, y}, at + Vector2d::Constant(reach)) /
+         area_of(corners);
+}
+
+// Weight above, `share(height)` of a force at a height and `of_grain(grain)` of a grain's own.
+template <class OfGrain, class Share>
+double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& of_grain,
+              Share&& share) {
+  double sum = 0;
+  for (const dem::Grain& grain : snapshot.grains) {
+    if (grain.fixed) continue;
+    sum -= grain.mass * snapshot.gravity.y() * of_grain(grain);
+    if (grain.id == snapshot.loaded_grain)
+      sum -= snapshot.applied_force.y() * share(grain.position.y());
+  }
+  for_each_branch(
+      snapshot, ends, [](const dem::Vec3&, const dem::Vec3&, const dem::Vec3&) {},
+      [&](const dem::Vec3& at, const dem::Vec3& force) { sum -= force.y() * share(at.y()); });
+  return sum;
+}
+
+// The stress that carries weight_above, spread over the width as the height of the packing above,
+// averaged over the part of the RVE inside the packing and integrated along the cut. Midpoint rule
+// on cells of `step`.
+double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, double y,
+                          const AverageOptions& options, const MatrixXd& cut, double step) {
+  const Support& support = *find_support(options.kernel);
+  const double width = options.width, bottom = std::max(region.floor(), y - width);
+  const double top = std::min(region.highest(), y + width);
+  const int rows = std::max(1, static_cast<int>(std::ceil((top - bottom) / step)));
+  const double dy = (top - bottom) / rows, dx = cut.rows() > 1 ? cut(1, 0) - cut(0, 0) : step;
+  Eigen::VectorXd volume(cut.rows()), sum = Eigen::VectorXd::Zero(cut.rows());
+  for (Index p = 0; p < cut.rows(); ++p)
+    volume[p] = region.measure(support, width, cut.row(p).transpose());
+  for (int r = 0; r < rows; ++r) {
+    const double at = bottom + (r + 0.5) * dy;
+    Eigen::VectorXd height(cut.rows());
+    for (Index p = 0; p < cut.rows(); ++p)
+      height[p] = std::max(0.0, region.surface(cut(p, 0)) - at);
+    if (height.sum() <= 0) continue;
+    const Eigen::VectorXd force = weight_above(snapshot, at) / height.sum() * dy * height;
+    // A chord of the RVE at this height takes a run of cells; running sums make it quick.
+    Eigen::VectorXd running(cut.rows() + 1);
+    running[0] = 0;
+    for (Index p = 0; p < cut.rows(); ++p) running[p + 1] = running[p] + force[p];
+    double half = width;
+    if (support.distance({width, width, 0}) > width)
+      half = std::sqrt(std::max(0.0, width * width - (at - y) * (at - y)));
+    const auto until = [&](double x) {  // of the force left of x
+      const double k = std::clamp((x - cut(0, 0)) / dx + 0.5, 0.0, static_cast<double>(cut.rows()));
+      const auto whole = std::min(static_cast<Index>(k), cut.rows() - 1);
+      return running[whole] + (k - static_cast<double>(whole)) * force[whole];
+    };
+    for (Index p = 0; p < cut.rows(); ++p)
+      sum[p] += until(cut(p, 0) + half) - until(cut(p, 0) - half);
+  }
+  double total = 0;
+  for (Index p = 0; p < cut.rows(); ++p)
+    if (volume[p] > 0) total += sum[p] / volume[p] * dx;
+  return total;
+}
+
+}  // namespace
+
+double weight_above(const dem::Snapshot& snapshot, double y) {
+  // Fixed grains carry their force down to the floor's mean height.
+  return weight(
+      snapshot, {true, Region(snapshot).floor(), 0},
+      [&](const dem::Grain& grain) { return share_above(grain, y); },
+      [&](double height) { return height > y ? 1.0 : 0.0; });
+}
+
+CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& given,
+                   double step) {
+  AverageOptions options = given;
+  options.quantities = {"sigma", "kinetic"};
+  options.least_grains = 0;
+  if (step <= 0) step = options.width / 40;
+  const Region region(snapshot);
+  const bool kernels = options.method == "coarse_graining";
+  // Inclined walls carry their branches on beyond the packing: the line goes as far.
+  const double range = kernels ? make_kernel(options.kernel, options.width)->range() : 0;
+  const double from = region.left() - 4 * range, to = region.right() + 4 * range;
+  const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
+  const double dx = (to - from) / n;
+  const MatrixXd line = line_points(from + dx / 2, to - dx / 2, n, y);
+  const Field field = average(snapshot, line, options);
+  const Eigen::VectorXd stress = field.find("sigma_yy")->value + field.find("kinetic_yy")->value;
+  CutForce cut;
+  cut.height = y;
+  cut.sharp = weight_above(snapshot, y);
+  for (Index p = 0; p < n; ++p)
+    if (!std::isnan(stress[p])) cut.force -= stress[p] * dx;
+  if (kernels) {
+    const auto kernel = make_kernel(options.kernel, options.width);
+    const auto share = [&](double height) { return kernel->beyond(y - height); };
+    cut.weight = weight(
+        snapshot, {options.extend_into_walls, region.floor(), 2 * range},
+        [&](const dem::Grain& grain) { return share(grain.position.y()); }, share);
+  } else {
+    // What the averaging counts as inside its RVEs, over what is inside.
+    options.quantities = {"volume_fraction"};
+    const auto solid = [&](const char* method) {
+      options.method = method;
+      const Field field_of = average(snapshot, line, options);
+      return (field_of.find("volume_fraction")->value.array().isNaN())
+          .select(0, field_of.find("volume_fraction")->value)
+          .sum();
+    };
+    const double counted =
+        given.method == "area_exact" ? 1 : solid("particle_centre") / solid("area_exact");
+    cut.weight = counted * weight_through_rve(snapshot, region, y, options, line, dx);
+  }
+  return cut;
+}
+
+}  // namespace grainfield::coupling

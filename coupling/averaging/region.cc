@@ -1,0 +1,198 @@
+#include "coupling/averaging/region.h"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "coupling/averaging/clip.h"
+#include "coupling/averaging/extent.h"
+#include "coupling/averaging/layer.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using boost::math::quadrature::gauss;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = std::numbers::pi;
+
+double circle_in_box(double w, const Vector3d& low, const Vector3d& high, int dim) {
+  if (dim == 2) return disk_in_box(w, low.head<2>(), high.head<2>());
+  // Slices of the sphere, z = w sin(t): the area of a slice ends with the square of the distance
+  // from the pole, and kinks where a side of the box first cuts a slice.
+  std::vector<double> ends{std::max(-w, low.z()), std::min(w, high.z())};
+  if (ends[0] >= ends[1]) return 0;
+  std::vector<double> kinks;
+  const auto kink = [&](double squared) {
+    if (squared >= w * w || squared < 0) return;
+    for (double sign : {-1.0, 1.0}) kinks.push_back(sign * std::sqrt(w * w - squared));
+  };
+  for (double x : {low.x(), high.x()}) {
+    kink(x * x);
+    for (double y : {low.y(), high.y()}) kink(x * x + y * y);
+  }
+  for (double y : {low.y(), high.y()}) kink(y * y);
+  for (double z : kinks)
+    if (z > ends[0] && z < ends[1]) ends.push_back(z);
+  std::sort(ends.begin(), ends.end());
+  double volume = 0;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const auto slice = [&](double t) {
+      const double z = w * std::sin(t), r = std::sqrt(std::max(0.0, w * w - z * z));
+      return disk_in_box(r, low.head<2>(), high.head<2>()) * w * std::cos(t);
+    };
+    volume +=
+        gauss<double, 30>::integrate(slice, std::asin(ends[k] / w), std::asin(ends[k + 1] / w));
+  }
+  return volume;
+}
+
+double square_in_box(double w, const Vector3d& low, const Vector3d& high, int dim) {
+  double product = 1;
+  for (int a = 0; a < dim; ++a)
+    product *= std::max(0.0, std::min(w, high[a]) - std::max(-w, low[a]));
+  return product;
+}
+
+const Support supports[]{
+    {"circle", [](const Vector3d& d) { return d.norm(); },
+     [](double w, int dim) { return dim == 2 ? pi * w * w : 4 * pi / 3 * w * w * w; },
+     circle_in_box, [](double w, const Corners& corners) { return area_in_circle(corners, w); },
+     [](double w, const Vector2d& c, double r) { return disk_in_disk(c.norm(), w, r); }},
+    {"square", [](const Vector3d& d) { return d.cwiseAbs().maxCoeff(); },
+     [](double w, int dim) { return std::pow(2 * w, dim); }, square_in_box,
+     [](double w, const Corners& corners) {
+       return area_in_box(corners, Vector2d::Constant(-w), Vector2d::Constant(w));
+     },
+     [](double w, const Vector2d& c, double r) {
+       return disk_in_box(r, Vector2d::Constant(-w) - c, Vector2d::Constant(w) - c);
+     }},
+};
+
+}  // namespace
+
+const Support* find_support(const std::string& name) {
+  for (const Support& support : supports)
+    if (name == support.name) return &support;
+  return nullptr;
+}
+
+Region::Region(const dem::Snapshot& snapshot)
+    : dim_(snapshot.dim), low_(Vector3d::Constant(infinity)), high_(Vector3d::Constant(-infinity)) {
+  if (dim_ == 2) {
+    const LayerFrame frame = layer_frame(snapshot);
+    low_ << frame.left, frame.floor, 0;
+    high_ << frame.right, frame.surface, 0;
+    find_surface(snapshot);
+    return;
+  }
+  mean_diameter(snapshot);
+  for (const dem::Grain& grain : snapshot.grains) {
+    if (grain.fixed) continue;
+    low_ = low_.cwiseMin((grain.position.array() - grain.radius).matrix());
+    high_ = high_.cwiseMax((grain.position.array() + grain.radius).matrix());
+  }
+  for (const dem::Wall& wall : snapshot.walls)
+    for (int a = 0; a < 3; ++a) {
+      if (wall.normal[a] > 1 - 1e-9) low_[a] = wall.point[a];
+      if (wall.normal[a] < -1 + 1e-9) high_[a] = wall.point[a];
+    }
+}
+
+void Region::find_surface(const dem::Snapshot& snapshot) {
+  const double column = 2 * mean_diameter(snapshot), width = right() - left();
+  const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor(width / column)));
+  std::vector<const dem::Grain*> top(columns, nullptr);
+  for (const dem::Grain& grain : snapshot.grains) {
+    if (grain.fixed) continue;
+    const double at = (grain.position.x() - left()) / width * static_cast<double>(columns);
+    const auto k =
+        static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, static_cast<double>(columns - 1)));
+    if (!top[k] || top_of(grain) > top_of(*top[k])) top[k] = &grain;
+  }
+  bool left_wall = false, right_wall = false;
+  for (const dem::Wall& wall : snapshot.walls) {
+    left_wall = left_wall || wall.name == "left";
+    right_wall = right_wall || wall.name == "right";
+  }
+  const auto add = [&](double x, double y) {
+    if (surface_.empty() || x > surface_.back().x()) surface_.emplace_back(x, std::max(y, floor()));
+  };
+  // A side without a wall that is steeper than any heap (63 degrees over its first column) is a
+  // vertical edge.
+  const auto end_height = [&](const dem::Grain* grain, bool wall) {
+    const double height = grain ? top_of(*grain) - floor() : 0;
+    return wall || height > 2 * column ? floor() + height : floor();
+  };
+  add(left(), end_height(top.front(), left_wall));
+  for (std::size_t k = 0; k < columns; ++k) {
+    const double middle =
+        left() + (static_cast<double>(k) + 0.5) / static_cast<double>(columns) * width;
+    if (top[k])
+      add(top[k]->position.x(), top_of(*top[k]));
+    else
+      add(middle, floor());
+  }
+  add(right(), end_height(top.back(), right_wall));
+  for (const dem::Wall& wall : snapshot.walls)
+    if (wall.normal.y() < -1 + 1e-9)  // a lid or piston
+      surface_ = {{left(), wall.point.y()}, {right(), wall.point.y()}};
+  high_.y() = -infinity;
+  for (const Vector2d& corner : surface_) high_.y() = std::max(high_.y(), corner.y());
+}
+
+double Region::surface(double x) const {
+  if (x <= surface_.front().x()) return surface_.front().y();
+  if (x >= surface_.back().x()) return surface_.back().y();
+  const auto next = std::upper_bound(surface_.begin(), surface_.end(), x,
+                                     [](double value, const Vector2d& c) { return value < c.x(); });
+  const Vector2d &a = *(next - 1), &b = *next;
+  return a.y() + (x - a.x()) / (b.x() - a.x()) * (b.y() - a.y());
+}
+
+double Region::measure(const Support& support, double width, const Eigen::VectorXd& at) const {
+  Vector3d centre = Vector3d::Zero();
+  centre.head(dim_) = at;
+  const Vector3d low = low_ - centre, high = high_ - centre;
+  if (dim_ == 3) return support.in_box(width, low, high, 3);
+  double area = 0;
+  for (std::size_t k = 0; k + 1 < surface_.size(); ++k) {
+    const Vector2d a = surface_[k] - at, b = surface_[k + 1] - at;
+    if (b.x() <= -width || a.x() >= width) continue;
+    // A column whose top is out of reach is a box.
+    if (std::min(a.y(), b.y()) >= width)
+      area += support.in_box(width, {a.x(), low.y(), 0}, {b.x(), width, 0}, 2);
+    else
+      area += support.in_polygon(width, {{a.x(), low.y()}, {b.x(), low.y()}, b, a});
+  }
+  return area;
+}
+
+double Region::share(const Kernel& kernel, const Vector2d& at, bool above_only) const {
+  const double range = kernel.range();
+  const double from = above_only ? -range : std::max(-range, left() - at.x());
+  const double to = above_only ? range : std::min(range, right() - at.x());
+  const double bottom = above_only ? -infinity : floor() - at.y();
+  std::vector<double> ends{from};
+  for (const Vector2d& corner : surface_)
+    if (corner.x() - at.x() > from && corner.x() - at.x() < to) ends.push_back(corner.x() - at.x());
+  ends.push_back(to);
+  double share = 0;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    if (ends[k + 1] <= ends[k]) continue;
+    const auto chord = [&](double x) {
+      const double half = std::sqrt(std::max(0.0, range * range - x * x));
+      const double s0 = std::max(-half, bottom), s1 = std::min(half, surface(at.x() + x) - at.y());
+      return s1 > s0 ? kernel.along_line(std::abs(x), s0, s1) : 0.0;
+    };
+    share += gauss<double, 15>::integrate(chord, ends[k], ends[k + 1]);
+  }
+  return share;
+}
+
+}  // namespace grainfield::coupling
