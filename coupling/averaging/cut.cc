@@ -100,6 +100,7 @@ double weight_above(const dem::Snapshot& snapshot, double y) {
 
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& given,
                    double step) {
+  layer_frame(snapshot);  // refuses 3D
   AverageOptions options = given;
   options.quantities = {"sigma", "kinetic"};
   options.least_grains = 0;

@@ -22,7 +22,7 @@ class Neighbourhood {
   const Eigen::MatrixXd& places_;
   bool square_;
   double reach_;
-  PointCells cells_;
+  PointCells<2> cells_;  // by the first two axes
 };
 
 /// The chosen rows of a matrix.

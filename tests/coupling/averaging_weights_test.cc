@@ -1,0 +1,491 @@
+// Order of the balance, cuts, boundaries, 3D, rattlers, points and error texts of averaging.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "averaging_scene.h"
+#include "coupling/averaging/average.h"
+#include "coupling/averaging/grain_facts.h"
+#include "coupling/averaging/kernel.h"
+#include "coupling/averaging/region.h"
+#include "coupling/averaging/weights.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using test::layer;
+
+AverageOptions options(const std::string& method, const std::string& kernel, double width) {
+  AverageOptions o;
+  o.method = method;
+  o.kernel = kernel;
+  o.width = width;
+  o.least_grains = 0;
+  return o;
+}
+
+// Second-order differences of a field whose third derivatives are bounded: order two, at the floor,
+// inside and over the free surface, with both ends of the branches.
+TEST(Balance, ResidualFallsWithTheSquareOfTheStep) {
+  for (bool rough : {false, true})
+    for (bool extend : {false, true}) {
+      const dem::Snapshot s = layer(6, 10, 5, rough, 3.0);
+      const LayerFrame frame = layer_frame(s);
+      AverageOptions o = options("coarse_graining", "lucy", 0.02);
+      o.extend_into_walls = extend;
+      for (double height : {0.0, 0.5, 1.0, 1.3}) {
+        const double y = frame.floor + height * frame.depth();
+        double last = 0;
+        for (double step : {8e-4, 4e-4, 2e-4, 1e-4}) {
+          const double now =
+              balance_residual(s, line_points(0, frame.right, 21, y), o, step, 2).rms;
+          if (last > 0) {
+            EXPECT_NEAR(std::log2(last / now), 2, 0.2) << rough << extend << " " << height;
+          }
+          last = now;
+        }
+      }
+    }
+}
+
+TEST(Cuts, KernelsCarryTheSmearedWeightToTheQuadrature) {
+  for (bool rough : {false, true})
+    for (bool extend : {false, true}) {
+      const dem::Snapshot s = layer(5, 12, 6, rough, 2.0);
+      for (const std::string& kernel : kernel_names()) {
+        AverageOptions o = options("coarse_graining", kernel, 0.012);
+        o.extend_into_walls = extend;
+        // Midpoint sums: Heaviside's chords have square-root ends and its field steps.
+        const double tolerance = kernel == "lucy" ? 1e-6 : kernel == "gaussian" ? 2e-4 : 3e-3;
+        for (double y : {-0.01, 0.0, 0.013, 0.031, 0.055, 0.065}) {
+          const CutForce cut = cut_force(s, y, o);
+          EXPECT_NEAR(cut.force, cut.weight, tolerance * test::weight(s)) << kernel << y << extend;
+        }
+      }
+    }
+}
+
+TEST(Cuts, WeightAboveIsThatOfTheParts) {
+  dem::Snapshot s;
+  s.gravity = {0, -10, 0};
+  test::add_wall(s, "floor", {0, 0, 0}, {0, 1, 0});
+  s.grains.push_back(test::disk(0, 0, 1, 1));
+  dem::Grain square = test::disk(1, 5, 1, std::sqrt(2.));
+  square.outline = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  square.angle = std::numbers::pi / 4;
+  square.mass = 7;
+  s.grains.push_back(square);
+  const double disk = s.grains[0].mass * 10;
+  EXPECT_NEAR(weight_above(s, -1), disk + 70, 1e-9);
+  EXPECT_NEAR(weight_above(s, 1), (disk + 70) / 2, 1e-9);
+  // Above 1/2 of the disk's radius: a segment of 120 degrees; of the diamond a corner.
+  const double corner = (std::sqrt(2.) - 0.5) * (std::sqrt(2.) - 0.5) / 4;
+  EXPECT_NEAR(weight_above(s, 1.5),
+              disk * (1. / 3 - std::sqrt(3.) / (4 * std::numbers::pi)) + 70 * corner, 1e-9);
+  EXPECT_EQ(weight_above(s, 3), 0);
+}
+
+TEST(Averaging, EveryMethodGivesTheSameBitsOnAnyNumberOfThreads) {
+  const dem::Snapshot s = layer(10);
+  const Eigen::MatrixXd points = grid_points(-0.01, 0.13, 29, -0.01, 0.08, 17);
+  for (const Method& method : methods())
+    for (const std::string& kernel : method.kernels()) {
+      AverageOptions o = options(method.name, kernel, 0.015);
+      o.free_surface = "normalised";
+      const Field one = average(s, points, o);
+      for (int threads : {2, 3, 8}) {
+        o.threads = threads;
+        const Field many = average(s, points, o);
+        for (std::size_t c = 0; c < one.columns.size(); ++c)
+          for (Eigen::Index p = 0; p < points.rows(); ++p) {
+            const double a = one.columns[c].value[p], b = many.columns[c].value[p];
+            ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << one.columns[c].name;
+          }
+      }
+    }
+}
+
+TEST(Averaging, NormalisedFieldsKeepTheirValuesUpToTheSurface) {
+  // A dense lattice under one stress in every bond, open above.
+  const double d = 0.002;
+  const int n = 40;
+  dem::Snapshot s;
+  test::add_wall(s, "floor", {0, -d / 2, 0}, {0, 1, 0});
+  test::add_wall(s, "left", {-d / 2, 0, 0}, {1, 0, 0});
+  test::add_wall(s, "right", {(n - 0.5) * d, 0, 0}, {-1, 0, 0});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      s.grains.push_back(test::disk(x + n * y, x * d, y * d, d / 2));
+      const auto touch = [&](std::int64_t j, dem::Vec3 normal) {
+        dem::Contact c;
+        c.i = x + n * y;
+        c.j = j;
+        c.normal = normal;
+        c.point = s.grains.back().position + normal * d / 2;
+        c.force = -100 * d * normal;
+        s.contacts.push_back(c);
+      };
+      if (y == 0) touch(-1, {0, -1, 0});
+      if (x == 0) touch(-2, {-1, 0, 0});
+      touch(x + 1 < n ? x + 1 + n * y : -3, {1, 0, 0});
+      if (y + 1 < n) touch(x + n * (y + 1), {0, 1, 0});
+    }
+  const double top = (n - 0.5) * d;
+  const Eigen::MatrixXd points = line_points(0, (n - 1) * d, 7, top - d / 4);
+  AverageOptions o = options("coarse_graining", "lucy", 4 * d);
+  const Field open = average(s, points, o);
+  o.free_surface = "normalised";
+  const Field kept = average(s, points, o);
+  for (Eigen::Index p = 0; p < 7; ++p) {
+    EXPECT_NEAR(open.find("volume_fraction")->value[p] / (std::numbers::pi / 4),
+                p == 0 || p == 6 ? 0.27 : 0.5, 0.06);
+    EXPECT_NEAR(kept.find("volume_fraction")->value[p], std::numbers::pi / 4, 0.02);
+    EXPECT_NEAR(open.find("sigma_xx")->value[p], -50, 6);
+    EXPECT_NEAR(kept.find("sigma_xx")->value[p], -100, 4);
+  }
+}
+
+TEST(Region, KernelShareIsItsAreaInside) {
+  const dem::Snapshot s = layer(3);
+  const Region region(s);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> x(-0.01, 0.13), y(-0.01, 0.08);
+  const auto kernel = make_kernel("heaviside", 0.015);
+  const Support& circle = *find_support("circle");
+  for (int trial = 0; trial < 200; ++trial) {
+    const Eigen::Vector2d at(x(random), y(random));
+    const double area = region.measure(circle, 0.015, at) / circle.measure(0.015, 2);
+    // Chords of a disk end with square roots, which Gauss points see to a part in a thousand.
+    EXPECT_NEAR(region.share(*kernel, at, false), area, 2e-3);
+  }
+  EXPECT_NEAR(region.share(*make_kernel("lucy", 0.005), {0.06, 0.03}, false), 1, 1e-5);
+}
+
+TEST(Region, HeapEndsAtItsSlopes) {
+  // A triangle of disks: the region is nearly that triangle.
+  dem::Snapshot s;
+  const double d = 0.01;
+  test::add_wall(s, "floor", {0, 0, 0}, {0, 1, 0});
+  const int n = 30;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < 2 * (n - y) - 1; ++x)
+      s.grains.push_back(test::disk(static_cast<std::int64_t>(s.grains.size()), (x + y) * d,
+                                    (y + 0.5) * d, d / 2));
+  const Region region(s);
+  const Support& square = *find_support("square");
+  const Eigen::Vector2d middle((n - 1) * d, n * d / 2);
+  EXPECT_NEAR(region.measure(square, 1, middle), n * d * n * d, 0.05 * n * d * n * d);
+  const HeapFrame heap = heap_frame(s);
+  EXPECT_NEAR(heap.apex_x, (n - 1) * d, d);
+  EXPECT_NEAR(heap.height, n * d, 1e-12);
+  EXPECT_NEAR(heap.left_slope, 1, 0.05);
+  EXPECT_NEAR(heap.right_slope, 1, 0.05);
+  const Eigen::MatrixXd scaled = grid_points(-1, 1, 3, -1, 0, 2);
+  EXPECT_TRUE(heap.to_scaled(heap.to_packing(scaled)).isApprox(scaled, 1e-12));
+  EXPECT_NEAR(heap.to_packing(line_points(0, 0, 1, -1))(0, 1), 0, 1e-12);
+  EXPECT_NEAR(heap.to_packing(line_points(0, 0, 1, 0))(0, 1), n * d, 1e-12);
+}
+
+TEST(Region, SphereInABox) {
+  dem::Snapshot s;
+  s.dim = 3;
+  dem::Grain g = test::disk(0, 0, 0, 0.5);
+  s.grains.push_back(g);
+  for (int a = 0; a < 3; ++a)
+    for (double side : {-1., 1.}) {
+      dem::Vec3 normal(0, 0, 0);
+      normal[a] = -side;
+      test::add_wall(s, "wall", -2 * normal, normal);
+    }
+  const Region region(s);
+  const Support& sphere = *find_support("circle");
+  const auto inside = [&](double x, double y, double z, double r) {
+    return region.measure(sphere, r, Eigen::Vector3d(x, y, z)) / sphere.measure(r, 3);
+  };
+  EXPECT_NEAR(inside(0, 0, 0, 1), 1, 1e-12);
+  EXPECT_NEAR(inside(2, 0, 0, 1), 0.5, 1e-12);
+  EXPECT_NEAR(inside(2, 2, 0, 1), 0.25, 1e-9);
+  EXPECT_NEAR(inside(2, 2, -2, 1), 0.125, 1e-9);
+  // A cap of height h: pi h^2 (3 r - h)/3.
+  EXPECT_NEAR(inside(0, 0, 1.5, 1), 1 - 0.25 * (3 - 0.5) / 4, 1e-12);
+  EXPECT_NEAR(inside(0, 0, 0, 4) * sphere.measure(4, 3), 64, 1e-9);
+}
+
+// A cubic lattice of spheres with a force on every bond of each direction.
+dem::Snapshot cubic(int n, double d, const Eigen::Vector3d& pressure) {
+  dem::Snapshot s;
+  s.dim = 3;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        dem::Grain g;
+        g.id = x + n * (y + n * z);
+        g.position = d * dem::Vec3(x, y, z);
+        g.radius = d / 2;
+        g.volume = std::numbers::pi / 6 * d * d * d;
+        g.mass = 2000 * g.volume;
+        s.grains.push_back(g);
+        const int step[3]{1, n, n * n}, at[3]{x, y, z};
+        for (int a = 0; a < 3; ++a) {
+          if (at[a] + 1 == n) continue;
+          dem::Contact c;
+          c.i = g.id;
+          c.j = g.id + step[a];
+          c.normal[a] = 1;
+          c.point = g.position + c.normal * d / 2;
+          c.force = -pressure[a] * d * d * c.normal;
+          s.contacts.push_back(c);
+        }
+      }
+  return s;
+}
+
+TEST(ThreeDimensions, LatticeHasItsAnalyticStress) {
+  const double d = 0.01;
+  const Eigen::Vector3d pressure(100, 200, 300);
+  const dem::Snapshot s = cubic(9, d, pressure);
+  const Eigen::MatrixXd middle = Eigen::RowVector3d(4 * d, 4 * d, 4 * d);
+  // A cube of 5 x 5 x 5 whole cells.
+  const Field f = average(s, middle, options("particle_centre", "square", 2.5 * d));
+  EXPECT_EQ(f.find("grains")->value[0], 125);
+  const char* axes[] = {"xx", "yy", "zz"};
+  for (int a = 0; a < 3; ++a) {
+    const std::string name = std::string("sigma_") + axes[a];
+    EXPECT_NEAR(f.find(name)->value[0], -pressure[a], 1e-10 * 300);
+    EXPECT_NEAR(f.find(std::string("fabric_") + axes[a])->value[0], std::numbers::pi / 3, 1e-12);
+  }
+  for (const char* name : {"sigma_xy", "sigma_zx", "sigma_yz", "sigma_antisymmetric_xy"})
+    EXPECT_NEAR(f.find(name)->value[0], 0, 1e-10);
+  EXPECT_NEAR(f.find("volume_fraction")->value[0], std::numbers::pi / 6, 1e-12);
+  EXPECT_NEAR(f.find("coordination")->value[0], 6, 1e-12);
+  EXPECT_EQ(f.columns[0].unit, "N/m2");
+  // The kernel over one cell: mean over 4 x 4 x 4 places.
+  Eigen::MatrixXd cell(64, 3);
+  for (int k = 0; k < 64; ++k)
+    cell.row(k) =
+        d * Eigen::RowVector3d(3.5 + (k % 4) / 4., 3.5 + (k / 4 % 4) / 4., 3.5 + (k / 16) / 4.);
+  const Field mean = average(s, cell, options("coarse_graining", "lucy", 1.5 * d));
+  for (int a = 0; a < 3; ++a)
+    EXPECT_NEAR(mean.find(std::string("sigma_") + axes[a])->value.mean(), -pressure[a], 0.5);
+  EXPECT_NEAR(mean.find("volume_fraction")->value.mean(), std::numbers::pi / 6, 1e-3);
+}
+
+TEST(ThreeDimensions, BalanceOfAStackOnAFloor) {
+  dem::Snapshot s;
+  s.dim = 3;
+  s.gravity = {0, 0, -9.81};
+  test::add_wall(s, "floor", {0, 0, 0}, {0, 0, 1});
+  const double d = 0.01, mass = 0.002;
+  for (int k = 0; k < 4; ++k) {
+    dem::Grain g;
+    g.id = k;
+    g.position = {0.001 * k, 0, (k + 0.5) * d};
+    g.radius = d / 2;
+    g.mass = mass;
+    g.volume = 1e-6;
+    s.grains.push_back(g);
+    dem::Contact c;
+    c.i = k == 0 ? 0 : k - 1;
+    c.j = k == 0 ? -1 : k;
+    c.point = {0, 0, k * d};
+    c.normal = {0, 0, k == 0 ? -1. : 1.};
+    c.force = {0, 0, (k == 0 ? 1 : -1) * 9.81 * mass * (4 - k)};
+    s.contacts.push_back(c);
+  }
+  std::swap(s.contacts[0], s.contacts[1]);
+  Eigen::MatrixXd points(27, 3);
+  for (int k = 0; k < 27; ++k)
+    points.row(k) << 0.004 * (k % 3 - 1) + 1e-3, 0.005 * (k / 3 % 3 - 1) + 2e-3, 0.015 * (k / 9);
+  for (bool extend : {false, true}) {
+    AverageOptions o = options("coarse_graining", "lucy", 0.012);
+    o.extend_into_walls = extend;
+    double last = 0;
+    for (double step : {8e-4, 4e-4, 2e-4, 1e-4}) {
+      const double now = balance_residual(s, points, o, step, 2).rms;
+      if (last > 0) {
+        EXPECT_NEAR(std::log2(last / now), 2, 0.2) << extend;
+      }
+      last = now;
+    }
+    EXPECT_LT(last, 1e-3);
+  }
+}
+
+TEST(ThreeDimensions, KernelsIntegrateToOneAndAlongBranches) {
+  for (const std::string& name : kernel_names()) {
+    const auto k = make_kernel(name, 0.3, 3);
+    EXPECT_EQ(k->dim(), 3);
+    double total = 0, square = 0;
+    const int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const double r = k->range() * (i + 0.5) / n;
+      const double shell = 4 * std::numbers::pi * r * r * k->value(r) * k->range() / n;
+      total += shell;
+      square += shell * r * r / 3;
+    }
+    EXPECT_NEAR(total, 1, 1e-7) << name;
+    EXPECT_NEAR(k->standard_deviation(), std::sqrt(square), 1e-6) << name;
+    double side = 0;
+    for (int i = 0; i < 2000; ++i)
+      side += k->marginal(k->range() * ((i + 0.5) / 1000 - 1)) * k->range() / 1000;
+    EXPECT_NEAR(side, 1, 1e-5) << name;
+    EXPECT_NEAR(k->beyond(0), 0.5, 1e-9);
+    const Eigen::Vector3d p(0.1, -0.05, 0.02), a(-0.2, 0.1, 0.3), b(0.5, 0.2, -0.1);
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += k->value((a + (i + 0.5) / n * (b - a) - p).norm()) / n;
+    EXPECT_NEAR(branch_weight(*k, p, a, b), sum, 2e-4 * k->value(0)) << name;
+  }
+}
+
+TEST(Rattlers, AreTakenAwayOneAfterTheOther) {
+  // 0 and 1 lean on the floor and on each other; 2 hangs on 1, 3 on 2; 4 touches with no force.
+  dem::Snapshot s;
+  test::add_wall(s, "floor", {0, 0, 0}, {0, 1, 0});
+  for (int k = 0; k < 5; ++k) s.grains.push_back(test::disk(k, k, 0.5, 0.5));
+  const auto touch = [&](std::int64_t i, std::int64_t j, double force) {
+    dem::Contact c;
+    c.i = i;
+    c.j = j;
+    c.point = {static_cast<double>(i) + 0.5, 0.5, 0};
+    if (j < 0) c.point = {static_cast<double>(i), 0, 0};
+    c.normal = {1, 0, 0};
+    c.force = {-force, 0, 0};
+    s.contacts.push_back(c);
+  };
+  touch(0, -1, 1);
+  touch(0, 1, 1);
+  touch(1, -1, 1);
+  touch(1, 2, 1);
+  touch(2, 3, 1);
+  touch(3, 4, 0);
+  EXPECT_EQ(rattlers(s), (std::vector<bool>{false, false, true, true, true}));
+  const auto facts = grain_facts(s);
+  EXPECT_EQ(facts[1].contacts, 3);
+  EXPECT_EQ(facts[1].bearing_contacts, 2);
+  EXPECT_EQ(facts[3].contacts, 2);
+  EXPECT_EQ(facts[3].bearing_contacts, 0);
+  const Field f = average(s, line_points(2, 2, 1, 0.5), options("particle_centre", "circle", 3));
+  EXPECT_NEAR(f.find("coordination")->value[0], 10. / 5, 1e-12);
+  EXPECT_NEAR(f.find("coordination_bearing")->value[0], 4. / 2, 1e-12);
+  EXPECT_NEAR(f.find("rattlers")->value[0], 0.6, 1e-12);
+  s.grains[2].fixed = true;  // part of the apparatus: it supports
+  EXPECT_EQ(rattlers(s), (std::vector<bool>{false, false, false, true, true}));
+  s.grains[2].fixed = false;
+  s.loaded_grain = 2;  // an applied force supports as well
+  s.applied_force = {0, -1, 0};
+  EXPECT_EQ(rattlers(s), (std::vector<bool>{false, false, false, true, true}));
+}
+
+TEST(Averaging, NamesPointsWithTooFewGrains) {
+  const dem::Snapshot s = layer(11);
+  AverageOptions o = options("particle_centre", "circle", 0.008);
+  o.least_grains = 3;
+  Gaps gaps;
+  const Eigen::MatrixXd points = grid_points(0.02, 0.1, 5, 0.03, 0.5, 2);
+  const Field f = average(s, points, o, &gaps);
+  EXPECT_EQ(gaps.points, 10);
+  EXPECT_EQ(gaps.outside.size(), 5u);  // the upper row is far above the packing
+  for (const auto& [p, grains] : gaps.few_grains) {
+    EXPECT_LT(grains, 3);
+    EXPECT_TRUE(std::isnan(f.find("sigma_xx")->value[p]));
+    EXPECT_EQ(f.find("grains")->value[p], grains);
+  }
+  Gaps known;
+  known.points = 10;
+  known.least_grains = 3;
+  for (Eigen::Index p : {1, 2, 4, 5}) known.few_grains[p] = static_cast<double>(p) / 2;
+  known.outside[9] = 1;
+  EXPECT_EQ(known.text(points),
+            "4 of 10 points have fewer than 3 grains in the averaging volume and are nan: (0.04 "
+            "0.03) with 0.5, (0.06 0.03) with 1, (0.1 0.03) with 2, ...; a larger width takes in "
+            "more\n1 of 10 points have less than a tenth of the averaging volume inside the "
+            "packing and are nan: (0.1 0.5)");
+  Gaps both = gaps;
+  both.add(known);
+  EXPECT_EQ(both.few_grains.at(1),
+            std::min(0.5, gaps.few_grains.count(1) ? gaps.few_grains.at(1) : 9));
+  EXPECT_EQ(Gaps{}.text(points), "");
+}
+
+TEST(Averaging, OnlyTheChosenQuantities) {
+  const dem::Snapshot s = layer(2);
+  AverageOptions o = options("coarse_graining", "lucy", 0.01);
+  o.quantities = {"fabric", "density"};
+  const Eigen::MatrixXd points = grid_points(0, 0.12, 5, 0, 0.06, 4);
+  const Field few = average(s, points, o);
+  ASSERT_EQ(few.columns.size(), 4u);
+  EXPECT_EQ(few.columns[0].name, "density");
+  o.quantities.clear();
+  const Field all = average(s, points, o);
+  for (const Column& column : few.columns) EXPECT_EQ(column.value, all.find(column.name)->value);
+  EXPECT_EQ(all.columns.back().name, "grains");
+}
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
+  dem::Snapshot s = layer(2);
+  const Eigen::MatrixXd p = line_points(0, 1, 2, 0);
+  AverageOptions o = options("area_exact", "lucy", 1);
+  EXPECT_EQ(refusal([&] { average(s, p, o); }),
+            "unknown kernel of area_exact \"lucy\"; known: circle, square; did you mean "
+            "\"circle\"?");
+  o.kernel = "circle";
+  o.free_surface = "closed";
+  EXPECT_EQ(refusal([&] { average(s, p, o); }),
+            "unknown free surface \"closed\"; known: open, normalised; did you mean \"open\"?");
+  o.free_surface = "open";
+  o.quantities = {"fabrik"};
+  const std::string text = refusal([&] { average(s, p, o); });
+  EXPECT_EQ(text.substr(0, 44), "unknown quantity \"fabrik\"; known: sigma, sig");
+  EXPECT_NE(text.find("did you mean \"fabric\"?"), std::string::npos);
+  o.quantities.clear();
+  EXPECT_EQ(refusal([&] { balance_residual(s, p, o, 0.1, 3); }),
+            "differences of order 3 for the balance; known: 2, 4");
+  s.dim = 3;
+  const Eigen::MatrixXd q = Eigen::MatrixXd::Zero(1, 3);
+  EXPECT_EQ(refusal([&] { average(s, q, o); }),
+            "the snapshot is 3D; area_exact clips areas and needs a 2D one");
+  o = options("coarse_graining", "lucy", 1);
+  o.free_surface = "normalised";
+  EXPECT_EQ(refusal([&] { average(s, q, o); }),
+            "the snapshot is 3D; a normalised free surface needs a 2D one");
+  EXPECT_EQ(refusal([&] { cut_force(s, 0, options("coarse_graining", "lucy", 1)); }),
+            "the snapshot is 3D; a 2D one is needed");
+  EXPECT_EQ(refusal([&] { heap_frame(s); }), "the snapshot is 3D; a 2D one is needed");
+  EXPECT_EQ(refusal([&] { cut_points(0, 1, 3, {}); }), "horizontal cuts without heights");
+  EXPECT_EQ(refusal([&] { segment_points(Eigen::Vector2d(0, 0), Eigen::Vector3d(0, 0, 0), 3); }),
+            "a line from 2 to 3 coordinates; both ends need as many");
+  EXPECT_EQ(refusal([&] { segment_points(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), 0); }),
+            "a line of 0 points; at least 1");
+  dem::Snapshot flat = layer(2, 12, 2);
+  AverageOptions one;
+  one.width = 1;
+  EXPECT_EQ(refusal([&] { balance_table(flat, one); }),
+            "the packing is nowhere four mean diameters high; too low to compare averagings on");
+}
+
+TEST(Points, LinesCutsAndSegments) {
+  const Eigen::MatrixXd cuts = cut_points(0, 1, 3, {0.5, 2});
+  ASSERT_EQ(cuts.rows(), 6);
+  EXPECT_EQ(cuts(1, 0), 0.5);
+  EXPECT_EQ(cuts(4, 1), 2);
+  const Eigen::MatrixXd line =
+      segment_points(Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(2, 1, 0), 5);
+  EXPECT_EQ(line(1, 0), 0.5);
+  EXPECT_EQ(line(1, 2), 1.5);
+  EXPECT_EQ(segment_points(Eigen::Vector2d(3, 4), Eigen::Vector2d(9, 9), 1)(0, 1), 4);
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
