@@ -87,9 +87,10 @@ struct SourceSetup {
   double move = 0;      ///< m; point: the funnel moves this far to the right while it pours,
                         ///< from -move/2 to move/2 (asymmetric piles)
   double clearance = 0.008;  ///< m above the pile from which a layer falls; line
-  double length = 1.1;  ///< m; line: length of the first layer; later ones cover the pile's plateau
-  double shift = 0;     ///< m; line: each layer lies this far to the right of the plateau's middle
-                        ///< (asymmetric piles)
+  double length = 0.77;      ///< m; line: length of the first layer, about 0.7 of the base of the
+                             ///< finished pile; later ones cover the pile's plateau
+  double shift = 0;  ///< m; line: each layer's middle lies this far to the right of the last one's
+                     ///< (asymmetric piles)
 };
 
 /// The ground, y = 0, with side walls at its ends that only catch stray grains: a pile that leans
