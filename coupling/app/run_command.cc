@@ -1,5 +1,4 @@
 // run: a case from start to end, with progress.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/progress_text.h"
 #include "coupling/case/case.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/interrupt.h"
@@ -17,13 +17,6 @@
 
 namespace grainfield::coupling {
 namespace {
-
-std::string duration(double seconds) {
-  if (seconds < 0) return "?";
-  const auto s = static_cast<long>(seconds + 0.5);
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
-                   : fmt::format("{}:{:02}", s / 60, s % 60);
-}
 
 /// One line that is rewritten on a terminal; elsewhere a line every few seconds.
 class ProgressLine {
@@ -36,11 +29,7 @@ class ProgressLine {
     constexpr auto kEvery = std::chrono::seconds(5);
     if (!terminal_ && now - last_ < kEvery) return;
     last_ = now;
-    const std::string line = fmt::format(
-        "{:3.0f} %  {}/{} done  {}  t {:.3f} s  {} grains  kinetic {:.1e} J  unbalanced {:.1e}  "
-        "{} left",
-        100 * p.fraction, p.done, p.total, p.phase, p.simulated_time, p.grains, p.kinetic_energy,
-        p.unbalanced_force_ratio, duration(p.seconds_left));
+    const std::string line = progress_text(p);
     if (terminal_) {
       fmt::print(stderr, "\r\033[K{}", line);
       open_ = true;

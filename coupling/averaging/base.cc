@@ -67,6 +67,14 @@ Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
   return change;
 }
 
+std::vector<BaseForce> base_forces(const dem::Snapshot& snapshot) {
+  std::vector<BaseForce> out;
+  for_each_support(snapshot, true, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
+    out.push_back({point, force});
+  });
+  return out;
+}
+
 Eigen::Vector2d base_force(const dem::Snapshot& snapshot) { return support_force(snapshot, true); }
 
 Eigen::Vector2d side_wall_force(const dem::Snapshot& snapshot) {

@@ -2,6 +2,7 @@
 // along x with the averaging kernel.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
@@ -19,6 +20,14 @@ Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, cons
 /// base_profile(loaded) - base_profile(unloaded). Throws as require_same_grains.
 Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                     const Eigen::VectorXd& x, const Kernel& kernel);
+
+/// A contact of the layer with its base.
+struct BaseForce {
+  Eigen::Vector2d point;  ///< m, packing's axes
+  Eigen::Vector2d force;  ///< of the base on the grain, N (y up)
+};
+/// Every contact of a free grain with a wall named "floor" or with a fixed grain.
+std::vector<BaseForce> base_forces(const dem::Snapshot& snapshot);
 
 /// Force of the base on the grains, N: (horizontal, vertical up).
 Eigen::Vector2d base_force(const dem::Snapshot& snapshot);

@@ -1,4 +1,5 @@
 // Keys of everything around the grains: the study, ensemble, averaging, models, output, sweep.
+#include "coupling/case/apply.h"
 #include "coupling/case/declare.h"
 #include "coupling/run/studies.h"
 
@@ -78,11 +79,12 @@ void elastic(Section s) {
 }
 
 void compare(Section s) {
-  s.word("models", +IN(Words, compare.models), {},
-         "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
-         "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
-         "elastic-layer) are filled "
-         "from the run unless set");
+  s.word(
+      "models", +[](Case& c) -> Words& { return model_names(c); }, {},
+      "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
+      "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
+      "elastic-layer) are filled "
+      "from the run unless set");
 }
 
 void output(Section s) {

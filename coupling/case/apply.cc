@@ -60,7 +60,8 @@ void set(const Key& key, const Assignment& a, Case& value) {
         auto& held = where(value);
         using T = std::decay_t<decltype(held)>;
         if constexpr (std::is_same_v<T, std::vector<double>>) {
-          if (a.items.empty()) reject(a, key.path(), "found an empty list, expected numbers");
+          if (a.items.empty() && !key.may_be_empty)
+            reject(a, key.path(), "found an empty list, expected numbers");
           held.clear();
           for (const auto& item : a.items) held.push_back(number(key, a, item));
         } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {

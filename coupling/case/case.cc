@@ -148,6 +148,20 @@ std::string write_case(const Case& value) {
   return out;
 }
 
+std::string grain_keys_text(const Case& value) {
+  static const std::vector<std::string> others{"average", "heap", "elastic", "compare", "output"};
+  std::string out;
+  for (const Key& key : keys()) {
+    if (!key_applies(key, value.study) || key.path() == "title" ||
+        key.path() == "ensemble.realizations" ||
+        std::find(others.begin(), others.end(), key.section) != others.end()) {
+      continue;
+    }
+    out += fmt::format("{} = {}\n", key.path(), value_text(key, value));
+  }
+  return out;
+}
+
 bool filled_by_run(const std::string& parameter, const std::string& study) {
   const Study* known = find_study(study);
   return known != nullptr &&

@@ -30,6 +30,14 @@ struct AverageSetup {
   std::int64_t map_rows = 31;
 };
 
+/// What is looked at in a heap. Heights are shares of its height, abscissas shares of its half
+/// base.
+struct HeapSetup {
+  std::vector<double> heights = {0.1, 0.25, 0.5};  ///< horizontal cuts above the base
+  double centre = 0.1;                             ///< dip: |x| of the window under the apex
+  double shoulder_from = 0.15, shoulder_to = 0.4;  ///< dip: |x| of the windows beside it
+};
+
 /// Points and load of the studies without grains.
 struct ElasticSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
@@ -64,6 +72,7 @@ struct ModelChoice {
 /// How models = [...] and [model.LABEL] were written, before they are put together.
 struct CompareSetup {
   std::vector<std::string> models = {"flamant", "layer", "fe_elastic_layer"};
+  std::vector<std::string> of_heaps;  ///< the same for studies that do without models
 };
 
 struct Case {
@@ -72,7 +81,9 @@ struct Case {
   std::string study = "point-load";
   EnsembleSetup ensemble;
   dem::PointLoadSetup layer;
+  dem::PileSetup pile;
   AverageSetup average;
+  HeapSetup heap;
   ElasticSetup elastic;
   CompareSetup compare;
   OutputSetup output;
@@ -97,6 +108,9 @@ std::vector<SweepCase> sweep_cases(const Case& value);
 /// The whole case as TOML: every key of its study with unit and meaning as a comment. Reading it
 /// back gives the same case.
 std::string write_case(const Case& value);
+/// Those keys, one a line, that the simulated grains depend on: a run that differs in others only
+/// (averaging, models, outputs, the number of realizations) can use the same grains.
+std::string grain_keys_text(const Case& value);
 /// Whether the run fills this parameter of a model in where the user does not set it.
 bool filled_by_run(const std::string& parameter, const std::string& study);
 /// Only the title of a case file; throws as read_case when it is not TOML.

@@ -25,15 +25,31 @@ class Section {
 
   void number(const std::string& name, const std::string& unit, Binding where, Range range,
               const std::string& meaning, const std::string& source = "") {
-    keys_.push_back(
-        {name_, name, unit, where, range.least, range.most, {}, meaning, source, range.open_least});
+    keys_.push_back({name_,
+                     name,
+                     unit,
+                     where,
+                     range.least,
+                     range.most,
+                     {},
+                     meaning,
+                     source,
+                     range.open_least,
+                     false});
+  }
+  /// A list of numbers that may be empty.
+  void numbers_or_none(const std::string& name, const std::string& unit, Binding where, Range range,
+                       const std::string& meaning, const std::string& source = "") {
+    number(name, unit, where, range, meaning, source);
+    keys_.back().may_be_empty = true;
   }
   void word(const std::string& name, Binding where, std::vector<std::string> choices,
             const std::string& meaning, const std::string& source = "") {
-    keys_.push_back({name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false});
+    keys_.push_back(
+        {name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false, false});
   }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
-    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false});
+    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false, false});
   }
 
  private:
@@ -42,6 +58,8 @@ class Section {
 };
 
 void declare_grain_keys(std::vector<Key>& keys);
+void declare_pile_keys(std::vector<Key>& keys);
+void declare_heap_keys(std::vector<Key>& keys);
 void declare_analysis_keys(std::vector<Key>& keys);
 
 }  // namespace grainfield::coupling

@@ -83,7 +83,7 @@ void choose_models(Draft& draft) {
   Case& value = draft.value;
   value.models.clear();
   std::set<std::string> seen;
-  for (const auto& label : value.compare.models) {
+  for (const auto& label : model_names(value)) {
     if (!seen.insert(label).second) reject(where, "compare.models", "\"" + label + "\" twice");
     const auto table = tables.find(label);
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
@@ -125,6 +125,21 @@ void check_sizes(const Draft& draft) {
     reject(
         written(draft, "packing.radius_small"), "packing.radius_small",
         fmt::format("found {:g}, allowed: up to packing.radius = {:g}", p.radius_small, p.radius));
+  }
+}
+
+void check_heap(const Draft& draft) {
+  if (!section_applies("heap", draft.value.study)) return;
+  const HeapSetup& h = draft.value.heap;
+  if (h.shoulder_from >= h.shoulder_to) {
+    reject(written(draft, "heap.shoulder_from"), "heap.shoulder_from",
+           fmt::format("found {:g}, allowed: below heap.shoulder_to = {:g}", h.shoulder_from,
+                       h.shoulder_to));
+  }
+  if (h.centre > h.shoulder_from) {
+    reject(written(draft, "heap.centre"), "heap.centre",
+           fmt::format("found {:g}, allowed: up to heap.shoulder_from = {:g}", h.centre,
+                       h.shoulder_from));
   }
 }
 
@@ -178,10 +193,16 @@ void check_sweep(const Draft& draft) {
 
 }  // namespace
 
+std::vector<std::string>& model_names(Case& value) {
+  const Study* study = find_study(value.study);
+  return study != nullptr && study->models_optional ? value.compare.of_heaps : value.compare.models;
+}
+
 void finish(Draft& draft) {
   check_sections(draft);
   choose_models(draft);
   check_elastic(draft);
+  check_heap(draft);
   check_grains(draft);
   check_sweep(draft);
 }

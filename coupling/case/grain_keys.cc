@@ -1,14 +1,21 @@
-// Keys of the grains: [packing] [material] [motion] [rest] [load].
+// Keys of the grains that several studies share, and of layers: [packing] [material] [motion]
+// [rest] [load].
 #include "coupling/case/declare.h"
 
 // A key bound to the member of the same name: the default is that member's.
 #define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.layer.MEMBER; }
+// The same of what layers and piles share, in the setup of the case's study.
+#define SHARED(TYPE, MEMBER) \
+  [](Case& c) -> TYPE& { return is_pile(c) ? c.pile.MEMBER : c.layer.MEMBER; }
 
 namespace grainfield::coupling {
 namespace {
 
 using std::string;
 constexpr const char* kRoul = "Roul table 5.1";
+constexpr const char* kBoth = "Roul tables 5.1, 2";
+
+bool is_pile(const Case& value) { return section_applies("source", value.study); }
 
 void packing(Section s) {
   s.word("kind", +IN(string, packing.kind), {"triangular", "sqrt3", "layered"},
@@ -45,6 +52,10 @@ void packing(Section s) {
   s.number("drop_height", "m", +IN(double, packing.drop_height), kPositive,
            "layered: height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
+  s.word("shape", +IN(string, packing.shape), {"disk", "irregular"},
+         "layered: disks, or irregular pentagons (sizes and radii are not used)", "Roul 5.1");
+  s.number("side", "m", +IN(double, packing.side), kPositive, "irregular: mean length of a side",
+           "Roul 5.1");
   s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
          "flat wall with friction, or a row of fixed grains", "Roul 5.5");
   s.number("jitter", "-", +IN(double, packing.jitter), {0, 0.5},
@@ -52,56 +63,57 @@ void packing(Section s) {
 }
 
 void material(Section s) {
-  s.word("law", +IN(string, material.law), {"overlap_area", "linear"},
+  s.word("law", +SHARED(string, material.law), {"overlap_area", "linear"},
          "contact law: elastic force from the overlap area, or linear spring and dashpot",
          "Roul 2.3");
-  s.number("density", "kg/m2", +IN(double, material.density), kPositive,
-           "areal density of the grains; heavier grains: longer time step", kRoul);
-  s.number("young", "N/m", +IN(double, material.young), kPositive,
+  s.number("density", "kg/m2", +SHARED(double, material.density), kPositive,
+           "areal density of the grains; heavier grains: longer time step", kBoth);
+  s.number("young", "N/m", +SHARED(double, material.young), kPositive,
            "overlap_area: Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
            "time step",
-           kRoul);
-  s.number("damping", "-", +IN(double, material.damping), kNotNegative,
-           "overlap_area: gamma of the normal dashpot; more dissipates faster", kRoul);
-  s.number("normal_stiffness", "N/m", +IN(double, material.normal_stiffness), kPositive,
+           kBoth);
+  s.number("damping", "-", +SHARED(double, material.damping), kNotNegative,
+           "overlap_area: gamma of the normal dashpot; more dissipates faster", kBoth);
+  s.number("normal_stiffness", "N/m", +SHARED(double, material.normal_stiffness), kPositive,
            "linear: normal spring");
-  s.number("tangential_stiffness", "N/m", +IN(double, material.tangential_stiffness), kNotNegative,
+  s.number("tangential_stiffness", "N/m", +SHARED(double, material.tangential_stiffness),
+           kNotNegative,
            "linear: tangential spring; 2/7 of the normal one makes both swing in step");
-  s.number("normal_damping", "1/s", +IN(double, material.normal_damping), kNotNegative,
+  s.number("normal_damping", "1/s", +SHARED(double, material.normal_damping), kNotNegative,
            "linear: normal force of the dashpot per reduced mass and approach velocity");
-  s.number("tangential_damping", "1/s", +IN(double, material.tangential_damping), kNotNegative,
+  s.number("tangential_damping", "1/s", +SHARED(double, material.tangential_damping), kNotNegative,
            "linear: the same, tangential");
   s.number(
-      "friction", "-", +IN(double, material.friction), {0, 10},
+      "friction", "-", +SHARED(double, material.friction), {0, 10},
       "Coulomb coefficient grain on grain; more merges the two peaks of the sqrt(3) lattice into "
       "one",
-      kRoul);
-  s.number("floor_friction", "-", +IN(double, material.floor_friction), {0, 10},
-           "Coulomb coefficient grain on flat floor", kRoul);
-  s.number("wall_friction", "-", +IN(double, material.wall_friction), {0, 10},
+      kBoth);
+  s.number("floor_friction", "-", +SHARED(double, material.floor_friction), {0, 10},
+           "Coulomb coefficient grain on flat floor", kBoth);
+  s.number("wall_friction", "-", +SHARED(double, material.wall_friction), {0, 10},
            "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
-  s.number("gravity", "m/s2", +IN(double, material.gravity), kPositive, "downwards", kRoul);
+  s.number("gravity", "m/s2", +SHARED(double, material.gravity), kPositive, "downwards", kBoth);
 }
 
 void motion(Section s) {
-  s.word("integrator", +IN(string, motion.integrator), {"verlet", "gear"},
+  s.word("integrator", +SHARED(string, motion.integrator), {"verlet", "gear"},
          "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
          "Roul 2.5");
-  s.number("time_step", "s", +IN(double, motion.time_step), kNotNegative,
+  s.number("time_step", "s", +SHARED(double, motion.time_step), kNotNegative,
            "0: time_step_fraction of the stable limit; above the limit is refused");
-  s.number("time_step_fraction", "-", +IN(double, motion.time_step_fraction), {0, 1, true},
+  s.number("time_step_fraction", "-", +SHARED(double, motion.time_step_fraction), {0, 1, true},
            "share of the stable limit; less is more exact and takes longer", "Roul 2.10");
 }
 
 void rest(Section s) {
-  s.number("unbalanced_force_ratio", "-", +IN(double, rest.unbalanced_force_ratio), {0, 0.1, true},
-           "at rest: mean resultant over mean contact force is below this");
-  s.number("kinetic_to_elastic_energy", "-", +IN(double, rest.kinetic_to_elastic_energy),
+  s.number("unbalanced_force_ratio", "-", +SHARED(double, rest.unbalanced_force_ratio),
+           {0, 0.1, true}, "at rest: mean resultant over mean contact force is below this");
+  s.number("kinetic_to_elastic_energy", "-", +SHARED(double, rest.kinetic_to_elastic_energy),
            {0, 0.1, true}, "at rest: kinetic over elastic energy is below this");
-  s.number("background_damping", "1/s", +IN(double, rest.background_damping), kNotNegative,
+  s.number("background_damping", "1/s", +SHARED(double, rest.background_damping), kNotNegative,
            "acceleration -= this * velocity while coming to rest; more ends slow swinging sooner, "
            "far more makes settling creep");
-  s.number("max_time", "s", +IN(double, rest.max_time), kPositive,
+  s.number("max_time", "s", +SHARED(double, rest.max_time), kPositive,
            "simulated time after which a packing that is not at rest counts as failed");
 }
 
@@ -126,4 +138,5 @@ void declare_grain_keys(std::vector<Key>& keys) {
 
 }  // namespace grainfield::coupling
 
+#undef SHARED
 #undef IN

@@ -107,10 +107,16 @@ const std::vector<Key>& keys() {
     std::vector<Key> list, grains;
     declare_analysis_keys(list);
     declare_grain_keys(grains);
+    declare_pile_keys(grains);
     // Files read best in the order study, ensemble, grains, averaging, models, output.
     const auto after = std::find_if(list.begin(), list.end(),
                                     [](const Key& key) { return key.section == "average"; });
     list.insert(after, grains.begin(), grains.end());
+    std::vector<Key> heap;
+    declare_heap_keys(heap);
+    list.insert(std::find_if(list.begin(), list.end(),
+                             [](const Key& key) { return key.section == "elastic"; }),
+                heap.begin(), heap.end());
     return list;
   }();
   return all;

@@ -25,6 +25,7 @@ struct Key {
   std::string meaning;               ///< with what raising it does
   std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
   bool open_least = false;           ///< the least value itself is not allowed
+  bool may_be_empty = false;         ///< lists: without any value
 
   std::string path() const { return section.empty() ? name : section + "." + name; }
 };

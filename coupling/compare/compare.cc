@@ -20,7 +20,6 @@ constexpr double pooled_lengths = 2;
 
 void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles>& models) {
   if (profiles.empty()) throw std::invalid_argument("nothing to compare: no profile");
-  if (models.empty()) throw std::invalid_argument("nothing to compare with: no model");
   for (const Profile& p : profiles) {
     if (p.mean.size() != p.x.size() || (p.error.size() != 0 && p.error.size() != p.x.size()) ||
         (p.samples.size() != 0 && p.samples.rows() != p.x.size()))
@@ -119,7 +118,29 @@ Measures measure(const Profile& p, const Eigen::VectorXd& model, int realization
   return m;
 }
 
+// Everything but models and profiles.
+Comparison described(const std::vector<Profile>& profiles, double load, double depth,
+                     int realizations) {
+  Comparison c;
+  c.load = load;
+  c.depth = depth;
+  c.realizations = realizations > 0
+                       ? realizations
+                       : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
+  for (const Profile& p : profiles) c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+  return c;
+}
+
 }  // namespace
+
+Comparison without_models(std::vector<Profile> profiles, double load, double depth,
+                          int realizations) {
+  check(profiles, {});
+  Comparison c = described(profiles, load, depth, realizations);
+  c.profiles = std::move(profiles);
+  c.verdict.position = c.verdict.position_error = nan;
+  return c;
+}
 
 std::string family_of(const std::string& model_name) {
   if (model_name == "flamant" || model_name == "fe_elastic_half_space") return "half plane";
@@ -129,14 +150,11 @@ std::string family_of(const std::string& model_name) {
 
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
                    double depth, int realizations) {
+  if (!profiles.empty() && models.empty()) {
+    throw std::invalid_argument("nothing to compare with: no model");
+  }
   check(profiles, models);
-  Comparison c;
-  c.load = load;
-  c.depth = depth;
-  c.realizations = realizations > 0
-                       ? realizations
-                       : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
-  for (const Profile& p : profiles) c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+  Comparison c = described(profiles, load, depth, realizations);
   for (const ModelProfiles& model : models) {
     ModelComparison result{model.key, model.label, model.family, {}, {}, {}};
     Totals totals;

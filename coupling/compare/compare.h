@@ -64,8 +64,17 @@ struct Verdict {
   std::vector<std::string> ranking;  ///< keys, nearest first
 };
 
+/// How lengths and values of a comparison are made dimensionless, in words.
+struct Scale {
+  std::string length = "h";     ///< its name
+  std::string stress = "F/h";   ///< name of the unit of normalised profiles
+  std::string x_from = "load";  ///< where x = 0
+  std::string note;             ///< one line for tables; empty: F, h, F/h and the realizations
+};
+
 struct Comparison {
   std::vector<Profile> profiles;
+  std::vector<Profile> beside;  ///< other averages of the same places: in tables, not compared
   std::vector<ModelProfiles> models;
   std::vector<ProfileShape> shapes;      ///< of the simulation, one per profile
   std::vector<ModelComparison> results;  ///< in the order of models
@@ -73,7 +82,16 @@ struct Comparison {
   int realizations = 1;
   double load = 0;   ///< F, N
   double depth = 0;  ///< h, m; F/h is the unit of normalised profiles
+  Scale scale;
+
+  /// Unit of normalised profiles, N/m.
+  double unit() const { return load / depth; }
 };
+
+/// The simulation alone: shapes of the profiles, no models, no verdict. Throws
+/// std::invalid_argument for no profile, sizes that differ, or a profile that is nan everywhere.
+Comparison without_models(std::vector<Profile> profiles, double load, double depth,
+                          int realizations = 0);
 
 /// `realizations`: behind the profiles' errors; 0: as many as the profiles have samples. Throws
 /// std::invalid_argument for no profile, no model, sizes that differ, or a simulation that is nan

@@ -33,14 +33,14 @@ struct Style {
   std::string begin, separator, end;  // of a row
 };
 
-// Header and rows of one profile, normalised by F/h.
+// Header and rows of one profile, normalised by its scale.
 std::vector<std::vector<std::string>> normalised(
     const Comparison& c, std::size_t k, int rows,
     const std::function<std::string(std::string)>& math) {
   const Profile& p = c.profiles[k];
   const double unit = c.load / c.depth;
   std::vector<std::vector<std::string>> table(1);
-  table[0] = {math("x/h"), "simulation", "standard error"};
+  table[0] = {math(fmt::format("x/{}", c.scale.length)), "simulation", "standard error"};
   for (const ModelProfiles& m : c.models) {
     table[0].push_back(m.label);
     table[0].push_back("difference");
@@ -75,6 +75,13 @@ std::string escape_latex(const std::string& text) {
   return out;
 }
 
+// The name of a unit inside $...$.
+std::string math_latex(const std::string& text) {
+  const std::size_t at = text.find("rho");
+  if (at == std::string::npos) return text;
+  return fmt::format("{}\\{}", text.substr(0, at), text.substr(at));
+}
+
 std::string quote_csv(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -83,6 +90,7 @@ std::string quote_csv(const std::string& text) {
 }
 
 std::string normalisation(const Comparison& c) {
+  if (!c.scale.note.empty()) return c.scale.note;
   return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
                      c.depth, c.load / c.depth, c.realizations);
 }
@@ -91,7 +99,7 @@ std::string normalisation(const Comparison& c) {
 
 std::string profiles_csv(const Comparison& c) {
   std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
-                     ": compression positive; x from the load\n";
+                     ": compression positive; x from the " + c.scale.x_from + "\n";
   const std::string unit = c.profiles.front().unit;
   text += fmt::format("profile,depth_m,x_m,simulation_{0},standard_error_{0}", unit);
   for (const ModelProfiles& m : c.models)
@@ -113,14 +121,22 @@ std::string profiles_csv(const Comparison& c) {
       text += "\n";
     }
   }
+  for (const Profile& p : c.beside) {
+    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
+      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}", quote_csv(p.name), p.depth, p.x[i],
+                          p.mean[i], error_at(p, i));
+      for (std::size_t m = 0; m < c.models.size(); ++m) text += ",nan,nan,nan";
+      text += "\n";
+    }
+  }
   return text;
 }
 
 std::string profiles_markdown(const Comparison& c, int rows) {
   std::string text = "# Profiles\n\n" + normalisation(c) + "\n";
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    text += fmt::format("\n## {}\n\n{} in units of F/h\n\n", c.profiles[k].name,
-                        c.profiles[k].quantity);
+    text += fmt::format("\n## {}\n\n{} in units of {}\n\n", c.profiles[k].name,
+                        c.profiles[k].quantity, c.scale.stress);
     const auto table = normalised(c, k, rows, [](std::string s) { return s; });
     const Style style{"| ", " | ", " |"};
     text += join(table[0], style);
@@ -135,13 +151,13 @@ std::string profiles_latex(const Comparison& c, int rows) {
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     auto table = normalised(c, k, rows, [](std::string s) { return "$" + s + "$"; });
     for (std::string& head : table[0])
-      if (head != "$x/h$") head = escape_latex(head);
+      if (head.front() != '$') head = escape_latex(head);
     const Style style{"  ", " & ", " \\\\"};
     text += fmt::format(
         "\\begin{{table}}\n\\caption{{{}: {} in units of "
-        "$F/h$}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
+        "${}$}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
         escape_latex(c.profiles[k].name), escape_latex(c.profiles[k].quantity),
-        std::string(table[0].size(), 'r'));
+        math_latex(c.scale.stress), std::string(table[0].size(), 'r'));
     text += join(table[0], style) + "\\hline\n";
     for (std::size_t r = 1; r < table.size(); ++r) text += join(table[r], style);
     text += "\\hline\n\\end{tabular}\n\\end{table}\n";

@@ -11,9 +11,10 @@ namespace grainfield::coupling {
 
 /// One row per profile point: profile, depth, x, simulation mean, standard error, and of each model
 /// its value, difference (simulation - model) and difference / standard error; header names carry
-/// units; comment lines (#) before give F, h, F/h and the number of realizations.
+/// units; comment lines (#) before give the scale and the number of realizations. Profiles `beside`
+/// follow, without models (nan).
 std::string profiles_csv(const Comparison& comparison);
-/// The same rows for reading, normalised by F/h, at most `rows` rows per profile.
+/// The same rows for reading, normalised by the scale, at most `rows` rows per profile.
 std::string profiles_markdown(const Comparison& comparison, int rows = 25);
 std::string profiles_latex(const Comparison& comparison, int rows = 25);
 /// Writes folder/profiles.csv, .md and .tex, each complete or not at all.

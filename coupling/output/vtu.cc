@@ -89,6 +89,10 @@ dem::Vec3 branch_end(const dem::Snapshot& snapshot, const dem::Contact& contact)
 
 std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides) {
   std::vector<dem::Vec3> corners;
+  const double c = std::cos(grain.angle), s = std::sin(grain.angle);
+  for (const auto& [x, y] : grain.outline)
+    corners.push_back(grain.position + dem::Vec3(c * x - s * y, s * x + c * y, 0));
+  if (!corners.empty()) return corners;
   for (int k = 0; k < sides; ++k) {
     const double a = grain.angle + 2 * std::numbers::pi * k / sides;
     corners.push_back(grain.position + grain.radius * dem::Vec3(std::cos(a), std::sin(a), 0));

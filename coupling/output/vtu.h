@@ -8,7 +8,8 @@
 
 namespace grainfield::coupling {
 
-/// The outline of a grain as a closed polygon (without repeating the first corner), m.
+/// The outline of a grain where it is, as a closed polygon (without repeating the first corner), m:
+/// its own corners, or `sides` points on a disk.
 std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides = 32);
 
 /// One polygon per grain. Cell data: id, radius, mass, fixed, coordination, force (sum of contact

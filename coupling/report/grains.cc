@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
+#include <stdexcept>
 
 #include "coupling/averaging/extent.h"
+#include "coupling/averaging/layer.h"
 #include "coupling/report/picture.h"
+#include "coupling/report/scene.h"
 #include "coupling/report/style.h"
 
 namespace grainfield::coupling {
@@ -12,10 +14,13 @@ namespace {
 
 // Forces above this quantile are drawn as wide as it: else the one under the load dwarfs the rest.
 constexpr double width_quantile = 0.99;
-constexpr double widest = 9;              // pixels
-constexpr double least_share = 0.02;      // of the widest: thinner lines are not drawn
-constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
-constexpr int bins = 36;                  // of the polar histogram, 10 degrees each
+constexpr double widest = 9;          // pixels; and not above
+constexpr double widest_share = 1.2;  // of a mean diameter
+constexpr double least_share = 0.02;  // of the widest: thinner lines are not drawn
+// Displacement arrows: the 99 % quantile is drawn this many mean diameters long; of more grains
+// than this every n-th has an arrow.
+constexpr double arrow_diameters = 3;
+constexpr std::size_t most_arrows = 1800;
 
 struct Line {
   Eigen::Vector2d from, to;
@@ -49,15 +54,20 @@ std::vector<Line> force_lines(const dem::Snapshot& snapshot, const dem::Snapshot
   return lines;
 }
 
-double force_scale(const std::vector<Line>& lines) {
-  std::vector<double> sizes;
-  for (const Line& line : lines)
-    if (line.force != 0) sizes.push_back(std::abs(line.force));
-  if (sizes.empty()) return 1;
+// 0 without values.
+double quantile(std::vector<double> sizes) {
+  if (sizes.empty()) return 0;
   const auto k =
       static_cast<std::ptrdiff_t>(width_quantile * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), sizes.begin() + k, sizes.end());
   return sizes[static_cast<std::size_t>(k)];
+}
+
+double force_scale(const std::vector<Line>& lines) {
+  std::vector<double> sizes;
+  for (const Line& line : lines)
+    if (line.force != 0) sizes.push_back(std::abs(line.force));
+  return sizes.empty() ? 1 : quantile(std::move(sizes));
 }
 
 }  // namespace
@@ -66,21 +76,10 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
                 const dem::Snapshot* reference) {
   Picture picture;
   picture.title = title;
-  picture.bitmap = snapshot.grains.size() > most_in_svg;
   std::string& p = picture.program;
-  double left = 0, right = 1, bottom = 0, top = 1;
-  bool first = true;
-  p += "$grains << EOD\n";
-  for (const dem::Grain& g : snapshot.grains) {
-    left = first ? left_of(g) : std::min(left, left_of(g));
-    right = first ? right_of(g) : std::max(right, right_of(g));
-    bottom = first ? bottom_of(g) : std::min(bottom, bottom_of(g));
-    top = first ? top_of(g) : std::max(top, top_of(g));
-    first = false;
-    p += fmt::format("{:.6g} {:.6g} {:.6g} {}\n", g.position.x(), g.position.y(), g.radius,
-                     g.fixed ? "0x9a9a9a" : "0xe9e4d8");
-  }
-  p += "EOD\n";
+  const bool arrow = snapshot.loaded_grain >= 0;
+  Scene scene(picture, snapshot, arrow ? 66 : 24);
+  scene.add_grains([](const dem::Grain& g) { return g.fixed ? "0x9a9a9a" : "0xe9e4d8"; });
   const std::vector<Line> lines = force_lines(snapshot, reference);
   const double scale = force_scale(lines);
   p += "$lines << EOD\n";
@@ -93,41 +92,28 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
                      line.to.x() - line.from.x(), line.to.y() - line.from.y(), share, colour);
   }
   p += "EOD\n";
-  const double margin = 0.01 * (right - left);
-  picture.width = 980;
-  const double aspect = (top - bottom + 2 * margin) / (right - left + 2 * margin);
-  const bool arrow = snapshot.loaded_grain >= 0;
-  const int above = arrow ? 66 : 24, below = 80, side = 96;
-  const int plot_width = picture.width - side - 20;
-  picture.height = static_cast<int>(plot_width * aspect) + above + below;
-  p += fmt::format(
-      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
-      "set tmargin at screen {:.4f}\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-      "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel 'x (m)'\nset ylabel 'y (m)' offset 1,0\nset style fill solid 1 border rgb "
-      "'#b9b2a0'\n",
-      static_cast<double>(side) / picture.width, 1 - 20.0 / picture.width,
-      static_cast<double>(below) / picture.height, 1 - static_cast<double>(above) / picture.height,
-      left - margin, right + margin, bottom - margin, top + margin);
+  scene.set_axes();
   if (arrow)
     for (const dem::Grain& g : snapshot.grains)
       if (g.id == snapshot.loaded_grain) {
         p += fmt::format(
             "set arrow 1 from first {0:.6g}, graph {1:.4f} to first {0:.6g}, first {2:.6g} lw 3 lc "
             "rgb '#000000' head size screen 0.012,22 filled front\n",
-            g.position.x(), 1 + 46.0 / (picture.height - above - below), top_of(g));
+            g.position.x(), 1 + 46.0 / scene.plot_height(), top_of(g));
         p += fmt::format("set label 1 {} at first {:.6g}, graph {:.4f} left offset 1,0 front\n",
                          style::quoted(fmt::format("F = {:.4g} N", snapshot.applied_force.norm())),
-                         g.position.x(), 1 + 34.0 / (picture.height - above - below));
+                         g.position.x(), 1 + 34.0 / scene.plot_height());
       }
-  p += "plot $grains using 1:2:3:4 with circles fc rgb variable lw 0.5";
+  scene.plot_grains("#b9b2a0");
   // gnuplot takes one width per plot: forces go into classes of equal width.
+  const double pixels = std::min(
+      widest, widest_share * scene.pixels(snapshot.grains.empty() ? 1 : mean_diameter(snapshot)));
   constexpr int classes = 12;
   for (int k = 0; k < classes; ++k)
     p += fmt::format(
         ", $lines using ($5>{0:.4f}&&$5<={1:.4f}?$1:NaN):2:3:4:6 with vectors nohead lw {2:.2f} lc "
         "rgb variable",
-        static_cast<double>(k) / classes, (k + 1.0) / classes, widest * (k + 0.5) / classes);
+        static_cast<double>(k) / classes, (k + 1.0) / classes, pixels * (k + 0.5) / classes);
   p += "\n";
   picture.caption =
       reference ? fmt::format(
@@ -141,81 +127,69 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
   return picture;
 }
 
-Picture contact_angles(const std::string& title, const dem::Snapshot& snapshot) {
+Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot) {
   Picture picture;
   picture.title = title;
-  picture.width = 820;
-  picture.height = 430;
-  std::vector<double> count(bins, 0), force(bins, 0);
-  double contacts = 0, forces = 0;
-  const auto fixed = [&](std::int64_t g) {
-    return snapshot.grains[static_cast<std::size_t>(g)].fixed;
-  };
-  for (const dem::Contact& c : snapshot.contacts) {
-    if (c.j < 0 || fixed(c.i) || fixed(c.j)) continue;
-    const double angle = std::atan2(c.normal.y(), c.normal.x());
-    for (int side = 0; side < 2; ++side) {  // a contact points both ways
-      const double turned = std::fmod(angle + (side + 2) * std::numbers::pi, 2 * std::numbers::pi);
-      const auto bin = static_cast<std::size_t>(
-          std::min<double>(bins - 1, std::floor(turned / (2 * std::numbers::pi) * bins)));
-      count[bin] += 1;
-      force[bin] += c.normal_force;
-    }
-    contacts += 2;
-    forces += 2 * c.normal_force;
+  Scene scene(picture, snapshot);
+  double oldest = 0, youngest = 0;
+  bool first = true;
+  for (const dem::Grain& g : snapshot.grains) {
+    if (g.fixed) continue;
+    const auto id = static_cast<double>(g.id);
+    oldest = first ? id : std::min(oldest, id);
+    youngest = first ? id : std::max(youngest, id);
+    first = false;
   }
-  std::string& p = picture.program;
-  double largest = 0;
-  // Densities over the angle, relative to the isotropic one: 1 everywhere means no direction.
-  for (int b = 0; b < bins; ++b) {
-    const auto k = static_cast<std::size_t>(b);
-    count[k] *= contacts > 0 ? bins / contacts : 0;
-    force[k] *= forces > 0 ? bins / forces : 0;
-    largest = std::max({largest, count[k], force[k]});
-  }
-  const double edge = largest > 0 ? 1.08 * largest : 1;
-  for (const auto& [name, values] : {std::pair{"count", count}, std::pair{"force", force}}) {
-    p += fmt::format("${} << EOD\n", name);
-    for (int b = 0; b < bins; ++b) {
-      const double r = values[static_cast<std::size_t>(b)];
-      // A sector, as a polygon: centre, arc, centre.
-      p += "0 0\n";
-      for (int s = 0; s <= 4; ++s) {
-        const double a = 2 * std::numbers::pi * (b + s / 4.0) / bins;
-        p += fmt::format("{:.5g} {:.5g}\n", r * std::cos(a), r * std::sin(a));
-      }
-      p += "0 0\n\n";
-    }
-    p += "EOD\n";
-  }
-  p += fmt::format(
-      "set parametric\nset trange [0:2*pi]\nset samples 181\nset xrange [{0}:{1}]\nset yrange "
-      "[{0}:{1}]\nset size ratio -1\nunset border\nunset tics\nunset key\nset multiplot layout "
-      "1,2\n",
-      -1.25 * edge, 1.25 * edge);
-  std::string labels;
-  for (int degrees = 0; degrees < 360; degrees += 45) {
-    const double a = degrees * std::numbers::pi / 180;
-    labels += fmt::format("set label {} '{}°' at {:.5g},{:.5g} center tc rgb '#555555'\n",
-                          degrees / 45 + 1, degrees, 1.14 * edge * std::cos(a),
-                          1.14 * edge * std::sin(a));
-  }
-  p += labels;
-  const auto frame = [&](const char* name, const char* heading, const char* colour) {
-    p += fmt::format(
-        "set title '{0}' offset 0,-0.5\n"
-        "plot ${1} using 1:2 with filledcurves closed fc rgb '{2}' fs solid 0.75 border "
-        "lc rgb '#ffffff', cos(t),sin(t) with lines dt 2 lw 1.4 lc rgb '#222222', "
-        "{3}*cos(t),{3}*sin(t) with lines lw 0.6 lc rgb '#bbbbbb'\n",
-        heading, name, colour, edge);
-  };
-  frame("count", "number of contacts", "#0072b2");
-  frame("force", "normal force", "#b2182b");
-  p += "unset multiplot\n";
+  const double span = std::max(1.0, youngest - oldest);
+  scene.add_grains([&](const dem::Grain& g) -> std::string {
+    return g.fixed ? "0x9a9a9a" : style::sequential((static_cast<double>(g.id) - oldest) / span);
+  });
+  scene.set_axes();
+  scene.plot_grains("#666666");
+  picture.program += "\n";
   picture.caption =
-      "Distribution over the direction of the contact normal, relative to an isotropic packing "
-      "(the "
-      "dashed circle); contacts between free grains.";
+      "Colour by the order in which the grains were dropped: dark first, bright last.";
+  return picture;
+}
+
+Picture displacements(const std::string& title, const dem::Snapshot& before,
+                      const dem::Snapshot& after) {
+  if (before.grains.size() != after.grains.size())
+    throw std::invalid_argument(
+        fmt::format("snapshots do not belong together: {} grains and {} in the reference",
+                    after.grains.size(), before.grains.size()));
+  Picture picture;
+  picture.title = title;
+  Scene scene(picture, before);
+  scene.add_grains([](const dem::Grain& g) { return g.fixed ? "0x9a9a9a" : "0xe9e4d8"; });
+  std::vector<double> lengths;
+  for (std::size_t g = 0; g < before.grains.size(); ++g)
+    if (!before.grains[g].fixed)
+      lengths.push_back((after.grains[g].position - before.grains[g].position).norm());
+  const double longest = quantile(lengths);
+  const double factor = longest > 0 ? arrow_diameters * mean_diameter(before) / longest : 0;
+  const std::size_t every = 1 + lengths.size() / most_arrows;
+  std::string& p = picture.program;
+  p += "$arrows << EOD\n";
+  std::size_t count = 0;
+  for (std::size_t g = 0; g < before.grains.size(); ++g) {
+    if (before.grains[g].fixed || count++ % every != 0) continue;
+    const dem::Vec3& x = before.grains[g].position;
+    dem::Vec3 u = factor * (after.grains[g].position - x);
+    // The few longest are cut to the quantile's length.
+    const double most = arrow_diameters * mean_diameter(before);
+    if (u.norm() > most) u *= most / u.norm();
+    p += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", x.x(), x.y(), u.x(), u.y());
+  }
+  p += "EOD\n";
+  scene.set_axes();
+  scene.plot_grains("#d0cabb");
+  p += ", $arrows using 1:2:3:4 with vectors head size screen 0.004,20 filled lw 0.9 lc rgb "
+       "'#0b3c6f'\n";
+  picture.caption = fmt::format(
+      "Displacements, drawn {:.3g} times as long; the longest arrows stand for {:.3g} m and more"
+      "{}.",
+      factor, longest, every > 1 ? fmt::format("; one grain in {}", every) : "");
   return picture;
 }
 

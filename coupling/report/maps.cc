@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "coupling/report/picture.h"
 #include "coupling/report/style.h"
@@ -7,27 +9,32 @@
 namespace grainfield::coupling {
 namespace {
 
-// The colour scale ends at this quantile of |value| over all maps: the few points under the load
-// would otherwise bleach everything else.
-constexpr double scale_quantile = 0.99;
+// The colour scale ends at these quantiles over all maps: the few points under a load would
+// otherwise bleach everything else.
+constexpr double low_quantile = 0.02, high_quantile = 0.99;
 
-double colour_limit(const std::vector<Map>& maps) {
-  std::vector<double> sizes;
+double quantile(std::vector<double>& values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::pair<double, double> colour_range(const std::vector<Map>& maps, bool diverging) {
+  std::vector<double> values;
   for (const Map& map : maps)
     for (double v : map.value)
-      if (std::isfinite(v)) sizes.push_back(std::abs(v));
-  if (sizes.empty()) return 1;
-  const auto at =
-      static_cast<std::ptrdiff_t>(scale_quantile * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
-  const double limit = sizes[static_cast<std::size_t>(at)];
-  return limit > 0 ? limit : 1;
+      if (std::isfinite(v)) values.push_back(diverging ? std::abs(v) : v);
+  if (values.empty()) return {diverging ? -1 : 0, 1};
+  const double high = quantile(values, high_quantile);
+  if (diverging) return high > 0 ? std::pair(-high, high) : std::pair(-1.0, 1.0);
+  const double low = quantile(values, low_quantile);
+  return high > low ? std::pair(low, high) : std::pair(low - 0.5, low + 0.5);
 }
 
 }  // namespace
 
 Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,
-             const std::string& value_label, const std::vector<Map>& all) {
+             const std::string& value_label, const std::vector<Map>& all, bool diverging) {
   Picture picture;
   picture.title = title;
   picture.bitmap = true;
@@ -57,12 +64,13 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
     }
     p += "EOD\n";
   }
-  const double limit = colour_limit(all);
-  p += style::diverging;
+  const auto [low_limit, high_limit] = colour_range(all, diverging);
+  p += diverging ? style::diverging : style::sequential_palette;
   p += fmt::format(
       "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
       "set xlabel {} offset 0,0.2\nset ylabel {}\nset cblabel {}\nset multiplot\n",
-      -limit, limit, style::quoted(x_label), style::quoted(y_label), style::quoted(value_label));
+      low_limit, high_limit, style::quoted(x_label), style::quoted(y_label),
+      style::quoted(value_label));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
     const double left = 80.0 + column * (plot_width + 70.0);

@@ -38,13 +38,22 @@ struct Map {
   Eigen::MatrixXd points;  ///< nx*ny x 2
   Eigen::VectorXd value;
 };
+/// `diverging`: blue - white - red about 0; else dark - bright over the values' own range.
 Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,
-             const std::string& value_label, const std::vector<Map>& maps);
+             const std::string& value_label, const std::vector<Map>& maps, bool diverging = true);
 
 /// Grains with their contact forces as lines whose width grows with the force. With `reference` the
 /// lines show the change of force from it (more: red, less: blue).
 Picture packing(const std::string& title, const dem::Snapshot& snapshot,
                 const dem::Snapshot* reference = nullptr);
+
+/// Grains coloured by the order of their ids, which is the order of dropping.
+Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot);
+
+/// Arrows from `before` to `after`, magnified (the caption says by how much). Throws
+/// std::invalid_argument when the numbers of grains differ.
+Picture displacements(const std::string& title, const dem::Snapshot& before,
+                      const dem::Snapshot& after);
 
 /// Polar histogram of contact directions, weighted by count and by force; contacts with walls and
 /// fixed grains are left out.

@@ -18,6 +18,22 @@ inline constexpr std::size_t models = 8;
 inline constexpr const char* diverging =
     "set palette defined (-1 '#2166ac', -0.5 '#67a9cf', 0 '#f7f7f7', 0.5 '#ef8a62', 1 '#b2182b')\n";
 
+/// Sequential dark - bright (viridis), "0xrrggbb" for share in [0, 1].
+inline std::string sequential(double share) {
+  constexpr double stops[][3] = {{68, 1, 84},    {65, 68, 135},  {42, 120, 142},
+                                 {34, 168, 132}, {122, 209, 81}, {253, 231, 37}};
+  const double at = 5 * (share > 0 ? (share < 1 ? share : 1) : 0);
+  const int k = at < 4 ? static_cast<int>(at) : 4;
+  std::string out = "0x";
+  for (int c = 0; c < 3; ++c)
+    out += fmt::format(
+        "{:02x}", static_cast<int>(stops[k][c] + (at - k) * (stops[k + 1][c] - stops[k][c]) + 0.5));
+  return out;
+}
+inline constexpr const char* sequential_palette =
+    "set palette defined (0 '#440154', 1 '#414487', 2 '#2a788e', 3 '#22a884', 4 '#7ad151', 5 "
+    "'#fde725')\n";
+
 /// Text for gnuplot in double quotes: nothing in it can end the string or run a command (gnuplot
 /// expands backquotes and backslashes there).
 inline std::string quoted(const std::string& text) {

@@ -59,8 +59,12 @@ StudyResult analyse_elastic(const Case& value) {
   std::vector<double> depths = setup.depths;
   std::sort(depths.begin(), depths.end());
   const bool layer = value.study == "elastic-layer";
-  const RunFacts facts{setup.force, layer ? setup.height : depths.back(), dim, depths.front(),
-                       layer ? setup.base : ""};
+  const RunFacts facts{setup.force,
+                       layer ? setup.height : depths.back(),
+                       dim,
+                       depths.front(),
+                       layer ? setup.base : "",
+                       {}};
   const int vertical = dim == 2 ? 1 : 2;
 
   std::vector<PointSet> sets;

@@ -69,6 +69,7 @@ class Worker {
         out.phase = state.phase;
         out.simulated_time = state.simulated_time;
         out.grains = state.grains;
+        out.awake = state.awake;
         out.kinetic_energy = state.kinetic_energy;
         out.unbalanced_force_ratio = state.unbalanced_force_ratio;
       }

@@ -28,6 +28,7 @@ struct EnsembleProgress {
   double fraction = 0;        ///< of all work of this rank
   double simulated_time = 0;  ///< s, of the same realization
   int grains = 0;
+  int awake = 0;              ///< of these, those that do not sleep; 0: not counted
   double kinetic_energy = 0;  ///< J
   double unbalanced_force_ratio = 0;
   double seconds_left = 0;  ///< an estimate from the time so far; negative: not known yet

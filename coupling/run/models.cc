@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
@@ -14,9 +16,21 @@ namespace {
 // The smoothing asks for stresses at nodes of its own choice. A first pass notes the nodes, the
 // model is called once, and a second pass hands out what it gave.
 Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, double depth) {
-  if (set.seen == Seen::in_plane) return smooth_in_plane(stress, set.points, *set.kernel, depth);
-  if (set.seen == Seen::along_x) return smooth_along_x(stress, set.points, *set.kernel);
-  return stress(set.points);
+  if (set.seen == Seen::exactly) return stress(set.points);
+  const StressFunction nodes = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+    if (!set.empty_outside) return stress(points);
+    return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
+  };
+  Eigen::MatrixXd out = set.seen == Seen::in_plane
+                            ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
+                            : smooth_along_x(nodes, set.points, *set.kernel);
+  if (set.empty_outside) {
+    const Eigen::MatrixXd here = stress(set.points);
+    for (Eigen::Index p = 0; p < here.rows(); ++p) {
+      if (here.row(p).hasNaN()) out.row(p).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -29,6 +43,10 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
     if (parameter.name == "depth") out.emplace("depth", fmt::format("{}", facts.depth));
     if (parameter.name == "base" && !facts.base.empty()) out.emplace("base", facts.base);
     if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
+    const auto number = facts.numbers.find(parameter.name);
+    if (number != facts.numbers.end()) {
+      out.emplace(parameter.name, fmt::format("{}", number->second));
+    }
   }
   return out;
 }

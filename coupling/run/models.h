@@ -12,15 +12,16 @@ namespace grainfield::coupling {
 
 /// What the run tells the models.
 struct RunFacts {
-  double force = 0;   ///< N: parameter F
-  double height = 0;  ///< m: parameter h
-  int dim = 2;        ///< parameter dim
-  double depth = 0;   ///< m: parameter depth, the least depth one looks at
-  std::string base;   ///< parameter base; empty: the model's default
+  double force = 0;                       ///< N: parameter F
+  double height = 0;                      ///< m: parameter h
+  int dim = 2;                            ///< parameter dim
+  double depth = 0;                       ///< m: parameter depth, the least depth one looks at
+  std::string base;                       ///< parameter base; empty: the model's default
+  std::map<std::string, double> numbers;  ///< further parameters by name, e.g. rho_g, phi_deg
 };
 
-/// The choice's settings with F, h, dim and depth filled in where the model has them and the user
-/// did not.
+/// The choice's settings with what the facts know filled in where the model has it and the user did
+/// not set it.
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
@@ -32,6 +33,9 @@ struct PointSet {
   Eigen::MatrixXd points;
   Seen seen = Seen::exactly;
   const Kernel* kernel = nullptr;  ///< for in_plane, along_x
+  /// There is nothing where the model gives nan (outside of a heap): the smoothing counts zero
+  /// stress there, and points that are themselves outside stay nan.
+  bool empty_outside = false;
 };
 
 struct Evaluation {

@@ -13,6 +13,7 @@
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/models.h"
 #include "coupling/run/realization_file.h"
@@ -38,28 +39,6 @@ Layer measure(const std::vector<std::string>& files) {
         std::min({out.half_width, frame.load_x - frame.left, frame.right - frame.load_x});
   }
   return out;
-}
-
-AverageOptions options_of(const AverageSetup& setup, const std::string& method, double diameter,
-                          int threads) {
-  AverageOptions out;
-  out.method = method;
-  out.threads = threads;
-  if (method == "coarse_graining") {
-    out.kernel = setup.kernel;
-    out.width = setup.width > 0 ? setup.width : setup.width_diameters * diameter;
-  } else {
-    out.kernel = setup.rve_shape;
-    out.width = setup.rve_radius > 0 ? setup.rve_radius : setup.rve_diameters * diameter;
-  }
-  return out;
-}
-
-// The kernel through which models are seen. A square is taken as the disk of equal area.
-std::unique_ptr<Kernel> kernel_of(const AverageOptions& options) {
-  if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width);
-  const double side = options.kernel == "square" ? 2 / std::sqrt(3.14159265358979323846) : 1;
-  return make_kernel("heaviside", side * options.width);
 }
 
 // One averaging method over the ensemble.
@@ -108,11 +87,11 @@ class Analysis {
     for (const auto& method : setup_.methods) {
       Averaged a;
       a.method = method;
-      a.options = options_of(setup_, method, layer_.diameter, threads);
+      a.options = average_options(setup_, method, layer_.diameter, threads);
       a.profiles.resize(lines_.size());
       collected_.methods.push_back(std::move(a));
     }
-    kernel_ = kernel_of(collected_.methods.front().options);
+    kernel_ = seeing_kernel(collected_.methods.front().options);
   }
 
   StudyResult run() {
@@ -123,7 +102,7 @@ class Analysis {
     add_identity(out.summary, value_);
     add_fields(out);
     add_models(out);
-    add_figures(out.summary);
+    add_own_figures(out.summary);
     add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
     return out;
   }
@@ -239,7 +218,8 @@ class Analysis {
     sets.push_back({grid_, Seen::exactly, nullptr});
 
     const double least_share = *std::min_element(setup_.depths.begin(), setup_.depths.end());
-    const RunFacts facts{value_.layer.load.force, layer_.depth, 2, least_share * layer_.depth, ""};
+    const RunFacts facts{value_.layer.load.force,    layer_.depth, 2,
+                         least_share * layer_.depth, "",           {}};
     std::vector<ModelProfiles> models;
     double seconds = 0;
     for (const auto& choice : value_.models) {
@@ -275,18 +255,8 @@ class Analysis {
     out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);
   }
 
-  void add_figures(Summary& summary) const {
-    for (const auto& [key, values] : collected_.figures) {
-      const auto n = static_cast<double>(values.size());
-      double mean = 0, square = 0;
-      for (const double v : values) mean += v / n;
-      for (const double v : values) square += (v - mean) * (v - mean);
-      summary[key] = mean;
-      if (values.size() < 2) continue;
-      summary[key + ".least"] = *std::min_element(values.begin(), values.end());
-      summary[key + ".most"] = *std::max_element(values.begin(), values.end());
-      summary[key + ".standard_error"] = std::sqrt(square / (n - 1) / n);
-    }
+  void add_own_figures(Summary& summary) const {
+    add_figures(summary, collected_.figures);
     summary["layer.depth"] = layer_.depth;
     summary["layer.F_over_h"] = value_.layer.load.force / layer_.depth;
     summary["layer.mean_diameter"] = layer_.diameter;

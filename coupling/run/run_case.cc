@@ -29,7 +29,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string identity(const Case& value) {
-  return "# grainfield " GRAINFIELD_VERSION "\n" + write_case(value);
+  return "# grainfield " GRAINFIELD_VERSION "\n" + grain_keys_text(value);
 }
 
 std::string read_text(const fs::path& file) {
@@ -71,7 +71,7 @@ class Workplace {
             "{}: holds an unfinished run; continue it with --resume, or remove that folder",
             checkpoint_.string()));
       }
-      const std::string there = read_text(checkpoint_ / "case.toml");
+      const std::string there = read_text(checkpoint_ / "grains.txt");
       const std::string here = identity(value);
       if (there != here) {
         throw std::invalid_argument(
@@ -84,14 +84,17 @@ class Workplace {
     if (error) throw_unwritable(error.message());
     fs::create_directories(checkpoint_, error);
     if (error) throw_unwritable(error.message());
-    write_text_file((checkpoint_ / "case.toml").string(), identity(value));
+    write_text_file((checkpoint_ / "case.toml").string(), write_case(value));
+    write_text_file((checkpoint_ / "grains.txt").string(), identity(value));
   }
 
   // Finished or half-done realizations that --resume could go on from.
   bool holds_work() const noexcept {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(checkpoint_, error)) {
-      if (entry.path().filename() != "case.toml") return true;
+      if (entry.path().extension() == ".h5" || entry.path().extension() == ".checkpoint") {
+        return true;
+      }
     }
     return false;
   }
@@ -206,31 +209,58 @@ StudyResult analyse(const SweepCase& member, const Workplace& place, int threads
   return study.analyse(value, files, threads);
 }
 
+// Averages, models and outputs of all members. `times` adds what only the run knows.
+void analyse_all(const Case& value, const std::vector<SweepCase>& members, const Workplace& place,
+                 const Ranks& ranks, const RunOptions& options,
+                 const std::function<void(std::size_t, Summary&)>& times) {
+  // Every rank analyses and one writes. Beside grains each rank solves its own finite elements, so
+  // that the bits do not depend on the ranks; a study of models alone is solved by all together.
+  const bool grains = study_of(value).has_grains();
+  continuum::solve_on(grains ? continuum::Ranks::own : continuum::Ranks::all);
+  const std::string kept =
+      grains ? fmt::format(
+                   "; the grains are kept in {}/checkpoint: --resume repeats the analysis "
+                   "alone, also with other keys of analysis and output",
+                   options.folder)
+             : "";
+  try {
+    std::vector<StudyResult> results;
+    for (const auto& member : members) {
+      if (interrupted()) throw Interrupted("stopped");
+      options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",
+                               member.suffix));
+      results.push_back(analyse(member, place, options.threads));
+    }
+    options.note("outputs");
+    on_first_rank(ranks, [&] {
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        fs::create_directories(place.partial(members[m].suffix));
+        times(m, results[m].summary);
+        write_study(place.partial(members[m].suffix), results[m]);
+      }
+      if (!value.sweep.key.empty()) write_sweep(place.partial(), value, members, results);
+    });
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(e.what() + kept);
+  } catch (const continuum::ComputationFailed& e) {
+    throw continuum::ComputationFailed(e.what() + kept);
+  } catch (const dem::ComputationFailed& e) {
+    throw dem::ComputationFailed(e.what() + kept);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(e.what() + kept);
+  }
+}
+
 void compute(const Case& value, const Workplace& place, const Ranks& ranks,
              const RunOptions& options) {
   const auto start = Clock::now();
   const std::vector<SweepCase> members = sweep_cases(value);
   const double dem_seconds = simulate(members, place, ranks, options);
-  // Every rank analyses and one writes. Beside grains each rank solves its own finite elements, so
-  // that the bits do not depend on the ranks; a study of models alone is solved by all together.
-  continuum::solve_on(study_of(value).has_grains() ? continuum::Ranks::own : continuum::Ranks::all);
-  std::vector<StudyResult> results;
-  for (const auto& member : members) {
-    if (interrupted()) throw Interrupted("stopped");
-    options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",
-                             member.suffix));
-    results.push_back(analyse(member, place, options.threads));
-  }
-  options.note("outputs");
-  on_first_rank(ranks, [&] {
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      fs::create_directories(place.partial(members[m].suffix));
-      Summary& summary = results[m].summary;
-      if (study_of(members[m].value).has_grains()) summary["time.dem_s"] = dem_seconds;
-      summary["time.total_s"] = seconds_since(start);
-      write_study(place.partial(members[m].suffix), results[m]);
-    }
-    if (!value.sweep.key.empty()) write_sweep(place.partial(), value, members, results);
+  analyse_all(value, members, place, ranks, options, [&](std::size_t m, Summary& summary) {
+    if (study_of(members[m].value).has_grains()) summary["time.dem_s"] = dem_seconds;
+    summary["time.total_s"] = seconds_since(start);
   });
 }
 

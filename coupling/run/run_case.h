@@ -21,7 +21,8 @@ struct RunOptions {
 /// Runs a case and leaves its outputs in the folder: they are written into FOLDER/.partial and
 /// moved when all are complete, summary.json last. A sweep leaves one folder of outputs per value,
 /// and a summary and report of all. FOLDER/checkpoint holds what --resume needs; it is removed on
-/// success and on failure, not on an interrupt. Only rank 0 writes outputs.
+/// success, and on failure unless it holds grains (the message then says so). Only rank 0 writes
+/// outputs.
 ///
 /// Throws std::invalid_argument (folder cannot be written; a checkpoint is there without resume, or
 /// of another case), Interrupted saying how to continue, and what simulations and models throw.

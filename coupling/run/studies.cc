@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "coupling/run/elastic.h"
+#include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
 
 namespace grainfield::coupling {
@@ -10,6 +11,7 @@ namespace grainfield::coupling {
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
       point_load_study(),
+      pile_study(),
       elastic_layer_study(),
       elastic_half_space_study(),
   };

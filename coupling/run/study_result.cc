@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "coupling/compare/significance.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/vtu.h"
 #include "coupling/run/realization_file.h"
@@ -22,41 +24,6 @@ std::string shown(const Summary& summary, const std::string& key) {
   }
   if (const auto* integer = std::get_if<std::int64_t>(&at->second)) return std::to_string(*integer);
   return std::get<std::string>(at->second);
-}
-
-using Rows = std::vector<std::pair<std::string, std::string>>;
-
-// The figures worth a table of the report, with unit and meaning from their declaration.
-Rows figure_rows(const Summary& summary) {
-  Rows rows;
-  for (const char* key :
-       {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
-        "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
-        "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
-        "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
-        "response.peaks", "average.coarse_graining.balance_rms",
-        "average.particle_centre.balance_rms"}) {
-    const std::string value = shown(summary, key);
-    const SummaryKey* declared = find_summary_key(key);
-    if (value.empty() || declared == nullptr) continue;
-    rows.emplace_back(fmt::format("{} ({})", declared->meaning, key),
-                      declared->unit == "-" ? value : value + " " + declared->unit);
-  }
-  return rows;
-}
-
-Rows origin_rows(const StudyResult& result) {
-  Rows rows;
-  for (const char* key : {"case.name", "case.hash", "version", "ensemble.realizations",
-                          "ensemble.seed", "dem.steps", "dem.time_step"}) {
-    const std::string value = shown(result.summary, key);
-    if (!value.empty()) rows.emplace_back(key, value);
-  }
-  for (const auto& model : result.value.models) {
-    rows.emplace_back("model " + model.label,
-                      shown(result.summary, "model." + model.label + ".name"));
-  }
-  return rows;
 }
 
 void write_grains(const std::string& folder, const StudyResult& result) {
@@ -91,7 +58,14 @@ Report layer_page(const StudyResult& result, const Realization* first) {
   page.base_unloaded = result.base_unloaded;
   page.map = result.map;
   page.models = result.model_maps;
-  page.figures = figure_rows(result.summary);
+  page.figures = figure_rows(
+      result.summary,
+      {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+       "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
+       "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
+       "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
+       "response.peaks", "average.coarse_graining.balance_rms",
+       "average.particle_centre.balance_rms"});
   page.made = origin_rows(result);
   return point_load_report(page);
 }
@@ -105,6 +79,34 @@ void write_page(const std::string& folder, const StudyResult& result) {
 }
 
 }  // namespace
+
+ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys) {
+  ReportRows rows;
+  for (const std::string& key : keys) {
+    const std::string value = shown(summary, key);
+    const SummaryKey* declared = find_summary_key(key);
+    if (value.empty() || declared == nullptr) continue;
+    const std::string error = shown(summary, key + ".standard_error");
+    const std::string spread = error.empty() || error == "-" ? "" : " +- " + error;
+    rows.emplace_back(fmt::format("{} ({})", declared->meaning, key),
+                      value + spread + (declared->unit == "-" ? "" : " " + declared->unit));
+  }
+  return rows;
+}
+
+ReportRows origin_rows(const StudyResult& result) {
+  ReportRows rows;
+  for (const char* key : {"case.name", "case.hash", "version", "ensemble.realizations",
+                          "ensemble.seed", "dem.steps", "dem.time_step"}) {
+    const std::string value = shown(result.summary, key);
+    if (!value.empty()) rows.emplace_back(key, value);
+  }
+  for (const auto& model : result.value.models) {
+    rows.emplace_back("model " + model.label,
+                      shown(result.summary, "model." + model.label + ".name"));
+  }
+  return rows;
+}
 
 std::string hash_text(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
@@ -142,6 +144,17 @@ void add_comparison(Summary& summary, const Comparison& comparison, std::size_t 
   }
   summary["verdict.best_model"] = comparison.verdict.best_model;
   summary["verdict.sentence"] = comparison.verdict.sentence;
+}
+
+void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures) {
+  for (const auto& [key, values] : figures) {
+    const Spread spread = spread_of(values);
+    summary[key] = spread.mean;
+    if (values.size() < 2) continue;
+    summary[key + ".least"] = *std::min_element(values.begin(), values.end());
+    summary[key + ".most"] = *std::max_element(values.begin(), values.end());
+    summary[key + ".standard_error"] = spread.standard_error;
+  }
 }
 
 void write_study(const std::string& folder, const StudyResult& result) {

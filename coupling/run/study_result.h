@@ -1,6 +1,7 @@
 // What a study leaves, before it is written: the same for every kind of study.
 #pragma once
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,15 @@ struct StudyResult {
   /// Builds report.html from this result and its first realization (null without grains). Empty:
   /// the page of a loaded layer.
   std::function<Report(const StudyResult&, const Realization*)> page;
+  /// Columns of a sweep's table: heading, summary key. Empty: those of a loaded layer.
+  std::vector<std::pair<std::string, std::string>> overview;
 };
+
+using ReportRows = std::vector<std::pair<std::string, std::string>>;
+/// Those of the figures that the summary holds, with meaning and unit, for a table of the report.
+ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys);
+/// Case, seed, version and models, likewise.
+ReportRows origin_rows(const StudyResult& result);
 
 /// FNV-1a of a text, 16 hexadecimal digits.
 std::string hash_text(const std::string& text);
@@ -32,6 +41,9 @@ std::string hash_text(const std::string& text);
 void add_identity(Summary& summary, const Case& value);
 /// Keys that follow from the comparison, and the models' figures.
 void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main);
+
+/// Means of the realizations' figures and, of two or more, KEY.least, .most, .standard_error.
+void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures);
 
 /// Writes summary.json, profiles.*, fields.h5 + .xdmf, snapshots.h5, *.vtu, report.html and
 /// case.toml into a folder that exists.

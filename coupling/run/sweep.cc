@@ -20,45 +20,65 @@ std::string number(const Summary& summary, const std::string& key) {
   return std::to_string(std::get<std::int64_t>(at->second));
 }
 
+// A number with its standard error where it has one.
+std::string with_error(const Summary& summary, const std::string& key) {
+  const std::string value = number(summary, key), error = number(summary, key + ".standard_error");
+  return error == "-" ? value : value + " ± " + error;
+}
+
 Table overview(const Case& value, const std::vector<SweepCase>& members,
                const std::vector<StudyResult>& results) {
+  static const std::vector<std::pair<std::string, std::string>> of_layers{
+      {"peaks", "response.peaks"},
+      {"peak (N/m)", "response.peak"},
+      {"peak / (F/h)", "response.peak_over_F_per_h"},
+      {"width (m)", "response.width"},
+      {"integral / F", "response.total_over_load"},
+      {"best model", "verdict.best_model"}};
+  const auto& own = results.front().overview;
+  const auto& columns = own.empty() ? of_layers : own;
   Table table;
   table.title = "Side by side";
-  table.caption = "The last profile's figures; each folder holds the member's own report.html.";
-  table.header = {value.sweep.key, "folder",    "peaks",        "peak (N/m)",
-                  "peak / (F/h)",  "width (m)", "integral / F", "best model"};
+  table.caption = "Each folder holds the member's own report.html.";
+  table.header = {value.sweep.key, "folder"};
+  for (const auto& [heading, key] : columns) table.header.push_back(heading);
   for (std::size_t m = 0; m < members.size(); ++m) {
-    const Summary& s = results[m].summary;
-    table.rows.push_back({value.sweep.values[m], members[m].suffix, number(s, "response.peaks"),
-                          number(s, "response.peak"), number(s, "response.peak_over_F_per_h"),
-                          number(s, "response.width"), number(s, "response.total_over_load"),
-                          number(s, "verdict.best_model")});
+    std::vector<std::string> row{value.sweep.values[m], members[m].suffix};
+    for (const auto& [heading, key] : columns) row.push_back(with_error(results[m].summary, key));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
 
 // One frame per profile, one curve per member. Members differ in depth by a little: the profiles
-// are the same by number.
+// are the same by number. Where their own scales are the point (piles), each is drawn in its own.
 Picture profiles(const Case& value, const std::vector<SweepCase>& members,
                  const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
-  const auto& first = results.front().comparison.profiles;
-  for (std::size_t p = 0; p < first.size(); ++p) {
+  const Comparison& one = results.front().comparison;
+  const bool scaled = !one.scale.note.empty();
+  for (std::size_t p = 0; p < one.profiles.size(); ++p) {
     Frame frame;
-    frame.title = first[p].key == "base" ? "base" : first[p].name;
+    frame.title = one.profiles[p].key == "base" ? "base" : one.profiles[p].name;
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const auto& own = results[m].comparison.profiles;
-      if (p >= own.size()) continue;
+      const Comparison& c = results[m].comparison;
+      if (p >= c.profiles.size()) continue;
+      const Profile& own = c.profiles[p];
+      const double length = scaled ? c.depth : 1, unit = scaled ? c.unit() : 1;
       frame.series.push_back({fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]),
-                              own[p].x, own[p].mean, own[p].error, m == 0});
+                              own.x / length, own.mean / unit, own.error / unit, m == 0});
     }
     frames.push_back(std::move(frame));
   }
-  Picture picture = curves("Response of every member", "x from the load (m)",
-                           (first.front().quantity == "-sigma_yy" ? "-σ_{yy} (" : "-σ_{zz} (") +
-                               first.front().unit + ")",
-                           frames);
-  picture.caption = "Mean over realizations.";
+  const Profile& first = one.profiles.front();
+  Picture picture =
+      scaled
+          ? curves("Pressure of every member", fmt::format("x / {}", one.scale.length),
+                   fmt::format("-σ_{{yy}} ({})", one.scale.stress), frames)
+          : curves("Response of every member", "x from the load (m)",
+                   (first.quantity == "-sigma_yy" ? "-σ_{yy} (" : "-σ_{zz} (") + first.unit + ")",
+                   frames);
+  picture.caption = "Mean over realizations; the band is the first member's standard error.";
   return picture;
 }
 

@@ -197,6 +197,80 @@ TEST(CaseErrors, TimeStepAboveTheStableLimitNamesTheLimit) {
   EXPECT_THAT(what, HasSubstr("stable limit of"));
 }
 
+TEST(CaseErrors, Piles) {
+  const auto pile = [](const std::string& text) { return complaint("study = \"pile\"\n" + text); };
+  EXPECT_EQ(pile(""), "");
+  EXPECT_THAT(pile("[shape]\nkind = \"disc\"\n"),
+              HasSubstr("x.toml:3: shape.kind: found \"disc\", allowed: disk | rand1 | regular | "
+                        "irregular | outline; nearest: disk"));
+  EXPECT_THAT(pile("[shape]\ncorners_min = 2\n"),
+              HasSubstr("x.toml:3: shape.corners_min: found 2, allowed: 3 to 64"));
+  EXPECT_THAT(pile("[shape]\ncorners_min = 9\n"), HasSubstr("shape.corners_max: found 8, allowed: at least shape.corners_min = 9"));
+  EXPECT_THAT(pile("[shape]\npolydispersity = 1.0\n"),
+              HasSubstr("shape.polydispersity: found 1, allowed: 0 to 0.99"));
+  EXPECT_THAT(pile("[shape]\nkind = \"outline\"\noutline = [0.0, 0.0, 1.0, 0.0]\n"),
+              HasSubstr("x.toml:4: shape.outline"));
+  EXPECT_THAT(pile("[source]\nkind = \"lines\"\n"), HasSubstr("nearest: line"));
+  EXPECT_THAT(pile("[source]\ngrains = 2\n"), HasSubstr("source.grains: found 2, allowed: 3 to"));
+  EXPECT_THAT(pile("[source]\ninterval = 0.0\n"),
+              HasSubstr("source.interval: found 0, allowed: above 0"));
+  EXPECT_THAT(pile("[source]\ninterval = 0.001\n"), HasSubstr("x.toml:3: source.interval: "));
+  EXPECT_THAT(pile("[floor]\nlength = -1.0\n"),
+              HasSubstr("floor.length: found -1, allowed: above 0"));
+  EXPECT_THAT(pile("[sleep]\non = 1\n"), HasSubstr("sleep.on: found 1 (integer), expected a boolean"));
+  EXPECT_THAT(pile("[change]\ngravity = [0.0]\n"),
+              HasSubstr("change.gravity: found 0, allowed: above 0"));
+  EXPECT_THAT(pile("[change]\nmethod = \"newtons\"\n"), HasSubstr("nearest: newton"));
+  EXPECT_THAT(pile("[heap]\nheights = [1.5]\n"),
+              HasSubstr("heap.heights: found 1.5, allowed: above 0, up to 1"));
+  EXPECT_THAT(pile("[heap]\nheights = []\n"), HasSubstr("found an empty list"));
+  EXPECT_THAT(
+      pile("[heap]\nshoulder_from = 0.5\n"),
+      HasSubstr("x.toml:3: heap.shoulder_from: found 0.5, allowed: below heap.shoulder_to = "
+                "0.4"));
+  EXPECT_THAT(
+      pile("[heap]\ncentre = 0.3\n"),
+      HasSubstr("x.toml:3: heap.centre: found 0.3, allowed: up to heap.shoulder_from = 0.15"));
+  // Keys of other studies, and of sections that only partly belong.
+  EXPECT_THAT(pile("[load]\nforce = 1.0\n"),
+              HasSubstr("x.toml:3: load.force: has no meaning for study = \"pile\""));
+  EXPECT_THAT(pile("[average]\ndepths = [0.5]\n"),
+              HasSubstr("x.toml:3: average.depths: has no meaning for study = \"pile\""));
+  EXPECT_THAT(complaint("[source]\ngrains = 10\n"),
+              HasSubstr("source.grains: has no meaning for study = \"point-load\""));
+}
+
+TEST(ReadCase, SharedKeysFillTheSetupOfTheStudy) {
+  const std::string text = "study = \"pile\"\n[material]\nfriction = 0.7\n[change]\ngravity = []\n";
+  const Case pile = accepted(text);
+  EXPECT_EQ(pile.pile.material.friction, 0.7);
+  EXPECT_EQ(pile.pile.material.floor_friction, 0.54);
+  EXPECT_EQ(pile.layer.material.friction, 0.5);
+  EXPECT_TRUE(pile.models.empty());
+  EXPECT_EQ(accepted("study = \"pile\"\n[compare]\nmodels = [\"hydrostatic\"]\n").models.size(),
+            1U);
+  // The study may be chosen from the command line: the keys follow it.
+  const Case chosen = accepted("[material]\nfriction = 0.7\n", {"study=pile"});
+  EXPECT_EQ(chosen.pile.material.friction, 0.7);
+  EXPECT_EQ(chosen.layer.material.friction, 0.5);
+  EXPECT_EQ(accepted("", {"study=pile", "change.gravity=[5, 20]"}).pile.change.gravity,
+            (std::vector<double>{5, 20}));
+}
+
+TEST(ReadCase, GrainKeysLeaveTheAnalysisOut) {
+  const std::string text = "study = \"pile\"\n";
+  const std::string before = grain_keys_text(accepted(text));
+  for (const char* same :
+       {"[average]\nwidth = 0.01\n", "[heap]\ncentre = 0.05\n", "[output]\nvtu = false\n",
+        "[ensemble]\nrealizations = 7\n", "[compare]\nmodels = [\"hydrostatic\"]\n"}) {
+    EXPECT_EQ(grain_keys_text(accepted(text + same)), before) << same;
+  }
+  for (const char* other : {"[shape]\nradius = 0.003\n", "[material]\nfriction = 0.3\n",
+                            "[ensemble]\nseed = 7\n", "[sleep]\non = false\n"}) {
+    EXPECT_NE(grain_keys_text(accepted(text + other)), before) << other;
+  }
+}
+
 TEST(CaseErrors, Models) {
   EXPECT_THAT(complaint("[compare]\nmodels = [\"flamand\"]\n"),
               HasSubstr("x.toml:2: compare.models: no model 'flamand'; did you mean 'flamant'?"));

@@ -15,6 +15,7 @@
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
+#include "heap_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -198,6 +199,29 @@ TEST_F(Output, VtuFilesAreWellFormedAndConsistent) {
   d.load_file(at("contacts.vtu").c_str());
   EXPECT_EQ(d.select_node("//Piece").node().attribute("NumberOfCells").as_uint(),
             after.contacts.size());
+}
+
+TEST_F(Output, VtuHoldsTheTrueOutlines) {
+  const dem::Snapshot heap = test::lattice_heap(4);
+  // The second grain, turned: corners about its centroid by its angle.
+  const dem::Grain& g = heap.grains[1];
+  const auto corners = outline(g);
+  ASSERT_EQ(corners.size(), 7U);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const double a = g.angle + 2 * M_PI * static_cast<double>(k) / 7;
+    EXPECT_NEAR(corners[k].x(), g.position.x() + g.radius * std::cos(a), 1e-12);
+    EXPECT_NEAR(corners[k].y(), g.position.y() + g.radius * std::sin(a), 1e-12);
+  }
+  write_grains_vtu(at("heap.vtu"), heap);
+  pugi::xml_document d;
+  ASSERT_TRUE(d.load_file(at("heap.vtu").c_str()));
+  const auto piece = d.child("VTKFile").child("UnstructuredGrid").child("Piece");
+  EXPECT_EQ(piece.attribute("NumberOfCells").as_int(), 10);
+  EXPECT_EQ(piece.attribute("NumberOfPoints").as_int(), 70);
+  // A disk keeps its sides.
+  dem::Grain disk = g;
+  disk.outline.clear();
+  EXPECT_EQ(outline(disk, 12).size(), 12U);
 }
 
 TEST_F(Output, VtuStressOfGrainsAddsUpToTheForcesAtTheWalls) {

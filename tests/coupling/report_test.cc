@@ -14,7 +14,9 @@
 #include "averaging_scene.h"
 #include "coupling/averaging/average.h"
 #include "coupling/report/gnuplot.h"
+#include "coupling/report/pile.h"
 #include "coupling/report/point_load.h"
+#include "heap_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -90,6 +92,49 @@ TEST_F(ReportTest, HasEveryPictureAndTable) {
   EXPECT_THAT(html, HasSubstr("class=\"verdict\""));
   EXPECT_THAT(html, HasSubstr("<td>seed</td><td>7</td>"));
   EXPECT_THAT(html, Not(HasSubstr("src=\"http")));
+}
+
+TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
+  need_gnuplot();
+  const dem::Snapshot heap = test::lattice_heap(12);
+  dem::Snapshot moved = heap;
+  for (dem::Grain& g : moved.grains) g.position.y() *= 0.999;
+  PileReport in;
+  in.title = "heap";
+  in.sentence = "A pressure dip";
+  in.pile = &heap;
+  in.changed = {{"g = 5 m/s2", &moved}};
+  Profile p;
+  p.name = p.key = "base";
+  p.depth = 0.05;
+  p.x = Eigen::VectorXd::LinSpaced(9, -0.05, 0.05);
+  p.mean = Eigen::VectorXd::Constant(9, 100);
+  p.error = Eigen::VectorXd::Constant(9, 5);
+  Profile cut = p;
+  cut.name = cut.key = "height_0.5";
+  in.comparison = without_models({p, cut}, 200 * 0.05, 0.05, 3);
+  in.averaged = "coarse graining, lucy kernel, w = 0.0055 m";
+  AverageOptions o;
+  o.width = 0.01;
+  in.map = average(heap, grid_points(-0.03, 0.03, 11, 0, 0.05, 6), o);
+  in.map.nx = 11;
+  in.map.ny = 6;
+  const ReportResult r = write_report(file(), pile_report(in));
+  EXPECT_EQ(r.why_missing, "");
+  // Age, forces, base, cuts, volume fraction, stress, displacements, angles of both states.
+  EXPECT_EQ(r.pictures, 9);
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("coarse graining, lucy kernel, w = 0.0055 m"));
+  EXPECT_THAT(html, HasSubstr("rho g h = 200 N/m"));
+  EXPECT_THAT(html, HasSubstr("Displacements from the pile to g = 5 m/s2"));
+  // Eight points of a closed heptagon and its colour: first dropped dark, last bright.
+  const std::string age = grains_by_age("t", heap).program;
+  EXPECT_THAT(age, HasSubstr("0x440154"));
+  EXPECT_THAT(age, HasSubstr("0xfde725"));
+  EXPECT_THAT(age, HasSubstr("filledcurves closed"));
+  // A magnification of the largest displacement to three diameters.
+  EXPECT_THAT(displacements("t", heap, moved).caption, HasSubstr("times as long"));
+  EXPECT_THROW(displacements("t", heap, test::lattice_heap(5)), std::invalid_argument);
 }
 
 TEST_F(ReportTest, WithoutGnuplotKeepsItsTablesAndSaysWhatToInstall) {

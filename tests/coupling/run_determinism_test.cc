@@ -117,11 +117,34 @@ TEST(Resume, RefusesAnotherCaseAndSaysWhatDiffers) {
   const Output other = program(run + " --resume --set material.friction=0.25");
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err,
-              HasSubstr("is of another case: friction = 0.5 there, friction = 0.25 here"));
+              HasSubstr("is of another case: material.friction = 0.5 there, material.friction = "
+                        "0.25 here"));
   const Output forgotten = program(run);
   EXPECT_EQ(forgotten.code, 2);
   EXPECT_THAT(forgotten.err, HasSubstr("holds an unfinished run; continue it with --resume"));
   EXPECT_EQ(program(run + " --resume").code, 0);
+}
+
+TEST(Resume, RepeatsAFailedAnalysisWithoutTheGrains) {
+  const Folder folder;
+  const auto whole = results_of(folder, "whole", "--threads 2");
+  const std::string run =
+      "run " + (folder / "x.toml") + " --threads 2 -o " + (folder / "out") + " ";
+  // No grain has its centre in so narrow a kernel.
+  const Output failed = program(run + "--set average.width=1e-9");
+  EXPECT_EQ(failed.code, 2);
+  EXPECT_THAT(failed.err,
+              HasSubstr("no point has enough grains around it; the grains are kept in " +
+                        (folder / "out/checkpoint") + ": --resume repeats"));
+  EXPECT_FALSE(testing::fs::exists(folder / "out/summary.json"));
+  const auto made = testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5");
+  // Still wrong: the same grains are kept again.
+  EXPECT_EQ(program(run + "--resume --set average.width=1e-9").code, 2);
+  EXPECT_EQ(testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5"), made);
+  const Output done = program(run + "--resume");
+  EXPECT_EQ(done.code, 0) << done.err;
+  expect_same(whole, testing::contents(folder / "out"), "analysis repeated");
+  EXPECT_FALSE(testing::fs::exists(folder / "out/checkpoint"));
 }
 
 TEST(Resume, BrokenCheckpointIsRefused) {

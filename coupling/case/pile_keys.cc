@@ -1,0 +1,135 @@
+// Keys of piles: [shape] [source] [floor] [sleep] [change], and of what is looked at: [heap].
+#include "coupling/case/declare.h"
+
+// A key bound to the member of the same name: the default is that member's.
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+using Integer = int;
+using Numbers = std::vector<double>;
+constexpr const char* kRoul = "Roul table 2";
+
+void shape(Section s) {
+  s.word("kind", +IN(string, pile.shape.kind), {"disk", "rand1", "regular", "irregular", "outline"},
+         "disk; rand1: corners at random on a circle or ellipse; regular: regular polygons; "
+         "irregular: pentagons; outline: the one given",
+         "Roul 2.8");
+  s.number("radius", "m", +IN(double, pile.shape.radius), kPositive,
+           "mean radius of the circle that the corners lie on (ellipse: of equal area); larger "
+           "grains: longer time step",
+           kRoul);
+  s.number("polydispersity", "-", +IN(double, pile.shape.polydispersity), {0, 0.99},
+           "sizes uniform in radius (1 -+ this); the smallest grain sets the time step",
+           "Roul table 2 (point 0.3, line 0.1)");
+  s.number("corners_min", "-", +IN(Integer, pile.shape.corners_min), {3, 64},
+           "rand1, regular: fewest corners; fewer are rougher and pile steeper",
+           "Roul table 2 (point 6-8, line 7)");
+  s.number("corners_max", "-", +IN(Integer, pile.shape.corners_max), {3, 64},
+           "rand1, regular: most corners; uniform between the two", kRoul);
+  s.number("axis_ratio", "-", +IN(double, pile.shape.axis_ratio), {1, 10},
+           "rand1: major over minor axis of the ellipse", "Roul 3.1 (elliptic: 2)");
+  s.number("side", "m", +IN(double, pile.shape.side), kNotNegative,
+           "irregular: mean length of a side; 0: of the regular pentagon in the circle of radius",
+           "Roul 5.1");
+  s.numbers_or_none("outline", "-", +IN(Numbers, pile.shape.outline), {},
+                    "outline: corners x1, y1, x2, y2, ... in units of radius, convex");
+}
+
+void source(Section s) {
+  s.word("kind", +IN(string, pile.source.kind), {"point", "line"},
+         "point: grain by grain from a funnel; line: layers dropped from just above", "Roul 3.1");
+  s.number("grains", "-", +IN(Integer, pile.source.grains), {3, 1000000},
+           "of the pile; cost grows a little faster than this number; line: fewer when the pile "
+           "comes to a point before",
+           kRoul);
+  s.number("height", "m", +IN(double, pile.source.height), kPositive,
+           "point: of the funnel's mouth above the floor; higher flattens the top", kRoul);
+  s.number("speed", "m/s", +IN(double, pile.source.speed), kNotNegative, "downwards, at the start",
+           kRoul);
+  s.number("interval", "s", +IN(double, pile.source.interval), kPositive,
+           "point: from one grain to the next; longer: each grain comes to rest before the next, "
+           "and the pouring takes as much longer",
+           kRoul);
+  s.number("spread", "-", +IN(double, pile.source.spread), {0, 1000},
+           "point: grains start within +- this many mean radii of the funnel's axis");
+  s.number("move", "m", +IN(double, pile.source.move), {},
+           "point: the funnel moves this far to the right while it pours; an asymmetric pile",
+           "Roul 3.11");
+  s.number("clearance", "m", +IN(double, pile.source.clearance), kPositive,
+           "line: height above the pile from which a layer falls", kRoul);
+  s.number("length", "m", +IN(double, pile.source.length), kPositive,
+           "line: of the first layer; later ones cover the pile's plateau", "Roul 3.1");
+  s.number("shift", "m", +IN(double, pile.source.shift), {},
+           "line: every layer lies this far to the right of the plateau's middle; an asymmetric "
+           "pile",
+           "Roul 3.11");
+}
+
+void ground(Section s) {
+  s.word("kind", +IN(string, pile.floor.kind), {"smooth", "rough"},
+         "flat with material.floor_friction, or grains of the pile's kind fixed side by side",
+         "Roul 3.1");
+  s.number("length", "m", +IN(double, pile.floor.length), kPositive,
+           "of the floor; a pile that leans on the walls at its ends is refused");
+}
+
+void sleep(Section s) {
+  s.flag("on", +IN(bool, pile.sleep.on),
+         "grains at rest sleep while the pile is poured: the cost follows the moving ones; the "
+         "final state is always relaxed with every grain awake");
+  s.number("quiet_time", "s", +IN(double, pile.sleep.quiet_time), kPositive,
+           "a grain must be quiet this long before it sleeps; longer: fewer errors, dearer");
+  s.number("quiet_move", "-", +IN(double, pile.sleep.quiet_move), kPositive,
+           "quiet: moved less than this share of its diameter in quiet_time");
+  s.number("quiet_force", "-", +IN(double, pile.sleep.quiet_force), kPositive,
+           "quiet: resultant below this share of the forces on it");
+  s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), kPositive,
+           "wakes: resultant above this share of the forces on it; less wakes more");
+  s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), kPositive,
+           "wakes: touched at more than this times sqrt(g d)");
+}
+
+void change(Section s) {
+  s.numbers_or_none("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kPositive,
+                    "after the rest gravity is changed to each of these, slowly, always from "
+                    "material.gravity; [] changes nothing",
+                    "Roul 3.5-3.9");
+  s.word("method", +IN(string, pile.change.method), {"newton", "damped"},
+         "quasi-static solver on the contact network, or slow damped dynamics");
+  s.number("unbalanced_force_ratio", "-", +IN(double, pile.change.unbalanced_force_ratio),
+           {0, 0.1, true}, "newton: mean resultant over mean contact force to be reached");
+  s.number("ramp_time", "s", +IN(double, pile.change.ramp_time), kPositive,
+           "damped: from the old to the new gravity; longer is closer to quasi-static");
+}
+
+void heap(Section s) {
+  s.number("heights", "-", +IN(Numbers, heap.heights), {0, 1, true},
+           "horizontal cuts, as shares of the pile's height above the base; the base is always "
+           "added",
+           "Roul 3.3");
+  s.number("centre", "-", +IN(double, heap.centre), {0, 1, true},
+           "dip: the window under the apex is |x| up to this share of the half base; wider is "
+           "less noisy and blurs a narrow dip");
+  s.number("shoulder_from", "-", +IN(double, heap.shoulder_from), {0, 1},
+           "dip: the windows beside it begin here, shares of the half base");
+  s.number("shoulder_to", "-", +IN(double, heap.shoulder_to), {0, 1, true}, "and end here");
+}
+
+}  // namespace
+
+void declare_pile_keys(std::vector<Key>& keys) {
+  shape({keys, "shape"});
+  source({keys, "source"});
+  ground({keys, "floor"});
+  sleep({keys, "sleep"});
+  change({keys, "change"});
+}
+
+void declare_heap_keys(std::vector<Key>& keys) { heap({keys, "heap"}); }
+
+}  // namespace grainfield::coupling
+
+#undef IN

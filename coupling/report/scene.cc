@@ -1,0 +1,100 @@
+#include "coupling/report/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "coupling/averaging/extent.h"
+#include "coupling/averaging/layer.h"
+#include "coupling/output/vtu.h"
+#include "coupling/report/style.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
+constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
+constexpr double stray_share = 1e-3, stray_diameters = 10;
+
+bool any_outline(const dem::Snapshot& snapshot) {
+  return std::any_of(snapshot.grains.begin(), snapshot.grains.end(),
+                     [](const dem::Grain& g) { return !g.outline.empty(); });
+}
+
+}  // namespace
+
+Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above)
+    : picture_(picture), snapshot_(snapshot), above_(above) {
+  std::vector<double> lefts, rights;
+  double bottom = 0, top = 1, diameter = 0;
+  for (const dem::Grain& g : snapshot.grains) {
+    bottom = lefts.empty() ? bottom_of(g) : std::min(bottom, bottom_of(g));
+    top = lefts.empty() ? top_of(g) : std::max(top, top_of(g));
+    lefts.push_back(left_of(g));
+    rights.push_back(right_of(g));
+    diameter = std::max(diameter, 2 * g.radius);
+  }
+  if (!lefts.empty()) {
+    std::sort(lefts.begin(), lefts.end());
+    std::sort(rights.begin(), rights.end());
+    const auto stray = static_cast<std::size_t>(stray_share * static_cast<double>(lefts.size()));
+    const double reach = stray_diameters * diameter;
+    left_ = std::max(lefts.front(), lefts[stray] - reach);
+    right_ = std::min(rights.back(), rights[rights.size() - 1 - stray] + reach);
+  }
+  const double margin = 0.01 * (right_ - left_);
+  left_ -= margin;
+  right_ += margin;
+  bottom_ = bottom - margin;
+  top_ = top + margin;
+  picture.bitmap = snapshot.grains.size() > most_in_svg;
+  picture.width = picture_width;
+  plot_width_ = picture_width - side - right_side;
+  plot_height_ = static_cast<int>(plot_width_ * (top_ - bottom_) / (right_ - left_));
+  picture.height = plot_height_ + above + below;
+}
+
+void Scene::add_grains(const std::function<std::string(const dem::Grain&)>& colour) {
+  std::string& p = picture_.program;
+  p += "$grains << EOD\n";
+  const bool outlines = any_outline(snapshot_);
+  for (const dem::Grain& g : snapshot_.grains) {
+    const std::string rgb = colour(g);
+    if (!outlines) {
+      p += fmt::format("{:.6g} {:.6g} {:.6g} {}\n", g.position.x(), g.position.y(), g.radius, rgb);
+      continue;
+    }
+    const auto corners = outline(g, 24);
+    for (std::size_t k = 0; k <= corners.size(); ++k) {
+      const dem::Vec3& c = corners[k % corners.size()];
+      p += fmt::format("{:.6g} {:.6g} {}\n", c.x(), c.y(), rgb);
+    }
+    p += "\n";
+  }
+  p += "EOD\n";
+}
+
+void Scene::set_axes() {
+  const double width = picture_.width, height = picture_.height;
+  picture_.program += fmt::format(
+      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
+      "set tmargin at screen {:.4f}\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
+      "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
+      "set xlabel 'x (m)'\nset ylabel 'y (m)' offset 1,0\n",
+      side / width, 1 - right_side / width, below / height, 1 - above_ / height, left_, right_,
+      bottom_, top_);
+}
+
+void Scene::plot_grains(const char* edge) {
+  picture_.program += fmt::format("set style fill solid 1 border rgb '{}'\n", edge);
+  if (any_outline(snapshot_)) {
+    picture_.program += fmt::format(
+        "plot $grains using 1:2:3 with filledcurves closed fc rgb variable, "
+        "$grains using 1:2 with lines lw 0.3 lc rgb '{}'",
+        edge);
+  } else {
+    picture_.program += "plot $grains using 1:2:3:4 with circles fc rgb variable lw 0.5";
+  }
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,41 @@
+#include "coupling/run/averaging_setup.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace grainfield::coupling {
+
+AverageOptions average_options(const AverageSetup& setup, const std::string& method,
+                               double diameter, int threads) {
+  AverageOptions out;
+  out.method = method;
+  out.threads = threads;
+  if (method == "coarse_graining") {
+    out.kernel = setup.kernel;
+    out.width = setup.width > 0 ? setup.width : setup.width_diameters * diameter;
+  } else {
+    out.kernel = setup.rve_shape;
+    out.width = setup.rve_radius > 0 ? setup.rve_radius : setup.rve_diameters * diameter;
+  }
+  return out;
+}
+
+std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options) {
+  if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width);
+  const double side = options.kernel == "square" ? 2 / std::sqrt(std::numbers::pi) : 1;
+  return make_kernel("heaviside", side * options.width);
+}
+
+std::string describe(const AverageOptions& options) {
+  const bool kernel = options.method == "coarse_graining";
+  std::string method = options.method;
+  for (char& c : method) {
+    if (c == '_') c = ' ';
+  }
+  return fmt::format("{}, {} {}, {} = {:.3g} m", method, options.kernel,
+                     kernel ? "kernel" : "volume", kernel ? "w" : "half width", options.width);
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,42 @@
+// The text of the progress line.
+#include <gtest/gtest.h>
+
+#include "coupling/app/progress_text.h"
+
+namespace grainfield::coupling {
+namespace {
+
+TEST(Progress, Durations) {
+  EXPECT_EQ(duration_text(-1), "?");
+  EXPECT_EQ(duration_text(0), "0:00");
+  EXPECT_EQ(duration_text(59.6), "1:00");
+  EXPECT_EQ(duration_text(245), "4:05");
+  EXPECT_EQ(duration_text(3600 + 2 * 60 + 3), "1:02:03");
+}
+
+TEST(Progress, LineNamesEverything) {
+  EnsembleProgress p;
+  p.phase = "pour 80/6500";
+  p.done = 1;
+  p.total = 4;
+  p.fraction = 0.1234;
+  p.simulated_time = 1.2344;
+  p.grains = 80;
+  p.awake = 5;
+  p.kinetic_energy = 1e-3;
+  p.unbalanced_force_ratio = 0.02;
+  p.seconds_left = 245;
+  EXPECT_EQ(progress_text(p),
+            " 12 %  1/4 done  pour 80/6500  t 1.234 s  80 grains, 5 awake  kinetic 1.0e-03 J  "
+            "unbalanced 2.0e-02  4:05 left");
+  // Nothing is said where none sleeps or nobody counts.
+  p.awake = 80;
+  EXPECT_EQ(progress_text(p).find("awake"), std::string::npos);
+  p.awake = 0;
+  EXPECT_EQ(progress_text(p).find("awake"), std::string::npos);
+  p.seconds_left = -1;
+  EXPECT_TRUE(progress_text(p).ends_with("? left"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

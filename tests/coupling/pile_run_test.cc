@@ -1,0 +1,147 @@
+// A tiny pile through the real program: every output, the same bits on any number of threads and
+// after being stopped.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "coupling/output/tables.h"
+#include "coupling/run/summary_keys.h"
+#include "dem/snapshot/snapshot.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+// Soft grains ten times Roul's size: a step is long.
+std::string tiny_pile(const std::string& more = "") {
+  return R"(title = "tiny pile"
+study = "pile"
+[shape]
+radius = 0.0275
+polydispersity = 0.1
+[source]
+grains = 40
+height = 1.0
+interval = 0.12
+[floor]
+length = 4.0
+[material]
+young = 1e6
+[rest]
+background_damping = 300
+unbalanced_force_ratio = 1e-3
+kinetic_to_elastic_energy = 1e-5
+[ensemble]
+realizations = 2
+[average]
+points = 21
+map_columns = 9
+map_rows = 5
+[heap]
+heights = [0.25]
+)" + more;
+}
+
+std::map<std::string, std::string> results_of(const Folder& folder, const std::string& name,
+                                              const std::string& options) {
+  const std::string file = folder.write("x.toml", tiny_pile("[output]\nreport = false\n"));
+  const Output output = program("run " + file + " -o " + (folder / name) + " " + options);
+  EXPECT_EQ(output.code, 0) << output.err;
+  return testing::contents(folder / name);
+}
+
+TEST(PileRun, LeavesEverything) {
+  const Folder folder;
+  const std::string file = folder.write(
+      "x.toml", tiny_pile("[change]\ngravity = [8.829]\nmethod = \"damped\"\nramp_time = 0.05\n"
+                          "[compare]\nmodels = [\"hydrostatic\"]\n"));
+  const Output run = program("run " + file + " -o " + (folder / "out"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("whether that is a dip needs at least 3"));
+  for (const char* name :
+       {"summary.json", "profiles.csv", "profiles.md", "profiles.tex", "fields.h5", "fields.xdmf",
+        "snapshots.h5", "grains_pile.vtu", "chains_pile.vtu", "grains_gravity_8.829.vtu",
+        "report.html", "case.toml"}) {
+    EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
+  }
+  EXPECT_FALSE(testing::fs::exists(folder / "out/checkpoint"));
+  const Summary s = read_summary(folder / "out/summary.json");
+  EXPECT_NO_THROW(require_documented(s));
+  for (const char* key :
+       {"dem.grains", "dem.steps", "dem.repose_angle_left_deg", "dem.repose_angle_right_deg",
+        "heap.volume_fraction", "heap.rho_g_h", "pile.height", "dip.ratio", "dip.difference",
+        "dip.p_value", "dip.window_ratio", "density.ratio", "base.largest_pressure",
+        "compare.hydrostatic.rel_l2", "change.gravity_8.829.coordination_ratio", "source.interval",
+        "dem.grain_steps", "time.dem_s"}) {
+    EXPECT_EQ(s.count(key), 1U) << key;
+  }
+  // The pile is at rest only to 1e-3.
+  EXPECT_NEAR(std::get<double>(s.at("base.weight_ratio")), 1, 0.02);
+  const std::string csv = testing::read_text(folder / "out/profiles.csv");
+  EXPECT_THAT(csv, HasSubstr("# h = "));
+  EXPECT_THAT(csv, HasSubstr("x from the apex"));
+  EXPECT_THAT(csv, HasSubstr("\nbase,"));
+  EXPECT_THAT(csv, HasSubstr("\nheight 0.25 h,"));
+  EXPECT_THAT(csv, HasSubstr("\nbase coarse_graining,"));
+  EXPECT_THAT(csv, HasSubstr("\nbase particle_centre,"));
+  const auto names = dem::list_snapshots(folder / "out/snapshots.h5");
+  EXPECT_EQ(names.size(), 4U);
+  const auto pile = dem::read_snapshot(folder / "out/snapshots.h5", "/realization_001/pile");
+  EXPECT_EQ(pile.grains.size(), 40U);
+  EXPECT_GE(pile.grains.front().outline.size(), 6U);
+  EXPECT_THAT(program("info " + (folder / "out/snapshots.h5")).out,
+              HasSubstr("realization_000/gravity_8.829: 2D, "));
+}
+
+TEST(PileRun, SameBitsOnAnyThreadsAndAfterAStop) {
+  const Folder folder;
+  const auto one = results_of(folder, "one", "--threads 1");
+  EXPECT_EQ(one, results_of(folder, "three", "--threads 3"));
+  const std::string run = "run " + (folder / "x.toml") + " -o " + (folder / "stopped");
+  for (const char* steps : {"3000", "20000"}) {
+    const Output stopped =
+        program(run + " --resume --threads 2 --stop-after-steps " + std::string(steps));
+    ASSERT_EQ(stopped.code, 130) << stopped.err;
+  }
+  ASSERT_EQ(program(run + " --resume --threads 2").code, 0);
+  EXPECT_EQ(one, testing::contents(folder / "stopped"));
+}
+
+TEST(PileRun, MoreRealizationsReuseTheGrainsOfAFailedAnalysis) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", tiny_pile("[output]\nreport = false\n"));
+  const std::string run = "run " + file + " -o " + (folder / "out");
+  const Output failed = program(run + " --set average.width=1e-9");
+  EXPECT_EQ(failed.code, 2) << failed.err;
+  EXPECT_THAT(failed.err, HasSubstr("; the grains are kept in "));
+  const auto made = testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5");
+  EXPECT_EQ(program(run + " --resume --set average.width=1e-9 --set ensemble.realizations=3").code,
+            2);
+  EXPECT_EQ(testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5"), made);
+  const Output done = program(run + " --resume --set ensemble.realizations=3");
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(
+      std::get<std::int64_t>(read_summary(folder / "out/summary.json").at("ensemble.realizations")),
+      3);
+}
+
+TEST(PileRun, SweepComparesMembers) {
+  const Folder folder;
+  const std::string file = folder.write(
+      "x.toml", tiny_pile("[output]\nvtu = false\n[sweep]\nkey = \"sleep.on\"\nvalues = [true, "
+                          "false]\n"));
+  const Output run =
+      program("run " + file + " --set ensemble.realizations=1 -o " + (folder / "out"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary all = read_summary(folder / "out/summary.json");
+  EXPECT_EQ(all.count("dip.ratio.on_true"), 1U);
+  EXPECT_EQ(all.count("dip.ratio.on_false"), 1U);
+  EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("repose left (deg)"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
