@@ -1,0 +1,34 @@
+// reproduce: the page of the sources' figures beside ours.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "coupling/app/commands.h"
+#include "coupling/output/atomic_file.h"
+#include "coupling/reproduce/page.h"
+
+namespace grainfield::coupling {
+
+void add_reproduce(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("reproduce", "the sources' figures beside ours, from summaries");
+  auto folder = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  command->add_option("folder", *folder, "holds CASE.json: the summary.json of each study")
+      ->required();
+  command->add_option("-o,--output", *output, "page to write; default: print it");
+  command->callback([=, &action] {
+    action = [=] {
+      const std::string page = reproduction_page(Results(*folder));
+      if (output->empty()) {
+        fmt::print("{}", page);
+      } else {
+        write_text_file(*output, page);
+        fmt::print("{}\n", *output);
+      }
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

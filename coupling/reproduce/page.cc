@@ -1,0 +1,99 @@
+#include "coupling/reproduce/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "coupling/reproduce/figures.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr const char* kNotRun = "not run";
+
+std::string with_error(const SourceFigure& figure, const Measured& m) {
+  const int digits = figure.unit == "deg" ? 1 : 3;
+  const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
+  if (std::isnan(m.error)) return fmt::format("{:.{}f}{}", m.value, digits, unit);
+  return fmt::format("{:.{}f} ± {:.{}f}{}", m.value, digits, m.error, digits, unit);
+}
+
+// Ours and the agreement.
+std::pair<std::string, std::string> row_of(const SourceFigure& figure, const Results& results) {
+  if (figure.number) {
+    const auto ours = figure.number(results);
+    if (!ours) return {kNotRun, ""};
+    return {with_error(figure, *ours), agreement(figure, *ours)};
+  }
+  const auto ours = figure.word(results);
+  if (!ours) return {kNotRun, ""};
+  const std::string word = ours->substr(0, ours->find(':'));
+  if (word == "undecided") return {*ours, "too few realizations to tell"};
+  const bool same = std::find(figure.words.begin(), figure.words.end(), word) != figure.words.end();
+  return {*ours, same ? "agrees" : "differs"};
+}
+
+std::string optional_number(const Results& r, const std::string& study, const std::string& key,
+                            const char* format) {
+  const auto value = r.plain(study, key);
+  return value && !std::isnan(*value) ? fmt::format(fmt::runtime(format), *value) : "";
+}
+
+}  // namespace
+
+std::string reproduction_page(const Results& results) {
+  std::string out = fmt::format(
+      "# Figures of the sources beside ours\n\n"
+      "Generated from the summaries in `docs/reproduction/results/` (`CASE.json` is the "
+      "`summary.json` of `grainfield run cases/CASE.toml`) by\n\n"
+      "    build/release/grainfield reproduce docs/reproduction/results -o docs/reproduction.md\n\n"
+      "Errors are standard errors over realizations. A number agrees when the source's value with "
+      "its reading error (angles 1°, fractions 0.01, \"about\" 25 %) and ours ± 2 standard errors "
+      "meet; the spread is too wide to tell when 2 standard errors exceed {:.0f} % of the value. A "
+      "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
+      "beside the apex minus that under it). Nothing was tuned to agree.\n\n"
+      "| source | figure | theirs | ours | agreement | realizations | study |\n"
+      "|---|---|---|---|---|---|---|\n",
+      100 * kTooWide);
+  std::vector<std::string> studies;
+  for (const SourceFigure& figure : source_figures()) {
+    const auto [ours, word] = row_of(figure, results);
+    const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
+    out += fmt::format("| {} | {} | {}{} | {} | {} | {} | `{}` |\n", figure.source, figure.what,
+                       figure.theirs, unit, ours, word,
+                       optional_number(results, figure.study, "ensemble.realizations", "{:g}"),
+                       figure.study);
+    if (std::find(studies.begin(), studies.end(), figure.study) == studies.end()) {
+      studies.push_back(figure.study);
+    }
+  }
+  out +=
+      "\n## How they were run\n\n"
+      "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step "
+      "2e-6 s.\n\n"
+      "| study | grains | realizations | interval (s) | time step (s) | steps | grain-steps | wall "
+      "time of the grains (s) | base force / weight | version | command |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const std::string& study : studies) {
+    if (!results.has(study)) {
+      out += fmt::format("| `{}` | {} | | | | | | | | | `grainfield run cases/{}.toml` |\n", study,
+                         kNotRun, study);
+      continue;
+    }
+    const auto value = [&](const char* key, const char* format) {
+      return optional_number(results, study, key, format);
+    };
+    out += fmt::format(
+        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | `grainfield run cases/{}.toml` |\n",
+        study, value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
+        value("source.interval", "{:g}"), value("dem.time_step", "{:.3g}"),
+        value("dem.steps", "{:.4g}"), value("dem.grain_steps", "{:.3g}"),
+        value("time.dem_s", "{:.0f}"), value("base.weight_ratio", "{:.6f}"),
+        results.text(study, "version").value_or(""), study);
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

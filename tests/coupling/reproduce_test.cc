@@ -1,0 +1,123 @@
+// The page of the sources' figures.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "coupling/reproduce/figures.h"
+#include "coupling/reproduce/page.h"
+#include "coupling/run/summary_keys.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::program;
+
+const std::string kDocs = std::string(GRAINFIELD_CASES) + "/../docs/";
+
+TEST(Reproduce, ThePageInDocsIsWhatTheCommandPrints) {
+  const auto output = program("reproduce " + kDocs + "reproduction/results");
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_EQ(testing::read_text(kDocs + "reproduction.md"), output.out)
+      << "regenerate: grainfield reproduce docs/reproduction/results -o docs/reproduction.md";
+}
+
+TEST(Reproduce, EveryFigureNamesAShippedCase) {
+  std::set<std::string> seen;
+  for (const SourceFigure& f : source_figures()) {
+    EXPECT_TRUE(testing::fs::exists(std::string(GRAINFIELD_CASES) + "/" + f.study + ".toml"))
+        << f.study;
+    EXPECT_TRUE(seen.insert(f.what).second) << f.what;
+    EXPECT_NE(f.number == nullptr, f.word == nullptr) << f.what;
+    EXPECT_LE(f.low, f.high) << f.what;
+  }
+}
+
+TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
+  const Folder folder;
+  folder.write("pile-point-source.json",
+               R"({"repose.mean_deg": 28.4, "repose.mean_deg.standard_error": 0.3,
+ "dip.verdict": "dip", "dip.difference": 0.1, "dip.standard_error": 0.02, "dip.p_value": 0.001,
+ "dip.ratio": 0.8, "ensemble.realizations": 8, "density.ratio": 1.02,
+ "density.ratio.standard_error": 0.004, "dem.grains": 6500, "source.interval": 0.03})");
+  folder.write("pile-line-source.json",
+               R"({"repose.mean_deg": 24, "repose.mean_deg.standard_error": 0.5,
+ "heap.volume_fraction": 0.79, "dip.verdict": "dip", "dip.difference": 0.1,
+ "dip.standard_error": 0.02, "dip.p_value": 0.001, "dip.ratio": 0.8})");
+  folder.write("pile-elliptic.json",
+               R"({"dip.verdict": "undecided", "dip.difference": 0.22, "dip.standard_error": 0.2,
+ "dip.p_value": "nan", "dip.ratio": 0.7})");
+  const std::string page = reproduction_page(Results(folder.path()));
+  EXPECT_THAT(page,
+              HasSubstr("| Roul 3.1 | angle of repose, point source | 28 deg | 28.4 ± 0.3 deg "
+                        "| agrees | 8 | `pile-point-source` |"));
+  EXPECT_THAT(page, HasSubstr("| 24.0 ± 0.5 deg | differs by 2 deg (4.0 standard errors) |"));
+  EXPECT_THAT(page,
+              HasSubstr("| dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.001; centre over "
+                        "largest 0.80 | agrees |"));
+  // A line source with a dip is a difference.
+  EXPECT_THAT(page, HasSubstr("p = 0.001; centre over largest 0.80 | differs |"));
+  EXPECT_THAT(page, HasSubstr("| too few realizations to tell |"));
+  // The ratio of 0.22 +- 0.2 and 0.1 +- 0.02.
+  EXPECT_THAT(page, HasSubstr("| about 2 | 2.200 ± 2.048 | spread too wide to tell |"));
+  // A number without an error says nothing.
+  EXPECT_THAT(page, HasSubstr("| 0.79 | 0.790 | no error, no statement |"));
+  EXPECT_THAT(page,
+              HasSubstr("| 1.08-1.10 | 1.020 ± 0.004 | differs by 0.06 (15.0 standard errors) |"));
+  EXPECT_THAT(page, HasSubstr("| `pile-point-source` | 6500 | 8 | 0.03 |"));
+  EXPECT_THAT(page, HasSubstr("| asymmetric line source, steeper flank | 31 deg | not run |"));
+}
+
+TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
+  // A results file with every number gives every row: no key of the table is misspelt.
+  const Folder folder;
+  const std::set<std::string> keys{"repose.mean_deg",
+                                   "dem.repose_angle_left_deg",
+                                   "dem.repose_angle_right_deg",
+                                   "heap.volume_fraction",
+                                   "density.ratio",
+                                   "change.gravity_0.98.coordination_ratio",
+                                   "change.gravity_18.6.coordination_ratio",
+                                   "dip.ratio",
+                                   "dip.difference",
+                                   "dip.p_value"};
+  std::string text = "{\"dip.verdict\": \"dip\"";
+  for (const std::string& key : keys) {
+    EXPECT_NE(find_summary_key(key), nullptr) << key;
+    text += ", \"" + key + "\": 1.5";
+  }
+  for (const SourceFigure& f : source_figures()) folder.write(f.study + ".json", text + "}");
+  EXPECT_THAT(reproduction_page(Results(folder.path())), Not(HasSubstr("not run")));
+}
+
+TEST(Reproduce, AgreementByItsRule) {
+  SourceFigure f;
+  f.unit = "deg";
+  f.low = 27;
+  f.high = 29;
+  EXPECT_EQ(agreement(f, {28, 0.1}), "agrees");
+  EXPECT_EQ(agreement(f, {30, 0.6}), "agrees");
+  EXPECT_EQ(agreement(f, {30, 0.4}), "differs by 1 deg (2.5 standard errors)");
+  EXPECT_EQ(agreement(f, {20, 10}), "spread too wide to tell");
+  EXPECT_EQ(agreement(f, {28, std::nan("")}), "no error, no statement");
+}
+
+TEST(Reproduce, RefusesFoldersAndFilesThatAreNone) {
+  const Folder folder;
+  const auto missing = program("reproduce " + (folder / "none"));
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("none: no such folder"));
+  folder.write("pile-elliptic.json", "{");
+  const auto broken = program("reproduce " + folder.path() + " -o " + (folder / "page.md"));
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("pile-elliptic.json: not a JSON object"));
+  EXPECT_FALSE(testing::fs::exists(folder / "page.md"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
