@@ -3,26 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/shapes/polygon.h"
+
 namespace grainfield::coupling {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-// Integrals of x x, y y and x y over the outline about its centroid, in the body frame: sums over
-// the triangles from the centroid (the origin) to the edges.
-Vector3d outline_moments(const dem::Outline& outline) {
-  Vector3d moments(0, 0, 0);
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const auto& [x0, y0] = outline[k];
-    const auto& [x1, y1] = outline[(k + 1) % outline.size()];
-    const double cross = x0 * y1 - x1 * y0;
-    moments +=
-        cross * Vector3d((x0 * x0 + x0 * x1 + x1 * x1) / 12, (y0 * y0 + y0 * y1 + y1 * y1) / 12,
-                         (2 * x0 * y0 + x0 * y1 + x1 * y0 + 2 * x1 * y1) / 24);
-  }
-  return moments;
-}
 
 bool bears(const dem::Contact& contact) { return contact.force.squaredNorm() > 0; }
 
@@ -34,7 +21,7 @@ Matrix3d inertia_of(const dem::Grain& grain, int dim) {
     if (grain.outline.empty()) {
       second(0, 0) = second(1, 1) = grain.volume * grain.radius * grain.radius / 4;
     } else {
-      const Vector3d m = outline_moments(grain.outline);
+      const auto m = dem::second_moments_of(grain.outline);
       const double c = std::cos(grain.angle), s = std::sin(grain.angle);
       second(0, 0) = c * c * m[0] + s * s * m[1] - 2 * s * c * m[2];
       second(1, 1) = s * s * m[0] + c * c * m[1] + 2 * s * c * m[2];

@@ -1,0 +1,127 @@
+// `grainfield average` on written snapshots: frames, cuts, methods, balance, points without values.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "averaging_scene.h"
+#include "coupling/output/field_io.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+std::string written(const Folder& folder, const dem::Snapshot& snapshot, const std::string& name) {
+  dem::write_snapshot(folder / name, "state", snapshot);
+  return folder / name;
+}
+
+Field field_of(const std::string& file) { return read_field(file, "average"); }
+
+void expect_refusal(const Output& output, const std::string& words) {
+  EXPECT_EQ(output.code, 2) << output.err;
+  EXPECT_THAT(output.err, HasSubstr(words));
+  EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
+}
+
+TEST(Average, MethodsCutsAndQuantities) {
+  const Folder folder;
+  const std::string file = written(folder, test::layer(4), "s.h5");
+  for (const char* method : {"coarse_graining", "particle_centre", "area_exact"}) {
+    const Output out =
+        program("average " + file + " --method " + method +
+                " --cuts 0,0.5 --grid 7x2 --quantities sigma,fabric -o " + (folder / "f.h5"));
+    ASSERT_EQ(out.code, 0) << out.err;
+    EXPECT_THAT(out.out, HasSubstr("average: 14 points, 1 realization"));
+    const Field field = field_of(folder / "f.h5");
+    EXPECT_EQ(field.points.rows(), 14);
+    EXPECT_EQ(field.attributes.at("method"), method);
+    EXPECT_NE(field.find("fabric_xy"), nullptr);
+    EXPECT_EQ(field.find("density"), nullptr);
+    EXPECT_NEAR(field.points(13, 1), -std::stod(field.attributes.at("h")) / 2, 1e-12);
+  }
+}
+
+TEST(Average, HeapsAverageInScaledCoordinates) {
+  const Folder folder;
+  std::string files;
+  for (int k = 0; k < 2; ++k) {  // the same heap, one 10 % larger
+    dem::Snapshot s;
+    const double d = 0.01 * (1 + 0.1 * k);
+    s.gravity = {0, -9.81, 0};
+    test::add_wall(s, "floor", {0, 0, 0}, {0, 1, 0});
+    for (int y = 0; y < 12; ++y)
+      for (int x = 0; x < 2 * (12 - y) - 1; ++x)
+        s.grains.push_back(test::disk(static_cast<std::int64_t>(s.grains.size()), (x + y) * d,
+                                      (y + 0.5) * d, d / 2));
+    files += " " + written(folder, s, "heap" + std::to_string(k) + ".h5");
+  }
+  const Output out = program("average" + files + " --frame heap --grid 21x11 --width 0.02 -o " +
+                             (folder / "f.h5"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("points have fewer than 3 grains"));
+  const Field field = field_of(folder / "f.h5");
+  EXPECT_EQ(field.nx, 21);
+  EXPECT_EQ(field.points(0, 1), -1);
+  EXPECT_THAT(field.attributes.at("frame"), HasSubstr("heap"));
+  // Full below, empty beside the slopes.
+  EXPECT_GT(field.find("volume_fraction")->value[10 + 21 * 3], 0.7);
+  EXPECT_TRUE(std::isnan(field.find("volume_fraction")->value[21 * 10]));
+}
+
+TEST(Average, PrintsTheBalanceOfEveryAveraging) {
+  const Folder folder;
+  const std::string file = written(folder, test::layer(4, 14, 9), "s.h5");
+  const Output out = program("average " + file + " --balance");
+  ASSERT_EQ(out.code, 0) << out.err;
+  for (const char* text : {"126 grains", "| method | weight |", "| coarse_graining | lucy | 0.0",
+                           "| area_exact | square |"})
+    EXPECT_THAT(out.out, HasSubstr(text));
+}
+
+TEST(Average, ThreeDimensions) {
+  const Folder folder;
+  dem::Snapshot s;
+  s.dim = 3;
+  for (int k = 0; k < 27; ++k) {
+    dem::Grain g = test::disk(k, 0, 0, 0.5);
+    g.position = {static_cast<double>(k % 3), static_cast<double>(k / 3 % 3),
+                  static_cast<double>(k / 9)};
+    g.volume = 0.5;
+    s.grains.push_back(g);
+  }
+  const std::string start = "average " + written(folder, s, "s.h5") + " -o " + (folder / "f.h5");
+  const std::string points = folder.write("p.csv", "x,y,z\n1,1,1\n");
+  expect_refusal(program(start), "3D");
+  expect_refusal(program(start + " --frame packing"),
+                 "the snapshot is 3D; give --points with x,y,z and --frame packing");
+  const Output out = program(start +
+                             " --frame packing --method particle_centre --kernel square "
+                             "--width 1.5 --points " +
+                             points);
+  ASSERT_EQ(out.code, 0) << out.err;
+  EXPECT_NEAR(field_of(folder / "f.h5").find("volume_fraction")->value[0], 0.5, 1e-12);
+}
+
+TEST(Average, RefusesWithOneLine) {
+  const Folder folder;
+  const std::string start = "average " + written(folder, test::layer(4), "s.h5");
+  const std::string end = " -o " + (folder / "f.h5");
+  expect_refusal(program(start), "give -o FIELD.h5, or --balance, or both");
+  expect_refusal(program(start + end + " --cuts 0.5,1.5"), "--cuts: found 1.5");
+  expect_refusal(program(start + end + " --frame heaps"), "did you mean \"heap\"?");
+  expect_refusal(program(start + end + " --quantities stress"), "unknown quantity \"stress\"");
+  expect_refusal(program(start + end + " --free-surface opn"), "did you mean \"open\"?");
+  expect_refusal(program(start + end + " --method area_exact --kernel lucy"),
+                 "unknown kernel of area_exact");
+  EXPECT_FALSE(testing::fs::exists(folder / "f.h5"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
