@@ -19,6 +19,7 @@ void add_average(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
+void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 
 }  // namespace grainfield::coupling

@@ -41,6 +41,7 @@ int parse_and_act(int argc, char** argv) {
   add_compare(app, action);
   add_import(app, action);
   add_reproduce(app, action);
+  add_structure(app, action);
   add_info(app, action);
   if (argc > 1 && argv[1][0] != '-') {
     std::vector<std::string> names;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -75,14 +76,22 @@ Eigen::VectorXd accelerations(int n, const Statistic& statistic, Eigen::Index va
   return result;
 }
 
-// Share of the draws at which an end of the bca interval lies (same book, eq. 14.10).
-double shifted_share(double p, double bias, double acceleration) {
-  const double z = bias + normal_quantile(p), divisor = 1 - acceleration * z;
-  return divisor > 0 ? normal_share(bias + z / divisor) : (z > 0 ? 1.0 : 0.0);
+// Share of the draws at which an end of the bca interval lies (same book, eq. 14.10), given the
+// normal quantile z of that end.
+double shifted_share(double z, double bias, double acceleration) {
+  const double w = bias + z, divisor = 1 - acceleration * w;
+  return divisor > 0 ? normal_share(bias + w / divisor) : (w > 0 ? 1.0 : 0.0);
+}
+
+// Normal quantile of the upper end before any correction of bias.
+double upper_quantile(int n, const BootstrapOptions& options) {
+  const double p = (1 + options.level) / 2;
+  if (!options.widen) return normal_quantile(p);
+  return std::sqrt(n / (n - 1.0)) * boost::math::quantile(boost::math::students_t(n - 1), p);
 }
 
 BootstrapInterval interval_of(double value, const Eigen::VectorXd& draws, double acceleration,
-                              const BootstrapOptions& options) {
+                              int realizations, const BootstrapOptions& options) {
   std::vector<double> sorted;
   for (const double draw : draws)
     if (!std::isnan(draw)) sorted.push_back(draw);
@@ -96,7 +105,8 @@ BootstrapInterval interval_of(double value, const Eigen::VectorXd& draws, double
   double squares = 0;
   for (const double draw : sorted) squares += (draw - mean) * (draw - mean);
   result.error = std::sqrt(squares / (n - 1));
-  double low = (1 - options.level) / 2, high = 1 - low;
+  const double z = upper_quantile(realizations, options);
+  double low = normal_share(-z), high = normal_share(z);
   if (options.interval == "bca") {
     const auto range = std::equal_range(sorted.begin(), sorted.end(), value);
     const double below = static_cast<double>(range.first - sorted.begin()),
@@ -104,8 +114,8 @@ BootstrapInterval interval_of(double value, const Eigen::VectorXd& draws, double
     // Kept half a draw away from the ends, where the bias would be infinite.
     const double share = std::clamp((below + equal / 2) / n, 0.5 / n, 1 - 0.5 / n);
     const double bias = normal_quantile(share);
-    low = shifted_share(low, bias, acceleration);
-    high = shifted_share(high, bias, acceleration);
+    low = shifted_share(-z, bias, acceleration);
+    high = shifted_share(z, bias, acceleration);
   }
   result.low = sorted_quantile(sorted, low);
   result.high = sorted_quantile(sorted, high);
@@ -151,7 +161,7 @@ std::vector<BootstrapInterval> bootstrap_intervals(int realizations, const Stati
       options.interval == "bca" ? accelerations(realizations, statistic, value.size(), options)
                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(value.size()));
   for (Eigen::Index v = 0; v < value.size(); ++v)
-    result.push_back(interval_of(value[v], draws.col(v), acceleration[v], options));
+    result.push_back(interval_of(value[v], draws.col(v), acceleration[v], realizations, options));
   return result;
 }
 

@@ -15,6 +15,10 @@ struct BootstrapOptions {
   /// bca: bias-corrected and accelerated (Efron 1987), second-order correct; percentile: the plain
   /// quantiles of the draws.
   std::string interval = "bca";
+  /// Widens the quantiles for few realizations n (Hesterberg 2015): the spread of draws has divisor
+  /// n and normal quantiles, the truth n - 1 and Student's, so the normal quantile z is replaced by
+  /// sqrt(n/(n-1)) t of n - 1 degrees of freedom. Without it 10 realizations give 90 % for 95 %.
+  bool widen = true;
   double level = 0.95;     ///< of confidence, above 0 and below 1
   int resamples = 2000;    ///< draws, 10 at least; 2000 give the ends of 95 % to about 5 % of their
                            ///< distance

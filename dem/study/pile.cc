@@ -301,14 +301,14 @@ void PileRun::drop_layer() {
     check_walls_free(setup_, now, largest_diameter_,
                      static_cast<double>(poured_) / setup_.source.grains);
     const Surface surface = free_surface(now, mean_diameter_);
-    line_ = plateau_of(surface, line_, kPlateauDrop * mean_diameter_);
+    const double plateau = plateau_of(surface, line_, kPlateauDrop * mean_diameter_).length();
+    const double middle = 0.5 * (line_.left + line_.right) + setup_.source.shift;
+    line_ = {middle - 0.5 * plateau, middle + 0.5 * plateau};
     if (line_.length() < kPoint * largest_diameter_) {
       check_line_long_enough(setup_, poured_);
       end_pour();
       return;
     }
-    line_.left += setup_.source.shift;
-    line_.right += setup_.source.shift;
     bottom += *std::max_element(surface.top.begin(), surface.top.end());
   }
   std::vector<ShapedGrain> layer;

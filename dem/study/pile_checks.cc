@@ -19,7 +19,7 @@ constexpr double kExpectedSlope = std::numbers::inv_sqrt3;  // 30 degrees
 constexpr double kFloorReserve = 1.15;
 // A line holds the grains of the expected heap on its length and this much more, because grains
 // that roll off its ends widen the heap.
-constexpr double kLineReserve = 1.5;
+constexpr double kLineReserve = 2.5;
 constexpr double kMostNotPoured = 0.1;
 constexpr double kMostLean = 1e-3;
 

@@ -56,4 +56,9 @@ std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint6
 /// ("gravity_8.829"). Throws as make_point_load_run.
 std::unique_ptr<Run> make_pile_run(const PileSetup& setup, std::uint64_t seed, int threads);
 
+/// The same for a lattice pile. Its snapshot "pile" has the lowest row first, from left to right.
+/// The seed is only noted: the lattice is perfect.
+std::unique_ptr<Run> make_lattice_pile_run(const LatticePileSetup& setup, std::uint64_t seed,
+                                           int threads);
+
 }  // namespace grainfield::dem

@@ -87,9 +87,10 @@ struct SourceSetup {
   double move = 0;      ///< m; point: the funnel moves this far to the right while it pours,
                         ///< from -move/2 to move/2 (asymmetric piles)
   double clearance = 0.008;  ///< m above the pile from which a layer falls; line
-  double length = 1.1;  ///< m; line: length of the first layer; later ones cover the pile's plateau
-  double shift = 0;     ///< m; line: each layer lies this far to the right of the plateau's middle
-                        ///< (asymmetric piles)
+  double length = 0.77;      ///< m; line: length of the first layer, about 0.7 of the base of the
+                             ///< finished pile; later ones cover the pile's plateau
+  double shift = 0;  ///< m; line: each layer's middle lies this far to the right of the last one's
+                     ///< (asymmetric piles)
 };
 
 /// The ground, y = 0, with side walls at its ends that only catch stray grains: a pile that leans
@@ -142,7 +143,7 @@ struct LatticeSetup {
   int base_grains = 45;    ///< disks in the lowest row; at 60 degrees also the number of rows
   double slope_deg = 60;   ///< of the outline, up to 60
   double radius = 0.0045;  ///< m
-  double gap = 1e-4;       ///< between neighbours of a row / diameter; 0: they may touch, and carry
+  double gap = 5e-4;       ///< between neighbours of a row / diameter; 0: they may touch, and carry
                            ///< force where the pile's own weight pushes them together
 };
 
@@ -153,12 +154,19 @@ struct LatticePileSetup {
   MaterialSetup material = [] {
     MaterialSetup m;
     m.law = "linear";
+    m.normal_stiffness = 3.5e8;  // m g/(K d) = 1e-6 with these disks: close to Liffman's hard ones
+    m.tangential_stiffness = 1e8;
     m.friction = 0;        // at rest Liffman's grains exert no tangential force on each other
     m.floor_friction = 1;  // above tan 30 degrees, the steepest H/N
     return m;
   }();
   MotionSetup motion;
-  RestSetup rest;
+  RestSetup rest = [] {
+    RestSetup r;
+    r.unbalanced_force_ratio = 1e-8;
+    r.background_damping = 1000;  // about critical for the slowest swing of 45 layers
+    return r;
+  }();
 };
 
 struct PointLoadSetup {

@@ -45,6 +45,32 @@ TEST(PointLoad, BaseCarriesWeightAndLoad) {
   }
 }
 
+PointLoadSetup pentagons() {
+  PointLoadSetup s = small("layered");
+  s.packing.shape = "irregular";
+  s.packing.side = 0.009;
+  s.packing.width = 0.15;
+  s.packing.depth = 0.04;
+  s.rest.unbalanced_force_ratio = 1e-4;
+  s.rest.kinetic_to_elastic_energy = 1e-6;
+  return s;
+}
+
+TEST(PointLoad, LayersOfPentagonsCarryWeightAndLoad) {
+  for (const char* floor : {"smooth", "rough"}) {
+    PointLoadSetup s = pentagons();
+    s.packing.floor = floor;
+    const auto run = make_point_load_run(s, 4, 1);
+    finish(*run);
+    const RunResult r = run->result();
+    EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << floor;
+    EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 2e-2) << floor;
+    for (const Grain& g : r.snapshots[0].second.grains) EXPECT_EQ(g.outline.size(), 5u);
+    EXPECT_GE(r.figures.at("dem.layer_height"), s.packing.depth);
+    EXPECT_GT(r.figures.at("dem.volume_fraction"), 0.6);
+  }
+}
+
 bool same(const Snapshot& a, const Snapshot& b) {
   if (a.grains.size() != b.grains.size() || a.contacts.size() != b.contacts.size()) return false;
   for (std::size_t k = 0; k < a.grains.size(); ++k) {
@@ -66,37 +92,41 @@ TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
   const std::string file = (std::filesystem::temp_directory_path() /
                             ("grainfield_run_" + std::to_string(getpid()) + ".h5"))
                                .string();
-  PointLoadSetup s = small("layered");
-  s.packing.width = 0.05;
-  s.packing.depth = 0.02;
-  s.rest.unbalanced_force_ratio = 1e-3;
-  const auto whole = make_point_load_run(s, 9, 1);
-  finish(*whole);
-  const RunResult expected = whole->result();
-  const long total = static_cast<long>(expected.figures.at("dem.steps"));
-  Random random(1);
-  for (int trial = 0; trial < 3; ++trial) {
-    const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
-    {
-      const auto first = make_point_load_run(s, 9, 1 + trial % 2);
-      first->advance(stop);
-      first->save(file);
+  for (const bool disks : {true, false}) {
+    PointLoadSetup s = disks ? small("layered") : pentagons();
+    if (disks) {
+      s.packing.width = 0.05;
+      s.packing.depth = 0.02;
     }
-    const auto second = make_point_load_run(s, 9, 2 - trial % 2);
-    second->restore(file);
-    finish(*second);
-    const RunResult got = second->result();
-    EXPECT_TRUE(same(got.snapshots[0].second, expected.snapshots[0].second))
-        << "stopped at " << stop;
-    EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second))
-        << "stopped at " << stop;
-    EXPECT_EQ(got.figures, expected.figures);
+    s.rest.unbalanced_force_ratio = 1e-3;
+    const auto whole = make_point_load_run(s, 9, 1);
+    finish(*whole);
+    const RunResult expected = whole->result();
+    const long total = static_cast<long>(expected.figures.at("dem.steps"));
+    Random random(1);
+    for (int trial = 0; trial < 3; ++trial) {
+      const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
+      {
+        const auto first = make_point_load_run(s, 9, 1 + trial % 2);
+        first->advance(stop);
+        first->save(file);
+      }
+      const auto second = make_point_load_run(s, 9, 2 - trial % 2);
+      second->restore(file);
+      finish(*second);
+      const RunResult got = second->result();
+      EXPECT_TRUE(same(got.snapshots[0].second, expected.snapshots[0].second))
+          << "stopped at " << stop;
+      EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second))
+          << "stopped at " << stop;
+      EXPECT_EQ(got.figures, expected.figures);
+    }
+    const auto other = make_point_load_run(s, 10, 1);
+    EXPECT_THROW(other->restore(file), std::invalid_argument);
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+    const auto again = make_point_load_run(s, 9, 1);
+    EXPECT_THROW(again->restore(file), std::invalid_argument);
   }
-  const auto other = make_point_load_run(s, 10, 1);
-  EXPECT_THROW(other->restore(file), std::invalid_argument);
-  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  const auto again = make_point_load_run(s, 9, 1);
-  EXPECT_THROW(again->restore(file), std::invalid_argument);
   std::filesystem::remove(file);
 }
 
@@ -123,6 +153,12 @@ TEST(PointLoad, RefusesWhatCannotBe) {
   s = small("triangular");
   s.packing.sizes = "uniform";
   EXPECT_THAT(refusal(s), testing::HasSubstr("packing.sizes"));
+  s = small("triangular");
+  s.packing.shape = "irregular";
+  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.shape: found irregular, allowed: disk"));
+  s = pentagons();
+  s.packing.side = 0;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.side: found 0, allowed: above 0"));
   s = small("triangular");
   s.material.gravity = 0;
   EXPECT_THAT(refusal(s), testing::HasSubstr("material.gravity"));

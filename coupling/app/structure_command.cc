@@ -1,0 +1,128 @@
+// structure: what a packing is made of - contacts, base forces, force chains, orientation.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "coupling/app/commands.h"
+#include "coupling/averaging/grain_facts.h"
+#include "coupling/output/atomic_file.h"
+#include "coupling/run/average_files.h"
+#include "coupling/statistics/exponential_tail.h"
+#include "coupling/structure/base_forces.h"
+#include "coupling/structure/coordination_counts.h"
+#include "coupling/structure/force_chains.h"
+#include "coupling/structure/grain_axes.h"
+#include "coupling/structure/histogram.h"
+#include "coupling/structure/size_factor.h"
+#include "coupling/structure/tensor_axes.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// One row per grain.
+std::string grains_csv(const dem::Snapshot& s, const ForceChains& chains) {
+  std::string out =
+      "# angles in degrees from x; loads tension positive, N/m (3D: N/m2)\n"
+      "id,x,y,z,fixed,contacts,rattler,stress_trace,stress_deviator,compression_angle,fabric_angle,"
+      "long_angle,chain\n";
+  const std::vector<GrainFacts> facts = grain_facts(s);
+  for (std::size_t g = 0; g < facts.size(); ++g) {
+    const dem::Grain& grain = *facts[g].grain;
+    const TensorAxes stress = tensor_axes(facts[g].virial / grain.volume, s.dim);
+    const double along = s.dim == 2 ? tensor_axes(facts[g].inertia, 2).angle_deg(1) : NAN;
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", grain.id, grain.position.x(),
+                       grain.position.y(), grain.position.z(), grain.fixed ? 1 : 0,
+                       facts[g].contacts, facts[g].bearing ? 0 : 1, stress.trace(),
+                       stress.deviator(), stress.angle_deg(s.dim - 1),
+                       tensor_axes(facts[g].fabric, s.dim).angle_deg(), along, chains.chain_of[g]);
+  }
+  return out;
+}
+
+std::string base_csv(const BaseForces& base) {
+  std::string out = fmt::format("# mean vertical force {} N\nid,x,force,normalised\n", base.mean);
+  for (Eigen::Index k = 0; k < base.x.size(); ++k)
+    out += fmt::format("{},{},{},{}\n", base.ids[static_cast<std::size_t>(k)], base.x[k],
+                       base.force[k], base.normalised[k]);
+  return out;
+}
+
+std::string counts_csv(const CoordinationCounts& counts) {
+  std::string out = "contacts,grains,bearing_grains\n";
+  for (std::size_t k = 0; k < counts.with.size(); ++k)
+    out += fmt::format("{},{},{}\n", k, counts.with[k],
+                       k < counts.with_bearing.size() ? counts.with_bearing[k] : 0);
+  return out;
+}
+
+void show(const std::string& title, const dem::Snapshot& s, const std::string& folder) {
+  const CoordinationCounts counts = coordination_counts(s);
+  const SizeFactor size = size_factor(s);
+  const ForceChains chains = force_chains(s);
+  fmt::print("{}: {} free grains, {} rattlers\n", title, counts.grains, counts.rattlers);
+  fmt::print("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
+  fmt::print("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n",
+             size.measured, size.theory);
+  fmt::print("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
+             chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
+  if (s.dim == 2) {
+    const GrainAxes axes = grain_axes(s);
+    if (std::isnan(axes.order))
+      fmt::print("  orientation: none (disks)\n");
+    else
+      fmt::print("  orientation: order {:.3f} along {:.1f} degrees from x\n", axes.order,
+                 axes.director_deg);
+  }
+  std::string base_text;
+  try {
+    const BaseForces base = base_forces(s);
+    const ExponentialTail tail = exponential_tail(base.normalised, 1);
+    fmt::print(
+        "  base: {} grains, mean vertical force {:.4g} N; P(n) for n > 1 falls as exp(-{:.3g} n) "
+        "({:.3g} to {:.3g}), p = {:.2g}\n",
+        base.force.size(), base.mean, tail.rate, tail.low, tail.high, tail.p_value);
+    base_text = base_csv(base);
+  } catch (const std::invalid_argument& e) {
+    fmt::print("  base: {}\n", e.what());
+  }
+  if (folder.empty()) return;
+  write_text_file(folder + "/grains.csv", grains_csv(s, chains));
+  write_text_file(folder + "/coordination.csv", counts_csv(counts));
+  if (!base_text.empty()) write_text_file(folder + "/base_forces.csv", base_text);
+}
+
+}  // namespace
+
+void add_structure(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("structure", "coordination, base forces, force chains, orientation");
+  auto names = std::make_shared<std::vector<std::string>>();
+  auto folder = std::make_shared<std::string>();
+  command->add_option("snapshots", *names, "FILE.h5 (all in it) or FILE.h5:group")->required();
+  command->add_option("-o,--output", *folder,
+                      "folder for grains.csv, coordination.csv, base_forces.csv, one below it per "
+                      "snapshot where there are several");
+  command->callback([=, &action] {
+    action = [=] {
+      const auto snapshots = parse_snapshot_names(*names);
+      int number = 0;
+      for (const auto& name : snapshots) {
+        std::string where = *folder;
+        if (!where.empty()) {
+          if (snapshots.size() > 1) where += fmt::format("/snapshot_{:03}", number++);
+          std::error_code error;
+          std::filesystem::create_directories(where, error);
+          if (error)
+            throw std::invalid_argument(
+                fmt::format("{}: cannot be made a folder: {}", where, error.message()));
+        }
+        show(name.file + ":" + name.group, dem::read_snapshot(name.file, name.group), where);
+      }
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling
