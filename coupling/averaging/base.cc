@@ -67,8 +67,8 @@ Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
   return change;
 }
 
-std::vector<BaseForce> base_forces(const dem::Snapshot& snapshot) {
-  std::vector<BaseForce> out;
+std::vector<BaseContact> base_contacts(const dem::Snapshot& snapshot) {
+  std::vector<BaseContact> out;
   for_each_support(snapshot, true, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
     out.push_back({point, force});
   });

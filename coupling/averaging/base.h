@@ -22,12 +22,12 @@ Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                     const Eigen::VectorXd& x, const Kernel& kernel);
 
 /// A contact of the layer with its base.
-struct BaseForce {
+struct BaseContact {
   Eigen::Vector2d point;  ///< m, packing's axes
   Eigen::Vector2d force;  ///< of the base on the grain, N (y up)
 };
 /// Every contact of a free grain with a wall named "floor" or with a fixed grain.
-std::vector<BaseForce> base_forces(const dem::Snapshot& snapshot);
+std::vector<BaseContact> base_contacts(const dem::Snapshot& snapshot);
 
 /// Force of the base on the grains, N: (horizontal, vertical up).
 Eigen::Vector2d base_force(const dem::Snapshot& snapshot);

@@ -61,9 +61,11 @@ void source(Section s) {
   s.number("clearance", "m", +IN(double, pile.source.clearance), kPositive,
            "line: height above the pile from which a layer falls", kRoul);
   s.number("length", "m", +IN(double, pile.source.length), kPositive,
-           "line: of the first layer; later ones cover the pile's plateau", "Roul 3.1");
+           "line: of the first layer, about 0.7 of the finished pile's base; later ones cover the pile's "
+           "plateau",
+           "Roul 3.1");
   s.number("shift", "m", +IN(double, pile.source.shift), {},
-           "line: every layer lies this far to the right of the plateau's middle; an asymmetric "
+           "line: every layer's middle lies this far to the right of the last one's; an asymmetric "
            "pile",
            "Roul 3.11");
 }

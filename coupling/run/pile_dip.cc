@@ -16,7 +16,7 @@ constexpr double kLevel = 0.05;
 BaseWindows base_windows(const dem::Snapshot& pile, const PileFrame& frame,
                          const HeapSetup& setup) {
   double centre = 0, shoulder = 0;
-  for (const BaseForce& f : base_forces(pile)) {
+  for (const BaseContact& f : base_contacts(pile)) {
     const double at = std::fabs(frame.in_half_bases(f.point.x()));
     if (at < setup.centre) centre += f.force.y();
     if (at >= setup.shoulder_from && at < setup.shoulder_to) shoulder += f.force.y();
