@@ -60,13 +60,14 @@ void source(Section s) {
            "Roul 3.11");
   s.number("clearance", "m", +IN(double, pile.source.clearance), kPositive,
            "line: height above the pile from which a layer falls", kRoul);
-  s.number("length", "m", +IN(double, pile.source.length), kPositive,
-           "line: of the first layer, about 0.7 of the finished pile's base; later ones cover the pile's "
-           "plateau",
-           "Roul 3.1");
+  s.number(
+      "length", "m", +IN(double, pile.source.length), kPositive,
+      "line: of the first layer; later ones are as long as the pile's plateau. Pouring ends when "
+      "it has come to a point: about 0.7 of the finished pile's base fits all grains",
+      "Roul 3.1");
   s.number("shift", "m", +IN(double, pile.source.shift), {},
            "line: every layer's middle lies this far to the right of the last one's; an asymmetric "
-           "pile",
+           "pile, steeper on the right; below 0: to the left",
            "Roul 3.11");
 }
 
