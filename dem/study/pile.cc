@@ -113,6 +113,9 @@ class PileRun final : public Run {
 PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
     : setup_(setup), seed_(seed), random_(seed) {
   check_pile(setup_);
+  if (!setup_.change.gravity.empty() && setup_.change.method == "newton") {
+    throw std::invalid_argument("change.method: found newton, allowed for now: damped");
+  }
   draw();
   std::vector<ShapedGrain> all = grains_;
   all.insert(all.end(), floor_.begin(), floor_.end());
