@@ -82,6 +82,7 @@ struct Case {
   EnsembleSetup ensemble;
   dem::PointLoadSetup layer;
   dem::PileSetup pile;
+  dem::LatticePileSetup lattice_pile;
   AverageSetup average;
   HeapSetup heap;
   ElasticSetup elastic;

@@ -59,6 +59,7 @@ class Section {
 
 void declare_grain_keys(std::vector<Key>& keys);
 void declare_pile_keys(std::vector<Key>& keys);
+void declare_lattice_keys(std::vector<Key>& keys);
 void declare_heap_keys(std::vector<Key>& keys);
 void declare_analysis_keys(std::vector<Key>& keys);
 

@@ -5,8 +5,11 @@
 // A key bound to the member of the same name: the default is that member's.
 #define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.layer.MEMBER; }
 // The same of what layers and piles share, in the setup of the case's study.
-#define SHARED(TYPE, MEMBER) \
-  [](Case& c) -> TYPE& { return is_pile(c) ? c.pile.MEMBER : c.layer.MEMBER; }
+#define SHARED(TYPE, MEMBER)                            \
+  [](Case& c) -> TYPE& {                                \
+    if (is_lattice(c)) return c.lattice_pile.MEMBER;    \
+    return is_pile(c) ? c.pile.MEMBER : c.layer.MEMBER; \
+  }
 
 namespace grainfield::coupling {
 namespace {
@@ -16,6 +19,7 @@ constexpr const char* kRoul = "Roul table 5.1";
 constexpr const char* kBoth = "Roul tables 5.1, 2";
 
 bool is_pile(const Case& value) { return section_applies("source", value.study); }
+bool is_lattice(const Case& value) { return section_applies("lattice", value.study); }
 
 void packing(Section s) {
   s.word("kind", +IN(string, packing.kind), {"triangular", "sqrt3", "layered"},

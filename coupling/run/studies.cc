@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "coupling/run/elastic.h"
+#include "coupling/run/lattice_pile.h"
 #include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
 
@@ -12,6 +13,7 @@ const std::vector<Study>& studies() {
   static const std::vector<Study> all{
       point_load_study(),
       pile_study(),
+      lattice_pile_study(),
       elastic_layer_study(),
       elastic_half_space_study(),
   };

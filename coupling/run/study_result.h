@@ -27,6 +27,10 @@ struct StudyResult {
   std::function<Report(const StudyResult&, const Realization*)> page;
   /// Columns of a sweep's table: heading, summary key. Empty: those of a loaded layer.
   std::vector<std::pair<std::string, std::string>> overview;
+  /// Frames of this member in a sweep's report, grains and models. Empty: one curve in the frames
+  /// that all members share.
+  std::vector<Frame> sweep_frames;
+  std::string sweep_x, sweep_y;  ///< labels of these frames' axes
 };
 
 using ReportRows = std::vector<std::pair<std::string, std::string>>;

@@ -50,6 +50,18 @@ Table overview(const Case& value, const std::vector<SweepCase>& members,
   return table;
 }
 
+// Every member's own frames, grains beside models.
+Picture side_by_side(const std::vector<StudyResult>& results) {
+  std::vector<Frame> frames;
+  for (const StudyResult& result : results) {
+    frames.insert(frames.end(), result.sweep_frames.begin(), result.sweep_frames.end());
+  }
+  Picture picture =
+      curves("Grains beside the models", results.front().sweep_x, results.front().sweep_y, frames);
+  picture.caption = "Points: the grains. Each member's own report says more.";
+  return picture;
+}
+
 // One frame per profile, one curve per member. Members differ in depth by a little: the profiles
 // are the same by number. Where their own scales are the point (piles), each is drawn in its own.
 Picture profiles(const Case& value, const std::vector<SweepCase>& members,
@@ -101,7 +113,9 @@ void write_sweep(const std::string& folder, const Case& value,
         Text{fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]),
              results[m].comparison.verdict.sentence, m == 0});
   }
-  report.sections.emplace_back(profiles(value, members, results));
+  report.sections.emplace_back(results.front().sweep_frames.empty()
+                                   ? profiles(value, members, results)
+                                   : side_by_side(results));
   report.sections.emplace_back(overview(value, members, results));
   if (value.output.report) write_report(folder + "/report.html", report);
   write_text_file(folder + "/case.toml", write_case(value));
