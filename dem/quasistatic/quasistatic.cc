@@ -1,0 +1,289 @@
+// Load stepping. A load step is first tried by Newton's method alone. When that fails, the step is
+// halved; when it is small already, contacts are rearranging, and the packing is let flow to its
+// next equilibrium: each grain is held back by a drag against its displacement (implicit Euler of
+// overdamped motion), which makes every step solvable, and the drag is taken away as it succeeds.
+// Either way a step ends at the tolerance or not at all.
+#include "dem/quasistatic/quasistatic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dem/quasistatic/contact_network.h"
+#include "dem/quasistatic/newton.h"
+#include "dem/study/contact_changes.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Newton aims below the ratio asked for by this factor: the mean contact force that scales it is
+// the one before the step.
+constexpr double kAim = 0.2;
+// A residual that Newton cannot lower further will do when its mean meets the ratio and its largest
+// entry is below this many times the ratio.
+constexpr double kMostOver = 1000;
+// A step that moves a grain further, in radii or radians, could jump over a contact.
+constexpr double kMostStep = 0.25;
+// Load steps longer than this share of the change are shortened to it before the flow is tried.
+constexpr double kFlowBelow = 0.25;
+// The flow's drag, as a share of a contact's stiffness: where it begins, below which it is taken
+// for none, where it gives up; its factors after success, after quick success and after failure.
+constexpr double kFirstDrag = 1e-4, kLeastDrag = 1e-7, kMostDrag = 1e3;
+constexpr double kEase = 0.5, kQuickEase = 0.2, kBrake = 8;
+constexpr int kQuick = 5;
+// Grains that hold up Newton: those with this share of the largest residual where it stopped.
+constexpr double kCulprit = 0.03;
+// A step of the flow is solved to this share of its first residual.
+constexpr double kFlowTolerance = 1e-2;
+constexpr int kFlowIterations = 25, kMostFlowSteps = 300;
+// After the last load step: solves again with the scale of the new state.
+constexpr int kMostFinish = 6;
+
+std::int64_t index_of(const Snapshot& start, std::int64_t id) {
+  for (std::size_t k = 0; k < start.grains.size(); ++k) {
+    if (start.grains[k].id == id) return static_cast<std::int64_t>(k);
+  }
+  return -1;
+}
+
+void check_settings(const QuasistaticSettings& s) {
+  const auto refuse = [](const char* key, double found, const char* allowed) {
+    throw std::invalid_argument(
+        fmt::format("quasi-static {}: found {:g}, allowed: {}", key, found, allowed));
+  };
+  if (!(s.unbalanced_force_ratio >= 1e-12 && s.unbalanced_force_ratio <= 0.1)) {
+    refuse("unbalanced_force_ratio", s.unbalanced_force_ratio, "1e-12 to 0.1");
+  }
+  if (s.max_iterations < 1) refuse("max_iterations", s.max_iterations, "1 or more");
+  if (s.first_steps < 1) refuse("first_steps", s.first_steps, "1 or more");
+  if (!(s.least_step > 0 && s.least_step <= 1)) {
+    refuse("least_step", s.least_step, "above 0, at most 1");
+  }
+}
+
+void check_start(const Snapshot& s) {
+  if (s.dim != 2) {
+    throw std::invalid_argument(fmt::format(
+        "quasi-static relaxation: found a packing in {} dimensions, allowed: 2", s.dim));
+  }
+  const auto n = static_cast<std::int64_t>(s.grains.size());
+  const auto walls = static_cast<std::int64_t>(s.walls.size());
+  bool any_free = false;
+  for (const Grain& g : s.grains) {
+    any_free |= !g.fixed;
+    if (!(g.position.allFinite() && std::isfinite(g.angle) && g.radius > 0 &&
+          (g.fixed || (g.mass > 0 && std::isfinite(g.mass))))) {
+      throw std::invalid_argument(fmt::format(
+          "quasi-static relaxation: grain {} has a position, radius or mass that cannot be: "
+          "({:g}, {:g}) m, {:g} m, {:g} kg",
+          g.id, g.position.x(), g.position.y(), g.radius, g.mass));
+    }
+  }
+  if (!any_free) {
+    throw std::invalid_argument("quasi-static relaxation: found no grain that is free to move");
+  }
+  for (const Contact& c : s.contacts) {
+    if (c.i < 0 || c.i >= n || c.j >= n || c.j < -walls || c.i == c.j || !std::isfinite(c.spring)) {
+      throw std::invalid_argument(
+          fmt::format("quasi-static relaxation: found a contact of {} with {}, allowed: {} grains "
+                      "and {} walls",
+                      c.i, c.j, n, walls));
+    }
+  }
+}
+
+class Relaxation {
+ public:
+  Relaxation(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+             const AppliedForce& force, const QuasistaticSettings& settings)
+      : start_(start),
+        settings_(settings),
+        network_(start, law),
+        gravity_(gravity),
+        old_grain_(start.loaded_grain < 0 ? -1 : index_of(start, start.loaded_grain)),
+        new_grain_(force.id < 0 ? -1 : index_of(start, force.id)),
+        force_(force.fx, force.fy, 0) {
+    problem_.residual = [this](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
+      if (!network_.residual(z, r)) return false;
+      r -= drag_.cwiseProduct(unit_).cwiseProduct(z);
+      return true;
+    };
+    problem_.tangent = [this](const Eigen::VectorXd& z, const Eigen::VectorXd& r,
+                              Eigen::SparseMatrix<double>& matrix) {
+      network_.tangent(z, r, drag_.cwiseProduct(unit_), matrix);
+    };
+  }
+
+  QuasistaticResult run() {
+    double share = 0, step = 1.0 / settings_.first_steps;
+    while (share < 1) {
+      step = std::min(step, 1 - share);
+      const double next = step > 1 - share - 1e-12 ? 1 : share + step;
+      const ContactNetwork saved = network_;
+      set_load(next);
+      if (settle(step > kFlowBelow)) {
+        share = next;
+        step *= 2;
+        continue;
+      }
+      const double reached = network_.balance().ratio;
+      network_ = saved;
+      step = step > kFlowBelow ? kFlowBelow : 0.5 * step;
+      if (step < settings_.least_step) fail(share, reached);
+    }
+    return finish();
+  }
+
+ private:
+  double tolerance() const { return kAim * settings_.unbalanced_force_ratio; }
+
+  void set_load(double share) {
+    network_.set_load(start_.gravity + share * (gravity_ - start_.gravity), old_grain_,
+                      (1 - share) * start_.applied_force, new_grain_, share * force_);
+    rescale();
+  }
+
+  /// Residuals are measured in mean contact forces, or in mean resultants while those are larger.
+  void rescale() {
+    network_.set_scale(1);
+    const ContactNetwork::Balance b = network_.balance();
+    const double scale = std::max(b.mean_contact_force, b.mean_unbalanced_force);
+    network_.set_scale(scale > 0 && std::isfinite(scale) ? scale : 1);
+    unit_ = network_.drag_unit();
+    drag_ = Eigen::VectorXd::Zero(network_.size());
+  }
+
+  /// To equilibrium under the present load, by Newton's method alone (`at_once`) or with drag where
+  /// it is needed. Commits what it reaches.
+  bool settle(bool at_once) {
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_.size());
+    Eigen::VectorXd r;
+    for (int k = 0; k < kMostFlowSteps; ++k) {
+      const bool free = drag_.maxCoeff() == 0;
+      if (!network_.residual(zero, r)) return false;
+      const double now = r.cwiseAbs().maxCoeff();
+      if (now <= tolerance() || (k > 0 && enough(r))) return true;
+      const double wanted = free ? tolerance() : std::max(tolerance(), kFlowTolerance * now);
+      const int limit = free ? settings_.max_iterations : kFlowIterations;
+      Eigen::VectorXd z = zero;
+      problem_.enough = nullptr;
+      if (free) problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
+      const NewtonReport report = solve(problem_, {wanted, limit, kMostStep}, z);
+      iterations_ += report.iterations;
+      const bool good = report.converged && z.cwiseAbs().maxCoeff() <= kMostStep;
+      if (good) {
+        network_.commit(z);
+        ++steps_;
+        if (free) return true;
+        drag_ *= report.iterations <= kQuick ? kQuickEase : kEase;
+        drag_ = (drag_.array() < kLeastDrag).select(0.0, drag_);
+        continue;
+      }
+      if (at_once) return false;
+      brake(z);
+      if (drag_.maxCoeff() > kMostDrag) return false;
+    }
+    return false;
+  }
+
+  /// The mean resultant meets the ratio asked for, and no grain is far above it. Newton aims lower,
+  /// but disks that form a roller bearing creep on the last digits and never get there.
+  bool enough(const Eigen::VectorXd& r) const {
+    double mean = 0;
+    for (int k = 0; k < network_.size(); k += 3) mean += std::hypot(r[k], r[k + 1]);
+    mean /= network_.free_grains();
+    return mean <= 0.5 * settings_.unbalanced_force_ratio &&
+           r.cwiseAbs().maxCoeff() <= kMostOver * settings_.unbalanced_force_ratio;
+  }
+
+  /// More drag on the grains that hold up Newton's method, which stopped at z.
+  void brake(const Eigen::VectorXd& z) {
+    Eigen::VectorXd r;
+    const bool known = problem_.residual(z, r);
+    const double most = known ? r.cwiseAbs().maxCoeff() : 0;
+    const double far = z.cwiseAbs().maxCoeff();
+    bool any = false;
+    for (int k = 0; k < network_.size(); k += 3) {
+      const bool holds = (known && r.segment<3>(k).cwiseAbs().maxCoeff() >= kCulprit * most) ||
+                         (far > kMostStep && z.segment<3>(k).cwiseAbs().maxCoeff() >= 0.5 * far);
+      if (!holds) continue;
+      drag_.segment<3>(k).setConstant(std::max(drag_[k] * kBrake, kFirstDrag));
+      any = true;
+    }
+    if (!any) drag_ = (drag_ * kBrake).cwiseMax(kFirstDrag);
+  }
+
+  QuasistaticResult finish() {
+    ContactNetwork::Balance b;
+    for (int k = 0; k < kMostFinish; ++k) {
+      b = network_.balance();
+      if (b.ratio <= settings_.unbalanced_force_ratio) break;
+      rescale();
+      if (!settle(false)) break;
+      b = network_.balance();
+    }
+    if (!(b.ratio <= settings_.unbalanced_force_ratio)) fail(1, b.ratio);
+    QuasistaticResult out;
+    out.state = network_.snapshot(start_);
+    out.state.gravity = gravity_;
+    out.state.loaded_grain = new_grain_ < 0 ? -1 : start_.grains[new_grain_].id;
+    out.state.applied_force = new_grain_ < 0 ? Vec3(0, 0, 0) : force_;
+    out.unbalanced_force_ratio = b.ratio;
+    out.steps = steps_;
+    out.iterations = iterations_;
+    const ContactChanges changes = compare_contacts(start_, out.state);
+    out.contacts_gained = changes.gained;
+    out.contacts_lost = changes.lost;
+    out.newly_sliding = changes.newly_sliding;
+    return out;
+  }
+
+  [[noreturn]] void fail(double share, double ratio) const {
+    throw ComputationFailed(fmt::format(
+        "quasi-static relaxation came to {:.3g} of the change; the next step stopped at an "
+        "unbalanced force ratio of {:.2g} (asked for: {:.2g}) after {} iterations in all: contacts "
+        "rearrange; lower least_step (now {:g}), raise max_iterations (now {}), make the change "
+        "smaller, or use damped dynamics",
+        share, ratio, settings_.unbalanced_force_ratio, iterations_, settings_.least_step,
+        settings_.max_iterations));
+  }
+
+  const Snapshot& start_;
+  const QuasistaticSettings& settings_;
+  ContactNetwork network_;
+  Vec3 gravity_;
+  std::int64_t old_grain_, new_grain_;  // indices, -1: none
+  Vec3 force_;
+  NewtonProblem problem_;
+  Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness
+  int steps_ = 0, iterations_ = 0;
+};
+
+}  // namespace
+
+QuasistaticResult relax(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+                        const AppliedForce& force, const QuasistaticSettings& settings) {
+  check_settings(settings);
+  check_start(start);
+  if (!gravity.allFinite()) {
+    throw std::invalid_argument("quasi-static relaxation: found a gravity that is not finite");
+  }
+  if (force.id >= 0) {
+    const std::int64_t k = index_of(start, force.id);
+    if (k < 0 || start.grains[k].fixed) {
+      throw std::invalid_argument(
+          fmt::format("quasi-static relaxation: found a force on grain {}, allowed: the id of a "
+                      "free grain",
+                      force.id));
+    }
+    if (!std::isfinite(force.fx) || !std::isfinite(force.fy)) {
+      throw std::invalid_argument(fmt::format(
+          "quasi-static relaxation: found a force on grain {} that is not finite", force.id));
+    }
+  }
+  return Relaxation(start, law, gravity, force, settings).run();
+}
+
+}  // namespace grainfield::dem
