@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "dem/heap/source.h"
+#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/common.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/pile_figures.h"
@@ -113,9 +114,6 @@ class PileRun final : public Run {
 PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
     : setup_(setup), seed_(seed), random_(seed) {
   check_pile(setup_);
-  if (!setup_.change.gravity.empty() && setup_.change.method == "newton") {
-    throw std::invalid_argument("change.method: found newton, allowed for now: damped");
-  }
   draw();
   std::vector<ShapedGrain> all = grains_;
   all.insert(all.end(), floor_.begin(), floor_.end());
@@ -398,7 +396,17 @@ void PileRun::hold() {
 }
 
 void PileRun::solve() {
-  throw ComputationFailed("change.method: newton cannot be used yet; set change.method = damped");
+  const double gravity = setup_.change.gravity[changed_.size()];
+  QuasistaticSettings settings;
+  settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
+  QuasistaticResult r;
+  try {
+    r = relax(*pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
+  } catch (const ComputationFailed& failure) {
+    throw ComputationFailed(fmt::format("change.gravity = {:g}: {}; or set change.method = damped",
+                                        gravity, failure.what()));
+  }
+  end_change(std::move(r.state), r.unbalanced_force_ratio);
 }
 
 void PileRun::end_change(Snapshot state, double unbalanced_force_ratio) {

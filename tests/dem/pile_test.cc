@@ -202,6 +202,37 @@ TEST(Pile, EveryChangeOfGravityStartsFromThePile) {
   EXPECT_GT(r.figures.at("change.gravity_5.max_displacement_over_radius"), 1e-6);
 }
 
+// The quasi-static solver against slow damped dynamics: where no contact rearranges both find the
+// same state.
+TEST(Pile, NewtonAgreesWithDampedDynamics) {
+  PileSetup s = with_changes("line", "rand1");
+  s.change.gravity = {9.7};
+  s.change.ramp_time = 0.3;
+  s.rest.unbalanced_force_ratio = 1e-7;
+  s.rest.kinetic_to_elastic_energy = 1e-13;
+  const auto damped = make_pile_run(s, 4, 1);
+  finish(*damped);
+  s.change.method = "newton";
+  const auto newton = make_pile_run(s, 4, 1);
+  finish(*newton);
+  const RunResult a = damped->result(), b = newton->result();
+  ASSERT_EQ(b.snapshots.size(), 2u);
+  EXPECT_EQ(b.snapshots[1].first, "gravity_9.7");
+  EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "gravity_9.7");
+  EXPECT_LE(b.figures.at("change.gravity_9.7.unbalanced_force_ratio"), 1e-8);
+  ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
+  ASSERT_EQ(a.figures.at("change.gravity_9.7.contacts_lost"), 0);
+  double difference = 0, moved = 0;
+  for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
+    const Vec3 before = a.snapshots[0].second.grains[k].position;
+    moved += (a.snapshots[1].second.grains[k].position - before).squaredNorm();
+    difference +=
+        (a.snapshots[1].second.grains[k].position - b.snapshots[1].second.grains[k].position)
+            .squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(difference / moved), 0.01);
+}
+
 std::string refusal(const PileSetup& s) {
   try {
     make_pile_run(s, 1, 1);
