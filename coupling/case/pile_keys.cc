@@ -25,7 +25,7 @@ void shape(Section s) {
            "sizes uniform in radius (1 -+ this); the smallest grain sets the time step",
            "Roul table 2 (point 0.3, line 0.1)");
   s.number("corners_min", "-", +IN(Integer, pile.shape.corners_min), {3, 64},
-           "rand1, regular: fewest corners; fewer are rougher and pile steeper",
+           "rand1, regular: fewest corners; fewer: rougher grains",
            "Roul table 2 (point 6-8, line 7)");
   s.number("corners_max", "-", +IN(Integer, pile.shape.corners_max), {3, 64},
            "rand1, regular: most corners; uniform between the two", kRoul);
@@ -46,7 +46,7 @@ void source(Section s) {
            "comes to a point before",
            kRoul);
   s.number("height", "m", +IN(double, pile.source.height), kPositive,
-           "point: of the funnel's mouth above the floor; higher flattens the top", kRoul);
+           "point: of the funnel's mouth above the floor; higher: faster grains at the top", kRoul);
   s.number("speed", "m/s", +IN(double, pile.source.speed), kNotNegative, "downwards, at the start",
            kRoul);
   s.number("interval", "s", +IN(double, pile.source.interval), kPositive,

@@ -124,6 +124,7 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
                       "Normal forces as lines between centres; the widest stand for {:.3g} N and "
                       "more.",
                       scale);
+  picture.caption += scene.strays();
   return picture;
 }
 
@@ -149,6 +150,7 @@ Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot) {
   picture.program += "\n";
   picture.caption =
       "Colour by the order in which the grains were dropped: dark first, bright last.";
+  picture.caption += scene.strays();
   return picture;
 }
 
@@ -190,6 +192,7 @@ Picture displacements(const std::string& title, const dem::Snapshot& before,
       "Displacements, drawn {:.3g} times as long; the longest arrows stand for {:.3g} m and more"
       "{}.",
       factor, longest, every > 1 ? fmt::format("; one grain in {}", every) : "");
+  picture.caption += scene.strays();
   return picture;
 }
 

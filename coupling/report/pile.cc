@@ -89,9 +89,7 @@ void add_maps(Report& report, const PileReport& in) {
   const std::string averaged = "Averaged by " + in.averaged + ". ";
   Picture density = maps("Volume fraction", "x / h", "y / h", "volume fraction",
                          {map("", "volume_fraction", 1)}, false);
-  density.caption = averaged +
-                    "Within a kernel's range of surface and floor the value falls "
-                    "because part of the kernel lies outside.";
+  density.caption = averaged + "Over the part of the kernel that lies inside the heap.";
   report.sections.emplace_back(std::move(density));
   const double unit = 1 / c.unit();
   Picture stress = maps(

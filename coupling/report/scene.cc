@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
-constexpr double stray_share = 1e-3, stray_diameters = 10;
+constexpr double stray_gap = 3;                                             // largest diameters
 
 bool any_outline(const dem::Snapshot& snapshot) {
   return std::any_of(snapshot.grains.begin(), snapshot.grains.end(),
@@ -25,23 +25,15 @@ bool any_outline(const dem::Snapshot& snapshot) {
 
 Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above)
     : picture_(picture), snapshot_(snapshot), above_(above) {
-  std::vector<double> lefts, rights;
+  std::vector<double> lefts;
   double bottom = 0, top = 1, diameter = 0;
   for (const dem::Grain& g : snapshot.grains) {
     bottom = lefts.empty() ? bottom_of(g) : std::min(bottom, bottom_of(g));
     top = lefts.empty() ? top_of(g) : std::max(top, top_of(g));
     lefts.push_back(left_of(g));
-    rights.push_back(right_of(g));
     diameter = std::max(diameter, 2 * g.radius);
   }
-  if (!lefts.empty()) {
-    std::sort(lefts.begin(), lefts.end());
-    std::sort(rights.begin(), rights.end());
-    const auto stray = static_cast<std::size_t>(stray_share * static_cast<double>(lefts.size()));
-    const double reach = stray_diameters * diameter;
-    left_ = std::max(lefts.front(), lefts[stray] - reach);
-    right_ = std::min(rights.back(), rights[rights.size() - 1 - stray] + reach);
-  }
+  if (!lefts.empty()) find_bulk(stray_gap * diameter);
   const double margin = 0.01 * (right_ - left_);
   left_ -= margin;
   right_ += margin;
@@ -52,6 +44,33 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above)
   plot_width_ = picture_width - side - right_side;
   plot_height_ = static_cast<int>(plot_width_ * (top_ - bottom_) / (right_ - left_));
   picture.height = plot_height_ + above + below;
+}
+
+// The largest group of grains without a gap in x.
+void Scene::find_bulk(double gap) {
+  std::vector<std::pair<double, double>> spans;
+  for (const dem::Grain& g : snapshot_.grains) spans.emplace_back(left_of(g), right_of(g));
+  std::sort(spans.begin(), spans.end());
+  std::size_t best = 0, begin = 0;
+  double right = spans.front().second;
+  for (std::size_t k = 0; k <= spans.size(); ++k) {
+    const bool ends = k == spans.size() || spans[k].first > right + gap;
+    if (ends && k - begin > best) {
+      best = k - begin;
+      left_ = spans[begin].first;
+      right_ = right;
+    }
+    if (k == spans.size()) break;
+    if (ends) begin = k;
+    right = std::max(right, spans[k].second);
+  }
+  strays_ = static_cast<int>(spans.size() - best);
+}
+
+std::string Scene::strays() const {
+  if (strays_ == 0) return "";
+  return fmt::format(" {} grain{} that rolled off {} outside the picture.", strays_,
+                     strays_ == 1 ? "" : "s", strays_ == 1 ? "lies" : "lie");
 }
 
 void Scene::add_grains(const std::function<std::string(const dem::Grain&)>& colour) {

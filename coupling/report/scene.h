@@ -10,8 +10,9 @@ namespace grainfield::coupling {
 
 class Scene {
  public:
-  /// Fits the picture's size to the packing's; `above`: pixels kept free over it. Grains that lie
-  /// more than ten diameters off the bulk (beyond all but a thousandth) are left outside.
+  /// Fits the picture's size to the packing's; `above`: pixels kept free over it. Grains that
+  /// have rolled off the bulk, with a gap of three of the largest diameters between, are left
+  /// outside.
   Scene(Picture& picture, const dem::Snapshot& snapshot, int above = 24);
 
   /// Puts the grains into the program with their true outlines; `colour` gives "0xrrggbb".
@@ -21,14 +22,20 @@ class Scene {
   /// Begins the plot command with the grains.
   void plot_grains(const char* edge);
 
+  /// For captions: " 3 grains that rolled off lie outside the picture."; empty without any.
+  std::string strays() const;
+
   double pixels(double metres) const { return metres * plot_width_ / (right_ - left_); }
   double width() const { return right_ - left_; }   ///< m
   int plot_height() const { return plot_height_; }  ///< pixels
 
  private:
+  void find_bulk(double gap);
+
   Picture& picture_;
   const dem::Snapshot& snapshot_;
   double left_ = 0, right_ = 1, bottom_ = 0, top_ = 1;
+  int strays_ = 0;
   int above_, plot_width_ = 0, plot_height_ = 0;
 };
 

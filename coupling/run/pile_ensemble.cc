@@ -115,7 +115,21 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
     for (std::size_t k = 0; k < a.cuts.size(); ++k) {
       a.cuts[k].add(on(line(value_.heap.heights[k]), 0, 0));
     }
-    a.map.add(on(grid_, columns_, rows_));
+    Field map = on(grid_, columns_, rows_);
+    if (a.method == "coarse_graining") {
+      // The stress stays smeared over the surface, where it obeys the balance of forces; the volume
+      // fraction is that of the part of the kernel inside the heap.
+      AverageOptions inside = a.options;
+      inside.free_surface = "normalised";
+      inside.quantities = {"volume_fraction"};
+      const Field fraction = average(pile, frame.to_packing(grid_), inside);
+      for (Column& column : map.columns) {
+        if (column.name == "volume_fraction") {
+          column.value = fraction.find("volume_fraction")->value;
+        }
+      }
+    }
+    a.map.add(map);
     const BalanceResidual balance = balance_residual(pile, inner_points(frame), a.options);
     a.balance_rms += balance.rms / static_cast<double>(files_.size());
     a.balance_largest = std::max(a.balance_largest, balance.largest);

@@ -135,6 +135,14 @@ TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   // A magnification of the largest displacement to three diameters.
   EXPECT_THAT(displacements("t", heap, moved).caption, HasSubstr("times as long"));
   EXPECT_THROW(displacements("t", heap, test::lattice_heap(5)), std::invalid_argument);
+  // Grains that rolled off do not shrink the heap in the picture.
+  dem::Snapshot strayed = heap;
+  strayed.grains[5].position.x() -= 0.5;
+  strayed.grains[3].position.x() += 1;
+  EXPECT_EQ(packing("t", strayed).height, packing("t", heap).height);
+  EXPECT_THAT(packing("t", strayed).caption,
+              HasSubstr("2 grains that rolled off lie outside the picture."));
+  EXPECT_EQ(packing("t", heap).caption.find("rolled"), std::string::npos);
 }
 
 TEST_F(ReportTest, WithoutGnuplotKeepsItsTablesAndSaysWhatToInstall) {
