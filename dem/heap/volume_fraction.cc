@@ -112,10 +112,15 @@ HeapWindows windows_of(const HeapShape& heap, double diameter) {
   const double top = std::min(peak, kWholeHeight * heap.height);
   const double width_below = place_of(right, floor) - place_of(left, floor);
   if (top >= (1 + kLeastWidth) * diameter && width_below >= kLeastWidth * diameter) {
-    w.whole = {{place_of(left, floor), floor},
-               {place_of(right, floor), floor},
-               {place_of(right, top), top},
-               {place_of(left, top), top}};
+    w.whole = {{place_of(left, floor), floor}, {place_of(right, floor), floor}};
+    // Where the lines meet below the ceiling there is one corner: two that differ by rounding could
+    // stand the wrong way round.
+    if (peak <= top) {
+      w.whole.push_back({meet, peak});
+    } else {
+      w.whole.push_back({place_of(right, top), top});
+      w.whole.push_back({place_of(left, top), top});
+    }
   }
   const double x0 = heap.apex_x - kCentreWidth * heap.half_base_left();
   const double x1 = heap.apex_x + kCentreWidth * heap.half_base_right();
