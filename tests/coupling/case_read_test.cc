@@ -205,7 +205,8 @@ TEST(CaseErrors, Piles) {
                         "irregular | outline; nearest: disk"));
   EXPECT_THAT(pile("[shape]\ncorners_min = 2\n"),
               HasSubstr("x.toml:3: shape.corners_min: found 2, allowed: 3 to 64"));
-  EXPECT_THAT(pile("[shape]\ncorners_min = 9\n"), HasSubstr("shape.corners_max: found 8, allowed: at least shape.corners_min = 9"));
+  EXPECT_THAT(pile("[shape]\ncorners_min = 9\n"),
+              HasSubstr("shape.corners_max: found 8, allowed: at least shape.corners_min = 9"));
   EXPECT_THAT(pile("[shape]\npolydispersity = 1.0\n"),
               HasSubstr("shape.polydispersity: found 1, allowed: 0 to 0.99"));
   EXPECT_THAT(pile("[shape]\nkind = \"outline\"\noutline = [0.0, 0.0, 1.0, 0.0]\n"),
@@ -217,7 +218,8 @@ TEST(CaseErrors, Piles) {
   EXPECT_THAT(pile("[source]\ninterval = 0.001\n"), HasSubstr("x.toml:3: source.interval: "));
   EXPECT_THAT(pile("[floor]\nlength = -1.0\n"),
               HasSubstr("floor.length: found -1, allowed: above 0"));
-  EXPECT_THAT(pile("[sleep]\non = 1\n"), HasSubstr("sleep.on: found 1 (integer), expected a boolean"));
+  EXPECT_THAT(pile("[sleep]\non = 1\n"),
+              HasSubstr("sleep.on: found 1 (integer), expected a boolean"));
   EXPECT_THAT(pile("[change]\ngravity = [0.0]\n"),
               HasSubstr("change.gravity: found 0, allowed: above 0"));
   EXPECT_THAT(pile("[change]\nmethod = \"newtons\"\n"), HasSubstr("nearest: newton"));
@@ -255,6 +257,10 @@ TEST(ReadCase, SharedKeysFillTheSetupOfTheStudy) {
   EXPECT_EQ(chosen.layer.material.friction, 0.5);
   EXPECT_EQ(accepted("", {"study=pile", "change.gravity=[5, 20]"}).pile.change.gravity,
             (std::vector<double>{5, 20}));
+  const Case lattice = accepted("study = \"lattice-pile\"\n[material]\nfloor_friction = 0.9\n");
+  EXPECT_EQ(lattice.lattice_pile.material.floor_friction, 0.9);
+  EXPECT_EQ(lattice.lattice_pile.material.friction, 0);
+  EXPECT_EQ(lattice.pile.material.floor_friction, 0.54);
 }
 
 TEST(ReadCase, GrainKeysLeaveTheAnalysisOut) {
