@@ -44,8 +44,8 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
                    double step = 0);
 
 /// Weight of the (parts of) free grains above y, less the vertical force that walls give them above
-/// y, plus the applied force if its grain's centre is above; N (2D). Fixed grains act at the floor's
-/// mean height.
+/// y, plus the applied force if its grain's centre is above; N (2D). Fixed grains act at the
+/// floor's mean height.
 double weight_above(const dem::Snapshot& snapshot, double y);
 
 /// One line of the table that puts the averagings side by side.

@@ -11,10 +11,7 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-      point_load_study(),
-      pile_study(),
-      lattice_pile_study(),
-      elastic_layer_study(),
+      point_load_study(),         pile_study(), lattice_pile_study(), elastic_layer_study(),
       elastic_half_space_study(),
   };
   return all;

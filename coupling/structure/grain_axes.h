@@ -10,9 +10,9 @@ namespace grainfield::coupling {
 struct GrainAxes {
   Eigen::VectorXd inertia_angle_deg;  ///< major axis of the inertia tensor (theta_xx = integral of
                                       ///< y y), from x, (-90, 90]; nan where there is none (disks)
-  Eigen::VectorXd long_angle_deg;  ///< the axis across: along the grain's length
-  Eigen::VectorXd elongation;      ///< sqrt(largest / smallest inertia): 1 of a disk, a/b of an
-                                   ///< ellipse
+  Eigen::VectorXd long_angle_deg;     ///< the axis across: along the grain's length
+  Eigen::VectorXd elongation;         ///< sqrt(largest / smallest inertia): 1 of a disk, a/b of an
+                                      ///< ellipse
   /// Nematic order of the long axes: |mean of exp(2 i angle)|, 0 without any order, 1 all parallel;
   /// nan when no grain has an axis. For n random axes about sqrt(pi / (4 n)).
   double order = 0;

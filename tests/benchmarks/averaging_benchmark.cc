@@ -80,7 +80,10 @@ void average(benchmark::State& state, const char* method, const char* kernel, do
 
 void scenes(benchmark::internal::Benchmark* b) {
   b->Args({25000, 2})->Args({100000, 1})->Args({100000, 2})->Args({400000, 2});
-  b->ArgNames({"grains", "threads"})->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+  b->ArgNames({"grains", "threads"})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->MeasureProcessCPUTime();
 }
 
 BENCHMARK_CAPTURE(average, lucy_1d, "coarse_graining", "lucy", 1, false)->Apply(scenes);

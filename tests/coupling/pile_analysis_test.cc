@@ -292,8 +292,9 @@ TEST(PileAnalysis, RefusesAKernelWithoutGrains) {
     analyse_pile(value, files, 1);
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_THAT(e.what(), HasSubstr("coarse_graining with a width of 1e-06 m, below 0.25 mean grain "
-                                    "diameters of 0.005 m"));
+    EXPECT_THAT(e.what(),
+                HasSubstr("coarse_graining with a width of 1e-06 m, below 0.25 mean grain "
+                          "diameters of 0.005 m"));
   }
 }
 
