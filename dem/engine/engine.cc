@@ -44,8 +44,8 @@ double stable_time_step(const EngineSettings& settings, const GrainExtremes& ext
     std::visit(
         [&](const auto& law) {
           // Positive root of c dt + k dt^2/2 = share.
-          const double k = law.edge_stiffness(extremes.steepest_edge) / extremes.least_mass;
-          const double c = law.edge_rate(extremes.least_mass, extremes.steepest_edge);
+          const double k = law.edge_stiffness(extremes.steepest_edge) / extremes.steep_mass;
+          const double c = law.edge_rate(extremes.steep_mass, extremes.steepest_edge);
           limit = std::min(limit, 2 * share / (c + std::sqrt(c * c + 2 * k * share)));
         },
         settings.law);

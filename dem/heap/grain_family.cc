@@ -188,10 +188,16 @@ ShapedGrain draw_grain(const ShapeSetup& s, Random& random) {
 GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density) {
   GrainExtremes e;
   e.least_mass = std::numeric_limits<double>::infinity();
+  double quickest = 0;
   for (const ShapedGrain& g : grains) {
-    e.least_mass = std::min(e.least_mass, density * g.area);
-    if (!g.outline.empty()) {
-      e.steepest_edge = std::max(e.steepest_edge, edge_steepness(g.outline));
+    const double mass = density * g.area;
+    e.least_mass = std::min(e.least_mass, mass);
+    if (g.outline.empty()) continue;
+    const double steepness = edge_steepness(g.outline), quick = steepness / std::sqrt(mass);
+    if (quick > quickest) {
+      quickest = quick;
+      e.steepest_edge = steepness;
+      e.steep_mass = mass;
     }
   }
   return e;

@@ -64,16 +64,18 @@ double circumradius_of(const Outline& outline) {
 
 double edge_steepness(const Outline& outline) {
   const std::array<double, 2> centroid = centroid_of(outline);
-  double steepness = 0;
+  double steepest = 0, second = 0;
   for (std::size_t k = 0, n = outline.size(); k < n; ++k) {
     const auto& [x0, y0] = outline[k];
     const auto& [x1, y1] = outline[(k + 1) % n];
     const double ex = x1 - x0, ey = y1 - y0;
     // length / (cross / length)
     const double cross = ex * (centroid[1] - y0) - ey * (centroid[0] - x0);
-    steepness = std::fmax(steepness, 2 * (ex * ex + ey * ey) / cross);
+    const double steepness = 2 * (ex * ex + ey * ey) / cross;
+    second = std::fmax(second, std::fmin(steepness, steepest));
+    steepest = std::fmax(steepest, steepness);
   }
-  return steepness;
+  return 0.5 * (steepest + second);
 }
 
 }  // namespace grainfield::dem

@@ -66,8 +66,9 @@ double polar_moment_of(const Outline& outline);
 std::array<double, 3> second_moments_of(const Outline& outline);
 /// Largest distance of a corner from the centroid, m.
 double circumradius_of(const Outline& outline);
-/// 2 max over edges of length / distance of the edge from the centroid: bounds the stiffness of an
-/// edge-on-edge contact over E (engine.h: stable_time_step).
+/// 2 length / distance of the edge from the centroid, mean of the two edges where it is largest:
+/// bounds the stiffness over E of the edge-on-edge contacts on the grain's two sides (engine.h:
+/// stable_time_step).
 double edge_steepness(const Outline& outline);
 
 /// The outline with its centroid at the origin, counter-clockwise. Throws std::invalid_argument

@@ -1,15 +1,21 @@
 // Overlap of two convex polygons.
 //
-// 1. The edge that separated the pair last step is tried first.
-// 2. Slab: along the line of centroids, only A's corners beyond B's nearest corner and B's edges
+// 1. What the pair remembers is tried first: the edge that separated it, or the four edges that
+//    crossed.
+// 2. Two crossings (nearly every contact). A's outline enters B at p1 and leaves it at p2; when
+//    both are proper crossings of edges, A's corners from p1 to p2 lie inside B and B's from p2 to
+//    p1 inside A, these bound the region: by convexity the rest of either outline is outside.
+// 3. Otherwise, slab: along the line of centroids, only A's corners beyond B's nearest corner and
+// B's edges
 //    before A's farthest corner can bound the region: a few of each for a light contact.
-// 3. Those corners of A, closed to a polygon, are clipped by the lines of those edges of B, one
+// 4. Those corners of A, closed to a polygon, are clipped by the lines of those edges of B, one
 //    after the other (Sutherland and Hodgman 1974). The loop is closed after every cut, whatever
 //    round-off does, so that its area is accurate for parallel and coincident sides too.
-// 4. Sums over the loop: overlap_region.h.
+// 5. Sums over the loop: overlap_region.h.
 //
-// Only step 1 looks at the memory, and it decides nothing that the rest would not: a region so
-// small that round-off could have made it is checked against the same test of every edge.
+// The memory decides nothing that the rest would not: remembered edges must pass the test that
+// finds them, and a region so small that round-off could have made it is checked against the test
+// of every edge.
 #include <algorithm>
 #include <stdexcept>
 
@@ -40,10 +46,14 @@ inline bool separates(const PlacedShape& shape, int k, const PlacedShape& other,
   return least >= 0;
 }
 
-// The memory: 0 nothing, otherwise 1 + 2 edge + (0: A's, 1: B's).
+// The memory: 0 nothing; up to kMostHint 1 + 2 edge + (0: A's, 1: B's), the separating edge;
+// with kCrossed the edges of the crossings, six bits each.
+constexpr std::uint32_t kMostHint = 2 * kMostCorners;
+constexpr std::uint32_t kCrossed = 1u << 30;
+
 inline bool separated_as_before(const PlacedShape& a, const PlacedShape& b, PairFeature feature) {
   const auto hint = static_cast<std::uint32_t>(feature.hint);
-  if (hint == 0) return false;
+  if (hint == 0 || hint > kMostHint) return false;
   const std::uint32_t edge = (hint - 1) / 2;
   const bool of_b = ((hint - 1) & 1u) != 0;
   const PlacedShape& shape = of_b ? b : a;
@@ -69,6 +79,147 @@ bool find_separating_edge(const PlacedShape& a, const PlacedShape& b, PairFeatur
     }
   }
   return widest >= 0;
+}
+
+// A's edges on which its outline enters and leaves B, and B's on which it enters and leaves A.
+// Corners of A from enter_a + 1 to leave_a are inside B, of B from enter_b + 1 to leave_b inside A.
+struct Crossings {
+  int enter_a = -1, leave_a = -1, enter_b = -1, leave_b = -1;
+
+  std::int32_t packed() const {
+    return static_cast<std::int32_t>(
+        kCrossed | static_cast<std::uint32_t>(enter_a) | static_cast<std::uint32_t>(leave_a) << 6 |
+        static_cast<std::uint32_t>(enter_b) << 12 | static_cast<std::uint32_t>(leave_b) << 18);
+  }
+};
+
+// False when the memory holds none, or none that these shapes could have.
+inline bool unpack(PairFeature feature, const PlacedShape& a, const PlacedShape& b, Crossings& c) {
+  const auto hint = static_cast<std::uint32_t>(feature.hint);
+  if ((hint >> 24) != (kCrossed >> 24)) return false;
+  c.enter_a = static_cast<int>(hint & 63u);
+  c.leave_a = static_cast<int>(hint >> 6 & 63u);
+  c.enter_b = static_cast<int>(hint >> 12 & 63u);
+  c.leave_b = static_cast<int>(hint >> 18 & 63u);
+  return c.enter_a < a.n && c.leave_a < a.n && c.enter_b < b.n && c.leave_b < b.n;
+}
+
+// Twice the area between edge k and (x, y): positive inside.
+inline double inside_of(const PlacedShape& shape, int k, double x, double y) {
+  const double px = shape.x[k], py = shape.y[k];
+  return (shape.x[k + 1] - px) * (y - py) - (shape.y[k + 1] - py) * (x - px);
+}
+
+inline bool inside_of_all(const PlacedShape& shape, double x, double y) {
+  double least = inside_of(shape, 0, x, y);
+  for (int k = 1; k < shape.n; ++k) {
+    const double d = inside_of(shape, k, x, y);
+    least = d < least ? d : least;
+  }
+  return least > 0;
+}
+
+// The corners first + 1 ... last of `shape`.
+template <class Visit>
+inline bool all_corners(const PlacedShape& shape, int first, int last, Visit visit) {
+  for (int k = first; k != last;) {
+    k = k + 1 < shape.n ? k + 1 : 0;
+    if (!visit(shape.x[k], shape.y[k])) return false;
+  }
+  return true;
+}
+
+// Contact of two outlines that cross at these edges. False when they do not, when they may cross
+// elsewhere too, or when the region or its chord is too small to be sure of.
+inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, const Crossings& c,
+                                 Overlap& o) {
+  const int ea = c.enter_a, la = c.leave_a, eb = c.enter_b, lb = c.leave_b;
+  // p1: A's edge ea comes in through B's edge lb; p2: A's edge la goes out through B's edge eb.
+  const double out1 = inside_of(b, lb, a.x[ea], a.y[ea]);
+  const double in1 = inside_of(b, lb, a.x[ea + 1], a.y[ea + 1]);
+  const double in2 = inside_of(b, eb, a.x[la], a.y[la]);
+  const double out2 = inside_of(b, eb, a.x[la + 1], a.y[la + 1]);
+  if (!((out1 <= 0) & (in1 > 0) & (in2 > 0) & (out2 <= 0))) return false;
+  if (!((inside_of(a, ea, b.x[lb], b.y[lb]) > 0) &
+        (inside_of(a, ea, b.x[lb + 1], b.y[lb + 1]) <= 0) &
+        (inside_of(a, la, b.x[eb], b.y[eb]) <= 0) &
+        (inside_of(a, la, b.x[eb + 1], b.y[eb + 1]) > 0))) {
+    return false;
+  }
+  if (!all_corners(a, ea, la, [&](double x, double y) { return inside_of_all(b, x, y); }))
+    return false;
+  if (!all_corners(b, eb, lb, [&](double x, double y) { return inside_of_all(a, x, y); }))
+    return false;
+
+  // From the inner end of A's edges, relative to A's centroid.
+  const double t1 = in1 / (in1 - out1), t2 = in2 / (in2 - out2);
+  const double ix = a.x[ea + 1], iy = a.y[ea + 1], jx = a.x[la], jy = a.y[la];
+  const double x1 = (ix - a.cx) + t1 * (a.x[ea] - ix), y1 = (iy - a.cy) + t1 * (a.y[ea] - iy);
+  const double x2 = (jx - a.cx) + t2 * (a.x[la + 1] - jx),
+               y2 = (jy - a.cy) + t2 * (a.y[la + 1] - jy);
+  const double bx = x2 - x1, by = y2 - y1;
+  // Area and extent along the chord's normal, of corners relative to p1.
+  double twice = 0, px = 0, py = 0, high = 0, low = 0;
+  const auto add = [&](double x, double y) {
+    const double qx = (x - a.cx) - x1, qy = (y - a.cy) - y1;
+    twice += px * qy - qx * py;
+    const double n = qx * by - qy * bx;
+    high = n > high ? n : high;
+    low = n < low ? n : low;
+    px = qx;
+    py = qy;
+    return true;
+  };
+  all_corners(a, ea, la, add);
+  twice += px * by - bx * py;
+  px = bx;
+  py = by;
+  all_corners(b, eb, lb, add);
+  const double squared = bx * bx + by * by, reach = a.radius + b.radius;
+  o.area = 0.5 * twice;
+  if (!(o.area > kSureArea * reach * reach) || !(squared > kSureArea * reach * reach)) return false;
+  o.chord = std::sqrt(squared);
+  const double inverse = 1 / o.chord;
+  o.nx = by * inverse;
+  o.ny = -bx * inverse;
+  o.depth = (high - low) * inverse;
+  region::set_contact_point(a, b, x1 + 0.5 * bx, y1 + 0.5 * by, o);
+  return true;
+}
+
+// The crossings when there are just two. False when there are none or more.
+bool find_crossings(const PlacedShape& a, const PlacedShape& b, Crossings& c) {
+  unsigned long long b_of_a[kMostCorners];  // bit k: B's corner k is inside A's edge m
+  for (int m = 0; m < a.n; ++m) {
+    unsigned long long bits = 0;
+    for (int k = 0; k < b.n; ++k) {
+      bits |= static_cast<unsigned long long>(inside_of(a, m, b.x[k], b.y[k]) > 0) << k;
+    }
+    b_of_a[m] = bits;
+  }
+  for (int k = 0; k < b.n; ++k) {
+    unsigned long long bits = 0;  // bit m: A's corner m is inside B's edge k
+    for (int m = 0; m < a.n; ++m) {
+      bits |= static_cast<unsigned long long>(inside_of(b, k, a.x[m], a.y[m]) > 0) << m;
+    }
+    const unsigned long long next = bits >> 1 | (bits & 1u) << (a.n - 1);
+    const int k1 = k + 1 < b.n ? k + 1 : 0;
+    for (unsigned long long entering = ~bits & next; entering != 0; entering &= entering - 1) {
+      const int m = __builtin_ctzll(entering);
+      if ((b_of_a[m] >> k & 1u) == 0 || (b_of_a[m] >> k1 & 1u) != 0) continue;
+      if (c.enter_a >= 0) return false;
+      c.enter_a = m;
+      c.leave_b = k;
+    }
+    for (unsigned long long leaving = bits & ~next; leaving != 0; leaving &= leaving - 1) {
+      const int m = __builtin_ctzll(leaving);
+      if ((b_of_a[m] >> k & 1u) != 0 || (b_of_a[m] >> k1 & 1u) == 0) continue;
+      if (c.leave_a >= 0) return false;
+      c.leave_a = m;
+      c.enter_b = k;
+    }
+  }
+  return c.enter_a >= 0 && c.leave_a >= 0;
 }
 
 // Keeps what is to the left of the line through (qx, qy) along (ex, ey). Returns the loop that
@@ -124,8 +275,9 @@ void start_loop(const PlacedShape& a, int first, double dx, double dy, double lo
   }
 }
 
-// Everything but the hint. Returns false when the region is empty.
-bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, Overlap& o, bool& in_doubt) {
+// Steps 2 to 5. Returns false when the region is empty.
+bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
+                         Overlap& o, bool& in_doubt) {
   const double reach = a.radius + b.radius;
   double dx = b.cx - a.cx, dy = b.cy - a.cy;
   const double squared = dx * dx + dy * dy;
@@ -149,6 +301,11 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, Overlap& o,
   }
   if (low >= high) return false;
   in_doubt = true;
+  Crossings crossings;
+  if (find_crossings(a, b, crossings) && contact_of_crossings(a, b, crossings, o)) {
+    feature.hint = crossings.packed();
+    return true;
+  }
   const double margin = kSlabMargin * reach * std::sqrt(dx * dx + dy * dy);
   low -= margin;
   high += margin;
@@ -199,13 +356,15 @@ bool overlap_of_shapes(const PlacedShape& a, const PlacedShape& b, PairFeature& 
     throw std::invalid_argument("a polygon with more than 64 corners");
   }
   if (separated_as_before(a, b, feature)) return false;
-  bool in_doubt = false;
-  const bool found = overlap_of_polygons(a, b, overlap, in_doubt);
-  const double reach = a.radius + b.radius;
-  if (found && overlap.area > kSureArea * reach * reach) {
-    feature.hint = 0;
+  Crossings crossings;
+  if (unpack(feature, a, b, crossings) && contact_of_crossings(a, b, crossings, overlap)) {
     return true;
   }
+  feature.hint = 0;
+  bool in_doubt = false;
+  const bool found = overlap_of_polygons(a, b, feature, overlap, in_doubt);
+  const double reach = a.radius + b.radius;
+  if (found && overlap.area > kSureArea * reach * reach) return true;
   if (in_doubt && find_separating_edge(a, b, feature)) return false;
   return found;
 }

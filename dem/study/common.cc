@@ -27,12 +27,15 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   e.integrator = motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
   const double limit = stable_time_step(e, extremes);
   e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
-  if (e.time_step > limit) {
-    throw std::invalid_argument(
-        fmt::format("{}: found {:.4g} s, allowed: at most the stable limit of {:.4g} s for {} with "
-                    "this material",
-                    motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction",
-                    e.time_step, limit, motion.integrator));
+  const double most = extremes.steepest_edge > 0 ? kMostOfLimit * limit : limit;
+  if (e.time_step > most) {
+    throw std::invalid_argument(fmt::format(
+        "{}: found {:.4g} s, allowed: at most {:.4g} s ({}) for {} with this material",
+        motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction", e.time_step, most,
+        extremes.steepest_edge > 0
+            ? fmt::format("{:g} times the stable limit of chains of polygons", kMostOfLimit)
+            : "the stable limit",
+        motion.integrator));
   }
   e.friction = m.friction;
   e.gravity_x = 0;

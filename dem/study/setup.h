@@ -108,7 +108,7 @@ struct SleepSetup {
   double quiet_move = 2.4e-3;  ///< diameters within quiet_time
   double quiet_force = 0.1;    ///< resultant over the forces on the grain
   double wake_force = 0.15;    ///< likewise
-  double wake_speed = 0.2;     ///< sqrt(g d)
+  double wake_speed = 0.5;     ///< sqrt(g d)
 };
 
 /// After the rest: gravity is changed, slowly, and the pile comes to rest again. Every change

@@ -46,7 +46,7 @@ double highest_energy(const Chain& c, double share, long steps) {
   s.gravity_y = 0;
   s.polygons = true;
   const double mass = c.density * area_of(outline);
-  s.time_step = share * stable_time_step(s, GrainExtremes{mass, edge_steepness(outline)});
+  s.time_step = share * stable_time_step(s, GrainExtremes{mass, edge_steepness(outline), mass});
   const auto engine = make_engine(s);
   Random random(c.seed);
   // In the time of a swing a grain moves `overlap` radii.
@@ -143,8 +143,9 @@ TEST(EdgeOnEdge, HemmedInSquaresComeToRestAtTheLimit) {
       s.friction = friction;
       s.gravity_y = 0;
       s.polygons = true;
-      s.time_step =
-          stable_time_step(s, GrainExtremes{5000 * area_of(outline), edge_steepness(outline)});
+      s.time_step = stable_time_step(
+          s,
+          GrainExtremes{5000 * area_of(outline), edge_steepness(outline), 5000 * area_of(outline)});
       const auto engine = make_engine(s);
       for (int i = 0; i <= 4; ++i) {
         for (int j = -1; j <= 1; ++j) {

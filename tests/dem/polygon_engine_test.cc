@@ -133,7 +133,8 @@ TEST(PolygonEngine, EdgeOnEdgeIsStableAtTheTimeStepLimit) {
     EngineSettings s = polygon_settings();
     s.gravity_y = 0;
     s.friction = 0;
-    const GrainExtremes extremes{5000 * area_of(square), edge_steepness(square)};
+    const double mass = 5000 * area_of(square);
+    const GrainExtremes extremes{mass, edge_steepness(square), mass};
     s.time_step = share * stable_time_step(s, extremes);
     auto engine = make_engine(s);
     const double d = 0.0199;

@@ -64,6 +64,7 @@ Scene settled(bool heptagons, std::uint64_t seed) {
         extremes.steepest_edge = std::max(extremes.steepest_edge, edge_steepness(g.outline));
       }
       extremes.least_mass = std::min(extremes.least_mass, 5000 * area);
+      extremes.steep_mass = extremes.least_mass;
       grains.push_back(g);
     }
   }

@@ -33,8 +33,9 @@ std::unique_ptr<Engine> engine_for(const Scene& scene, bool polygons = false) {
   s.friction = 0.5;
   s.polygons = polygons;
   const GrainExtremes extremes =
-      polygons ? GrainExtremes{5000 * area_of(kSquare), edge_steepness(kSquare)}
-               : GrainExtremes{5000 * std::numbers::pi * 1e-4, 0};
+      polygons
+          ? GrainExtremes{5000 * area_of(kSquare), edge_steepness(kSquare), 5000 * area_of(kSquare)}
+          : GrainExtremes{5000 * std::numbers::pi * 1e-4, 0, 0};
   s.time_step = 0.8 * stable_time_step(s, extremes);
   auto engine = make_engine(s);
   engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
