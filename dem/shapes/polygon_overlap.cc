@@ -129,8 +129,9 @@ inline bool all_corners(const PlacedShape& shape, int first, int last, Visit vis
   return true;
 }
 
-// Contact of two outlines that cross at these edges. False when they do not, when they may cross
-// elsewhere too, or when the region or its chord is too small to be sure of.
+// Contact of two outlines that cross at these edges. False when they do not (touching is not
+// crossing: then there may be two ways to name one point), when they may cross elsewhere too, or
+// when the region or its chord is too small to be sure of.
 inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, const Crossings& c,
                                  Overlap& o) {
   const int ea = c.enter_a, la = c.leave_a, eb = c.enter_b, lb = c.leave_b;
@@ -139,10 +140,10 @@ inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, con
   const double in1 = inside_of(b, lb, a.x[ea + 1], a.y[ea + 1]);
   const double in2 = inside_of(b, eb, a.x[la], a.y[la]);
   const double out2 = inside_of(b, eb, a.x[la + 1], a.y[la + 1]);
-  if (!((out1 <= 0) & (in1 > 0) & (in2 > 0) & (out2 <= 0))) return false;
+  if (!((out1 < 0) & (in1 > 0) & (in2 > 0) & (out2 < 0))) return false;
   if (!((inside_of(a, ea, b.x[lb], b.y[lb]) > 0) &
-        (inside_of(a, ea, b.x[lb + 1], b.y[lb + 1]) <= 0) &
-        (inside_of(a, la, b.x[eb], b.y[eb]) <= 0) &
+        (inside_of(a, ea, b.x[lb + 1], b.y[lb + 1]) < 0) &
+        (inside_of(a, la, b.x[eb], b.y[eb]) < 0) &
         (inside_of(a, la, b.x[eb + 1], b.y[eb + 1]) > 0))) {
     return false;
   }

@@ -19,6 +19,11 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   }
   EngineSettings e;
   if (m.law == "linear") {
+    if (extremes.steepest_edge > 0) {
+      throw std::invalid_argument(
+          "material.law: found linear, allowed for polygons: overlap_area (a spring on the depth "
+          "alone does not feel how wide two edges touch, so grains edge on edge keep rocking)");
+    }
     e.law = LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
                       m.tangential_damping};
   } else {

@@ -170,6 +170,14 @@ TEST(PolygonOverlap, LatticePolygonsTouchAndCoincideInEveryWay) {
   EXPECT_GT(inside, 200);
 }
 
+// A memory of four crossing edges, any of these polygons' or a corner further.
+PairFeature any_crossings(Random& random, const Placed& a, const Placed& b) {
+  const auto edge = [&](const Placed& p, int shift) {
+    return static_cast<std::int32_t>(random.uniform() * (p.shape().n + 1)) << shift;
+  };
+  return {1 << 30 | edge(a, 0) | edge(a, 6) | edge(b, 12) | edge(b, 18)};
+}
+
 TEST(PolygonOverlap, NoBitsOfTheMemoryChangeTheResult) {
   Random random(5);
   int apart = 0, light = 0;
@@ -186,8 +194,9 @@ TEST(PolygonOverlap, NoBitsOfTheMemoryChangeTheResult) {
     const bool found = overlap_of_shapes(a.shape(), b.shape(), empty, fresh);
     apart += !found;
     light += found && fresh.area < 1e-12;
-    for (int m = 0; m < 40; ++m) {
+    for (int m = 0; m < 70; ++m) {
       PairFeature feature{m < 34 ? m : static_cast<std::int32_t>(random.bits())};
+      if (m >= 40) feature = any_crossings(random, a, b);
       if (m == 39) feature.hint = INT32_MIN;
       if (m == 38) feature.hint = -1;
       ASSERT_EQ(overlap_of_shapes(a.shape(), b.shape(), feature, o), found) << k << " hint " << m;
@@ -221,8 +230,8 @@ TEST(PolygonOverlap, RoundOffContactsDoNotDependOnTheMemory) {
     PairFeature empty;
     const bool found = overlap_of_shapes(a.shape(), b.shape(), empty, fresh);
     (found ? found_some : found_none) += 1;
-    for (int hint = 0; hint < 24; ++hint) {
-      PairFeature feature{hint};
+    for (int hint = 0; hint < 80; ++hint) {
+      PairFeature feature = hint < 24 ? PairFeature{hint} : any_crossings(random, a, b);
       ASSERT_EQ(overlap_of_shapes(a.shape(), b.shape(), feature, o), found) << k;
       if (found) {
         ASSERT_TRUE(same_bits(o, fresh)) << k;
