@@ -162,7 +162,7 @@ Picture displacements(const std::string& title, const dem::Snapshot& before,
                     after.grains.size(), before.grains.size()));
   Picture picture;
   picture.title = title;
-  Scene scene(picture, before);
+  Scene scene(picture, before, 24, arrow_diameters * mean_diameter(before));
   scene.add_grains([](const dem::Grain& g) { return g.fixed ? "0x9a9a9a" : "0xe9e4d8"; });
   std::vector<double> lengths;
   for (std::size_t g = 0; g < before.grains.size(); ++g)

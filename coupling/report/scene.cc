@@ -23,7 +23,7 @@ bool any_outline(const dem::Snapshot& snapshot) {
 
 }  // namespace
 
-Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above)
+Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double headroom)
     : picture_(picture), snapshot_(snapshot), above_(above) {
   std::vector<double> lefts;
   double bottom = 0, top = 1, diameter = 0;
@@ -38,7 +38,7 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above)
   left_ -= margin;
   right_ += margin;
   bottom_ = bottom - margin;
-  top_ = top + margin;
+  top_ = top + margin + headroom;
   picture.bitmap = snapshot.grains.size() > most_in_svg;
   picture.width = picture_width;
   plot_width_ = picture_width - side - right_side;

@@ -12,8 +12,8 @@ class Scene {
  public:
   /// Fits the picture's size to the packing's; `above`: pixels kept free over it. Grains that
   /// have rolled off the bulk, with a gap of three of the largest diameters between, are left
-  /// outside.
-  Scene(Picture& picture, const dem::Snapshot& snapshot, int above = 24);
+  /// outside. `headroom`: metres kept free over it, for what is drawn on the grains.
+  Scene(Picture& picture, const dem::Snapshot& snapshot, int above = 24, double headroom = 0);
 
   /// Puts the grains into the program with their true outlines; `colour` gives "0xrrggbb".
   void add_grains(const std::function<std::string(const dem::Grain&)>& colour);

@@ -43,6 +43,22 @@ double round_up(double value) {
   return std::ceil(value / unit * (1 - 1e-12)) * unit;
 }
 
+// 1 for the free grains that touch something and are slower than a fall over their own diameter:
+// not for those in the air.
+std::vector<char> standing(const Snapshot& s) {
+  std::vector<char> stands(s.grains.size(), 0);
+  for (const Contact& c : s.contacts) {
+    stands[c.i] = 1;
+    if (c.j >= 0) stands[c.j] = 1;
+  }
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Grain& g = s.grains[k];
+    const double slow = 2 * std::fabs(s.gravity.y()) * 2 * g.radius;
+    if (g.fixed || g.velocity.squaredNorm() > slow) stands[k] = 0;
+  }
+  return stands;
+}
+
 }  // namespace
 
 ExpectedHeap expected_heap(double grain_area) {
@@ -108,18 +124,10 @@ void check_source(const PileSetup& s, const std::vector<ShapedGrain>& grains) {
 }
 
 double resting_top(const Snapshot& s) {
-  std::vector<char> touched(s.grains.size(), 0);
-  for (const Contact& c : s.contacts) {
-    touched[c.i] = 1;
-    if (c.j >= 0) touched[c.j] = 1;
-  }
+  const std::vector<char> stands = standing(s);
   double top = 0;
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
-    const Grain& g = s.grains[k];
-    // Slower than a fall over its own diameter.
-    const double slow = 2 * std::fabs(s.gravity.y()) * 2 * g.radius;
-    if (g.fixed || !touched[k] || g.velocity.squaredNorm() > slow) continue;
-    top = std::max(top, top_of(g));
+    if (stands[k]) top = std::max(top, top_of(s.grains[k]));
   }
   return top;
 }
@@ -135,8 +143,10 @@ void check_mouth(const PileSetup& setup, double top, double diameter) {
 void check_walls_free(const PileSetup& setup, const Snapshot& snapshot, double diameter,
                       double share) {
   const double reach = 0.5 * setup.floor.length - diameter;
-  for (const Grain& g : snapshot.grains) {
-    if (g.fixed || std::fabs(g.position.x()) < reach || g.position.y() < 2.5 * diameter) continue;
+  const std::vector<char> stands = standing(snapshot);
+  for (std::size_t k = 0; k < snapshot.grains.size(); ++k) {
+    const Vec3& x = snapshot.grains[k].position;
+    if (!stands[k] || std::fabs(x.x()) < reach || x.y() < 2.5 * diameter) continue;
     throw ComputationFailed(fmt::format(
         "the pile runs off its floor: it stands at a side wall after {:.0f} % of source.grains; "
         "raise floor.length, now {:g} m, to at least {:g} m, or lower source.grains",

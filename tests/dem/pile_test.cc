@@ -370,7 +370,12 @@ TEST(PileChecks, WhileThePileGrows) {
   wall.grains.resize(1);
   wall.grains[0].position = Vec3(-1.98, 0.1, 0);
   EXPECT_EQ(failed_check([&] { check_walls_free(s, wall, 0.055, 0.25); }), "passed");
+  // In the air it does not stand.
   wall.grains[0].position.y() = 0.2;
+  EXPECT_EQ(failed_check([&] { check_walls_free(s, wall, 0.055, 0.25); }), "passed");
+  wall.contacts.resize(1);
+  wall.contacts[0].i = 0;
+  wall.contacts[0].j = -1;
   EXPECT_THAT(failed_check([&] { check_walls_free(s, wall, 0.055, 0.25); }),
               testing::HasSubstr("after 25 % of source.grains; raise floor.length, now 4 m, to at "
                                  "least 9.6 m"));
