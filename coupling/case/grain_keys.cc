@@ -105,11 +105,12 @@ void motion(Section s) {
          "Roul 2.5");
   s.number("time_step", "s", +SHARED(double, motion.time_step), kNotNegative,
            "0: time_step_fraction of the stable limit");
-  s.number(
-      "time_step_fraction", "-", +SHARED(double, motion.time_step_fraction), {0, 2.5, true},
-      "share of the stable limit; less is more exact and takes longer. Above 1 for polygons only: "
-      "their limit holds for chains of equal grains edge on edge",
-      "Roul 2.10");
+  s.number("time_step_fraction", "-", +SHARED(double, motion.time_step_fraction), {0, 2.5, true},
+           "share of the stable limit; less is more exact and takes longer. Above 1 for irregular "
+           "polygons (rand1, irregular) with verlet only: the limit holds for chains of equal "
+           "grains edge "
+           "on edge",
+           "Roul 2.10");
 }
 
 void rest(Section s) {

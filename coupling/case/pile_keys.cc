@@ -29,7 +29,7 @@ void shape(Section s) {
            "Roul table 2 (point 6-8, line 7)");
   s.number("corners_max", "-", +IN(Integer, pile.shape.corners_max), {3, 64},
            "rand1, regular: most corners; uniform between the two", kRoul);
-  s.number("axis_ratio", "-", +IN(double, pile.shape.axis_ratio), {1, 10},
+  s.number("axis_ratio", "-", +IN(double, pile.shape.axis_ratio), {1, 5},
            "rand1: major over minor axis of the ellipse", "Roul 3.1 (elliptic: 2)");
   s.number("side", "m", +IN(double, pile.shape.side), kNotNegative,
            "irregular: mean length of a side; 0: of the regular pentagon in the circle of radius",

@@ -11,7 +11,7 @@
 namespace grainfield::dem {
 
 EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
-                               const GrainExtremes& extremes, int threads) {
+                               const GrainExtremes& extremes, int threads, bool irregular) {
   if (!(m.gravity > 0)) {
     throw std::invalid_argument(fmt::format(
         "material.gravity: found {:g}, allowed: above 0 (grains need weight to come to rest)",
@@ -32,15 +32,23 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   e.integrator = motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
   const double limit = stable_time_step(e, extremes);
   e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
-  const double most = extremes.steepest_edge > 0 ? kMostOfLimit * limit : limit;
-  if (e.time_step > most) {
-    throw std::invalid_argument(fmt::format(
-        "{}: found {:.4g} s, allowed: at most {:.4g} s ({}) for {} with this material",
-        motion.time_step > 0 ? "motion.time_step" : "motion.time_step_fraction", e.time_step, most,
-        extremes.steepest_edge > 0
-            ? fmt::format("{:g} times the stable limit of chains of polygons", kMostOfLimit)
-            : "the stable limit",
-        motion.integrator));
+  const bool beyond = irregular && e.integrator == IntegratorKind::verlet;
+  const double most =
+      beyond ? std::min(kMostOfLimit * limit, 2 * stable_time_step(e, extremes.least_mass)) : limit;
+  // A fraction of the limit itself must not fail by its last digit.
+  if (e.time_step > most * (1 + 1e-12)) {
+    const std::string who =
+        beyond ? "for irregular polygons of this material"
+               : fmt::format(
+                     "(the stable limit) for {} with this material; only irregular polygons "
+                     "(rand1, irregular) with verlet may go above it",
+                     motion.integrator);
+    throw std::invalid_argument(
+        motion.time_step > 0
+            ? fmt::format("motion.time_step: found {:.4g} s, allowed: at most {:.4g} s {}",
+                          e.time_step, most, who)
+            : fmt::format("motion.time_step_fraction: found {:g}, allowed: at most {:.3g} {}",
+                          motion.time_step_fraction, std::floor(1000 * most / limit) / 1000, who));
   }
   e.friction = m.friction;
   e.gravity_x = 0;

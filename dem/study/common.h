@@ -12,9 +12,11 @@
 namespace grainfield::dem {
 
 /// Settings of the engine, without polygons and sleeping. Throws std::invalid_argument naming the
-/// key when there is no gravity or the time step is above the stable limit of these grains.
+/// key when there is no gravity or the time step is above the stable limit of these grains;
+/// irregular polygons may go up to kMostOfLimit times it with Verlet, but never beyond what the
+/// dashpots of round grains bear (twice their bound).
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
-                               const GrainExtremes& extremes, int threads);
+                               const GrainExtremes& extremes, int threads, bool irregular = false);
 
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
 /// How far a rest has come, in [0, 1], on the logarithm of the unbalanced force ratio.

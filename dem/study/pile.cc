@@ -82,6 +82,7 @@ class PileRun final : public Run {
   double in_phase() const { return static_cast<double>(phase_steps_) * engine_->time_step(); }
   Snapshot named(Snapshot snapshot, const std::string& state) const;
   std::string change_name(std::size_t k) const;
+  std::string smaller_step() const;
   std::string fingerprint() const;
 
   PileSetup setup_;
@@ -117,8 +118,9 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   draw();
   std::vector<ShapedGrain> all = grains_;
   all.insert(all.end(), floor_.begin(), floor_.end());
-  settings_ = engine_settings(setup_.material, setup_.motion,
-                              extremes_of(all, setup_.material.density), threads);
+  settings_ =
+      engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
+                      threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
   check_source(setup_, grains_);
   settings_.polygons = setup_.shape.kind != "disk";
   const SleepSetup& s = setup_.sleep;
@@ -358,7 +360,7 @@ void PileRun::rest() {
     if (setup_.change.method == "damped") pile_image_ = engine_->image();
     begin_change();
   } else if (in_phase() > setup_.rest.max_time) {
-    fail_to_rest(d, setup_.rest, "after the pour", "");
+    fail_to_rest(d, setup_.rest, "after the pour", smaller_step());
   }
 }
 
@@ -391,7 +393,8 @@ void PileRun::hold() {
   } else if (in_phase() > setup_.rest.max_time) {
     fail_to_rest(
         d, setup_.rest,
-        fmt::format("under a gravity of {:g} m/s2", setup_.change.gravity[changed_.size()]), "");
+        fmt::format("under a gravity of {:g} m/s2", setup_.change.gravity[changed_.size()]),
+        smaller_step());
   }
 }
 
@@ -413,6 +416,13 @@ void PileRun::end_change(Snapshot state, double unbalanced_force_ratio) {
   changed_.push_back(named(std::move(state), change_name(changed_.size())));
   changed_ratio_.push_back(unbalanced_force_ratio);
   begin_change();
+}
+
+// Above the limit the step itself may be what keeps grains moving.
+std::string PileRun::smaller_step() const {
+  if (setup_.motion.time_step > 0 || setup_.motion.time_step_fraction <= 1) return "";
+  return fmt::format(", or lower motion.time_step_fraction, now {:g}",
+                     setup_.motion.time_step_fraction);
 }
 
 std::string PileRun::change_name(std::size_t k) const {

@@ -67,7 +67,8 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
   EngineSettings settings =
-      engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads);
+      engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
+                      setup_.packing.shape == "irregular");
   settings.polygons = setup_.packing.shape != "disk";
   engine_ = make_engine(settings);
   for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);

@@ -247,8 +247,7 @@ TEST(Pile, RefusesWhatCannotBe) {
   EXPECT_EQ(refusal(small("point", "disk")), "accepted");
   PileSetup s = small("point", "disk");
   s.motion.time_step = 1;
-  EXPECT_THAT(refusal(s),
-              HasSubstr("motion.time_step: found 1 s, allowed: at most the stable limit"));
+  EXPECT_THAT(refusal(s), HasSubstr("motion.time_step: found 1 s, allowed: at most "));
   s = small("point", "disk");
   s.shape.polydispersity = 1;
   EXPECT_THAT(refusal(s), HasSubstr("shape.polydispersity"));
@@ -303,6 +302,39 @@ TEST(Pile, RemediesHelp) {
   EXPECT_EQ(refusal(line), "accepted");
 }
 
+// Grains edge on edge in chains are what the limit is made for: regular shapes form them, a given
+// outline may; Gear's limit is that of its dashpots.
+TEST(Pile, OnlyIrregularPolygonsMayGoAboveTheStableLimit) {
+  using testing::HasSubstr;
+  const auto with = [](const char* shape, double fraction, const char* integrator = "verlet") {
+    PileSetup s = small("point", shape);
+    s.shape.outline = {-1, -1, 1, -1, 1, 1, -1, 1};
+    s.motion.time_step_fraction = fraction;
+    s.motion.integrator = integrator;
+    return refusal(s);
+  };
+  for (const char* shape : {"disk", "regular", "outline"}) {
+    EXPECT_EQ(with(shape, 1), "accepted") << shape;
+    EXPECT_THAT(with(shape, 1.01),
+                HasSubstr("motion.time_step_fraction: found 1.01, allowed: at most 1 (the stable "
+                          "limit) for verlet with this material; only irregular polygons"))
+        << shape;
+  }
+  for (const char* shape : {"rand1", "irregular"}) {
+    EXPECT_EQ(with(shape, 2), "accepted") << shape;
+    EXPECT_THAT(with(shape, 3), HasSubstr("motion.time_step_fraction: found 3, allowed")) << shape;
+    EXPECT_EQ(with(shape, 1, "gear"), "accepted") << shape;
+    EXPECT_THAT(with(shape, 2, "gear"), HasSubstr("found 2, allowed: at most 1")) << shape;
+  }
+  // Nearly round ones are bounded by the dashpots of round grains, of which half is the limit.
+  PileSetup round = small("point", "rand1");
+  round.shape.corners_min = round.shape.corners_max = 40;
+  round.motion.time_step_fraction = 2.4;
+  EXPECT_THAT(refusal(round), HasSubstr("found 2.4, allowed: at most 2 for irregular polygons"));
+  round.motion.time_step_fraction = 2;
+  EXPECT_EQ(refusal(round), "accepted");
+}
+
 TEST(Pile, LimitsOfTheSourceAreTheClosedForms) {
   for (const double share : {1.01, 0.99}) {
     PileSetup s = small("point", "disk");
@@ -334,6 +366,15 @@ TEST(Pile, SaysWhenItDoesNotComeToRest) {
   s.rest.unbalanced_force_ratio = 1e-9;
   const auto run = make_pile_run(s, 1, 1);
   EXPECT_THAT(failure(*run), testing::HasSubstr("no rest within rest.max_time = 0.001 s (after"));
+  s = small("line", "rand1");
+  s.source.grains = 20;
+  s.source.length = 0.7;
+  s.rest.max_time = 0.001;
+  s.rest.unbalanced_force_ratio = 1e-9;
+  s.motion.time_step_fraction = 2;
+  const auto large_step = make_pile_run(s, 1, 1);
+  EXPECT_THAT(failure(*large_step),
+              testing::EndsWith(", or lower motion.time_step_fraction, now 2"));
 }
 
 TEST(Pile, SaysWhenItLeansOnTheWalls) {
