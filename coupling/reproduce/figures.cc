@@ -35,8 +35,8 @@ Number ratio(const Number& a, const Number& b) {
 }
 
 SourceFigure number(const char* source, const char* what, const char* unit, const char* study,
-                    const char* theirs, double low, double high, Number ours) {
-  return {source, what, unit, study, theirs, low, high, {}, std::move(ours), nullptr};
+                    const char* theirs, double low, double high, Number ours, double effect = 0) {
+  return {source, what, unit, study, theirs, low, high, {}, std::move(ours), nullptr, effect};
 }
 
 SourceFigure dip(const char* source, const char* what, const char* study, const char* theirs,
@@ -61,7 +61,8 @@ SourceFigure dip(const char* source, const char* what, const char* study, const 
                 "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g}; centre over largest "
                 "{:.2f}",
                 *verdict, difference->value, difference->error, *p, *centre);
-          }};
+          },
+          0};
 }
 
 }  // namespace
@@ -71,6 +72,8 @@ const std::vector<SourceFigure>& source_figures() {
                        *kElliptic = "pile-elliptic", *kAsymmetricLine = "pile-asymmetric-line",
                        *kAsymmetricPoint = "pile-asymmetric-point",
                        *kGravity = "pile-gravity-levels";
+  // Of a point source over the surface; a flat fraction is one without it.
+  constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
   static const std::vector<SourceFigure> all{
       number("Roul 3.1", "angle of repose, point source", "deg", kPoint, "28", 27, 29,
@@ -95,13 +98,13 @@ const std::vector<SourceFigure>& source_figures() {
       number("Roul 3.4", "volume fraction, line source", "", kLine, "0.79", 0.78, 0.80,
              of(kLine, "heap.volume_fraction")),
       number("Roul 3.4", "the same, middle over near the surface", "", kLine, "1 (flat)", 0.99,
-             1.01, of(kLine, "density.ratio")),
+             1.01, of(kLine, "density.ratio"), kDenserMiddle),
       number("Roul 3.4", "volume fraction, point source, middle over near the surface", "", kPoint,
-             "1.08-1.10", 1.08, 1.10, of(kPoint, "density.ratio")),
+             "1.08-1.10", 1.08, 1.10, of(kPoint, "density.ratio"), kDenserMiddle),
       number("Roul 3.9", "coordination at a tenth of gravity over that at gravity", "", kGravity,
-             "0.92", 0.91, 0.93, of(kGravity, "change.gravity_0.98.coordination_ratio")),
+             "0.92", 0.91, 0.93, of(kGravity, "change.gravity_0.98.coordination_ratio"), 0.08),
       number("Roul 3.9", "coordination at 1.9 times gravity over that at gravity", "", kGravity,
-             "1.04", 1.03, 1.05, of(kGravity, "change.gravity_18.6.coordination_ratio")),
+             "1.04", 1.03, 1.05, of(kGravity, "change.gravity_18.6.coordination_ratio"), 0.04),
   };
   return all;
 }
@@ -115,7 +118,8 @@ std::string agreement(const SourceFigure& figure, const Measured& ours) {
     return fmt::format("differs by {:.2g}{} ({:.1f} standard errors)", miss, unit,
                        miss / ours.error);
   }
-  if (reach > kTooWide * std::fabs(middle)) return "spread too wide to tell";
+  const double stake = figure.effect > 0 ? figure.effect : std::fabs(middle);
+  if (reach > kTooWide * stake) return "spread too wide to tell";
   return "agrees";
 }
 

@@ -22,6 +22,8 @@ struct SourceFigure {
   std::function<std::optional<Measured>(const Results&)> number;
   /// Words: ours, and what supports it.
   std::function<std::optional<std::string>(const Results&)> word;
+  /// Ratios: how far from 1 the source's lies, which is what it says; 0: the value itself counts.
+  double effect = 0;
 };
 
 /// In the order of the page.
@@ -29,7 +31,8 @@ const std::vector<SourceFigure>& source_figures();
 
 /// "agrees", "differs by 1.2 deg (3.1 standard errors)", ... by the rule that the page states:
 /// a number agrees when the source's range and ours +- 2 standard errors meet; it says nothing when
-/// 2 standard errors are wider than `kTooWide` of the source's value, or with one realization.
+/// 2 standard errors are wider than `kTooWide` of the source's value (of `effect` where given), or
+/// with one realization.
 std::string agreement(const SourceFigure& figure, const Measured& ours);
 inline constexpr double kTooWide = 0.5;
 

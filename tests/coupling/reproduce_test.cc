@@ -105,6 +105,13 @@ TEST(Reproduce, AgreementByItsRule) {
   EXPECT_EQ(agreement(f, {30, 0.4}), "differs by 1 deg (2.5 standard errors)");
   EXPECT_EQ(agreement(f, {20, 10}), "spread too wide to tell");
   EXPECT_EQ(agreement(f, {28, std::nan("")}), "no error, no statement");
+  // A ratio that cannot tell 1.09 from 1 says nothing, although its range holds 1.09.
+  f.low = 1.08;
+  f.high = 1.10;
+  EXPECT_EQ(agreement(f, {1.0, 0.05}), "agrees");
+  f.effect = 0.09;
+  EXPECT_EQ(agreement(f, {1.0, 0.05}), "spread too wide to tell");
+  EXPECT_EQ(agreement(f, {1.07, 0.02}), "agrees");
 }
 
 TEST(Reproduce, RefusesFoldersAndFilesThatAreNone) {
