@@ -37,7 +37,11 @@ enum class Outcome { finished, stopped };
 class Worker {
  public:
   Worker(const std::vector<Task>& tasks, const EnsembleOptions& options)
-      : tasks_(tasks), options_(options), states_(tasks.size()), errors_(tasks.size()) {}
+      : tasks_(tasks),
+        options_(options),
+        states_(tasks.size()),
+        begun_at_(tasks.size(), 0),
+        errors_(tasks.size()) {}
 
   // Takes the tasks of `mine` one after another until none is left or one failed or was stopped.
   void work(const std::vector<std::size_t>& mine, int engine_threads) {
@@ -58,10 +62,11 @@ class Worker {
     EnsembleProgress out;
     out.total = static_cast<int>(mine.size());
     const std::lock_guard lock(mutex_);
-    double least = 2;
+    double least = 2, done_now = 0;
     for (const std::size_t task : mine) {
       const auto& state = states_[task];
       out.fraction += state.fraction / out.total;
+      done_now += (state.fraction - begun_at_[task]) / out.total;
       if (state.fraction >= 1) {
         ++out.done;
       } else if (!state.phase.empty() && state.fraction < least) {
@@ -74,7 +79,7 @@ class Worker {
         out.unbalanced_force_ratio = state.unbalanced_force_ratio;
       }
     }
-    out.seconds_left = out.fraction > 0.01 ? seconds * (1 - out.fraction) / out.fraction : -1;
+    out.seconds_left = done_now > 0.01 ? seconds * (1 - out.fraction) / done_now : -1;
     return out;
   }
 
@@ -89,6 +94,7 @@ class Worker {
  private:
   void note(std::size_t task, const dem::Progress& progress) {
     const std::lock_guard lock(mutex_);
+    if (states_[task].phase.empty()) begun_at_[task] = progress.fraction;
     states_[task] = progress;
   }
 
@@ -143,6 +149,7 @@ class Worker {
   const EnsembleOptions& options_;
   std::mutex mutex_;  // states_
   std::vector<dem::Progress> states_;
+  std::vector<double> begun_at_;            // fraction that a checkpoint had already
   std::vector<std::exception_ptr> errors_;  // every task writes its own
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> halt_ = false, stopped_ = false;
