@@ -28,7 +28,7 @@ struct Parameter {
   std::string unit;                  ///< "N/m", "m", "-", ...
   std::string meaning;               ///< one line, with what raising it does where not obvious
   std::string source;                ///< e.g. "Roul 5.2"
-  double value = 0;                  ///< default of a numerical parameter
+  double value = 0;                  ///< default of a number; nan: none
   double least = 0, most = 0;        ///< allowed range, inclusive unless the meaning says otherwise
   std::vector<std::string> choices;  ///< not empty: a parameter of words; the first is the default
   bool whole = false;                ///< only whole numbers

@@ -16,6 +16,14 @@ const std::vector<ModelInfo>& registry() {
                                                 layer_info(),
                                                 hydrostatic_info(),
                                                 liffman_info(),
+                                                cantelaube_info(),
+                                                cantelaube_asymmetric_info(),
+                                                osl_info(),
+                                                fpa_info(),
+                                                bcc_info(),
+                                                ife_info(),
+                                                osl_layer_info(),
+                                                orthotropic_half_plane_info(),
                                                 fe_elastic_layer_info(),
                                                 fe_elastic_half_space_info()};
   return models;

@@ -77,6 +77,12 @@ Parameter number(std::string name, std::string unit, std::string meaning, std::s
   return parameter;
 }
 
+Parameter optional_number(std::string name, std::string unit, std::string meaning,
+                          std::string source, double least, double most) {
+  return number(std::move(name), std::move(unit), std::move(meaning), std::move(source),
+                std::numeric_limits<double>::quiet_NaN(), least, most);
+}
+
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most) {
   Parameter parameter =

@@ -15,6 +15,10 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 /// A numerical parameter.
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
                  double value, double least, double most);
+/// A numerical parameter without a default: unset, number_of() gives nan and the meaning says what
+/// holds.
+Parameter optional_number(std::string name, std::string unit, std::string meaning,
+                          std::string source, double least, double most);
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);

@@ -9,5 +9,18 @@ ModelInfo boussinesq_info();
 ModelInfo layer_info();
 ModelInfo hydrostatic_info();
 ModelInfo liffman_info();
+ModelInfo cantelaube_info();
+ModelInfo cantelaube_asymmetric_info();
+ModelInfo osl_info();
+ModelInfo fpa_info();
+ModelInfo bcc_info();
+ModelInfo ife_info();
+ModelInfo osl_layer_info();
+ModelInfo orthotropic_half_plane_info();
+
+/// Parameters that all heaps share: phi_deg (friction angle and, unless the model has slopes of its
+/// own, slope) and rho_g.
+Parameter friction_angle();
+Parameter weight();
 
 }  // namespace grainfield::continuum

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -43,7 +44,9 @@ void list_parameters(const continuum::ModelInfo& info) {
   fmt::print("{}: {}\n", info.name, info.summary);
   for (const auto& p : info.parameters) {
     fmt::print("  {} = {}  ({}; {})\n      {}{}\n", p.name,
-               p.choices.empty() ? fmt::format("{:g}", p.value) : p.choices.front(),
+               !p.choices.empty()    ? p.choices.front()
+               : std::isnan(p.value) ? "(unset)"
+                                     : fmt::format("{:g}", p.value),
                p.unit.empty() || p.unit == "-" ? "no unit" : p.unit, range_of(p), p.meaning,
                p.source.empty() ? "" : " [" + p.source + "]");
   }

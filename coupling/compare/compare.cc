@@ -143,7 +143,9 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
 }
 
 std::string family_of(const std::string& model_name) {
-  if (model_name == "flamant" || model_name == "fe_elastic_half_space") return "half plane";
+  if (model_name == "flamant" || model_name == "fe_elastic_half_space" ||
+      model_name == "orthotropic_half_plane")
+    return "half plane";
   if (model_name == "layer" || model_name == "fe_elastic_layer") return "finite layer";
   return model_name;
 }

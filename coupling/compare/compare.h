@@ -32,8 +32,8 @@ struct ModelProfiles {
   std::vector<Eigen::VectorXd> values;  ///< one per profile, same points; nan = no value there
 };
 
-/// What the verdict calls a registry model: flamant, fe_elastic_half_space: "half plane"; layer,
-/// fe_elastic_layer: "finite layer"; others: their own name.
+/// What the verdict calls a registry model: flamant, orthotropic_half_plane, fe_elastic_half_space:
+/// "half plane"; layer, fe_elastic_layer: "finite layer"; others: their own name.
 std::string family_of(const std::string& model_name);
 
 /// Distance of a model from the simulation.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -37,16 +38,33 @@ Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, 
 
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts) {
   continuum::Settings out = choice.settings;
+  bool friction_filled = false;
   for (const auto& parameter : continuum::find_model(choice.name).parameters) {
     if (parameter.name == "F") out.emplace("F", fmt::format("{}", facts.force));
     if (parameter.name == "h") out.emplace("h", fmt::format("{}", facts.height));
     if (parameter.name == "depth") out.emplace("depth", fmt::format("{}", facts.depth));
-    if (parameter.name == "base" && !facts.base.empty()) out.emplace("base", facts.base);
+    const auto& words = parameter.choices;
+    if (parameter.name == "base" &&
+        std::find(words.begin(), words.end(), facts.base) != words.end()) {
+      out.emplace("base", facts.base);
+    }
     if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
     const auto number = facts.numbers.find(parameter.name);
-    if (number != facts.numbers.end()) {
-      out.emplace(parameter.name, fmt::format("{}", number->second));
+    if (number == facts.numbers.end() || out.count(parameter.name) != 0) continue;
+    if (std::isnan(number->second)) {
+      throw continuum::BadParameter(fmt::format(
+          "model {}: {} cannot be measured on this heap (too few grains on its flanks); "
+          "set it in [model.{}]",
+          choice.name, parameter.name, choice.label));
     }
+    out.emplace(parameter.name, fmt::format("{}", number->second));
+    if (parameter.name == "phi_deg") friction_filled = true;
+  }
+  // A heap with two slopes is at least as frictional as the steeper of them.
+  for (const char* slope : {"left_deg", "right_deg"}) {
+    const auto at = out.find(slope);
+    if (friction_filled && at != out.end() && std::stod(at->second) > std::stod(out.at("phi_deg")))
+      out["phi_deg"] = at->second;
   }
   return out;
 }

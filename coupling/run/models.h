@@ -12,16 +12,17 @@ namespace grainfield::coupling {
 
 /// What the run tells the models.
 struct RunFacts {
-  double force = 0;                       ///< N: parameter F
-  double height = 0;                      ///< m: parameter h
-  int dim = 2;                            ///< parameter dim
-  double depth = 0;                       ///< m: parameter depth, the least depth one looks at
-  std::string base;                       ///< parameter base; empty: the model's default
+  double force = 0;   ///< N: parameter F
+  double height = 0;  ///< m: parameter h
+  int dim = 2;        ///< parameter dim
+  double depth = 0;   ///< m: parameter depth, the least depth one looks at
+  std::string base;   ///< parameter base of models that know this word; empty: their default
   std::map<std::string, double> numbers;  ///< further parameters by name, e.g. rho_g, phi_deg
 };
 
 /// The choice's settings with what the facts know filled in where the model has it and the user did
-/// not set it.
+/// not set it; a filled phi_deg is at least left_deg and right_deg of a model that has them. Throws
+/// continuum::BadParameter where a number that would be filled in is nan (not measurable).
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);

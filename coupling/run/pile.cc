@@ -128,9 +128,6 @@ class Analysis {
                    {"phi_deg", (left + right) / 2},
                    {"left_deg", left},
                    {"right_deg", right}};
-    for (const char* name : {"phi_deg", "left_deg", "right_deg"}) {
-      if (std::isnan(out.numbers.at(name))) out.numbers.erase(name);
-    }
     return out;
   }
 

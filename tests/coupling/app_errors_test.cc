@@ -127,6 +127,13 @@ TEST(Errors, Models) {
   expect_refusal(program("model layer --set nuu=1" + points), 2, "did you mean 'nu'?");
   expect_refusal(program("model layer --set nu=1" + points), 2, "out of range");
   expect_refusal(program("model layer --set nu" + points), 2, "expected parameter=value");
+  expect_refusal(program("model cantelaube --set phi_deg=95" + points), 2, "allowed: 1 to 80 deg");
+  expect_refusal(program("model cantelaube --set beta_hat_deg=63" + points), 2,
+                 "below 90 - phi_deg = 62 deg");
+  expect_refusal(program("model osl --set mu=3" + points), 2,
+                 "allowed: mu below cot(phi) = 1.88073");
+  expect_refusal(program("model cantelaube_asymmetric --set left_deg=30" + points), 2,
+                 "at most phi_deg = 28 deg");
 }
 
 TEST(Errors, AverageOptions) {

@@ -1,0 +1,94 @@
+#include "continuum/closed/cantelaube.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "continuum/closed/models.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+CoreBranch branch_of(const std::string& word) {
+  if (word == "zero") return CoreBranch::zero;
+  return word == "plus" ? CoreBranch::plus : CoreBranch::minus;
+}
+
+std::unique_ptr<Model> make(const Settings& s) {
+  const double phi = number_of(s, "phi_deg") * kDegree;
+  const double most = 90 - number_of(s, "phi_deg");
+  double beta_hat = number_of(s, "beta_hat_deg");
+  if (std::isnan(beta_hat)) {
+    beta_hat = core_angle(phi, branch_of(s.at("branch")));
+  } else if (beta_hat < most) {
+    beta_hat *= kDegree;
+  } else {
+    throw BadParameter(
+        fmt::format("model cantelaube: beta_hat_deg = {} is not inside the heap; allowed: above 0 "
+                    "and below 90 - phi_deg = {:g} deg",
+                    s.at("beta_hat_deg"), most));
+  }
+  const CoreConstants core = core_constants(phi, beta_hat);
+  return std::make_unique<HeapModel>(
+      std::make_unique<SectorField>(cantelaube_field(phi, beta_hat, number_of(s, "rho_g"))),
+      std::map<std::string, double>{
+          {"beta_hat_deg", beta_hat / kDegree}, {"a1", core.a1}, {"a2", core.a2}, {"b1", core.b1}});
+}
+
+}  // namespace
+
+double core_angle(double phi, CoreBranch branch) {
+  const double s = std::cos(phi), c = std::sin(phi);  // of beta
+  // The minus branch with its difference of nearly equal terms multiplied out.
+  const double less = 1 - c, more = 1 + c;
+  if (branch == CoreBranch::zero) return std::atan(s / std::sqrt(1 + c * c));
+  if (branch == CoreBranch::minus) return std::atan(s / (std::sqrt(1 + less * less) + 1));
+  return std::atan(s / (more * more) * (std::sqrt(1 + more * more) + 1));
+}
+
+CoreConstants core_constants(double phi, double beta_hat) {
+  const double s = std::cos(phi), c = std::sin(phi), t = std::tan(beta_hat);
+  const double difference = c / s - 1 / t;
+  return {-s * c * difference, 1 + s * s * (t * c / s - 1),
+          c / s + (c * c + s * c / t) * difference};
+}
+
+SectorField cantelaube_field(double phi, double beta_hat, double rho_g) {
+  const double s = std::cos(phi), c = std::sin(phi);
+  const CoreConstants k = core_constants(phi, beta_hat);
+  // With y up sigma_xy changes sign.
+  LinearStress flank, core;
+  flank = Eigen::Vector3d(s * s, 1 + c * c, -s * c) * Eigen::RowVector2d(c / s, 1);
+  core << 0, 1 - k.a2, k.b1, 1 - k.a1, k.a1, 0;
+  flank *= rho_g;
+  core *= rho_g;
+  const double slope = std::numbers::pi / 2 - phi;
+  return {{{"left flank", -slope, -beta_hat},
+           {"left core", -beta_hat, 0},
+           {"right core", 0, beta_hat},
+           {"right flank", beta_hat, slope}},
+          {mirrored(flank), mirrored(core), core, flank},
+          rho_g,
+          phi};
+}
+
+ModelInfo cantelaube_info() {
+  return {"cantelaube",
+          "heap with an elastic core between plastic flanks",
+          2,
+          {friction_angle(), weight(),
+           choice("branch",
+                  "minus: the axis yields, a dip; zero: no kink at the axis, a plateau; plus: the "
+                  "axis yields, a peak",
+                  "Roul 4.10-4.12", {"minus", "zero", "plus"}),
+           optional_number("beta_hat_deg", "deg",
+                           "half tip angle of the core, instead of a branch; below 90 - phi_deg",
+                           "Roul 4.8", kAboveZero, 90)},
+          make};
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,76 @@
+#include "continuum/closed/orthotropic.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "continuum/closed/models.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+class OrthotropicHalfPlane : public Model {
+ public:
+  OrthotropicHalfPlane(double load, const Orthotropy& o) : load_(load), o_(o) {}
+  Stresses stress(const Points& points) override {
+    Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      if (!(points(i, 1) < 0)) continue;
+      const auto s = orthotropic_stress(load_, o_, points(i, 0), points(i, 1));
+      for (int c = 0; c < 3; ++c) out(i, c) = s[static_cast<std::size_t>(c)];
+    }
+    return out;
+  }
+  std::map<std::string, double> figures() const override {
+    return {{"r", o_.r},
+            {"t", o_.t},
+            {"peaks", o_.r < 0 ? 2 : 1},
+            {"peak_at_over_depth", o_.r < 0 ? std::sqrt(-o_.r) : 0}};
+  }
+
+ private:
+  double load_;
+  Orthotropy o_;
+};
+
+std::unique_ptr<Model> make(const Settings& s) {
+  Orthotropy o{number_of(s, "r"), number_of(s, "t")};
+  const double E_x = number_of(s, "E_x"), E_y = number_of(s, "E_y"), G = number_of(s, "G");
+  const int set = !std::isnan(E_x) + !std::isnan(E_y) + !std::isnan(G);
+  if (set != 0 && set != 3)
+    throw BadParameter(fmt::format(
+        "model orthotropic_half_plane: found {} of E_x, E_y, G; allowed: all three, with nu_xy, or "
+        "none, with r and t",
+        set));
+  if (set == 3) o = orthotropy(E_x, E_y, number_of(s, "nu_xy"), G);
+  const double least = -std::sqrt(o.t);
+  if (!(o.r > least) || !std::isfinite(o.r + o.t))
+    throw BadParameter(
+        fmt::format("model orthotropic_half_plane: r = {:.6g} is not elastic; allowed: above "
+                    "-sqrt(t) = {:.6g} at t = {:.6g}",
+                    o.r, least, o.t));
+  return std::make_unique<OrthotropicHalfPlane>(number_of(s, "F"), o);
+}
+
+}  // namespace
+
+ModelInfo orthotropic_half_plane_info() {
+  const char* source = "Otto et al. 2003";
+  return {"orthotropic_half_plane",
+          "half plane with vertical and horizontal elastic axes under a line load",
+          2,
+          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+           number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); below 0: two peaks; isotropic: 1",
+                  source, 1, -kUnbounded, kUnbounded),
+           number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+           optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
+                           kAboveZero, kUnbounded),
+           optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+           optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+           number("nu_xy", "-", "-eps_yy/eps_xx under sigma_xx; counts with E_x, E_y, G only",
+                  source, 0.3, -kUnbounded, kUnbounded)},
+          make};
+}
+
+}  // namespace grainfield::continuum

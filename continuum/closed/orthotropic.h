@@ -1,0 +1,42 @@
+// Line load on a half plane whose elastic axes are the vertical and the horizontal (Lekhnitskii;
+// Otto, Bouchaud, Claudin and Socolar 2003).
+//
+// With Hooke's law eps_xx = sigma_xx/E_x - nu sigma_yy/E_x, eps_yy = sigma_yy/E_y - nu
+// sigma_xx/E_x, 2 eps_xy = sigma_xy/G (E_x, E_y, nu = nu_xy, G of the plane: for plane strain those
+// of its reduced compliances) Airy's function obeys
+//   U_yyyy + 2 r U_xxyy + t U_xxxx = 0,  t = E_x/E_y,  r = (E_x/G - 2 nu)/2,
+// elastic for t > 0, r > -sqrt(t); isotropic for r = t = 1. Stress depends on r and t alone: a
+// compression along the rays from the load,
+//   (xx, yy, xy) = -(F/pi) sqrt(2 t (r + sqrt t)) y (x^2, y^2, x y) / (x^4 + 2 r x^2 y^2 + t y^4)
+// with y down. On a horizontal line the pressure has one peak for r >= 0 and two, at
+// x = +-y sqrt(-r), for r < 0; for r -> -sqrt(t) they sharpen into the two characteristics
+// x = +-t^(1/4) y of a hyperbolic (OSL) material with eta = sqrt(t).
+#pragma once
+#include <array>
+#include <cmath>
+
+namespace grainfield::continuum {
+
+/// Ratios of elastic constants that the stress depends on.
+struct Orthotropy {
+  double r = 1, t = 1;
+};
+/// From the plane's constants.
+inline Orthotropy orthotropy(double E_x, double E_y, double nu_xy, double G) {
+  return {(E_x / G - 2 * nu_xy) / 2, E_x / E_y};
+}
+
+/// Stress xx, yy, xy at x, y (y up, y < 0), N/m, tension positive; T may be complex. Needs t > 0,
+/// r > -sqrt(t).
+template <typename T>
+std::array<T, 3> orthotropic_stress(double F, const Orthotropy& o, const T& x, const T& y) {
+  const T x2 = x * x, y2 = y * y;
+  const double root = std::sqrt(o.t);
+  const double strength = F / M_PI * std::sqrt(2 * o.t * (o.r + root));
+  // x^4 + 2 r x^2 y^2 + t y^4 without the cancellation near r = -sqrt(t).
+  const T edge = x2 - root * y2;
+  const T scale = strength * y / (edge * edge + 2 * (o.r + root) * x2 * y2);
+  return {scale * x2, scale * y2, scale * x * y};
+}
+
+}  // namespace grainfield::continuum
