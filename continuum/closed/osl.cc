@@ -1,6 +1,7 @@
 #include "continuum/closed/osl.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
@@ -19,10 +20,15 @@ Closure chosen(const Settings& s, double phi) {
                tau = number_of(s, "tau_deg");
   const bool has_eta = !std::isnan(eta), has_mu = !std::isnan(mu);
   const bool has_K = !std::isnan(K), has_tau = !std::isnan(tau);
-  if (has_K != has_tau || (has_K && (has_eta || has_mu)))
-    throw BadParameter(fmt::format(
-        "model osl: found {}{}{}{}; allowed: eta, mu, eta with mu, or K with tau_deg",
-        has_eta ? "eta " : "", has_mu ? "mu " : "", has_K ? "K " : "", has_tau ? "tau_deg" : ""));
+  if (has_K != has_tau || (has_K && (has_eta || has_mu))) {
+    std::vector<std::string> found;
+    for (const char* name : {"eta", "mu", "K", "tau_deg"}) {
+      if (!std::isnan(number_of(s, name))) found.emplace_back(name);
+    }
+    throw BadParameter(
+        fmt::format("model osl: found {}; allowed: eta, mu, eta with mu, or K with tau_deg",
+                    fmt::join(found, " with ")));
+  }
   if (has_K) return closure_of({K, tau * kDegree});
   if (has_eta && has_mu) return {eta, mu};
   if (has_eta) return {eta, mu_at_yield(phi, eta)};

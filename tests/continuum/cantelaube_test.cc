@@ -131,7 +131,9 @@ TEST(CantelaubeAsymmetric, IsContinuousInItsSlopes) {
       const SectorField field =
           asymmetric_field({phi, slope, slope + epsilon, true, true}, branch, 0, 1);
       const double away = (field.stress(0.3, -1) - symmetric.stress(0.3, -1)).norm();
-      if (before > 0) EXPECT_NEAR(before / away, 10, 2);
+      if (before > 0) {
+        EXPECT_NEAR(before / away, 10, 2);
+      }
       before = away;
     }
   }

@@ -104,7 +104,9 @@ TEST(Heaps, RegionsAreInOrderAndTileTheHeap) {
     const auto& regions = heap.field->regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {
       EXPECT_LT(regions[r].from, regions[r].to) << where(heap, k);
-      if (r > 0) EXPECT_EQ(regions[r].from, regions[r - 1].to);
+      if (r > 0) {
+        EXPECT_EQ(regions[r].from, regions[r - 1].to);
+      }
       const double middle = (regions[r].from + regions[r].to) / 2;
       EXPECT_EQ(heap.field->region_of(std::sin(middle), -std::cos(middle)), static_cast<int>(r));
     }
@@ -226,14 +228,15 @@ TEST(Ife, AgreesWithShootingFromTheAxis) {
   double low = 0.7, high = 0.9, v = 0, w = 0;
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
-    (shoot(middle, 0.999 * cot, v, w) == Fate::characteristic ? high : low) = middle;
+    (shoot(middle, 0.9999 * cot, v, w) == Fate::characteristic ? high : low) = middle;
   }
   const IfeField field(phi, 1);
-  EXPECT_NEAR(-field.stress(0, -1)[1], low, 1e-9);
+  // Fates differ by about the square of the distance from the slope at which shooting ends.
+  EXPECT_NEAR(-field.stress(0, -1)[1], low, 1e-6);
   for (const double share : {0.3, 0.6, 0.8}) {
     EXPECT_EQ(shoot(low, share * cot, v, w), Fate::none);
-    EXPECT_NEAR(-field.stress(share * cot, -1)[1], v, 1e-7);
-    EXPECT_NEAR(field.stress(share * cot, -1)[2], w, 1e-7);
+    EXPECT_NEAR(-field.stress(share * cot, -1)[1], v, 1e-5);
+    EXPECT_NEAR(field.stress(share * cot, -1)[2], w, 1e-5);
   }
 }
 

@@ -149,7 +149,9 @@ TEST(Orthotropic, SharpensIntoTwoCharacteristics) {
       inside += pressure(x) * 2 * reach / n;
     }
     outside = 0.5 - inside;
-    if (before > 0) EXPECT_NEAR(before / outside, 10, 1);
+    if (before > 0) {
+      EXPECT_NEAR(before / outside, 10, 1);
+    }
     before = outside;
   }
   EXPECT_LT(before, 1e-3);

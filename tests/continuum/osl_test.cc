@@ -93,7 +93,9 @@ TEST(Osl, RatioAndClosureRoundTrip) {
     const StressRatio ratio = ratio_of(closure);
     EXPECT_GT(ratio.tau, std::numbers::pi / 4);
     EXPECT_LT(ratio.tau, 3 * std::numbers::pi / 4);
-    if (closure.eta < 1) EXPECT_GE(ratio.K, 1 - 1e-12);
+    if (closure.eta < 1) {
+      EXPECT_GE(ratio.K, 1 - 1e-12);
+    }
     // Both descriptions give the closure back.
     for (const StressRatio& same :
          {ratio, StressRatio{1 / ratio.K, ratio.tau - std::numbers::pi / 2}}) {
@@ -221,7 +223,8 @@ TEST(Osl, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal("osl", {{"mu", "2"}}),
               HasSubstr("has no characteristic inside the heap; allowed: mu below cot(phi) = "
                         "1.88073 at phi_deg = 28"));
-  EXPECT_THAT(refusal("osl", {{"K", "1.3"}}), HasSubstr("found K ; allowed: eta, mu, eta with mu"));
+  EXPECT_THAT(refusal("osl", {{"K", "1.3"}}),
+              HasSubstr("found K; allowed: eta, mu, eta with mu, or"));
   EXPECT_THAT(refusal("osl", {{"K", "1.3"}, {"tau_deg", "80"}, {"mu", "0"}}),
               HasSubstr("allowed: eta, mu, eta with mu, or K with tau_deg"));
   EXPECT_THAT(refusal("osl", {{"K", "2"}, {"tau_deg", "45"}}), HasSubstr("model osl: eta = "));
@@ -236,6 +239,7 @@ TEST(Osl, RefusesWhatCannotBe) {
 
 TEST(OslLayer, BalancesAndObeysItsClosure) {
   Random random(6);
+  int differences = 0;
   for (int k = 0; k < 5000; ++k) {
     const Closure closure{std::exp(random.uniform(-3, 1)), random.uniform(-1, 1)};
     const double h = std::exp(random.uniform(-2, 2)), width = h * std::exp(random.uniform(-3, 1));
@@ -250,21 +254,29 @@ TEST(OslLayer, BalancesAndObeysItsClosure) {
     EXPECT_NEAR(g(2, 0) + g(1, 1), 0, size);
     const Eigen::Vector3d s = field.stress(x, y);
     EXPECT_NEAR(closure_residual(closure, s, 1), 0, 1e-12 * s.norm());
-    // Gradients against Richardson's differences.
-    const double d = 1e-3 * width / (1 + closure.c1() - closure.c2());
+    // Gradients against Richardson's differences, away from where the second derivative jumps.
+    const double steepest = std::max(closure.c1(), -closure.c2());
+    const double d = 1e-3 * width / (1 + steepest);
+    bool smooth = y + d < 0 && y - d > -h;
+    for (const Pulse& other : field.pulses()) {
+      const double edge = std::fabs(x - other.from + other.slope * y) - width / 2;
+      smooth = smooth && std::fabs(edge) > 2e-3 * width;
+    }
+    if (!smooth) continue;
+    ++differences;
+    double largest = 0;
+    for (const Pulse& other : field.pulses()) largest = std::max(largest, std::fabs(other.share));
+    const double scale = 3 * largest * 40 / (width * width) * std::pow(1 + steepest, 3);
     for (int axis = 0; axis < 2; ++axis) {
-      if (axis == 1 && (y + d > 0 || y - d < -h)) continue;
       const auto difference = [&](double e) -> Eigen::Vector3d {
         const double dx = axis == 0 ? e : 0, dy = axis == 1 ? e : 0;
         return (field.stress(x + dx, y + dy) - field.stress(x - dx, y - dy)) / (2 * e);
       };
       const Eigen::Vector3d found = (4 * difference(d / 2) - difference(d)) / 3;
-      EXPECT_LT(
-          (found - g.col(axis)).norm(),
-          1e-4 * field.gradient(x, y).norm() + 1e-4 * s.norm() / d * 1e-3 + 1e-6 / (width * width))
-          << k;
+      EXPECT_LT((found - g.col(axis)).norm(), 1e-8 * scale) << k;
     }
   }
+  EXPECT_GT(differences, 3000);
 }
 
 // The load arrives at the feet of the characteristics, all of it, at every depth; no shear above.
@@ -279,7 +291,9 @@ TEST(OslLayer, CarriesTheLoadToTwoFeet) {
     const Stresses s = model->stress(p);
     EXPECT_NEAR(-s.col(1).sum() * 2 / n, 2, 1e-9);
     EXPECT_NEAR(s.col(2).sum() * 2 / n, 0, 1e-9);  // no resultant shear
-    if (y == 0) EXPECT_LT(s.col(2).cwiseAbs().maxCoeff(), 1e-12 * s.col(1).cwiseAbs().maxCoeff());
+    if (y == 0) {
+      EXPECT_LT(s.col(2).cwiseAbs().maxCoeff(), 1e-12 * s.col(1).cwiseAbs().maxCoeff());
+    }
     if (y < -0.4) {
       Eigen::Index at = 0;
       double left = 0, right = 0, left_at = 0, right_at = 0;
