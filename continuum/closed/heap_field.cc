@@ -109,7 +109,7 @@ double mobilised_sine(const Eigen::Vector3d& s) {
 
 HeapModel::HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures)
     : field_(std::move(field)), figures_(std::move(figures)) {
-  figures_["mobilised_friction"] = field_->largest_mobilised();
+  figures_["mobilised_sine_ratio"] = field_->largest_mobilised();
   const auto& regions = field_->regions();
   for (std::size_t k = 1; k < regions.size(); ++k) {
     figures_[fmt::format("ray_{}_deg", k)] = regions[k].from * 180 / std::numbers::pi;

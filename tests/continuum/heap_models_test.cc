@@ -248,11 +248,11 @@ TEST(Heaps, TheRegistryFillsAndReports) {
     EXPECT_EQ(heap->field().rho_g(), 2);
     EXPECT_EQ(heap->field().phi(), 30 * kDegree);
     const auto figures = model->figures();
-    EXPECT_EQ(figures.count("mobilised_friction"), 1U);
+    EXPECT_EQ(figures.count("mobilised_sine_ratio"), 1U);
     for (std::size_t k = 1; k < heap->field().regions().size(); ++k)
       EXPECT_EQ(figures.count("ray_" + std::to_string(k) + "_deg"), 1U) << name;
     // None of them violates the limit of friction.
-    EXPECT_LE(figures.at("mobilised_friction"), 1 + 1e-9) << name;
+    EXPECT_LE(figures.at("mobilised_sine_ratio"), 1 + 1e-9) << name;
     Points points(3, 2);
     points << 0, -1, 1.7, -1, 1.8, -1;
     const Stresses s = model->stress(points);

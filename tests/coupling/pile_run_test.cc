@@ -58,7 +58,8 @@ TEST(PileRun, LeavesEverything) {
   const Folder folder;
   const std::string file = folder.write(
       "x.toml", tiny_pile("[change]\ngravity = [8.829]\nmethod = \"damped\"\nramp_time = 0.05\n"
-                          "[compare]\nmodels = [\"hydrostatic\"]\n"));
+                          "[compare]\nmodels = [\"hydrostatic\", \"cantelaube\", \"ife\"]\n"
+                          "[model.cantelaube]\nphi_deg = 20\n[model.ife]\nphi_deg = 20\n"));
   const Output run = program("run " + file + " -o " + (folder / "out"));
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("whether that is a dip needs at least 3"));
@@ -71,12 +72,27 @@ TEST(PileRun, LeavesEverything) {
   EXPECT_FALSE(testing::fs::exists(folder / "out/checkpoint"));
   const Summary s = read_summary(folder / "out/summary.json");
   EXPECT_NO_THROW(require_documented(s));
-  for (const char* key :
-       {"dem.grains", "dem.steps", "dem.repose_angle_left_deg", "dem.repose_angle_right_deg",
-        "heap.volume_fraction", "heap.rho_g_h", "pile.height", "dip.ratio", "dip.difference",
-        "dip.p_value", "dip.window_ratio", "density.ratio", "base.largest_pressure",
-        "compare.hydrostatic.rel_l2", "change.gravity_8.829.coordination_ratio", "source.interval",
-        "dem.grain_steps", "time.dem_s"}) {
+  for (const char* key : {"dem.grains",
+                          "dem.steps",
+                          "dem.repose_angle_left_deg",
+                          "dem.repose_angle_right_deg",
+                          "heap.volume_fraction",
+                          "heap.rho_g_h",
+                          "pile.height",
+                          "dip.ratio",
+                          "dip.difference",
+                          "dip.p_value",
+                          "dip.window_ratio",
+                          "density.ratio",
+                          "base.largest_pressure",
+                          "compare.hydrostatic.rel_l2",
+                          "compare.cantelaube.base.rel_l2",
+                          "compare.ife.rel_l2",
+                          "model.cantelaube.beta_hat_deg",
+                          "change.gravity_8.829.coordination_ratio",
+                          "source.interval",
+                          "dem.grain_steps",
+                          "time.dem_s"}) {
     EXPECT_EQ(s.count(key), 1U) << key;
   }
   // The pile is at rest only to 1e-3.
@@ -127,6 +143,20 @@ TEST(PileRun, MoreRealizationsReuseTheGrainsOfAFailedAnalysis) {
   EXPECT_EQ(
       std::get<std::int64_t>(read_summary(folder / "out/summary.json").at("ensemble.realizations")),
       3);
+}
+
+// Forty grains have no flanks to measure: the user has to say how steep they are.
+TEST(PileRun, FrictionAngleIsNotGuessed) {
+  const Folder folder;
+  const std::string file = folder.write(
+      "x.toml", tiny_pile("[compare]\nmodels = [\"bcc\"]\n[output]\nreport = false\n"));
+  const std::string run = "run " + file + " -o " + (folder / "out");
+  const Output refused = program(run);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("model bcc: phi_deg cannot be measured on this heap"));
+  const Output done = program(run + " --resume --set model.bcc.phi_deg=20");
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(testing::read_text(folder / "out/profiles.csv"), HasSubstr(",bcc"));
 }
 
 TEST(PileRun, SweepComparesMembers) {
