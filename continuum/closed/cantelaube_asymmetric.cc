@@ -20,6 +20,8 @@ constexpr double kHalfPi = std::numbers::pi / 2, kDegree = std::numbers::pi / 18
 constexpr double kFirstStep = 0.005, kGrowth = 1.1, kLargestKink = 1e8;
 // Slopes up to this share of pi/2 above phi are phi: both are typed or computed in degrees.
 constexpr double kEqual = 1e-12;
+// The window of yield rays: directions tried across the heap, and halvings at its ends.
+constexpr int kScan = 200, kHalvings = 12;
 
 // Coefficients of a cubic Airy function: U = (p x^3 + 3 q x^2 y + 3 r x y^2 + s y^3) / 6.
 using Cubic = Eigen::Vector4d;
@@ -228,32 +230,52 @@ LinearStress flank_stress(double phi, double alpha, bool active) {
   return Eigen::Vector3d(k, 1 + t * t * k, -t * k) * Eigen::RowVector2d(t, 1);
 }
 
-SectorField asymmetric_field(const AsymmetricHeap& heap, CoreBranch branch, double yield_ray,
-                             double rho_g) {
+std::optional<SectorField> yielding_field(const AsymmetricHeap& heap, CoreBranch branch,
+                                          double yield_ray, double rho_g) {
   const Core core(heap);
-  if (branch == CoreBranch::zero) return one_core(heap, core, rho_g);
-  if (!(yield_ray > core.first() && yield_ray < core.last()))
-    throw BadParameter(fmt::format(
-        "model cantelaube_asymmetric: yield_ray_deg = {:g} is not inside the heap; allowed: above "
-        "{:g} and below {:g} deg",
-        yield_ray / kDegree, core.first() / kDegree, core.last() / kDegree));
-  const bool minus = branch == CoreBranch::minus;
-  const auto kink = core.yielding_kink(yield_ray, minus ? -1 : 1);
-  if (!kink)
-    throw BadParameter(fmt::format(
-        "model cantelaube_asymmetric: with {} no core of branch {} yields on the ray yield_ray_deg "
-        "= {:g}; allowed: rays nearer to the middle of the linear core, or branch = zero",
-        described(heap), minus ? "minus" : "plus", yield_ray / kDegree));
+  if (!(yield_ray > core.first() && yield_ray < core.last())) return std::nullopt;
+  const auto kink = core.yielding_kink(yield_ray, branch == CoreBranch::minus ? -1 : 1);
+  if (!kink) return std::nullopt;
   const Rays rays = *core.with_kink(yield_ray, *kink);
   const LinearStress left = core.left() + rays.left_kink * kink_stress(rays.left);
-  return {{{"left flank", core.first(), rays.left},
-           {"left core", rays.left, yield_ray},
-           {"right core", yield_ray, rays.right},
-           {"right flank", rays.right, core.last()}},
-          {rho_g * core.left(), rho_g * left, rho_g * (left + *kink * kink_stress(yield_ray)),
-           rho_g * core.right()},
-          rho_g,
-          heap.phi};
+  return SectorField({{"left flank", core.first(), rays.left},
+                      {"left core", rays.left, yield_ray},
+                      {"right core", yield_ray, rays.right},
+                      {"right flank", rays.right, core.last()}},
+                     {rho_g * core.left(), rho_g * left,
+                      rho_g * (left + *kink * kink_stress(yield_ray)), rho_g * core.right()},
+                     rho_g, heap.phi);
+}
+
+std::optional<std::pair<double, double>> yield_rays(const AsymmetricHeap& heap, CoreBranch branch) {
+  const auto exists = [&](double ray) { return yielding_field(heap, branch, ray, 1).has_value(); };
+  const double from = heap.left - kHalfPi, step = (kHalfPi - heap.right - from) / kScan;
+  int first = 1, last = kScan - 1;
+  while (first < kScan && !exists(from + first * step)) ++first;
+  while (last > first && !exists(from + last * step)) --last;
+  if (first == kScan) return std::nullopt;
+  const auto end = [&](double inside, double outside) {
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside + outside) / 2;
+      (exists(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  return std::pair(end(from + first * step, from + (first - 1) * step),
+                   end(from + last * step, from + (last + 1) * step));
+}
+
+SectorField asymmetric_field(const AsymmetricHeap& heap, CoreBranch branch, double yield_ray,
+                             double rho_g) {
+  if (branch == CoreBranch::zero) return one_core(heap, Core(heap), rho_g);
+  if (auto field = yielding_field(heap, branch, yield_ray, rho_g)) return std::move(*field);
+  const auto rays = yield_rays(heap, branch);
+  throw BadParameter(fmt::format(
+      "model cantelaube_asymmetric: with {} no core of branch {} yields on the ray yield_ray_deg = "
+      "{:g}; allowed: {}",
+      described(heap), branch == CoreBranch::minus ? "minus" : "plus", yield_ray / kDegree,
+      rays ? fmt::format("{:.2f} to {:.2f} deg", rays->first / kDegree, rays->second / kDegree)
+           : "other slopes, or branch = zero"));
 }
 
 ModelInfo cantelaube_asymmetric_info() {

@@ -17,6 +17,9 @@
 // is the case without a given kink. A core that yields on an inner ray has a kink there whose kappa
 // follows from the yield condition on that ray (one equation, solved by bracketing).
 #pragma once
+#include <optional>
+#include <utility>
+
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/heap_field.h"
 
@@ -33,10 +36,17 @@ double flank_coefficient(double phi, double alpha, bool active);
 /// The flank on the right (x > 0) for rho g = 1. The left one is its mirror image.
 LinearStress flank_stress(double phi, double alpha, bool active);
 
-/// Branch zero: one linear core; regions: left flank, core, right flank. Branches minus and plus: a
-/// core that yields on the ray of angle `yield_ray` from the downward vertical (rad, positive to
-/// the right), where the pressure along it has a dip or a peak; regions: left flank, left core,
-/// right core, right flank. Throws BadParameter where no such core fits between the flanks.
+/// Branches minus and plus: a core that yields on the ray of angle `yield_ray` from the downward
+/// vertical (rad, positive to the right), where the pressure along it has a dip or a peak; regions:
+/// left flank, left core, right core, right flank. Empty where there is none: a dip exists for rays
+/// about the direction in which the flanks' pushes balance only.
+std::optional<SectorField> yielding_field(const AsymmetricHeap& heap, CoreBranch branch,
+                                          double yield_ray, double rho_g);
+/// The least and the largest yield ray of such cores, rad; empty where there is none.
+std::optional<std::pair<double, double>> yield_rays(const AsymmetricHeap& heap, CoreBranch branch);
+/// Branch zero: one linear core; regions: left flank, core, right flank. Branches minus and plus:
+/// yielding_field. Throws BadParameter where no such core fits between the flanks, with the yield
+/// rays that do.
 SectorField asymmetric_field(const AsymmetricHeap& heap, CoreBranch branch, double yield_ray,
                              double rho_g);
 

@@ -145,7 +145,7 @@ TEST(CantelaubeAsymmetric, MirroredSlopesGiveTheMirroredField) {
     const AsymmetricHeap heap = random_asymmetric(random);
     const AsymmetricHeap other{heap.phi, heap.right, heap.left, true, true};
     const auto branch = static_cast<CoreBranch>(k % 3);
-    const double ray = random_yield_ray(random, heap);
+    const double ray = branch == CoreBranch::zero ? 0 : random_yield_ray(random, heap, branch);
     const SectorField field = asymmetric_field(heap, branch, ray, 1),
                       mirror = asymmetric_field(other, branch, -ray, 1);
     const auto p = random_point(random, field, k % 3);
@@ -159,7 +159,7 @@ TEST(CantelaubeAsymmetric, FlanksYieldAndSoDoesTheInnerRay) {
   for (int k = 0; k < 3000; ++k) {
     const AsymmetricHeap heap = random_asymmetric(random);
     const auto branch = static_cast<CoreBranch>(k % 3);
-    const double ray = random_yield_ray(random, heap);
+    const double ray = branch == CoreBranch::zero ? 0 : random_yield_ray(random, heap, branch);
     const SectorField field = asymmetric_field(heap, branch, ray, 1);
     const std::size_t last = field.regions().size() - 1;
     for (const std::size_t flank : {std::size_t{0}, last}) {
@@ -214,11 +214,28 @@ TEST(CantelaubeAsymmetric, RefusesWhatCannotBe) {
               HasSubstr("left_deg = 31 is steeper than the friction angle; allowed: above 0 and at "
                         "most phi_deg = 28 deg"));
   EXPECT_THAT(refusal(name, {{"right_deg", "0"}}), HasSubstr("right_deg = 0 is out of range"));
-  EXPECT_THAT(
-      refusal(name, {{"branch", "minus"}, {"yield_ray_deg", "70"}}),
-      HasSubstr("yield_ray_deg = 70 is not inside the heap; allowed: above -62 and below 62"));
-  EXPECT_THAT(refusal(name, {{"branch", "minus"}, {"yield_ray_deg", "61"}}),
-              HasSubstr("no core of branch minus yields on the ray yield_ray_deg = 61"));
-  EXPECT_THAT(refusal(name, {{"left_deg", "5"}, {"left_root", "passive"}, {"right_deg", "25"}}),
+  EXPECT_THAT(refusal(name, {{"branch", "minus"}, {"yield_ray_deg", "70"}}),
+              HasSubstr("no core of branch minus yields on the ray yield_ray_deg = 70"));
+allowed:
+  above - 62 and below 62 "));
+      // Both ends of the range that the message names hold.
+      const Settings two{{"branch", "minus"}, {"left_deg", "20"}, {"right_deg", "28"}};
+  const AsymmetricHeap heap{28 * kDegree, 20 * kDegree, 28 * kDegree, true, true};
+  const auto rays = yield_rays(heap, CoreBranch::minus);
+  ASSERT_TRUE(rays);
+  EXPECT_GT(rays->first, 0);
+  EXPECT_TRUE(yielding_field(heap, CoreBranch::minus, rays->first, 1));
+  EXPECT_TRUE(yielding_field(heap, CoreBranch::minus, rays->second, 1));
+  EXPECT_FALSE(yielding_field(heap, CoreBranch::minus, rays->first - 0.001, 1));
+  EXPECT_FALSE(yielding_field(heap, CoreBranch::minus, rays->second + 0.001, 1));
+  char text[60];
+  std::snprintf(text, sizeof text, "yield_ray_deg = 0; allowed: %.2f to %.2f deg",
+                rays->first / kDegree, rays->second / kDegree);
+  EXPECT_THAT(refusal(name, two), HasSubstr(text));
+  EXPECT_THAT(refusal(name, {{"phi_deg", "40"},
+                             {"left_deg", "5"},
+                             {"right_deg", "5"},
+                             {"left_root", "passive"},
+                             {"right_root", "passive"}}),
               HasSubstr("no linear core fits between the flanks; allowed: left_root"));
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
 #include "continuum/closed/cantelaube.h"
@@ -39,11 +40,15 @@ inline AsymmetricHeap random_asymmetric(dem::Random& random) {
   return out;
 }
 
-// The inner ray somewhere about the middle of the core.
-inline double random_yield_ray(dem::Random& random, const AsymmetricHeap& asymmetric) {
-  const SectorField linear = asymmetric_field(asymmetric, CoreBranch::zero, 0, 1);
+// A ray between the flanks for which a core of this branch exists.
+inline double random_yield_ray(dem::Random& random, const AsymmetricHeap& heap, CoreBranch branch) {
+  const SectorField linear = asymmetric_field(heap, CoreBranch::zero, 0, 1);
   const double from = linear.regions()[1].from, to = linear.regions()[1].to;
-  return from + (to - from) * random.uniform(0.35, 0.65);
+  for (int i = 0; i < 400; ++i) {
+    const double ray = from + (to - from) * random.uniform();
+    if (yielding_field(heap, branch, ray, 1)) return ray;
+  }
+  throw std::logic_error("no yield ray");
 }
 
 // One of the kinds whose parameters cost nothing; rho g over six orders of magnitude.
@@ -66,7 +71,7 @@ inline Heap random_heap(dem::Random& random) {
       const AsymmetricHeap a = random_asymmetric(random);
       const auto branch = random.bits() % 2 == 0 ? CoreBranch::minus : CoreBranch::plus;
       return heap("asymmetric, yield ray",
-                  asymmetric_field(a, branch, random_yield_ray(random, a), rho_g), false);
+                  asymmetric_field(a, branch, random_yield_ray(random, a, branch), rho_g), false);
     }
     case 4: {
       const double mu = random.uniform(-3, 0.95 / std::tan(phi));
