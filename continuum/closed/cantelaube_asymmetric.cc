@@ -16,8 +16,10 @@ namespace grainfield::continuum {
 namespace {
 
 constexpr double kHalfPi = std::numbers::pi / 2, kDegree = std::numbers::pi / 180;
-// The kink on the yield ray is looked for from 0 outwards in growing steps up to this size (rho g).
-constexpr double kFirstStep = 0.005, kGrowth = 1.1, kLargestKink = 1e8;
+// The kink on the yield ray is looked for from 0 outwards in growing steps up to this size (rho g):
+// there one half of the core is about 5 degrees wide, and the ends of the yield rays' window are
+// not far.
+constexpr double kFirstStep = 0.005, kGrowth = 1.1, kLargestKink = 300;
 // Slopes up to this share of pi/2 above phi are phi: both are typed or computed in degrees.
 constexpr double kEqual = 1e-12;
 // The window of yield rays: directions tried across the heap, and halvings at its ends.
@@ -236,7 +238,9 @@ std::optional<SectorField> yielding_field(const AsymmetricHeap& heap, CoreBranch
   if (!(yield_ray > core.first() && yield_ray < core.last())) return std::nullopt;
   const auto kink = core.yielding_kink(yield_ray, branch == CoreBranch::minus ? -1 : 1);
   if (!kink) return std::nullopt;
-  const Rays rays = *core.with_kink(yield_ray, *kink);
+  const auto found = core.with_kink(yield_ray, *kink);
+  if (!found) return std::nullopt;
+  const Rays& rays = *found;
   const LinearStress left = core.left() + rays.left_kink * kink_stress(rays.left);
   return SectorField({{"left flank", core.first(), rays.left},
                       {"left core", rays.left, yield_ray},

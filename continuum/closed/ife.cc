@@ -15,13 +15,18 @@ namespace grainfield::continuum {
 namespace {
 
 using std::numbers::pi;
-// Degree of the polynomials: the balance of forces is met to 1e-11 rho g from 15 to 40 degrees.
+// Degree of the polynomials: the balance of forces is met to 1e-9 rho g.
 constexpr int kDegree = 40;
 // Newton's method ends when its step is below this share of the solution.
 constexpr double kConverged = 1e-13;
 constexpr int kMostSteps = 100;
-// Friction angle at which the straight guess converges, and the least step away from it, rad.
-constexpr double kStart = 0.5, kLeastStep = 1e-3;
+// Friction angles for which the polynomials suffice, degrees.
+constexpr double kLeastAngle = 5, kLargestAngle = 60;
+// Accepted residual between the collocation points, rho g.
+constexpr double kBalanced = 1e-9;
+// Friction angle at which the straight guess converges, steps away from it and the least of them,
+// rad.
+constexpr double kStart = 0.5, kStep = 0.05, kLeastStep = 1e-3;
 
 // k(u) and its derivative; T may be complex.
 template <class T>
@@ -173,20 +178,39 @@ std::optional<Solution> newton(double phi, Solution out) {
   return std::nullopt;
 }
 
+// Polynomials that meet the balances at Chebyshev's points only are no solution: the largest
+// residual half way between them.
+double between(double phi, const Solution& found) {
+  const double cot = 1 / std::tan(phi);
+  const Eigen::VectorXd a = coefficients(found.a), w = coefficients(found.w);
+  double largest = 0;
+  for (int j = 0; j < kDegree; ++j) {
+    const double x = std::cos(pi * (j + 0.5) / kDegree), xi = cot / 2 * (x + 1), delta = cot - xi;
+    const auto [va, da] = series(a, x);
+    const auto [vw, dw] = series(w, x);
+    const double down = -vw + delta * dw * 2 / cot + delta * va - xi * (-va + delta * da * 2 / cot);
+    const double along = balance<double>(va, da * 2 / cot, vw, dw * 2 / cot, xi, phi);
+    largest = std::max({largest, std::fabs(down - 1), std::fabs(along)});
+  }
+  return largest;
+}
+
+// In steps from an angle where the straight guess leads to the solution.
 Solution solve(double phi) {
-  if (auto found = newton(phi, straight_guess(phi))) return *found;
-  // In steps from an angle where the straight guess does.
-  double at = kStart;
-  auto last = newton(at, straight_guess(at));
-  double step = (phi - at) / 4;
-  while (last && at != phi) {
+  const auto accepted = [](double angle, const Solution& guess) {
+    auto found = newton(angle, guess);
+    if (found && !(between(angle, *found) < kBalanced)) found.reset();
+    return found;
+  };
+  double at = kStart, step = std::copysign(kStep, phi - at);
+  auto last = accepted(at, straight_guess(at));
+  while (last && at != phi && std::fabs(step) > kLeastStep) {
     const double next = std::fabs(step) < std::fabs(phi - at) ? at + step : phi;
-    auto found = newton(next, scaled(*last, at, next));
-    if (found) {
+    if (auto found = accepted(next, scaled(*last, at, next))) {
       at = next;
       last = found;
-    } else if (std::fabs(step /= 2) < kLeastStep) {
-      break;
+    } else {
+      step /= 2;
     }
   }
   if (last && at == phi) return *last;
