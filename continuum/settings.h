@@ -22,6 +22,9 @@ Parameter optional_number(std::string name, std::string unit, std::string meanin
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);
+/// A parameter of any text, e.g. a file, empty by default; its unit is "text".
+Parameter text(std::string name, std::string meaning, std::string source);
+bool is_text(const Parameter& parameter);
 /// A parameter of words; the first choice is the default.
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices);
