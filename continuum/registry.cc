@@ -28,7 +28,8 @@ const std::vector<ModelInfo>& registry() {
                                                 fe_elastic_layer_info(),
                                                 fe_elastic_half_space_info(),
                                                 fe_osl_wedge_info(),
-                                                fe_osl_layer_info()};
+                                                fe_osl_layer_info(),
+                                                fe_mohr_coulomb_wedge_info()};
   return models;
 }
 
