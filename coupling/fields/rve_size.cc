@@ -14,8 +14,9 @@
 namespace grainfield::coupling {
 namespace {
 
-// Scaled abscissas and height of the places: as far from floor and flanks as a heap allows.
-constexpr std::array kPlaces{-0.6, -0.3, 0.0, 0.3, 0.6};
+// Abscissas (half bases) and height (h) of the places: as far from floor and flanks as a heap
+// allows.
+constexpr std::array kPlaces{-0.32, -0.16, 0.0, 0.16, 0.32};
 constexpr double kPlaceHeight = 0.32;
 
 struct Watched {
@@ -40,8 +41,10 @@ struct Study {
 
 void measure(const PileSet& piles, Study& out) {
   Eigen::MatrixXd places(kPlaces.size(), 2);
+  const double half = (piles.mean(&PileFrame::half_left) + piles.mean(&PileFrame::half_right)) /
+                      (2 * piles.height());
   for (std::size_t k = 0; k < kPlaces.size(); ++k) {
-    places.row(static_cast<Eigen::Index>(k)) << kPlaces[k], kPlaceHeight - 1;
+    places.row(static_cast<Eigen::Index>(k)) << kPlaces[k] * half, kPlaceHeight - 1;
   }
   std::vector<double> sizes = piles.setup().fields.sizes;
   std::sort(sizes.begin(), sizes.end());
@@ -172,7 +175,7 @@ TopicResult look_at_rve_size(const PileSet& piles) {
         if (std::isfinite(own[s])) last = own[s];
       }
       frame.series.push_back(
-          {fmt::format("x = {:g} h", kPlaces[p]), grains, own / last, {}, false});
+          {fmt::format("x = {:g} half bases", kPlaces[p]), grains, own / last, {}, false});
     }
     values.push_back(std::move(frame));
     const double enough = study.enough[q];

@@ -1,6 +1,7 @@
 // The measures of strain on the same points (Roul 3.8, figs 3.17-3.19).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -13,8 +14,8 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr const char* kReference = "cambou";
-// |x| in half bases: the strain under the apex.
-constexpr double kCentre = 0.1;
+// |x| in half bases: under the apex, and beside it (as of the base pressure's dip).
+constexpr double kCentre = 0.1, kShoulderFrom = 0.15, kShoulderTo = 0.4;
 
 // Sums over points with both strains: the reference's square, the product, the difference's square;
 // of the tensor and of yy alone.
@@ -150,20 +151,23 @@ void add_differences(const PileSet& piles, const std::map<std::string, Measured>
          own.gaps};
 }
 
-// Strain under the apex over the largest along the lowest row.
-double dip_ratio(const PileSet& piles, const Eigen::VectorXd& yy) {
-  double centre = 0, largest = 0;
-  int count = 0;
-  const double half = (piles.mean(&PileFrame::half_left) + piles.mean(&PileFrame::half_right)) / 2;
-  for (const Eigen::Index p : lowest_row(piles)) {
-    const double e = std::fabs(yy[p]);
-    if (!std::isfinite(e)) continue;
-    largest = std::max(largest, e);
-    if (std::fabs(piles.grid()(p, 0)) * piles.height() > kCentre * half) continue;
-    centre += e;
-    ++count;
+// Vertical strain under the apex over that beside it, along the lowest row, of every pile.
+std::vector<double> dip_ratios(const PileSet& piles, const std::vector<Field>& all) {
+  const double half = (piles.mean(&PileFrame::half_left) + piles.mean(&PileFrame::half_right)) /
+                      (2 * piles.height());
+  std::vector<double> out;
+  for (const Field& f : all) {
+    std::vector<double> centre, shoulder;
+    for (const Eigen::Index p : lowest_row(piles)) {
+      const double x = std::fabs(piles.grid()(p, 0)) / half;
+      if (x <= kCentre) centre.push_back(f.find("strain_yy")->value[p]);
+      if (x >= kShoulderFrom && x <= kShoulderTo) {
+        shoulder.push_back(f.find("strain_yy")->value[p]);
+      }
+    }
+    out.push_back(median_of(std::move(centre)) / median_of(std::move(shoulder)));
   }
-  return centre / count / largest;
+  return out;
 }
 
 }  // namespace
@@ -203,7 +207,9 @@ TopicResult look_at_strain_measures(const PileSet& piles) {
     if (name != "derivative") {
       add_median(out.summary, "strain." + name + ".misfit", misfit, piles.resamples());
     }
-    out.summary["strain." + name + ".dip_ratio"] = dip_ratio(piles, yy);
+    if (name == kReference) {
+      add_median(out.summary, "strain.dip_ratio", dip_ratios(piles, m.piles), piles.resamples());
+    }
     Field field = piles.in_metres(m.ensemble);
     field.add("strain_yy_median", "1").value = yy;
     out.fields.emplace_back("strain_" + name, std::move(field));

@@ -134,8 +134,10 @@ const std::vector<SummaryKey>& summary_keys() {
        "the same of the mean over piles along the lowest row of elements"},
       {"strain.*.ratio", "-", "projection of the strain onto Cambou's: 1 is equal size; median"},
       {"strain.*.misfit", "-", "share of the displacements that the gradient leaves; median"},
-      {"strain.*.dip_ratio", "-",
-       "size of the vertical strain under the apex over its largest along the lowest row"},
+      {"strain.dip_ratio", "-",
+       "Cambou's vertical strain within 0.1 half bases of the apex over that from 0.15 to 0.4, "
+       "along "
+       "the lowest row; median over piles"},
       {"elastic.bulk", "N/m", "K of the plane, one fit a pile; median over piles"},
       {"elastic.shear", "N/m", "G likewise"},
       {"elastic.young", "N/m", "E = 3 G - G^2/K likewise"},

@@ -33,7 +33,6 @@ class PileChangeRun final : public Run {
     settings_.law = law();
     settings_.friction = setup_.material.friction;
     settings_.threads = threads;
-    check_balance();
     for (const double g : setup_.change.gravity) {
       const std::string name = change_name(g), path = fmt::format("{}/{}", group, name);
       if (std::find(groups.begin(), groups.end(), path) == groups.end()) {
@@ -43,6 +42,7 @@ class PileChangeRun final : public Run {
       }
       ratio_.push_back(std::nan(""));
     }
+    if (!done()) check_balance();
   }
 
   void advance(long) override {
