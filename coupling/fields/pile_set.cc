@@ -17,8 +17,8 @@ constexpr std::size_t kLeastPoints = 8;
 constexpr int kLeastGrains = 6;
 // Share of an RVE's radius by which points of the maps lie inside the heap.
 constexpr double kShown = 0.5;
-// w of the lucy kernel with the second moment of a circle of radius 1: sqrt((1/4)/(5/14)) / 1 with
-// <x^2> = 1/4 of the circle and 5/14 w^2 of the kernel, which ends at 2 w.
+// w of the lucy kernel (5/14 w^2 along an axis) with the second moment of the unit circle (1/4):
+// sqrt(0.7).
 constexpr double kLucyOfCircle = 0.8367;
 
 bool is_stress(const std::string& name) { return name.compare(0, 6, "sigma_") == 0; }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 
+#include "coupling/averaging/base.h"
 #include "coupling/fields/drawing.h"
 #include "coupling/fields/finished_piles.h"
 #include "coupling/fields/pile_set.h"
@@ -73,8 +74,10 @@ Comparison pressures(const PileSet& piles) {
     if (!twice && p.mean.array().isFinite().count() >= 3) profiles.push_back(std::move(p));
   }
   if (profiles.empty()) {
-    throw std::invalid_argument(
-        "fields.heights: no profile has values, allowed: heights inside the heap");
+    const std::string gaps = piles.gaps_text();
+    throw std::invalid_argument(fmt::format(
+        "fields.heights: no row of the map has three points with values: {}",
+        gaps.empty() ? "allowed: heights inside the heap" : gaps + " (fields.rve_diameters)"));
   }
   Comparison out = without_models(std::move(profiles), unit * h, h, piles.count());
   out.scale = {"h", "rho g h", "apex",
@@ -88,9 +91,18 @@ void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summ
   std::map<std::string, std::vector<double>> figures;
   for (int r = 0; r < piles.count(); ++r) {
     const PileFrame& f = piles.frame(r);
-    for (const auto& [key, figure] : read_realization(files[static_cast<std::size_t>(r)]).figures) {
-      figures[key].push_back(figure);
-    }
+    const Realization one = read_realization(files[static_cast<std::size_t>(r)]);
+    for (const auto& [key, figure] : one.figures) figures[key].push_back(figure);
+    const auto own = [&](const char* key, double figure) {
+      if (one.figures.count(key) == 0) figures[key].push_back(figure);
+    };
+    double weight = 0;
+    for (const dem::Grain& g : one["pile"].grains) weight += g.fixed ? 0 : g.mass * f.gravity;
+    own("base.weight_ratio", base_force(one["pile"]).y() / weight);
+    own("dem.repose_angle_left_deg", f.repose_left_deg);
+    own("dem.repose_angle_right_deg", f.repose_right_deg);
+    own("pile.height", f.height);
+    own("pile.mean_diameter", f.diameter);
     figures["heap.volume_fraction"].push_back(f.volume_fraction);
     figures["heap.rho_g_h"].push_back(f.pressure());
     figures["density.ratio"].push_back(f.centre_fraction / f.surface_fraction);
@@ -100,6 +112,12 @@ void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summ
     at = static_cast<int>(at->second.size()) == piles.count() ? std::next(at) : figures.erase(at);
   }
   add_figures(summary, figures);
+  if (piles.setup().grains.files.empty()) {
+    summary["source.kind"] = piles.setup().pile.source.kind;
+    if (piles.setup().pile.source.kind == "point") {
+      summary["source.interval"] = piles.setup().pile.source.interval;
+    }
+  }
   summary["fields.rve_radius"] = piles.radius();
   summary["fields.points_inside"] = static_cast<std::int64_t>(piles.inside().size());
   summary["fields.change"] = piles.change();

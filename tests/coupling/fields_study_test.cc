@@ -185,7 +185,7 @@ TEST(Fields, EveryTopicStandsAlone) {
 TEST(Fields, PointsWithoutEnoughGrainsAreNamed) {
   const Folder folder;
   Case value = fields_case();
-  value.fields.rve_diameters = 1.1;
+  value.fields.rve_diameters = 1.3;
   value.fields.topics = {"fabric"};
   const StudyResult result = look(value, heaps(folder, {1}));
   std::string text;
