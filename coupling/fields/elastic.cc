@@ -343,11 +343,15 @@ TopicResult look_at_elastic(const PileSet& piles) {
       value("elastic.poisson"), error("elastic.poisson"),
       std::get<std::string>(s.at("elastic.rearranged_piles")));
 
-  Picture moduli = maps("Elastic moduli over the heap", "x / h", "y / h", "N/m",
-                        {map_of(piles, "bulk modulus K", constants.find("bulk")->value),
-                         map_of(piles, "shear modulus G", constants.find("shear")->value),
-                         map_of(piles, "Young's modulus E", constants.find("young")->value)},
-                        false);
+  const auto over_grain = [&](const char* name) -> Eigen::VectorXd {
+    return constants.find(name)->value / of_grain;
+  };
+  Picture moduli =
+      maps("Elastic moduli over the heap", "x / h", "y / h", "modulus / E of the grains",
+           {map_of(piles, "bulk modulus K", over_grain("bulk")),
+            map_of(piles, "shear modulus G", over_grain("shear")),
+            map_of(piles, "Young's modulus E", over_grain("young"))},
+           false);
   moduli.caption = fmt::format(
       "From the change to {}: K and G of each pile by least squares over neighbouring points (lucy "
       "kernel ending at one RVE radius), medians over piles; nan where most piles have no positive "

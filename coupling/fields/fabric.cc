@@ -343,11 +343,14 @@ void add_maps(const PileSet& piles, const Field& mean, const Field& density, Top
       single("Anisotropy of the fabric", "F_D / tr F", mean, "fabric_fraction", false);
   fraction.caption = "Largest less smallest principal value over the trace, of the mean tensor.";
   out.sections.emplace_back(std::move(fraction));
-  const auto angles = [&](const char* title, const char* column) {
-    // From the vertical, so that nothing jumps where an axis is upright.
+  // From the vertical, so that nothing jumps where an axis is upright.
+  const auto tilt = [&](const char* column) {
     Eigen::VectorXd a = mean.find(column)->value;
     for (double& v : a) v = v > 0 ? 90 - v : -90 - v;
-    return map_of(piles, title, a);
+    return a;
+  };
+  const auto angles = [&](const char* title, const char* column) {
+    return map_of(piles, title, tilt(column));
   };
   Picture axes = maps(
       "Major axes: angle from the vertical, tilted to the right above 0", "x / h", "y / h", "deg",
@@ -362,12 +365,12 @@ void add_maps(const PileSet& piles, const Field& mean, const Field& density, Top
            false);
   between.caption = "0 where the tensors are collinear.";
   out.sections.emplace_back(std::move(between));
-  Picture profiles = curves(
-      "Fabric and density along rows of the heap", "x / h (apex at 0)", "value",
-      {rows_of(piles, "tr F", mean.find("fabric_trace")->value),
-       rows_of(piles, "F_D / tr F", mean.find("fabric_fraction")->value),
-       rows_of(piles, "angle of the fabric's major axis (deg)", mean.find("fabric_angle")->value),
-       rows_of(piles, "volume fraction", density.find("volume_fraction")->value)});
+  Picture profiles =
+      curves("Fabric and density along rows of the heap", "x / h (apex at 0)", "value",
+             {rows_of(piles, "tr F", mean.find("fabric_trace")->value),
+              rows_of(piles, "F_D / tr F", mean.find("fabric_fraction")->value),
+              rows_of(piles, "fabric's major axis from the vertical (deg)", tilt("fabric_angle")),
+              rows_of(piles, "volume fraction", density.find("volume_fraction")->value)});
   profiles.caption = "Roul figs 3.12, 3.20. " + how_averaged(piles);
   out.sections.emplace_back(std::move(profiles));
 }

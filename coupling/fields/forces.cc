@@ -32,6 +32,8 @@ constexpr int kBins = 15;
 constexpr double kAtLimit = 0.95;
 // Share of the half base within which a point belongs to the core.
 constexpr double kCore = 0.25;
+// Strains are drawn in units of 1e-4.
+constexpr double kPlotted = 1e4;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 // What all piles leave together.
@@ -216,9 +218,9 @@ void add_invariants(const PileSet& piles, TopicResult& out) {
     }
     const double exx = median_of(e[0]), eyy = median_of(e[1]), exy = median_of(e[2]);
     const double sxx = median_of(s[0]), syy = median_of(s[1]), sxy = median_of(s[2]);
-    volume.push_back(std::fabs(exx + eyy));
+    volume.push_back(kPlotted * std::fabs(exx + eyy));
     pressure.push_back(std::fabs(sxx + syy));
-    shear.push_back(std::hypot(exx - eyy, 2 * exy));
+    shear.push_back(kPlotted * std::hypot(exx - eyy, 2 * exy));
     deviator.push_back(std::hypot(sxx - syy, 2 * sxy));
   }
   const Series trace = binned("points inside the heap", volume, pressure, kBins),
@@ -234,7 +236,7 @@ void add_invariants(const PileSet& piles, TopicResult& out) {
   }
   out.summary["invariants.trace_slope_ratio"] = ratio;
   Picture picture =
-      curves("Invariants of incremental stress and strain", "invariant of the strain",
+      curves("Invariants of incremental stress and strain", "invariant of the strain (10^{-4})",
              "invariant of the stress (N/m)",
              {Frame{"traces", {trace}}, Frame{"deviators (largest - smallest)", {dev}}});
   picture.caption =

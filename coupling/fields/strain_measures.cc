@@ -14,6 +14,8 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr const char* kReference = "cambou";
+// Strains are drawn in units of 1e-4.
+constexpr double kPlotted = 1e4;
 // |x| in half bases: under the apex, and beside it (as of the base pressure's dip).
 constexpr double kCentre = 0.1, kShoulderFrom = 0.15, kShoulderTo = 0.4;
 
@@ -191,10 +193,11 @@ TopicResult look_at_strain_measures(const PileSet& piles) {
     const Measured& m = all.at(name);
     const Field mean = m.ensemble.mean();
     const Eigen::VectorXd yy = median_field(m.piles, "strain_yy");
-    pictures.push_back(map_of(piles, name, yy));
+    pictures.push_back(map_of(piles, name, kPlotted * yy));
     Eigen::VectorXd error;
     if (name == kReference) error = mean.find("strain_yy")->error;
-    low.series.push_back(row_of(piles, name, row, yy, error, name == kReference));
+    low.series.push_back(
+        row_of(piles, name, row, kPlotted * yy, kPlotted * error, name == kReference));
     std::vector<std::string> cells{name, "reference", "", "", "", m.gaps};
     if (name != kReference) add_differences(piles, all, name, out.summary, cells);
     table.rows.push_back(std::move(cells));
@@ -221,11 +224,11 @@ TopicResult look_at_strain_measures(const PileSet& piles) {
       percent("strain.cundall.difference"), percent("strain.liao.difference"),
       percent("strain.derivative.difference"), percent("strain.kernel.difference"));
   Picture picture = maps(fmt::format("Vertical strain ε_yy of the change to {}", piles.change()),
-                         "x / h", "y / h", "ε_yy", pictures, true);
+                         "x / h", "y / h", "ε_yy (1e-4)", pictures, true);
   picture.caption = "Medians over piles, extension positive. " + how_averaged(piles);
   out.sections.emplace_back(std::move(picture));
   Picture along = curves("Vertical strain along the lowest row of elements inside the heap",
-                         "x / h (apex at 0)", "ε_{yy}", {std::move(low)});
+                         "x / h (apex at 0)", "ε_{yy} (10^{-4})", {std::move(low)});
   along.caption = fmt::format(
       "At height {:.2f} h. Medians over piles; band: one standard error of Cambou's mean.",
       static_cast<double>(row) / (piles.rows() - 1));

@@ -24,6 +24,15 @@ Number flank(const std::string& study, bool steeper) {
   };
 }
 
+// Without its sign.
+Number size_of(const std::string& study, const std::string& key) {
+  return [=](const Results& r) -> std::optional<Measured> {
+    const auto found = r.number(study, key);
+    if (!found) return std::nullopt;
+    return Measured{std::fabs(found->value), found->error};
+  };
+}
+
 // a / b with the errors of independent ensembles.
 Number ratio(const Number& a, const Number& b) {
   return [=](const Results& r) -> std::optional<Measured> {
@@ -161,9 +170,9 @@ const std::vector<SourceFigure>& source_figures() {
       number("Roul fig. 3.20", "anisotropy of the fabric, F_D / tr F", "", kFields, "0.05-0.15",
              0.05, 0.15, of(kFields, "fabric.anisotropy")),
       number("Roul fig. 3.20", "fabric's major axis in the left flank, from the horizontal", "deg",
-             kFields, "-40", -41, -39, of(kFields, "fabric.axis_left_deg")),
+             kFields, "40 (sense not given)", 39, 41, size_of(kFields, "fabric.axis_left_deg")),
       number("Roul fig. 3.20", "fabric's major axis in the right flank, from the horizontal", "deg",
-             kFields, "40", 39, 41, of(kFields, "fabric.axis_right_deg")),
+             kFields, "40 (sense not given)", 39, 41, size_of(kFields, "fabric.axis_right_deg")),
       number("Roul fig. 3.21", "g2 = tr F/(nu c), radii within 30 %", "", kFields, "1.045", 1.035,
              1.055, of(kFields, "fabric.g2"), 0.045),
       number("Roul fig. 3.21", "correlation of tr F with nu c", "", kFields, "linear (0.9-1)", 0.9,
