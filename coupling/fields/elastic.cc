@@ -339,8 +339,8 @@ TopicResult look_at_elastic(const PileSet& piles) {
       "E = ({:.3g} ± {:.2g}) N/m, {:.3f} of the grains' {:.3g} N/m; ν = {:.2f} ± {:.2f}; "
       "rearranged "
       "piles: {}.",
-      value("elastic.young"), error("elastic.young"), value("elastic.young_over_grain"), of_grain,
-      value("elastic.poisson"), error("elastic.poisson"),
+      value("elastic.young"), spread("elastic.young"), value("elastic.young_over_grain"), of_grain,
+      value("elastic.poisson"), spread("elastic.poisson"),
       std::get<std::string>(s.at("elastic.rearranged_piles")));
 
   const auto over_grain = [&](const char* name) -> Eigen::VectorXd {
