@@ -336,9 +336,7 @@ TopicResult look_at_elastic(const PileSet& piles) {
     return found == s.end() ? NAN : std::get<double>(found->second);
   };
   out.sentence = fmt::format(
-      "E = ({:.3g} ± {:.2g}) N/m, {:.3f} of the grains' {:.3g} N/m; ν = {:.2f} ± {:.2f}; "
-      "rearranged "
-      "piles: {}.",
+      "E = {:.3g}{} N/m, {:.3f} of the grains' {:.3g} N/m; ν = {:.2f}{}; rearranged piles: {}.",
       value("elastic.young"), spread("elastic.young"), value("elastic.young_over_grain"), of_grain,
       value("elastic.poisson"), spread("elastic.poisson"),
       std::get<std::string>(s.at("elastic.rearranged_piles")));
