@@ -27,8 +27,10 @@ constexpr std::array<Watched, 3> kWatched{
 
 // Of one quantity and one size.
 struct Step {
-  double value = NAN;    // over that of the largest RVE at the same place, mean over places
-  double scatter = NAN;  // between piles at the same place over the mean, rms over places
+  double value = NAN;  // over that of the largest RVE at the same place, mean over places
+  // Between piles at the same place over the mean, rms over places; of a single pile the distance
+  // from its largest RVE there.
+  double scatter = NAN;
 };
 
 struct Study {
@@ -104,7 +106,8 @@ void compare(Study& out, double tolerance) {
         sum += own / last;
         ++places;
         const Eigen::VectorXd row = raw[s].row(p);
-        const double deviation = robust_deviation({row.begin(), row.end()}) / own;
+        const double deviation =
+            row.size() > 1 ? robust_deviation({row.begin(), row.end()}) / own : own / last - 1;
         if (!std::isfinite(deviation)) continue;
         squares += deviation * deviation;
         ++spread;
@@ -118,19 +121,17 @@ void compare(Study& out, double tolerance) {
       const Step& step = out.steps[q][s];
       if (!std::isfinite(step.value)) continue;
       moved = std::fabs(step.value - 1) > tolerance / 2;
-      scattered = step.scatter > tolerance;  // false where there is one pile only
+      scattered = step.scatter > tolerance;
       if (moved || scattered) break;
       out.enough[q] = out.grains[s];
     }
     if (std::isnan(out.enough[q])) {
-      out.why[q] =
-          fmt::format("no size scatters by less than {:g} % between piles", 100 * tolerance);
+      out.why[q] = fmt::format("no size scatters by less than {:g} %", 100 * tolerance);
     } else if (!moved && !scattered) {
       out.why[q] = "the smallest size tried will do";
     } else {
       out.why[q] = moved ? fmt::format("below, the mean is off by more than {:g} %", 50 * tolerance)
-                         : fmt::format("below, it scatters by more than {:g} % between piles",
-                                       100 * tolerance);
+                         : fmt::format("below, it scatters by more than {:g} %", 100 * tolerance);
     }
   }
 }
@@ -153,7 +154,7 @@ TopicResult look_at_rve_size(const PileSet& piles) {
   }
   Eigen::VectorXd grains = Eigen::Map<const Eigen::VectorXd>(study.grains.data(), sizes);
   field.add("grains", "1").value = grains;
-  std::vector<Frame> values, scatters;
+  std::vector<Frame> values;
   Table table{"Size of the RVE", "", {"quantity", "grains needed", "why"}, {}};
   double needed = 0;
   std::string worst;
@@ -204,7 +205,9 @@ TopicResult look_at_rve_size(const PileSet& piles) {
                            "value / value of the largest RVE", values);
   picture.caption = fmt::format(
       "Circles about {} places {:g} h above the base that stay inside the heap; medians over {} "
-      "piles. Band: one robust standard deviation of a single RVE between piles. An RVE is large "
+      "piles. Band: one robust standard deviation of a single RVE between piles (one pile: "
+      "distance "
+      "from its largest RVE). An RVE is large "
       "enough when no larger one differs by more than {:g} % in the mean or scatters by more than "
       "{:g} % (Roul figs 2.8-2.10: 100-200 grains).",
       kPlaces.size(), kPlaceHeight, piles.count(), 50 * tolerance, 100 * tolerance);
