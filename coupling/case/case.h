@@ -38,6 +38,23 @@ struct HeapSetup {
   double shoulder_from = 0.15, shoulder_to = 0.4;  ///< dip: |x| of the windows beside it
 };
 
+/// Finished piles to start from instead of pouring.
+struct GrainFiles {
+  std::vector<std::string> files;  ///< empty: the piles are poured
+};
+
+/// What is averaged over piles and how (coupling/fields).
+struct FieldsSetup {
+  std::vector<std::string> topics = {"rve_size", "strain_measures", "elastic", "fabric", "forces"};
+  double rve_diameters = 6;  ///< radius of the RVE, mean diameters
+  std::vector<double> sizes = {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 10, 12};  ///< of rve_size, likewise
+  double tolerance = 0.1;               ///< of rve_size
+  std::string measure = "cambou";       ///< strain of elastic, fabric and forces
+  std::int64_t columns = 61, rows = 25;  ///< of the maps
+  std::vector<double> heights = {0.15, 0.3, 0.5};
+  std::int64_t resamples = 1000;
+};
+
 /// Points and load of the studies without grains.
 struct ElasticSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
@@ -85,6 +102,8 @@ struct Case {
   dem::LatticePileSetup lattice_pile;
   AverageSetup average;
   HeapSetup heap;
+  GrainFiles grains;
+  FieldsSetup fields;
   ElasticSetup elastic;
   CompareSetup compare;
   OutputSetup output;

@@ -106,6 +106,7 @@ const std::vector<Key>& keys() {
   static const std::vector<Key> all = [] {
     std::vector<Key> list, grains;
     declare_analysis_keys(list);
+    declare_grain_files_keys(grains);
     declare_grain_keys(grains);
     declare_pile_keys(grains);
     declare_lattice_keys(grains);
@@ -115,6 +116,7 @@ const std::vector<Key>& keys() {
     list.insert(after, grains.begin(), grains.end());
     std::vector<Key> heap;
     declare_heap_keys(heap);
+    declare_fields_keys(heap);
     list.insert(std::find_if(list.begin(), list.end(),
                              [](const Key& key) { return key.section == "elastic"; }),
                 heap.begin(), heap.end());

@@ -41,6 +41,8 @@ struct ElasticMapOptions {
 /// std::invalid_argument as isotropic_constants() and for a bad grid.
 ElasticMap elastic_map(const Increments& increments, const ElasticMapOptions& options);
 
+/// What write_elastic_map writes.
+std::string elastic_map_text(const ElasticMap& map);
 /// CSV: comment lines (#), header x,y,young,poisson,young_error,poisson_error, one line per node, x
 /// fastest, in SI units; numbers come back to the same bits. Complete or not at all. Throws as
 /// write_text_file().

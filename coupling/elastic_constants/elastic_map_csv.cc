@@ -70,7 +70,7 @@ std::vector<Row> read_rows(const std::string& file) {
 
 }  // namespace
 
-void write_elastic_map(const std::string& file, const ElasticMap& map) {
+std::string elastic_map_text(const ElasticMap& map) {
   std::string text = fmt::format(
       "# grainfield elastic map, plane strain: x, y in m, young in N/m; {} x {} nodes, x fastest\n"
       "{}\n",
@@ -79,7 +79,11 @@ void write_elastic_map(const std::string& file, const ElasticMap& map) {
     text += fmt::format("{},{},{},{},{},{}\n", map.x0 + static_cast<double>(k % map.nx) * map.dx,
                         map.y0 + static_cast<double>(k / map.nx) * map.dy, map.young[k],
                         map.poisson[k], map.young_error[k], map.poisson_error[k]);
-  write_text_file(file, text);
+  return text;
+}
+
+void write_elastic_map(const std::string& file, const ElasticMap& map) {
+  write_text_file(file, elastic_map_text(map));
 }
 
 ElasticMap read_elastic_map(const std::string& file) {

@@ -24,6 +24,15 @@ Number flank(const std::string& study, bool steeper) {
   };
 }
 
+// Without its sign.
+Number size_of(const std::string& study, const std::string& key) {
+  return [=](const Results& r) -> std::optional<Measured> {
+    const auto found = r.number(study, key);
+    if (!found) return std::nullopt;
+    return Measured{std::fabs(found->value), found->error};
+  };
+}
+
 // a / b with the errors of independent ensembles.
 Number ratio(const Number& a, const Number& b) {
   return [=](const Results& r) -> std::optional<Measured> {
@@ -65,13 +74,50 @@ SourceFigure dip(const char* source, const char* what, const char* study, const 
           0};
 }
 
+// A word with the number that supports it.
+SourceFigure word(const char* source, const char* what, const char* study, const char* theirs,
+                  std::vector<std::string> words, const char* key,
+                  std::string (*describe)(double)) {
+  const std::string name = study, from = key;
+  return {source,
+          what,
+          "",
+          study,
+          theirs,
+          0,
+          0,
+          std::move(words),
+          nullptr,
+          [=](const Results& r) -> std::optional<std::string> {
+            const auto value = r.plain(name, from);
+            return value ? std::optional(describe(*value)) : std::nullopt;
+          },
+          0};
+}
+
+std::string rve_word(double grains) {
+  if (std::isnan(grains)) return "more than fit: none of the sizes tried";
+  return fmt::format("{}: {:.0f} grains",
+                     grains < 100 ? "fewer" : (grains > 200 ? "more" : "100-200"), grains);
+}
+
+std::string tail_word(double p) {
+  return fmt::format("{}: p = {:.2g} of a worse fit", p >= 0.05 ? "exponential" : "not exponential",
+                     p);
+}
+
+std::string slope_word(double ratio) {
+  return fmt::format("{}: slope at high over slope at low strain {:.2f}",
+                     std::fabs(std::log(ratio)) > std::log(1.25) ? "nonlinear" : "linear", ratio);
+}
+
 }  // namespace
 
 const std::vector<SourceFigure>& source_figures() {
   constexpr const char *kPoint = "pile-point-source", *kLine = "pile-line-source",
                        *kElliptic = "pile-elliptic", *kAsymmetricLine = "pile-asymmetric-line",
                        *kAsymmetricPoint = "pile-asymmetric-point",
-                       *kGravity = "pile-gravity-levels";
+                       *kGravity = "pile-gravity-levels", *kFields = "pile-fields";
   // Of a point source over the surface; a flat fraction is one without it.
   constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
@@ -105,6 +151,48 @@ const std::vector<SourceFigure>& source_figures() {
              "0.92", 0.91, 0.93, of(kGravity, "change.gravity_0.98.coordination_ratio"), 0.08),
       number("Roul 3.9", "coordination at 1.9 times gravity over that at gravity", "", kGravity,
              "1.04", 1.03, 1.05, of(kGravity, "change.gravity_18.6.coordination_ratio"), 0.04),
+      word("Roul 2.8", "grains that an RVE of the stress needs", kFields, "100-200", {"100-200"},
+           "rve_size.stress_grains", rve_word),
+      word("Roul 2.9", "grains that an RVE of the strain needs", kFields, "100-200", {"100-200"},
+           "rve_size.strain_grains", rve_word),
+      word("Roul 2.10", "grains that an RVE of the fabric needs", kFields, "100-200", {"100-200"},
+           "rve_size.fabric_grains", rve_word),
+      word("Roul fig. 3.7", "tail of P(n) of the base forces above the mean", kFields,
+           "exponential", {"exponential"}, "forces.tail_p_value", tail_word),
+      number("Roul fig. 3.19", "vertical strain under the apex over that beside it, point source",
+             "", kFields, "below 1 (dip)", 0, 1, of(kFields, "strain.dip_ratio")),
+      number("Roul fig. 3.19", "Cundall's strain against Cambou's, lowest row", "", kFields,
+             "a few % (0-0.05)", 0, 0.05, of(kFields, "strain.cundall.difference_yy_low")),
+      number("Roul fig. 3.19", "Liao's strain against Cambou's, lowest row", "", kFields,
+             "up to 0.30-0.40", 0.3, 0.4, of(kFields, "strain.liao.difference_yy_low")),
+      number("Roul fig. 3.19", "strain from derivatives against Cambou's, lowest row", "", kFields,
+             "agrees inside (0-0.10)", 0, 0.1, of(kFields, "strain.derivative.difference_yy_low")),
+      number("Roul fig. 3.20", "anisotropy of the fabric, F_D / tr F", "", kFields, "0.05-0.15",
+             0.05, 0.15, of(kFields, "fabric.anisotropy")),
+      number("Roul fig. 3.20", "fabric's major axis in the left flank, from the horizontal", "deg",
+             kFields, "40 (sense not given)", 39, 41, size_of(kFields, "fabric.axis_left_deg")),
+      number("Roul fig. 3.20", "fabric's major axis in the right flank, from the horizontal", "deg",
+             kFields, "40 (sense not given)", 39, 41, size_of(kFields, "fabric.axis_right_deg")),
+      number("Roul fig. 3.21", "g2 = tr F/(nu c), radii within 30 %", "", kFields, "1.045", 1.035,
+             1.055, of(kFields, "fabric.g2"), 0.045),
+      number("Roul fig. 3.21", "correlation of tr F with nu c", "", kFields, "linear (0.9-1)", 0.9,
+             1, of(kFields, "fabric.nu_c_correlation")),
+      number("Roul fig. 3.22", "correlation of tr F with nu", "", kFields, "roughly linear (0.7-1)",
+             0.7, 1, of(kFields, "fabric.nu_correlation")),
+      word("Roul fig. 3.23", "trace of incremental stress against that of strain", kFields,
+           "nonlinear", {"nonlinear"}, "invariants.trace_slope_ratio", slope_word),
+      number("Roul fig. 3.24", "coordination at 0.1 g over that at g, quasi-static", "", kFields,
+             "0.92", 0.91, 0.93, of(kFields, "change.gravity_0.981.coordination_ratio"), 0.08),
+      number("Roul fig. 3.24", "coordination at 1.9 g over that at g, quasi-static", "", kFields,
+             "1.04", 1.03, 1.05, of(kFields, "change.gravity_18.639.coordination_ratio"), 0.04),
+      number("Roul fig. 3.25", "E of the pile over E of the grains", "", kFields, "about 0.1",
+             0.075, 0.125, of(kFields, "elastic.young_over_grain")),
+      number("Roul fig. 3.26", "correlation of K with tr F", "", kFields, "linear (0.7-1)", 0.7, 1,
+             of(kFields, "elastic.bulk_fabric_correlation")),
+      number("Roul fig. 3.26", "correlation of E with tr F", "", kFields, "roughly linear (0.7-1)",
+             0.7, 1, of(kFields, "elastic.young_fabric_correlation")),
+      number("Roul fig. 3.26", "correlation of G with tr F", "", kFields, "roughly linear (0.7-1)",
+             0.7, 1, of(kFields, "elastic.shear_fabric_correlation")),
   };
   return all;
 }

@@ -106,8 +106,8 @@ class Workplace {
     for (const auto& entry : fs::directory_iterator(folder_)) {
       const std::string name = entry.path().filename().string();
       const bool ours = name == "report.html" || name == "snapshots.h5" || name == "fields.h5" ||
-                        name == "fields.xdmf" || name.starts_with("profiles.") ||
-                        name.ends_with(".vtu");
+                        name == "fields.xdmf" || name == "elastic_map.csv" ||
+                        name.starts_with("profiles.") || name.ends_with(".vtu");
       if (ours && entry.is_regular_file()) fs::remove(entry.path());
     }
     std::vector<fs::path> files;
@@ -182,9 +182,12 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
     for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
       const std::uint64_t seed = realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
                                                   static_cast<std::uint64_t>(r));
-      tasks.push_back(
-          {[&study, &value, seed](int threads) { return study.make_run(value, seed, threads); },
-           member_file(place, member.suffix, r)});
+      tasks.push_back({[&study, &value, seed, r](int threads) {
+                         return study.make_numbered_run != nullptr
+                                    ? study.make_numbered_run(value, r, threads)
+                                    : study.make_run(value, seed, threads);
+                       },
+                       member_file(place, member.suffix, r)});
     }
   }
   const auto start = Clock::now();

@@ -161,6 +161,7 @@ void write_study(const std::string& folder, const StudyResult& result) {
   require_documented(result.summary);
   write_profiles(folder, result.comparison);
   if (result.value.output.fields) write_fields(folder + "/fields.h5", result.fields);
+  for (const auto& [name, text] : result.texts) write_text_file(folder + "/" + name, text);
   write_grains(folder, result);
   if (result.value.output.report) write_page(folder, result);
   write_text_file(folder + "/case.toml", write_case(result.value));

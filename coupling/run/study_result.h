@@ -19,6 +19,7 @@ struct StudyResult {
   Comparison comparison;
   Summary summary;
   NamedFields fields;
+  std::vector<std::pair<std::string, std::string>> texts;  ///< further files: name, content
   Field base_unloaded, map;               ///< for the report; may be empty
   std::vector<ModelMap> model_maps;       ///< on map's points
   std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty

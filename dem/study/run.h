@@ -56,7 +56,15 @@ std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint6
 /// ("gravity_8.829"). Throws as make_point_load_run.
 std::unique_ptr<Run> make_pile_run(const PileSetup& setup, std::uint64_t seed, int threads);
 
-/// The same for a lattice pile. Its snapshot "pile" has the lowest row first, from left to right.
+/// A pile that stands already: snapshot GROUP/pile of `file`, brought to rest under each of
+/// setup.change.gravity by the quasi-static solver; a GROUP/gravity_G that the file holds is taken
+/// as it is. Of `setup` only material, rest and change are used. Throws std::invalid_argument when
+/// the file is broken, or the pile is another one than the material's (gravity, density, friction,
+/// law, or it is out of balance with the stiffness).
+std::unique_ptr<Run> make_pile_change_run(const PileSetup& setup, const std::string& file,
+                                          const std::string& group, int threads);
+
+/// A lattice pile at rest. Its snapshot "pile" has the lowest row first, from left to right.
 /// The seed is only noted: the lattice is perfect.
 std::unique_ptr<Run> make_lattice_pile_run(const LatticePileSetup& setup, std::uint64_t seed,
                                            int threads);

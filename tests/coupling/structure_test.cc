@@ -243,6 +243,23 @@ TEST(SizeFactor, TheoryForTwoSizesAndUniform) {
   EXPECT_NEAR(size_factor_theory(1e-3 * radii, 2), size_factor_theory(radii, 2), 1e-12);
 }
 
+TEST(SizeFactor, TheAngleOfTheTheoryIsThatOfAClosedRing) {
+  // n disks of the mean radius 1 that touch each other close the ring about a disk of radius a when
+  // (1 + a) sin(pi/n) = 1: it has n = 2 pi/Omega(a) contacts, the most it can have. Two such grains
+  // with m and n contacts have g2 = 2 (a^2 m + b^2 n)/((a^2 + b^2)(m + n)); with a + b = 2 their
+  // mean is 1 again.
+  const auto ring = [](double a) { return std::numbers::pi / std::asin(1 / (1 + a)); };
+  for (int n = 4; n <= 12; ++n) {
+    const double a = 1 / std::sin(std::numbers::pi / n) - 1;
+    EXPECT_NEAR(ring(a), n, 1e-12);
+    if (a >= 2) continue;
+    const double b = 2 - a, m = ring(b);
+    EXPECT_NEAR(size_factor_theory(Eigen::Vector2d(a, b), 2),
+                2 * (a * a * n + b * b * m) / ((a * a + b * b) * (n + m)), 1e-12)
+        << n;
+  }
+}
+
 TEST(SizeFactor, LineOverAField) {
   Field field;
   field.points = Eigen::MatrixXd::Zero(4, 2);
