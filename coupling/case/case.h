@@ -47,12 +47,33 @@ struct GrainFiles {
 struct FieldsSetup {
   std::vector<std::string> topics = {"rve_size", "strain_measures", "elastic", "fabric", "forces"};
   double rve_diameters = 6;  ///< radius of the RVE, mean diameters
-  std::vector<double> sizes = {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 10, 12};  ///< of rve_size, likewise
-  double tolerance = 0.1;               ///< of rve_size
-  std::string measure = "cambou";       ///< strain of elastic, fabric and forces
-  std::int64_t columns = 61, rows = 25;  ///< of the maps
+  std::vector<double> sizes = {1, 1.5, 2, 2.5, 3,  4,
+                               5, 6,   7, 8,   10, 12};  ///< of rve_size, likewise
+  double tolerance = 0.1;                                ///< of rve_size
+  std::string measure = "cambou";                        ///< strain of elastic, fabric and forces
+  std::int64_t columns = 61, rows = 25;                  ///< of the maps
   std::vector<double> heights = {0.15, 0.3, 0.5};
   std::int64_t resamples = 1000;
+};
+
+/// What is fitted to piles (coupling/fit).
+struct FitSetup {
+  std::vector<std::string> models = {"hydrostatic",
+                                     "cantelaube_minus",
+                                     "cantelaube_zero",
+                                     "cantelaube_plus",
+                                     "cantelaube_continuous",
+                                     "cantelaube",
+                                     "osl_yield",
+                                     "osl",
+                                     "fpa",
+                                     "bcc"};
+  std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
+  std::vector<double> heights = {0.1, 0.25, 0.4};
+  double width_diameters = 2;
+  std::string covariance = "auto";
+  double huber = 0;
+  std::int64_t bootstrap = 200;
 };
 
 /// Points and load of the studies without grains.
@@ -104,6 +125,7 @@ struct Case {
   HeapSetup heap;
   GrainFiles grains;
   FieldsSetup fields;
+  FitSetup fit;
   ElasticSetup elastic;
   CompareSetup compare;
   OutputSetup output;

@@ -117,6 +117,7 @@ const std::vector<Key>& keys() {
     std::vector<Key> heap;
     declare_heap_keys(heap);
     declare_fields_keys(heap);
+    declare_fit_keys(heap);
     list.insert(std::find_if(list.begin(), list.end(),
                              [](const Key& key) { return key.section == "elastic"; }),
                 heap.begin(), heap.end());

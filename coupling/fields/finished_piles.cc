@@ -35,4 +35,15 @@ std::vector<FinishedPile> finished_piles(const std::vector<std::string>& files) 
   return out;
 }
 
+FinishedPile finished_pile(const Case& value, std::int64_t number) {
+  const std::vector<FinishedPile> piles = finished_piles(value.grains.files);
+  const auto there = static_cast<std::int64_t>(piles.size());
+  if (value.ensemble.realizations > there) {
+    throw std::invalid_argument(
+        fmt::format("ensemble.realizations: found {}, allowed: up to {}, the piles in grains.files",
+                    value.ensemble.realizations, there));
+  }
+  return piles[static_cast<std::size_t>(number)];
+}
+
 }  // namespace grainfield::coupling

@@ -30,14 +30,7 @@ std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int t
                                                static_cast<std::uint64_t>(number)),
                               threads);
   }
-  const std::vector<FinishedPile> piles = finished_piles(value.grains.files);
-  const auto there = static_cast<std::int64_t>(piles.size());
-  if (value.ensemble.realizations > there) {
-    throw std::invalid_argument(
-        fmt::format("ensemble.realizations: found {}, allowed: up to {}, the piles in grains.files",
-                    value.ensemble.realizations, there));
-  }
-  const FinishedPile& pile = piles[static_cast<std::size_t>(number)];
+  const FinishedPile pile = finished_pile(value, number);
   return dem::make_pile_change_run(value.pile, pile.file, pile.group, threads);
 }
 

@@ -107,7 +107,8 @@ class Workplace {
       const std::string name = entry.path().filename().string();
       const bool ours = name == "report.html" || name == "snapshots.h5" || name == "fields.h5" ||
                         name == "fields.xdmf" || name == "elastic_map.csv" ||
-                        name.starts_with("profiles.") || name.ends_with(".vtu");
+                        name.starts_with("profiles.") || name.starts_with("fits.") ||
+                        name.ends_with(".vtu");
       if (ours && entry.is_regular_file()) fs::remove(entry.path());
     }
     std::vector<fs::path> files;

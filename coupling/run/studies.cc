@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "coupling/fields/study.h"
+#include "coupling/fit/study.h"
 #include "coupling/run/elastic.h"
 #include "coupling/run/lattice_pile.h"
 #include "coupling/run/osl.h"
@@ -13,8 +14,9 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-      point_load_study(),    pile_study(),      pile_fields_study(), lattice_pile_study(),
-      elastic_layer_study(), elastic_half_space_study(), osl_wedge_study(), osl_layer_study(),
+      point_load_study(),         pile_study(),         pile_fields_study(),
+      pile_fit_study(),           lattice_pile_study(), elastic_layer_study(),
+      elastic_half_space_study(), osl_wedge_study(),    osl_layer_study(),
   };
   return all;
 }

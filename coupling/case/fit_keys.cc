@@ -1,0 +1,53 @@
+// Keys of fits of stress models to piles.
+#include "coupling/case/declare.h"
+#include "coupling/fit/models.h"
+
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+using Integer = std::int64_t;
+using Numbers = std::vector<double>;
+using Words = std::vector<string>;
+
+void fit(Section s) {
+  std::vector<string> names;
+  string meaning = "models that are fitted and ranked";
+  for (const FitModel& model : heap_models({})) {
+    names.push_back(model.name);
+    meaning += (names.size() == 1 ? ": " : "; ") + model.name;
+    if (!model.parameters.empty()) {
+      meaning += " (";
+      for (const FitParameter& p : model.parameters) {
+        meaning += (&p == &model.parameters.front() ? "" : ", ") + p.name;
+      }
+      meaning += ")";
+    }
+  }
+  s.word("models", +IN(Words, fit.models), names, meaning, "Roul 4.3, 4.4");
+  s.word("components", +IN(Words, fit.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
+         "stresses that are fitted, all together");
+  s.number("heights", "-", +IN(Numbers, fit.heights), {0, 1, true},
+           "horizontal lines, shares of the pile's height above the base; all together");
+  s.number(
+      "width_diameters", "-", +IN(double, fit.width_diameters), {0, 100, true},
+      "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
+      "keeps points further from the flanks");
+  s.word("covariance", +IN(string, fit.covariance), {"auto", "parametric", "sample", "diagonal"},
+         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 piles");
+  s.number("huber", "-", +IN(double, fit.huber), kNotNegative,
+           "0: least squares; above: values further off than this many errors pull no more than "
+           "that (points in the wrong region)");
+  s.number("bootstrap", "-", +IN(Integer, fit.bootstrap), {0, 100000},
+           "draws of the piles for the bootstrap errors; below 10: none");
+}
+
+}  // namespace
+
+void declare_fit_keys(std::vector<Key>& keys) { fit({keys, "fit"}); }
+
+}  // namespace grainfield::coupling
+
+#undef IN

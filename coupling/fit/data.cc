@@ -1,0 +1,51 @@
+#include "coupling/fit/data.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace grainfield::coupling {
+
+FitData rows_of(const FitData& data, const std::vector<int>& rows) {
+  FitData out;
+  out.components = data.components;
+  out.levels = data.levels;
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  out.points.resize(n, data.points.cols());
+  out.samples.resize(n, data.samples.cols());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const int row = rows[static_cast<std::size_t>(k)];
+    out.points.row(k) = data.points.row(row);
+    out.samples.row(k) = data.samples.row(row);
+    out.component.push_back(data.component[static_cast<std::size_t>(row)]);
+    out.level.push_back(data.level[static_cast<std::size_t>(row)]);
+  }
+  return out;
+}
+
+void check(const FitData& data) {
+  const auto n = static_cast<std::size_t>(data.samples.rows());
+  if (data.points.rows() != data.samples.rows() || data.component.size() != n ||
+      data.level.size() != n || data.points.cols() != 2) {
+    throw std::invalid_argument(
+        "data to fit: points, components, levels and samples differ in size");
+  }
+  if (n == 0 || data.samples.cols() == 0) throw std::invalid_argument("data to fit: no values");
+  for (const std::string& c : data.components) {
+    if (c != "sigma_xx" && c != "sigma_yy" && c != "sigma_xy") {
+      throw std::invalid_argument(
+          fmt::format("data to fit: found component {}, allowed: sigma_xx, sigma_yy, sigma_xy", c));
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (data.component[k] < 0 || data.component[k] >= static_cast<int>(data.components.size()) ||
+        data.level[k] < 0 || data.level[k] >= static_cast<int>(data.levels.size())) {
+      throw std::invalid_argument("data to fit: a value of no component or no level");
+    }
+  }
+  if (!data.samples.allFinite() || !data.points.allFinite()) {
+    throw std::invalid_argument("data to fit: a value or a point is not finite");
+  }
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,30 @@
+// What is fitted: stress components on points, realization by realization.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// Values to fit, one row each: a component at a point. Only rows that every realization has.
+struct FitData {
+  Eigen::MatrixXd points;               ///< values x 2, m, in the models' frame
+  std::vector<int> component;           ///< of each value: index into `components`
+  std::vector<int> level;               ///< of each value: the height or depth it belongs to
+  std::vector<std::string> components;  ///< of sigma_xx, sigma_yy, sigma_xy
+  std::vector<std::string> levels;      ///< names, e.g. "height 0.25"
+  Eigen::MatrixXd samples;              ///< values x realizations, N/m
+
+  int values() const { return static_cast<int>(samples.rows()); }
+  int realizations() const { return static_cast<int>(samples.cols()); }
+  Eigen::VectorXd mean() const { return samples.rowwise().mean(); }
+};
+
+/// The rows named; points, components, levels and samples together.
+FitData rows_of(const FitData& data, const std::vector<int>& rows);
+
+/// Throws std::invalid_argument when sizes differ, a component is none of sigma_xx, sigma_yy,
+/// sigma_xy, or a number is not finite.
+void check(const FitData& data);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,280 @@
+#include "coupling/fit/fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "coupling/statistics/bootstrap.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kMostEvaluations = 4000;
+constexpr int kHuberRounds = 8;
+constexpr double kNearBound = 1e-4;  // of the allowed interval
+
+// Between the bounds by the logistic function, beyond them never.
+struct Bounds {
+  const FitModel& model;
+
+  bool bounded(Eigen::Index k) const {
+    const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
+    return std::isfinite(p.least) && std::isfinite(p.most);
+  }
+  Eigen::VectorXd outer(const Eigen::VectorXd& inner) const {
+    Eigen::VectorXd out = inner;
+    for (Eigen::Index k = 0; k < inner.size(); ++k) {
+      const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
+      if (bounded(k)) out[k] = p.least + (p.most - p.least) / (1 + std::exp(-inner[k]));
+    }
+    return out;
+  }
+  Eigen::VectorXd inner(const Eigen::VectorXd& outer) const {
+    Eigen::VectorXd in = outer;
+    for (Eigen::Index k = 0; k < outer.size(); ++k) {
+      const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
+      if (!bounded(k)) continue;
+      const double share =
+          std::clamp((outer[k] - p.least) / (p.most - p.least), kNearBound, 1 - kNearBound);
+      in[k] = std::log(share / (1 - share));
+    }
+    return in;
+  }
+};
+
+// What MINPACK minimises: whitened residuals, by central differences.
+struct Residuals {
+  const FitData& data;
+  const Eigen::VectorXd& target;
+  const Eigen::MatrixXd& whitener;
+  const FitModel& model;
+  Bounds bounds;
+  Eigen::VectorXd weights;  // square roots, of the whitened residuals
+
+  Eigen::VectorXd plain(const Eigen::VectorXd& inner) const {
+    return whitener * (target - predict(data, model, bounds.outer(inner)));
+  }
+  int operator()(const Eigen::VectorXd& inner, Eigen::VectorXd& out) const {
+    out = weights.cwiseProduct(plain(inner));
+    return 0;
+  }
+  int df(const Eigen::VectorXd& inner, Eigen::MatrixXd& jacobian) const {
+    for (Eigen::Index k = 0; k < inner.size(); ++k) {
+      const double h = 1e-6 * std::max(1.0, std::fabs(inner[k]));
+      Eigen::VectorXd more = inner, less = inner;
+      more[k] += h;
+      less[k] -= h;
+      jacobian.col(k) = weights.cwiseProduct(plain(more) - plain(less)) / (2 * h);
+    }
+    return 0;
+  }
+  int inputs() const { return static_cast<int>(model.parameters.size()); }
+  int values() const { return static_cast<int>(whitener.rows()); }
+};
+
+double minimise(Residuals& residuals, Eigen::VectorXd& inner, bool& converged) {
+  Eigen::LevenbergMarquardt<Residuals> solver(residuals);
+  solver.parameters.maxfev = kMostEvaluations;
+  solver.parameters.xtol = solver.parameters.ftol = 1e-12;
+  const auto status = solver.minimize(inner);
+  converged = status > 0 && status != Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation;
+  Eigen::VectorXd r;
+  residuals(inner, r);
+  return r.squaredNorm();
+}
+
+Eigen::VectorXd huber_weights(const Eigen::VectorXd& r, double limit) {
+  return r.unaryExpr([limit](double v) {
+    const double size = std::fabs(v);
+    return size <= limit ? 1.0 : std::sqrt(limit / size);
+  });
+}
+
+// d model / d parameters, whitened; at a bound one-sided inwards would be needed: its column is 0.
+Eigen::MatrixXd jacobian_at(const FitData& data, const Eigen::MatrixXd& whitener,
+                            const FitModel& model, const Eigen::VectorXd& parameters) {
+  Eigen::MatrixXd out(whitener.rows(), parameters.size());
+  for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+    const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
+    double h = 1e-6 * std::max(1.0, std::fabs(parameters[k]));
+    if (std::isfinite(p.least) && std::isfinite(p.most)) {
+      h = std::min({h, 0.5 * (parameters[k] - p.least), 0.5 * (p.most - parameters[k])});
+    }
+    Eigen::VectorXd more = parameters, less = parameters;
+    more[k] += h;
+    less[k] -= h;
+    out.col(k) = whitener * (predict(data, model, more) - predict(data, model, less)) / (2 * h);
+  }
+  return out;
+}
+
+}  // namespace
+
+Eigen::VectorXd predict(const FitData& data, const FitModel& model,
+                        const Eigen::VectorXd& parameters, int* outside) {
+  const Eigen::MatrixXd stress = model.stress(data.points, parameters);
+  Eigen::VectorXd out(data.values());
+  int missing = 0;
+  for (int k = 0; k < data.values(); ++k) {
+    const std::string& name =
+        data.components[static_cast<std::size_t>(data.component[static_cast<std::size_t>(k)])];
+    const double v = stress(k, name == "sigma_xx" ? 0 : name == "sigma_yy" ? 1 : 2);
+    missing += std::isfinite(v) ? 0 : 1;
+    out[k] = std::isfinite(v) ? v : 0;
+  }
+  if (outside != nullptr) *outside = missing;
+  return out;
+}
+
+Eigen::VectorXd best_parameters(const FitData& data, const Eigen::VectorXd& values,
+                                const Eigen::MatrixXd& whitener, const FitModel& model,
+                                const std::vector<Eigen::VectorXd>& starts, double huber,
+                                bool* converged) {
+  if (starts.empty()) {
+    throw std::invalid_argument(fmt::format("fit of {}: no start of the search", model.name));
+  }
+  if (converged != nullptr) *converged = true;
+  if (model.parameters.empty()) return Eigen::VectorXd(0);
+  const Bounds bounds{model};
+  Residuals residuals{data,  values, whitener,
+                      model, bounds, Eigen::VectorXd::Ones(whitener.rows())};
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best = bounds.inner(starts.front());
+  bool best_converged = false;
+  for (const Eigen::VectorXd& start : starts) {
+    Eigen::VectorXd inner = bounds.inner(start);
+    bool good = false;
+    const double chi2 = minimise(residuals, inner, good);
+    if (chi2 < least) {
+      least = chi2;
+      best = inner;
+      best_converged = good;
+    }
+  }
+  for (int round = 0; huber > 0 && round < kHuberRounds; ++round) {
+    residuals.weights = huber_weights(residuals.plain(best), huber);
+    minimise(residuals, best, best_converged);
+  }
+  if (converged != nullptr) *converged = best_converged;
+  return bounds.outer(best);
+}
+
+Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model,
+        const FitOptions& options) {
+  const Eigen::VectorXd mean = data.mean();
+  const auto k = static_cast<Eigen::Index>(model.parameters.size());
+  Fit out;
+  out.name = model.name;
+  out.label = model.label;
+  const std::vector<Eigen::VectorXd> starts = model.starts.empty() && k == 0
+                                                  ? std::vector<Eigen::VectorXd>{Eigen::VectorXd(0)}
+                                                  : model.starts;
+  const Eigen::VectorXd best = best_parameters(data, mean, covariance.whitener, model, starts,
+                                               options.huber, &out.converged);
+  int outside = 0;
+  out.model = predict(data, model, best, &outside);
+  if (outside == data.values()) {
+    throw std::invalid_argument(
+        fmt::format("fit of {}: every point is outside the model's domain", model.name));
+  }
+  const Eigen::VectorXd off = mean - out.model;
+  out.residual = off.cwiseQuotient(covariance.of_mean.diagonal().cwiseSqrt());
+  out.chi2 = (covariance.whitener * off).squaredNorm();
+  const double n = covariance.kind == "diagonal" ? covariance.effective_values : data.values();
+  out.dof = n - static_cast<double>(k);
+  out.chi2_per_dof = out.dof > 0 ? out.chi2 / out.dof : kNan;
+  const double kk = static_cast<double>(k), left = n - kk - 1;
+  out.aicc = left > 0 ? out.chi2 + 2 * kk + 2 * kk * (kk + 1) / left
+                      : std::numeric_limits<double>::infinity();
+  out.rel_l2 = off.norm() / mean.norm();
+  if (outside > 0)
+    out.note = fmt::format("{} values outside the model's domain count as 0", outside);
+
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Constant(k, k, kNan);
+  std::vector<bool> bound(static_cast<std::size_t>(k), false);
+  for (Eigen::Index p = 0; p < k; ++p) {
+    const FitParameter& q = model.parameters[static_cast<std::size_t>(p)];
+    const double room = kNearBound * 10 * (q.most - q.least);
+    bound[static_cast<std::size_t>(p)] =
+        std::isfinite(room) && (best[p] - q.least < room || q.most - best[p] < room);
+  }
+  const bool known = covariance.kind != "unknown";
+  if (k > 0 && known) {
+    const Eigen::MatrixXd jacobian = jacobian_at(data, covariance.whitener, model, best);
+    const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian *
+                                                         scale.cwiseInverse().asDiagonal());
+    if (qr.rank() == k) {
+      const Eigen::MatrixXd normal = (jacobian * scale.cwiseInverse().asDiagonal()).transpose() *
+                                     (jacobian * scale.cwiseInverse().asDiagonal());
+      spread = scale.cwiseInverse().asDiagonal() *
+               normal.ldlt().solve(Eigen::MatrixXd::Identity(k, k)) *
+               scale.cwiseInverse().asDiagonal();
+    } else {
+      out.note += fmt::format("{}the values do not determine all {} parameters",
+                              out.note.empty() ? "" : "; ", k);
+    }
+  }
+  out.correlation = Eigen::MatrixXd::Constant(k, k, kNan);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    for (Eigen::Index b = 0; b < k; ++b) {
+      out.correlation(a, b) = spread(a, b) / std::sqrt(spread(a, a) * spread(b, b));
+    }
+  }
+  Eigen::VectorXd drawn = Eigen::VectorXd::Constant(k, kNan);
+  if (k > 0 && options.bootstrap >= 10 && data.realizations() >= 3) {
+    BootstrapOptions draws;
+    draws.resamples = options.bootstrap;
+    draws.seed = options.seed;
+    draws.threads = options.threads;
+    const Eigen::MatrixXd all = bootstrap_draws(
+        data.realizations(),
+        [&](const std::vector<int>& chosen) {
+          Eigen::VectorXd values = Eigen::VectorXd::Zero(data.values());
+          for (const int r : chosen) values += data.samples.col(r);
+          values /= static_cast<double>(chosen.size());
+          return best_parameters(data, values, covariance.whitener, model, {best}, options.huber);
+        },
+        draws);
+    const double bias = std::sqrt(data.realizations() / (data.realizations() - 1.0));
+    for (Eigen::Index p = 0; p < k; ++p) {
+      const Eigen::VectorXd column = all.col(p);
+      drawn[p] = bias * std::sqrt((column.array() - column.mean()).square().sum() /
+                                  static_cast<double>(column.size() - 1));
+    }
+  }
+  // Errors estimated from few realizations: Student's t.
+  double t = 1.96;
+  if (data.realizations() > 1) {
+    t = boost::math::quantile(boost::math::students_t(data.realizations() - 1.0),
+                              0.5 + 0.5 * options.level);
+  }
+  for (Eigen::Index p = 0; p < k; ++p) {
+    FittedParameter f;
+    f.parameter = model.parameters[static_cast<std::size_t>(p)];
+    f.value = best[p];
+    f.at_bound = bound[static_cast<std::size_t>(p)];
+    f.error = f.at_bound ? kNan : std::sqrt(spread(p, p));
+    f.bootstrap_error = drawn[p];
+    f.low = f.value - t * f.error;
+    f.high = f.value + t * f.error;
+    if (f.at_bound) {
+      out.note +=
+          fmt::format("{}{} ends at its bound", out.note.empty() ? "" : "; ", f.parameter.name);
+    }
+    out.parameters.push_back(f);
+  }
+  if (!out.converged) {
+    out.note += fmt::format("{}the search did not converge", out.note.empty() ? "" : "; ");
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

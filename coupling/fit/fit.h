@@ -1,0 +1,63 @@
+// Generalised least squares of one model on one ensemble.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "coupling/fit/covariance.h"
+#include "coupling/fit/data.h"
+#include "coupling/fit/model.h"
+
+namespace grainfield::coupling {
+
+struct FitOptions {
+  /// Huber's weights on the whitened residuals: one in the wrong region pulls no more than this
+  /// many errors' worth; 0: plain least squares.
+  double huber = 0;
+  int bootstrap = 200;     ///< draws of realizations; 0: none
+  double level = 0.95;     ///< of the intervals
+  std::uint64_t seed = 1;  ///< of the draws
+  int threads = 1;         ///< the bits do not depend on it
+};
+
+struct FittedParameter {
+  FitParameter parameter;
+  double value = 0;
+  double error = 0;  ///< from the covariance: sqrt of (J^T W^T W J)^-1; nan: not determined
+  double bootstrap_error = 0;  ///< standard deviation over draws of the realizations; nan without
+  double low = 0, high = 0;    ///< interval of `level`: value +- Student's t times error
+  bool at_bound = false;       ///< the search ended at the parameter's bound: no error
+};
+
+struct Fit {
+  std::string name, label;
+  std::vector<FittedParameter> parameters;
+  Eigen::MatrixXd correlation;  ///< of the parameters, from the covariance
+  Eigen::VectorXd model;        ///< values at the best parameters
+  Eigen::VectorXd residual;     ///< (mean - model) / standard error, value by value
+  double chi2 = 0;              ///< |W (mean - model)|^2
+  double dof = 0;               ///< effective values - parameters
+  double chi2_per_dof = 0;
+  double aicc = 0;    ///< chi2 + 2 k + 2 k (k + 1) / (n - k - 1); inf for n <= k + 1
+  double rel_l2 = 0;  ///< |mean - model| / |mean|
+  bool converged = false;
+  std::string note;  ///< what the reader must know: bound hit, not determined, ...
+};
+
+/// The parameters that minimise |W (mean - model)|^2 (Levenberg-Marquardt, Eigen/MINPACK, from
+/// every start; bounds by a logistic map). Values outside the model's domain count as 0. Throws
+/// std::invalid_argument when every value is outside, or for a model without starts.
+Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model,
+        const FitOptions& options = {});
+
+/// Best parameters for a given vector of values (one per row of data): what fit() does to the mean.
+Eigen::VectorXd best_parameters(const FitData& data, const Eigen::VectorXd& values,
+                                const Eigen::MatrixXd& whitener, const FitModel& model,
+                                const std::vector<Eigen::VectorXd>& starts, double huber,
+                                bool* converged = nullptr);
+
+/// The model's values at the data's rows (0 outside its domain).
+Eigen::VectorXd predict(const FitData& data, const FitModel& model,
+                        const Eigen::VectorXd& parameters, int* outside = nullptr);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,29 @@
+// Models whose parameters are fitted. A new one is one file and one line in models.cc.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+struct FitParameter {
+  std::string name;     ///< for summary keys: "eta", "beta_hat_deg"
+  std::string unit;     ///< "-", "deg", "N/m"
+  std::string meaning;  ///< one line
+  double least = 0;     ///< open bounds of the search; infinite: none
+  double most = 0;
+};
+
+/// A model with free parameters; without any it is only compared.
+struct FitModel {
+  std::string name;   ///< key: "cantelaube_free"
+  std::string label;  ///< for people, with what is held fixed
+  std::vector<FitParameter> parameters;
+  std::vector<Eigen::VectorXd> starts;  ///< of the search; the best end wins. At least one
+  /// Points (n x 2, models' frame), parameters -> n x 3 stresses xx, yy, xy in N/m, tension
+  /// positive; nan outside the model's domain or for parameters it cannot take.
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> stress;
+};
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,33 @@
+// The models that are fitted to heaps and to layers under a point load.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/fit/model.h"
+
+namespace grainfield::coupling {
+
+/// What the grains have fixed: the models' other numbers.
+struct HeapFacts {
+  double slope_deg = 30;    ///< of both flanks: counts as the friction angle of the theories
+  double rho_g = 1;         ///< N/m3 (2D: N/m2): mean density times gravity
+  double height = 1;        ///< m; apex at (0, 0), inside y < 0
+  double smoothing = 0.02;  ///< m: width over which cantelaube passes from core to flank, the
+                            ///< kernel's standard deviation along a line
+};
+
+/// Models of a symmetric heap, apex at (0, 0), y up:
+///   hydrostatic            no parameter
+///   cantelaube_minus, _zero, _plus   the branches of the theory, no parameter
+///   cantelaube_continuous  beta_hat free, the core follows from continuity
+///   cantelaube             Roul's fit: a1, a2, b1 of the core, a_xx, a_yy, a_xy of the flanks,
+///                          beta_hat
+///   osl_yield              mu free, eta from yield at the slope
+///   osl                    eta and mu free
+///   fpa, bcc               members of the family, no parameter
+std::vector<FitModel> heap_models(const HeapFacts& facts);
+
+/// The one of that name; throws std::invalid_argument with the names there are.
+const FitModel& find_fit_model(const std::vector<FitModel>& models, const std::string& name);
+
+}  // namespace grainfield::coupling

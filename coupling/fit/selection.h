@@ -1,0 +1,45 @@
+// Which of several fitted models the data support.
+//
+// Two independent judges: AICc on all data, and cross-validation: parameters from some realizations
+// (or from some heights), scored on those left out by the whitened squared difference. A model wins
+// when it is ahead of the runner-up in AICc by more than `least_aicc` and in the cross-validation
+// by more than twice the standard error of the difference over the parts left out. Otherwise the
+// models that are not behind the best in both are "not distinguishable".
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/fit/fit.h"
+
+namespace grainfield::coupling {
+
+struct SelectionOptions {
+  double least_aicc = 6;  ///< Burnham and Anderson 2002: little support above 4 to 7
+  double huber = 0;       ///< as FitOptions
+  bool by_level = true;   ///< leaves out levels too, where there are two or more
+};
+
+struct Score {
+  std::string name;
+  double aicc_difference = 0;    ///< from the best
+  double realization_score = 0;  ///< mean over the realizations left out of the squared difference
+                                 ///< per effective value; nan below 3 realizations
+  double level_score = 0;        ///< the same over the levels left out; nan below 2 levels
+  double behind = 0;             ///< mean difference of realization_score to the best
+  double behind_error = 0;       ///< its standard error over the realizations
+  bool supported = false;        ///< not behind the winner
+};
+
+struct Selection {
+  std::vector<Score> ranking;  ///< best first: by AICc
+  bool distinguishable = false;
+  std::string sentence;  ///< for people, one line
+};
+
+/// Ranks the models. `fits`: of the same data and covariance, in the order of `models`. Throws
+/// std::invalid_argument for no model or sizes that differ.
+Selection select(const FitData& data, const Covariance& covariance,
+                 const std::vector<FitModel>& models, const std::vector<Fit>& fits,
+                 const SelectionOptions& options = {});
+
+}  // namespace grainfield::coupling
