@@ -194,7 +194,7 @@ TEST(CaseErrors, BetweenKeys) {
 TEST(CaseErrors, TimeStepAboveTheStableLimitNamesTheLimit) {
   const std::string what = complaint("[motion]\n\ntime_step = 0.1\n");
   EXPECT_THAT(what, HasSubstr("x.toml:3: motion.time_step: found 0.1 s, allowed: at most"));
-  EXPECT_THAT(what, HasSubstr("stable limit of"));
+  EXPECT_THAT(what, HasSubstr("(the stable limit) for verlet"));
 }
 
 TEST(CaseErrors, Piles) {

@@ -164,8 +164,8 @@ TEST(PileRun, SweepComparesMembers) {
   const std::string file = folder.write(
       "x.toml", tiny_pile("[output]\nvtu = false\n[sweep]\nkey = \"sleep.on\"\nvalues = [true, "
                           "false]\n"));
-  const Output run =
-      program("run " + file + " --set ensemble.realizations=1 -o " + (folder / "out"));
+  const Output run = program(
+      "run " + file + " --set ensemble.realizations=1 --set floor.length=6 -o " + (folder / "out"));
   ASSERT_EQ(run.code, 0) << run.err;
   const Summary all = read_summary(folder / "out/summary.json");
   EXPECT_EQ(all.count("dip.ratio.on_true"), 1U);

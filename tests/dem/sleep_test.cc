@@ -26,7 +26,8 @@ TEST(Sleep, SettledBoxFallsAsleepAndKeepsItsForces) {
   const Diagnostics asleep = engine->measure();
   EXPECT_LE(asleep.awake, 4);
   const Snapshot before = engine->snapshot();
-  EXPECT_NEAR(ground_force(before), weight(before), 0.03 * weight(before));
+  // Each grain fell asleep in balance to quiet_force = 0.1 of the forces on it.
+  EXPECT_NEAR(ground_force(before), weight(before), 0.1 * weight(before));
   engine->step(1000);
   const Snapshot after = engine->snapshot();
   ASSERT_EQ(before.contacts.size(), after.contacts.size());
