@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
@@ -171,6 +173,19 @@ TEST(PileRun, SweepComparesMembers) {
   EXPECT_EQ(all.count("dip.ratio.on_true"), 1U);
   EXPECT_EQ(all.count("dip.ratio.on_false"), 1U);
   EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("repose left (deg)"));
+}
+
+TEST(PileRun, SweepsThatThePageNamesAreAccepted) {
+  const std::string cases = GRAINFIELD_CASES;
+  std::istringstream page(testing::read_text(cases + "/../docs/cases/pile-dip-controls.md"));
+  int sweeps = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("    --set ")) continue;
+    const Output check = program("check " + cases + "/pile-dip-controls.toml" + line);
+    EXPECT_EQ(check.code, 0) << line << "\n" << check.err;
+    ++sweeps;
+  }
+  EXPECT_GE(sweeps, 8);
 }
 
 }  // namespace
