@@ -335,6 +335,9 @@ TopicResult look_at_elastic(const PileSet& piles) {
     const auto found = s.find(key + std::string(".standard_error"));
     return found == s.end() ? NAN : std::get<double>(found->second);
   };
+  const auto spread = [&](const char* key) {
+    return std::isnan(error(key)) ? std::string() : fmt::format(" ± {:.2g}", error(key));
+  };
   out.sentence = fmt::format(
       "E = {:.3g}{} N/m, {:.3f} of the grains' {:.3g} N/m; ν = {:.2f}{}; rearranged piles: {}.",
       value("elastic.young"), spread("elastic.young"), value("elastic.young_over_grain"), of_grain,

@@ -206,10 +206,9 @@ TopicResult look_at_rve_size(const PileSet& piles) {
   picture.caption = fmt::format(
       "Circles about {} places {:g} h above the base that stay inside the heap; medians over {} "
       "piles. Band: one robust standard deviation of a single RVE between piles (one pile: "
-      "distance "
-      "from its largest RVE). An RVE is large "
-      "enough when no larger one differs by more than {:g} % in the mean or scatters by more than "
-      "{:g} % (Roul figs 2.8-2.10: 100-200 grains).",
+      "distance from its largest RVE). An RVE is large enough when no larger one differs by more "
+      "than {:g} % in the mean or scatters by more than {:g} % (Roul figs 2.8-2.10: 100-200 "
+      "grains).",
       kPlaces.size(), kPlaceHeight, piles.count(), 50 * tolerance, 100 * tolerance);
   out.sections.emplace_back(std::move(picture));
   out.sections.emplace_back(std::move(table));

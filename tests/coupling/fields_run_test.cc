@@ -25,7 +25,7 @@ grains = 60
 height = 1.0
 interval = 0.12
 [floor]
-length = 4.0
+length = 6.0
 [material]
 young = 1e6
 [rest]
