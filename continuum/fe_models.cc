@@ -16,6 +16,7 @@ namespace {
 
 constexpr char layer_name[] = "fe_elastic_layer";
 constexpr char half_space_name[] = "fe_elastic_half_space";
+constexpr char wedge_name[] = "fe_mohr_coulomb_wedge";
 
 Ranks g_ranks = Ranks::all;
 
@@ -131,6 +132,51 @@ ModelInfo fe_elastic_half_space_info() {
            numerical_parameters(
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
       make_in_plugin<half_space_name>};
+}
+
+ModelInfo fe_mohr_coulomb_wedge_info() {
+  const char* source = "Mohr-Coulomb";
+  return {
+      wedge_name,
+      "heap of elastic-plastic Mohr-Coulomb material under its weight, finite elements",
+      2,
+      {number("phi_deg", "deg", "friction angle", source, 28, 1, 60),
+       number("left_deg", "deg", "slope on the left, apex at the origin; 0: as phi_deg", source, 0,
+              0, 80),
+       number("right_deg", "deg", "slope on the right; 0: as left_deg", source, 0, 0, 80),
+       number("h", "m", "height; the base is y = -h", source, 1, kAboveZero, kUnbounded),
+       number("rho_g", "N/m^2", "weight per area of the section", source, 1, kAboveZero,
+              kUnbounded),
+       number("dilation_deg", "deg",
+              "dilation angle, at most phi_deg; equal to it: associated flow", source, 0, 0, 60),
+       number("cohesion", "rho_g h",
+              "regularization: cohesionless material at its angle of repose has no strength to "
+              "spare; lower it until the answer stands still",
+              "numerics", 1e-3, 0, kUnbounded),
+       number("E", "rho_g h", "Young's modulus; strains, not stresses, go with 1/E", "elasticity",
+              1000, kAboveZero, kUnbounded),
+       number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49),
+       choice("base",
+              "rough: no displacement; frictional: Coulomb friction on stiff springs; smooth: no "
+              "shear, on which only cohesion holds a heap",
+              source, {"rough", "frictional", "smooth"}),
+       number("base_friction_deg", "deg", "friction angle of a frictional base", source, 28, 0, 80),
+       number("base_stiffness", "E/h", "springs of a frictional base, per length", "numerics", 100,
+              kAboveZero, kUnbounded),
+       choice("history",
+              "at_once: gravity on the whole heap; rise: horizontal layers; grow: layers along the "
+              "slopes, as from a source above",
+              source, {"at_once", "rise", "grow"}),
+       whole_number("steps", "equal load steps to try for the heap's or a layer's weight",
+                    "numerics", 1, 1, 1000),
+       whole_number("layers", "of the histories rise and grow", "numerics", 8, 1, 1000),
+       whole_number("cells", "triangles along each side; a multiple of 2 layers fits the layers",
+                    "numerics", 32, 2, 1000),
+       number("tolerance", "-", "residual over a cell's weight at which Newton's method ends",
+              "numerics", 1e-9, 1e-13, 1e-3),
+       whole_number("iterations", "most Newton iterations in a load step", "numerics", 25, 1,
+                    1000)},
+      make_in_plugin<wedge_name>};
 }
 
 }  // namespace grainfield::continuum

@@ -42,6 +42,12 @@ using Points = Eigen::MatrixXd;
 /// n x 3 (2D: xx, yy, xy) or n x 6 (3D: xx, yy, zz, yz, xz, xy), tension positive; nan outside.
 using Stresses = Eigen::MatrixXd;
 
+/// A scalar at the points a model was asked at; nan outside its domain.
+struct Quantity {
+  std::string name;  ///< "displacement_x"; SI units
+  Eigen::VectorXd values;
+};
+
 /// A model with its parameters set.
 class Model {
  public:
@@ -49,6 +55,9 @@ class Model {
   /// Stress at the points, in Pa (3D) or N/m (2D), tension positive; a row of nan where a point is
   /// outside the model's domain. Throws ComputationFailed.
   virtual Stresses stress(const Points& points) = 0;
+  /// What the model knows at the points besides the stress, in the order to be written; most models
+  /// nothing. Throws ComputationFailed.
+  virtual std::vector<Quantity> quantities(const Points&) { return {}; }
   /// Figures of the evaluation that belong into summary.json, e.g. unknowns, iterations, residual.
   virtual std::map<std::string, double> figures() const { return {}; }
 };

@@ -17,7 +17,8 @@ const std::vector<ModelInfo>& registry() {
                                                 hydrostatic_info(),
                                                 liffman_info(),
                                                 fe_elastic_layer_info(),
-                                                fe_elastic_half_space_info()};
+                                                fe_elastic_half_space_info(),
+                                                fe_mohr_coulomb_wedge_info()};
   return models;
 }
 

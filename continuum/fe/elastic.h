@@ -18,4 +18,7 @@ ModelInfo fe_elastic_layer_info();
 /// A half plane or half space under a load on a small patch.
 ModelInfo fe_elastic_half_space_info();
 
+/// A heap of Mohr-Coulomb material under its own weight, plane strain (fe/wedge.h).
+ModelInfo fe_mohr_coulomb_wedge_info();
+
 }  // namespace grainfield::continuum

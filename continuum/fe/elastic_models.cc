@@ -19,6 +19,7 @@
 #include "continuum/fe/elastic_solver.h"
 #include "continuum/fe/parallel.h"
 #include "continuum/fe/plugin.h"
+#include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -376,6 +377,7 @@ std::unique_ptr<Model> make(const Settings& s) {
 std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& settings) {
   if (name == "fe_elastic_layer") return make<ElasticLayer>(settings);
   if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(settings);
+  if (name == "fe_mohr_coulomb_wedge") return make_wedge_model(settings);
   throw BadParameter("no finite-element model '" + name + "'");
 }
 

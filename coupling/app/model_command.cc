@@ -70,13 +70,17 @@ void add_model(CLI::App& app, Action& action) {
   struct Given {
     std::string name, points, output;
     std::vector<std::string> sets;
-    bool list = false;
+    bool list = false, all = false, figures = false;
   };
   auto given = std::make_shared<Given>();
   command->add_option("name", given->name, "model; without it the models are listed");
   command->add_option("--set", given->sets, "parameter=value")->allow_extra_args(false);
   command->add_option("--points", given->points, "CSV with columns x,y or x,y,z (m, load at 0,0)");
   command->add_option("-o,--output", given->output, "CSV of stresses; without it on the terminal");
+  command->add_flag("--all", given->all,
+                    "also what the model knows besides the stress, e.g. displacements");
+  command->add_flag("--figures", given->figures,
+                    "begin with lines '# name = value' of the evaluation, e.g. its iterations");
   command->add_flag("--list", given->list, "show the model's parameters");
   command->callback([=, &action] {
     action = [=] {
@@ -93,7 +97,16 @@ void add_model(CLI::App& app, Action& action) {
       const auto settings = parse_settings(given->sets, "--set");
       const auto model = continuum::make_model(given->name, settings);
       const auto points = read_points_csv(given->points, continuum::dimension(info, settings));
-      const std::string text = stresses_csv(points, model->stress(points));
+      const auto stresses = model->stress(points);
+      std::string text =
+          stresses_csv(points, stresses,
+                       given->all ? model->quantities(points) : std::vector<continuum::Quantity>());
+      if (given->figures) {
+        std::string lines;
+        for (const auto& [figure, value] : model->figures())
+          lines += fmt::format("# {} = {}\n", figure, value);
+        text.insert(0, lines);
+      }
       if (given->output.empty()) {
         fmt::print("{}", text);
       } else {

@@ -89,18 +89,22 @@ Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
   return dim == 2 ? read<2>(file) : read<3>(file);
 }
 
-std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses) {
+std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
+                         const std::vector<continuum::Quantity>& quantities) {
   std::string out = points.cols() == 2
-                        ? "x,y,sigma_xx,sigma_yy,sigma_xy\n"
-                        : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy\n";
+                        ? "x,y,sigma_xx,sigma_yy,sigma_xy"
+                        : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy";
+  for (const auto& quantity : quantities) out += "," + quantity.name;
+  out += '\n';
+  const auto add = [&out](double value) {
+    out += std::isnan(value) ? ",nan" : fmt::format(",{}", value);
+  };
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     for (Eigen::Index c = 0; c < points.cols(); ++c) {
       out += fmt::format("{}{}", c > 0 ? "," : "", points(i, c));
     }
-    for (Eigen::Index c = 0; c < stresses.cols(); ++c) {
-      const double value = stresses(i, c);
-      out += std::isnan(value) ? ",nan" : fmt::format(",{}", value);
-    }
+    for (Eigen::Index c = 0; c < stresses.cols(); ++c) add(stresses(i, c));
+    for (const auto& quantity : quantities) add(quantity.values[i]);
     out += '\n';
   }
   return out;

@@ -2,6 +2,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <string>
+#include <vector>
+
+#include "continuum/model.h"
 
 namespace grainfield::coupling {
 
@@ -11,7 +14,9 @@ namespace grainfield::coupling {
 /// too long, a value that is no finite number, or no points at all.
 Eigen::MatrixXd read_points_csv(const std::string& file, int dim);
 
-/// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components) with all digits; nan outside the model.
-std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses);
+/// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components), then the quantities' names, with all
+/// digits; nan outside the model.
+std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
+                         const std::vector<continuum::Quantity>& quantities = {});
 
 }  // namespace grainfield::coupling

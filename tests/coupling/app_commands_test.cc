@@ -57,6 +57,24 @@ TEST(Commands, ModelWritesAllDigits) {
   EXPECT_THAT(testing::read_text(folder / "o.csv"), HasSubstr("sigma_yy"));
 }
 
+TEST(Commands, ModelTellsWhatElseItKnows) {
+  const Folder folder;
+  const std::string points = folder.write("p.csv", "x,y\n0,-0.5\n9,-0.5\n");
+  const std::string heap = "model fe_mohr_coulomb_wedge --set cells=4 --set left_deg=20 ";
+  const Output output = program(heap + "--all --figures --points " + points);
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_EQ(output.out.rfind("# ", 0), 0U);
+  EXPECT_THAT(output.out, HasSubstr("# unknowns = 90\n"));
+  EXPECT_THAT(output.out, HasSubstr("\nx,y,sigma_xx,sigma_yy,sigma_xy,sigma_zz,displacement_x,"
+                                    "displacement_y,mobilized,plastic,plastic_shear,"
+                                    "plastic_volume\n0,-0.5,"));
+  EXPECT_THAT(output.out, HasSubstr("\n9,-0.5,nan,nan,nan,nan,nan,nan,nan,nan,nan,nan\n"));
+  // Without cohesion nothing holds a heap on a smooth base: a computation that fails.
+  const Output slides = program(heap + "--set base=smooth --points " + points);
+  EXPECT_EQ(slides.code, 3);
+  EXPECT_THAT(slides.err, HasSubstr("a heap on a smooth base slides apart"));
+}
+
 TEST(Commands, ModelListsItsParameters) {
   const Output output = program("model layer --list");
   EXPECT_THAT(output.out, HasSubstr("nu = 0.3"));

@@ -1,0 +1,186 @@
+#include "continuum/fe/quadratic_triangles.h"
+
+#include <deal.II/base/quadrature.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_fe.h>
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparse_direct.h>
+#include <deal.II/lac/sparse_matrix.h>
+
+#include <optional>
+
+// OpenBLAS, when that is the BLAS in use: its threads would change the order of sums.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+namespace grainfield::continuum::fe {
+namespace {
+
+using Eigen::Vector2d;
+
+dealii::Triangulation<2>& build(dealii::Triangulation<2>& out, const TriangleMesh& mesh) {
+  std::vector<dealii::Point<2>> vertices;
+  for (const auto& v : mesh.vertices) vertices.emplace_back(v[0], v[1]);
+  std::vector<dealii::CellData<2>> cells;
+  for (const auto& t : mesh.triangles) {
+    dealii::CellData<2> cell(3);
+    for (std::size_t k = 0; k < 3; ++k) cell.vertices[k] = static_cast<unsigned int>(t[k]);
+    cells.push_back(cell);
+  }
+  out.create_triangulation(vertices, cells, dealii::SubCellData());
+  return out;
+}
+
+}  // namespace
+
+struct QuadraticTriangles::Impl {
+  explicit Impl(const TriangleMesh& triangles)
+      : element(dealii::FE_SimplexP<2>(2), 2), dofs(build(mesh, triangles)) {
+    dofs.distribute_dofs(element);
+    dealii::DynamicSparsityPattern dynamic(dofs.n_dofs());
+    dealii::DoFTools::make_sparsity_pattern(dofs, dynamic);
+    pattern.copy_from(dynamic);
+    matrix.reinit(pattern);
+  }
+
+  dealii::Triangulation<2> mesh;
+  dealii::FESystem<2> element;
+  dealii::DoFHandler<2> dofs;
+  dealii::SparsityPattern pattern;
+  dealii::SparseMatrix<double> matrix;
+  std::optional<dealii::SparseDirectUMFPACK> factors;
+};
+
+CellVector QuadraticCell::gather(const Eigen::VectorXd& u) const {
+  CellVector out;
+  for (std::size_t i = 0; i < kUnknowns; ++i) out[static_cast<int>(i)] = u[unknowns[i]];
+  return out;
+}
+
+void QuadraticCell::scatter(const CellVector& f, Eigen::VectorXd& out) const {
+  for (std::size_t i = 0; i < kUnknowns; ++i) out[unknowns[i]] += f[static_cast<int>(i)];
+}
+
+QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh)
+    : impl_(std::make_unique<Impl>(mesh)) {
+  const auto& element = impl_->element;
+  const auto& dofs = impl_->dofs;
+  positions.resize(dofs.n_dofs());
+  components.resize(dofs.n_dofs());
+  corner_unknowns.resize(mesh.vertices.size());
+  const dealii::Quadrature<2> rule({{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}},
+                                   std::vector<double>(kPoints, 1. / 6));
+  const dealii::MappingFE<2> mapping{dealii::FE_SimplexP<2>(1)};
+  dealii::FEValues<2> values(mapping, element, rule,
+                             dealii::update_values | dealii::update_gradients |
+                                 dealii::update_quadrature_points | dealii::update_JxW_values);
+  const dealii::Quadrature<2> nodes(element.base_element(0).get_unit_support_points());
+  dealii::FEValues<2> at_nodes(mapping, element, nodes, dealii::update_quadrature_points);
+  std::vector<dealii::types::global_dof_index> indices(kUnknowns), on_edge(kNodes);
+  for (const auto& cell : dofs.active_cell_iterators()) {
+    values.reinit(cell);
+    at_nodes.reinit(cell);
+    cell->get_dof_indices(indices);
+    QuadraticCell& out = cells.emplace_back();
+    out.weight.setZero();
+    for (unsigned int q = 0; q < kPoints; ++q) {
+      const auto& p = values.quadrature_point(q);
+      out.points[q] = {p[0], p[1]};
+      out.areas[q] = values.JxW(q);
+    }
+    for (unsigned int i = 0; i < kUnknowns; ++i) {
+      const auto [component, node] = element.system_to_component_index(i);
+      const auto& p = at_nodes.quadrature_point(node);
+      out.unknowns[i] = static_cast<unsigned int>(indices[i]);
+      positions[indices[i]] = {p[0], p[1]};
+      components[indices[i]] = component;
+      for (unsigned int q = 0; q < kPoints; ++q) {
+        const auto gradient = values.shape_grad(i, q);
+        auto& b = out.strain[q];
+        b(0, i) = component == 0 ? gradient[0] : 0;
+        b(1, i) = component == 1 ? gradient[1] : 0;
+        b(2, i) = component == 0 ? gradient[1] : gradient[0];
+        out.weight(i, component) += values.shape_value(i, q) * values.JxW(q);
+      }
+    }
+    for (unsigned int v = 0; v < 3; ++v) {
+      out.corners[v] = static_cast<int>(cell->vertex_index(v));
+      for (unsigned int d = 0; d < 2; ++d)
+        corner_unknowns[cell->vertex_index(v)][d] =
+            static_cast<unsigned int>(cell->vertex_dof_index(v, d));
+    }
+    for (const unsigned int f : cell->face_indices()) {
+      const auto face = cell->face(f);
+      if (!face->at_boundary()) continue;
+      face->get_dof_indices(on_edge);
+      BoundaryEdge& edge = edges.emplace_back();
+      for (unsigned int node = 0; node < 3; ++node)
+        for (unsigned int d = 0; d < 2; ++d)
+          edge.unknowns[node][d] = static_cast<unsigned int>(on_edge[2 * node + d]);
+      edge.middle = {face->center()[0], face->center()[1]};
+      edge.length = face->measure();
+    }
+  }
+}
+
+QuadraticTriangles::~QuadraticTriangles() = default;
+
+void QuadraticTriangles::clear_matrix() { impl_->matrix = 0; }
+
+void QuadraticTriangles::add(const QuadraticCell& cell, const CellMatrix& values,
+                             const std::vector<bool>& free) {
+  std::array<dealii::types::global_dof_index, kUnknowns> columns;
+  for (std::size_t i = 0; i < kUnknowns; ++i) columns[i] = cell.unknowns[i];
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    if (!free[cell.unknowns[i]]) continue;
+    std::array<double, kUnknowns> row;
+    for (std::size_t j = 0; j < kUnknowns; ++j)
+      row[j] = free[cell.unknowns[j]] ? values(static_cast<int>(i), static_cast<int>(j)) : 0;
+    impl_->matrix.add(cell.unknowns[i], kUnknowns, columns.data(), row.data());
+  }
+}
+
+void QuadraticTriangles::add(unsigned int row, unsigned int column, double value) {
+  impl_->matrix.add(row, column, value);
+}
+
+bool QuadraticTriangles::factorize() {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+  try {
+    impl_->factors.emplace();
+    impl_->factors->initialize(impl_->matrix);
+  } catch (const dealii::ExceptionBase&) {
+    return false;
+  }
+  return true;
+}
+
+void QuadraticTriangles::solve(Eigen::VectorXd& x) const {
+  dealii::Vector<double> b(static_cast<unsigned int>(x.size()));
+  for (unsigned int i = 0; i < b.size(); ++i) b[i] = x[i];
+  impl_->factors->solve(b);
+  for (unsigned int i = 0; i < b.size(); ++i) x[i] = b[i];
+}
+
+TriangleMesh triangle_lattice(const Vector2d& left, const Vector2d& right, const Vector2d& apex,
+                              int n) {
+  TriangleMesh out;
+  const auto index = [n](int r, int i) { return r * (n + 1) - r * (r - 1) / 2 + i; };
+  for (int r = 0; r <= n; ++r)
+    for (int i = 0; i + r <= n; ++i)
+      out.vertices.push_back((left * (n - i - r) + right * i + apex * r) / n);
+  for (int r = 0; r < n; ++r) {
+    for (int i = 0; i + r < n; ++i) {
+      out.triangles.push_back({index(r, i), index(r, i + 1), index(r + 1, i)});
+      if (i + r + 1 < n)
+        out.triangles.push_back({index(r, i + 1), index(r + 1, i + 1), index(r + 1, i)});
+    }
+  }
+  return out;
+}
+
+}  // namespace grainfield::continuum::fe

@@ -1,0 +1,76 @@
+// Quadratic displacements on triangles with straight edges: strains, nodal weights, boundary edges,
+// and the sparse matrix with its direct factorization. What plasticity needs of deal.II, behind a
+// header that does without it. Internal to fe/.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace grainfield::continuum::fe {
+
+/// Triangles of straight edges, corners counter-clockwise.
+struct TriangleMesh {
+  std::vector<Eigen::Vector2d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// A triangle cut by lines along its sides into n^2 similar ones. Row r from the base (left, right)
+/// to the apex, i from the left: corner (r, i) has index r (n + 1) - r (r - 1) / 2 + i; row r's
+/// triangles begin at r (2 n - r) and alternate, the first one upright.
+TriangleMesh triangle_lattice(const Eigen::Vector2d& left, const Eigen::Vector2d& right,
+                              const Eigen::Vector2d& apex, int n);
+
+/// Points of integration, nodes and unknowns of a cell. Three points integrate products of two
+/// linear functions exactly: elastic cells are not underintegrated, plastic ones hardly lock.
+inline constexpr int kPoints = 3, kNodes = 6, kUnknowns = 2 * kNodes;
+using CellVector = Eigen::Matrix<double, kUnknowns, 1>;
+using CellMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns, Eigen::RowMajor>;
+
+struct QuadraticCell {
+  std::array<unsigned int, kUnknowns> unknowns;  ///< their numbers in the whole problem
+  std::array<int, 3> corners;                    ///< vertices of the mesh
+  std::array<Eigen::Vector2d, kPoints> points;
+  std::array<double, kPoints> areas;
+  /// xx, yy and engineering xy strain at a point from the cell's displacements.
+  std::array<Eigen::Matrix<double, 3, kUnknowns>, kPoints> strain;
+  Eigen::Matrix<double, kUnknowns, 2> weight;  ///< nodal forces of a unit body force along x, y
+
+  CellVector gather(const Eigen::VectorXd& u) const;
+  void scatter(const CellVector& f, Eigen::VectorXd& out) const;
+};
+
+/// An edge of the boundary: both ends, then the middle.
+struct BoundaryEdge {
+  std::array<std::array<unsigned int, 2>, 3> unknowns;  ///< x and y of the three nodes
+  Eigen::Vector2d middle;
+  double length = 0;
+};
+
+class QuadraticTriangles {
+ public:
+  explicit QuadraticTriangles(const TriangleMesh& mesh);
+  ~QuadraticTriangles();
+
+  std::vector<QuadraticCell> cells;  ///< in the order of the mesh's triangles
+  std::vector<BoundaryEdge> edges;
+  std::vector<Eigen::Vector2d> positions;                    ///< of each unknown's node
+  std::vector<unsigned int> components;                      ///< of each unknown: 0 x, 1 y
+  std::vector<std::array<unsigned int, 2>> corner_unknowns;  ///< x and y of each vertex
+
+  std::size_t unknowns() const { return positions.size(); }
+  void clear_matrix();
+  /// Adds a cell's matrix to the rows and columns of unknowns that are free.
+  void add(const QuadraticCell& cell, const CellMatrix& values, const std::vector<bool>& free);
+  void add(unsigned int row, unsigned int column, double value);
+  /// UMFPACK, on one thread: the same bits everywhere. False: singular.
+  bool factorize();
+  /// With the last factors, in place.
+  void solve(Eigen::VectorXd& x) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace grainfield::continuum::fe

@@ -1,0 +1,260 @@
+#include "continuum/fe/wedge.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "continuum/model.h"
+
+namespace grainfield::continuum {
+namespace {
+
+using Eigen::Vector2d;
+using plasticity::Vector4;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// Heights and barycentric coordinates that differ by less than this part are equal.
+constexpr double kOnBorder = 1e-9;
+/// Depths, in heights, between which the core's boundary is fitted: the apex has too few cells, the
+/// base holds the material.
+constexpr double kCoreFrom = 0.3, kCoreTo = 0.9;
+constexpr int kCoreDepths = 25, kCoreSamples = 400;
+
+/// The heap cut by lines along its sides into cells^2 congruent triangles.
+struct Lattice {
+  explicit Lattice(const WedgeProblem& p)
+      : left(-p.height / std::tan(p.left_deg * kDegree), -p.height),
+        right(p.height / std::tan(p.right_deg * kDegree), -p.height) {}
+  /// Of a point: parts of the apex, the left and the right foot.
+  Eigen::Vector3d parts(const Vector2d& p, double height) const {
+    const double apex = (p[1] + height) / height;
+    const double from_left = (p[0] - left[0] * (1 - apex)) / (right[0] - left[0]);
+    return {apex, 1 - apex - from_left, from_left};
+  }
+  Vector2d left, right;
+};
+
+/// The layer in which a point of the final heap is laid, from 0.
+int layer_of(const WedgeProblem& p, const Lattice& lattice, const Vector2d& point) {
+  double part = 0;  // of the heap that is there before
+  if (p.history == WedgeHistory::rise) part = (point[1] + p.height) / p.height;
+  if (p.history == WedgeHistory::grow) {
+    // The smallest similar heap on the base, apex above x = 0, that holds the point.
+    const double above = point[1] + p.height;
+    const double slope = point[0] < 0 ? p.height / -lattice.left[0] : p.height / lattice.right[0];
+    part = (above + slope * std::abs(point[0])) / p.height;
+  }
+  return std::clamp(static_cast<int>(part * p.layers), 0, p.layers - 1);
+}
+
+void refuse(bool wrong, const char* name, double found, const std::string& allowed) {
+  if (wrong)
+    throw BadParameter(fmt::format("fe_mohr_coulomb_wedge: {} = {:g} is out of range; allowed: {}",
+                                   name, found, allowed));
+}
+
+std::string advice(const WedgeProblem& p) {
+  if (p.base == WedgeBase::smooth)
+    return "a heap on a smooth base slides apart unless cohesion holds it: choose base = rough or "
+           "frictional, or raise cohesion";
+  std::string out = fmt::format("raise cohesion (now {:g} rho g h)", p.cohesion);
+  if (p.base == WedgeBase::frictional) out += ", base_friction_deg";
+  out += ", iterations or steps";
+  // Along a slip line with this flow no more than this friction can act (Davis 1968).
+  const double phi = p.friction_deg * kDegree, psi = p.dilation_deg * kDegree;
+  const double davis =
+      std::atan(std::sin(phi) * std::cos(psi) / (1 - std::sin(phi) * std::sin(psi))) / kDegree;
+  const double steepest = std::max(p.left_deg, p.right_deg);
+  if (steepest > p.friction_deg)
+    out += fmt::format("; the slope, {:g} deg, is above phi_deg, {:g}", steepest, p.friction_deg);
+  else if (steepest > davis)
+    out += fmt::format(
+        "; with dilation_deg = {:g} slopes above {:.3g} deg may slide: raise dilation_deg or lower "
+        "the slope",
+        p.dilation_deg, davis);
+  return out;
+}
+
+}  // namespace
+
+void check_wedge(const WedgeProblem& p) {
+  for (const auto& [name, slope] :
+       {std::pair("left_deg", p.left_deg), std::pair("right_deg", p.right_deg)})
+    refuse(!(slope > 0 && slope < 90), name, slope, "above 0 to below 90 deg");
+  refuse(!(p.height > 0), "height", p.height, "above 0 m");
+  refuse(!(p.rho_g > 0), "rho_g", p.rho_g, "above 0");
+  refuse(p.dilation_deg > p.friction_deg, "dilation_deg", p.dilation_deg,
+         fmt::format("0 to phi_deg, {:g}", p.friction_deg));
+  // An infinite slope of this material, as deep as the heap, stands up to here.
+  const double steepest = std::max(p.left_deg, p.right_deg);
+  if (p.cohesion == 0)
+    refuse(steepest > p.friction_deg, "slope", steepest,
+           fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
+  refuse(p.cells < 2, "cells", p.cells, "at least 2");
+  refuse(p.layers < 1 || p.layers > p.cells, "layers", p.layers,
+         fmt::format("1 to cells, {}", p.cells));
+  refuse(p.steps < 1, "steps", p.steps, "at least 1");
+}
+
+int WedgeResult::triangle_at(const Vector2d& point) const {
+  const Lattice lattice(problem);
+  const int n = problem.cells;
+  const Eigen::Vector3d parts = lattice.parts(point, problem.height);
+  if (!(parts.minCoeff() >= -kOnBorder)) return -1;
+  const double row = std::clamp(parts[0], 0., 1.) * n, across = std::clamp(parts[2], 0., 1.) * n;
+  const int r = std::min(static_cast<int>(row), n - 1);
+  const int i = std::min(static_cast<int>(across), n - 1 - r);
+  const bool down = (row - r) + (across - i) > 1 && i + r + 1 < n;
+  // Row r starts after sum_{k<r} (2 (n - k) - 1) triangles.
+  return r * (2 * n - r) + 2 * i + (down ? 1 : 0);
+}
+
+namespace {
+
+/// Weights of a triangle's corners at a point.
+Eigen::Vector3d corner_weights(const fe::TriangleMesh& mesh, int triangle, const Vector2d& point) {
+  const auto& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+  Eigen::Matrix3d system;
+  for (int k = 0; k < 3; ++k)
+    system.col(k) << mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])], 1;
+  return system.inverse() * Eigen::Vector3d(point[0], point[1], 1);
+}
+
+Eigen::VectorXd interpolated(const WedgeResult& result, const Eigen::MatrixXd& values,
+                             const Vector2d& point) {
+  const int triangle = result.triangle_at(point);
+  if (triangle < 0) return Eigen::VectorXd::Constant(values.cols(), kNan);
+  const Eigen::Vector3d weights = corner_weights(result.mesh, triangle, point);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(values.cols());
+  for (int k = 0; k < 3; ++k)
+    out += weights[k] *
+           values
+               .row(result.mesh
+                        .triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(k)])
+               .transpose();
+  return out;
+}
+
+}  // namespace
+
+Vector4 WedgeResult::stress_at(const Vector2d& point) const {
+  return interpolated(*this, stress, point);
+}
+
+Vector2d WedgeResult::displacement_at(const Vector2d& point) const {
+  return interpolated(*this, displacement, point);
+}
+
+double WedgeResult::mobilized_at(const Vector2d& point) const {
+  const Vector4 s = stress_at(point);
+  if (!s.allFinite()) return kNan;
+  const Eigen::Vector3d p = plasticity::principal(s);
+  return (p[0] - p[2]) / (-(p[0] + p[2]) * std::sin(problem.friction_deg * kDegree));
+}
+
+WedgeResult solve_wedge(const WedgeProblem& p) {
+  check_wedge(p);
+  const Lattice lattice(p);
+  WedgeResult out;
+  out.problem = p;
+  out.mesh = fe::triangle_lattice(lattice.left, lattice.right, Vector2d::Zero(), p.cells);
+
+  const double scale = p.rho_g * p.height;
+  const plasticity::MohrCoulomb material{p.young * scale, p.poisson, p.friction_deg, p.dilation_deg,
+                                         p.cohesion * scale};
+  const double width = lattice.right[0] - lattice.left[0];
+  const double cell_area = width * p.height / 2 / (p.cells * p.cells);
+  fe::PlasticSettings settings;
+  settings.name = "fe_mohr_coulomb_wedge";
+  settings.force_scale = p.rho_g * cell_area;
+  settings.tolerance = p.tolerance;
+  settings.iterations = p.iterations;
+  settings.first_step = 1. / p.steps;
+  fe::Ground ground{p.base_stiffness * p.young * scale / p.height,
+                    std::tan(p.base_friction_deg * kDegree)};
+  const double slack = kOnBorder * p.height;
+  // On the smooth base one node is held against gliding; nothing pulls it.
+  const Vector2d held = out.mesh.vertices[static_cast<std::size_t>(p.cells / 2)];
+  const auto on_base = [&](const Vector2d& x) { return x[1] < -p.height + slack; };
+  const auto supports = [&](const Vector2d& x) -> fe::Support {
+    if (!on_base(x)) return {};
+    if (p.base == WedgeBase::rough) return {{true, true}, false};
+    if (p.base == WedgeBase::smooth) return {{(x - held).norm() < slack, true}, false};
+    return {{false, false}, true};
+  };
+  fe::PlasticSolver solver(out.mesh, material, supports, ground, settings);
+
+  const std::size_t triangles = out.mesh.triangles.size();
+  std::vector<int> layer(triangles, 0);
+  const int layers = p.history == WedgeHistory::at_once ? 1 : p.layers;
+  for (std::size_t c = 0; c < triangles; ++c) {
+    Vector2d centre = Vector2d::Zero();
+    for (const int corner : out.mesh.triangles[c])
+      centre += out.mesh.vertices[static_cast<std::size_t>(corner)] / 3;
+    if (layers > 1) layer[c] = layer_of(p, lattice, centre);
+  }
+  std::vector<Vector2d> gravity(triangles, Vector2d::Zero());
+  try {
+    for (int k = 0; k < layers; ++k) {
+      std::vector<bool> active(triangles);
+      for (std::size_t c = 0; c < triangles; ++c) {
+        active[c] = layer[c] <= k;
+        if (layer[c] == k) gravity[c] = {0, -p.rho_g};
+      }
+      solver.activate(active);
+      solver.load(gravity);
+    }
+  } catch (const ComputationFailed& failure) {
+    throw ComputationFailed(fmt::format("{}; {}", failure.what(), advice(p)));
+  }
+  out.stress = solver.corner_stress();
+  out.displacement = solver.corner_displacement();
+  out.points = solver.points();
+  out.steps = solver.steps();
+  out.weight = p.rho_g * width * p.height / 2;
+  out.base_force = solver.reaction(on_base);
+  out.unknowns = solver.unknowns();
+  return out;
+}
+
+WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
+  const WedgeProblem& p = result.problem;
+  WedgeCore core;
+  for (int k = 0; k < kCoreDepths; ++k) {
+    const double depth = p.height * (kCoreFrom + (kCoreTo - kCoreFrom) * k / (kCoreDepths - 1.));
+    core.depth.push_back(depth);
+    for (const double side : {-1., 1.}) {
+      const double slope = side < 0 ? p.left_deg : p.right_deg;
+      const double outside = depth / std::tan(slope * kDegree);
+      double x = outside;
+      for (int s = kCoreSamples - 1; s >= 0; --s) {
+        x = outside * s / kCoreSamples;
+        if (result.mobilized_at({side * x, -depth}) < mobilized) break;
+      }
+      (side < 0 ? core.left : core.right).push_back(side * x);
+    }
+    core.axis_mobilized += result.mobilized_at({0, -depth}) / kCoreDepths;
+  }
+  const auto fit = [&](const std::vector<double>& x, double& degrees, double& misfit) {
+    double xd = 0, dd = 0, square = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      xd += std::abs(x[k]) * core.depth[k];
+      dd += core.depth[k] * core.depth[k];
+    }
+    const double tangent = xd / dd;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      square += std::pow(std::abs(x[k]) / core.depth[k] - tangent, 2);
+    degrees = std::atan(tangent) / kDegree;
+    misfit = std::sqrt(square / static_cast<double>(x.size()));
+  };
+  fit(core.left, core.left_deg, core.left_misfit);
+  fit(core.right, core.right_deg, core.right_misfit);
+  return core;
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,93 @@
+// A heap of Mohr-Coulomb material under its own weight, solved by finite elements: plane strain,
+// triangular outline with slopes left_deg and right_deg, apex at (0, 0), base y = -height, on a
+// rough, frictional or smooth ground.
+//
+// Cohesionless material at its angle of repose has no strength to spare: a cohesion of the stated
+// part of rho g h keeps the equations solvable, and is to be taken to zero by the user (all the
+// stresses scale with rho g h, so only cohesion/(rho g h) and E/(rho g h) matter, the latter
+// hardly).
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "continuum/fe/plastic_solver.h"
+#include "continuum/model.h"
+
+namespace grainfield::continuum {
+
+enum class WedgeBase { rough, frictional, smooth };
+
+/// How the weight comes onto the heap.
+enum class WedgeHistory {
+  at_once,  ///< gravity is raised on the whole heap, in `steps` steps
+  rise,     ///< horizontal layers are laid one on another
+  grow      ///< similar heaps on the final base: layers along the slopes, as from a source above
+};
+
+struct WedgeProblem {
+  double left_deg = 28, right_deg = 28;  ///< slopes, above 0, at most the friction angle + cohesion
+  double height = 1;                     ///< of the apex above the base, m
+  double rho_g = 1;                      ///< weight per volume, N/m^3 (2D: N/m^2)
+  double young = 1000, poisson = 0.3;    ///< young in units of rho g h
+  double friction_deg = 28, dilation_deg = 0;
+  double cohesion = 1e-3;  ///< in units of rho g h
+  WedgeBase base = WedgeBase::rough;
+  double base_friction_deg = 28;  ///< of a frictional base
+  double base_stiffness = 100;    ///< of its springs, in units of E/h
+  WedgeHistory history = WedgeHistory::at_once;
+  int steps = 1;   ///< at_once: equal steps of gravity; layers: steps for the weight of each
+  int layers = 8;  ///< of rise and grow
+  int cells = 32;  ///< triangles along each side of the heap; a multiple of 2 layers fits them
+  double tolerance = 1e-9;
+  int iterations = 25;
+};
+
+struct WedgeResult {
+  WedgeProblem problem;
+  fe::TriangleMesh mesh;
+  Eigen::MatrixXd stress;              ///< per corner: xx, yy, zz, xy, tension positive
+  Eigen::MatrixXd displacement;        ///< per corner: x, y since the corner was laid
+  std::vector<fe::PointState> points;  ///< three per triangle
+  std::vector<fe::LoadStep> steps;     ///< with each step's Newton history
+  double weight = 0;                   ///< of the heap
+  Eigen::Vector2d base_force = Eigen::Vector2d::Zero();  ///< of the ground on the heap
+  int unknowns = 0;
+
+  /// Index of the triangle that holds the point; -1 outside.
+  int triangle_at(const Eigen::Vector2d& point) const;
+  /// Stress xx, yy, zz, xy at a point, linear between the corners; nan outside.
+  plasticity::Vector4 stress_at(const Eigen::Vector2d& point) const;
+  Eigen::Vector2d displacement_at(const Eigen::Vector2d& point) const;
+  /// Mobilized part of the friction, (s1 - s3) / (-(s1 + s3) sin phi): 1 at the limit without
+  /// cohesion; larger than 1 only by cohesion.
+  double mobilized_at(const Eigen::Vector2d& point) const;
+};
+
+/// The boundary between the plastic flanks and the elastic core: seen from the slopes, at each
+/// depth the first place where the friction is no longer mobilized. Inside, about the axis, the
+/// heap may yield again (Cantelaube's branches with a yield line there).
+struct WedgeCore {
+  std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0 at a depth
+  double axis_mobilized = 0;               ///< mobilized friction on the axis, mean over the depths
+  /// Angle from the vertical of the straight line from the apex that fits the boundary best, in
+  /// degrees (Cantelaube's beta_hat), and how far the boundary is from it (root mean square over
+  /// the depth).
+  double left_deg = 0, right_deg = 0, left_misfit = 0, right_misfit = 0;
+};
+
+/// Throws BadParameter naming the value found and what is allowed.
+void check_wedge(const WedgeProblem& problem);
+
+/// As a model of the registry, from complete settings (fe_models.cc declares them).
+std::unique_ptr<Model> make_wedge_model(const Settings& settings);
+
+/// Throws BadParameter, or ComputationFailed naming the last converged load and what to try.
+WedgeResult solve_wedge(const WedgeProblem& problem);
+
+/// `mobilized`: part of the sine of the friction angle beyond which a place counts as plastic.
+/// Between 0.3 and 0.9 of the height: above there are too few cells, below the base holds the
+/// material.
+WedgeCore wedge_core(const WedgeResult& result, double mobilized = 0.99);
+
+}  // namespace grainfield::continuum

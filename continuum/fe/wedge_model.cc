@@ -1,0 +1,120 @@
+// The wedge as a model of the registry, and its further quantities at points.
+#include <limits>
+
+#include "continuum/fe/wedge.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+class WedgeModel : public Model {
+ public:
+  explicit WedgeModel(const Settings& s) {
+    const auto whole = [&s](const char* name) { return static_cast<int>(number_of(s, name)); };
+    WedgeProblem& p = problem_;
+    p.friction_deg = number_of(s, "phi_deg");
+    p.left_deg = number_of(s, "left_deg");
+    p.right_deg = number_of(s, "right_deg");
+    if (p.left_deg == 0) p.left_deg = p.friction_deg;
+    if (p.right_deg == 0) p.right_deg = p.left_deg;
+    p.height = number_of(s, "h");
+    p.rho_g = number_of(s, "rho_g");
+    p.young = number_of(s, "E");
+    p.poisson = number_of(s, "nu");
+    p.dilation_deg = number_of(s, "dilation_deg");
+    p.cohesion = number_of(s, "cohesion");
+    const std::string& base = s.at("base");
+    p.base = base == "rough"    ? WedgeBase::rough
+             : base == "smooth" ? WedgeBase::smooth
+                                : WedgeBase::frictional;
+    p.base_friction_deg = number_of(s, "base_friction_deg");
+    p.base_stiffness = number_of(s, "base_stiffness");
+    const std::string& history = s.at("history");
+    p.history = history == "at_once" ? WedgeHistory::at_once
+                : history == "rise"  ? WedgeHistory::rise
+                                     : WedgeHistory::grow;
+    p.steps = whole("steps");
+    p.layers = whole("layers");
+    p.cells = whole("cells");
+    p.iterations = whole("iterations");
+    p.tolerance = number_of(s, "tolerance");
+    check_wedge(p);
+  }
+
+  Stresses stress(const Points& points) override {
+    solve();
+    Stresses out(points.rows(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const plasticity::Vector4 s = solved_->stress_at(points.row(i).transpose());
+      out.row(i) << s[0], s[1], s[3];
+    }
+    return out;
+  }
+
+  std::vector<Quantity> quantities(const Points& points) override {
+    solve();
+    const WedgeResult& r = *solved_;
+    std::vector<Quantity> out;
+    for (const char* name : {"sigma_zz", "displacement_x", "displacement_y", "mobilized", "plastic",
+                             "plastic_shear", "plastic_volume"})
+      out.push_back({name, Eigen::VectorXd::Constant(points.rows(),
+                                                     std::numeric_limits<double>::quiet_NaN())});
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const Eigen::Vector2d at = points.row(i).transpose();
+      const int triangle = r.triangle_at(at);
+      if (triangle < 0) continue;
+      const Eigen::Vector2d u = r.displacement_at(at);
+      // Of the cell: the share of its points that yielded last, and the means of their strains.
+      double plastic = 0, shear = 0, volume = 0;
+      for (std::size_t q = 0; q < 3; ++q) {
+        const auto& p = r.points[3 * static_cast<std::size_t>(triangle) + q];
+        plastic += (p.regime != plasticity::Regime::elastic) / 3.;
+        shear += p.plastic_shear / 3;
+        volume += p.plastic_strain.head<3>().sum() / 3;
+      }
+      const std::array<double, 7> values{
+          r.stress_at(at)[2], u[0], u[1], r.mobilized_at(at), plastic, shear, volume};
+      for (std::size_t k = 0; k < values.size(); ++k) out[k].values[i] = values[k];
+    }
+    return out;
+  }
+
+  std::map<std::string, double> figures() const override {
+    if (!solved_) return {};
+    const WedgeCore core = wedge_core(*solved_);
+    double iterations = 0, plastic = 0;
+    for (const auto& step : solved_->steps)
+      iterations += static_cast<double>(step.history.size()) - 1;
+    for (const auto& p : solved_->points)
+      plastic += (p.regime != plasticity::Regime::elastic) * p.area;
+    const double weight = solved_->weight;
+    return {{"unknowns", solved_->unknowns},
+            {"load_steps", static_cast<double>(solved_->steps.size())},
+            {"newton_iterations", iterations},
+            {"residual", solved_->steps.back().history.back()},
+            {"weight_ratio", solved_->base_force[1] / weight},
+            {"thrust_ratio", solved_->base_force[0] / weight},
+            {"axis_mobilized", core.axis_mobilized},
+            {"plastic_share", plastic * problem_.rho_g / weight},
+            {"beta_hat_left_deg", core.left_deg},
+            {"beta_hat_right_deg", core.right_deg},
+            {"beta_hat_left_misfit", core.left_misfit},
+            {"beta_hat_right_misfit", core.right_misfit}};
+  }
+
+ private:
+  void solve() {
+    if (!solved_) solved_ = std::make_unique<WedgeResult>(solve_wedge(problem_));
+  }
+
+  WedgeProblem problem_;
+  std::unique_ptr<WedgeResult> solved_;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_wedge_model(const Settings& settings) {
+  return std::make_unique<WedgeModel>(settings);
+}
+
+}  // namespace grainfield::continuum

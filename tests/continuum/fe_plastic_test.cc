@@ -1,0 +1,215 @@
+// The elasto-plastic solver: the plastic flank to round-off, Newton's order, a strip footing, heaps
+// in equilibrium with their ground, mirror symmetry, histories, failures that say what to try.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "continuum/fe/plastic_verification.h"
+#include "continuum/fe/wedge.h"
+#include "continuum/model.h"
+
+using namespace grainfield::continuum;
+using testing::HasSubstr;
+
+namespace {
+
+/// In some step three residuals in a row, none at round-off yet, of which each is at most
+/// 100 r^2, i.e. the number of correct digits doubles: r in units of a cell's weight, where the
+/// constant is of order one.
+bool quadratic(const std::vector<fe::LoadStep>& steps) {
+  for (const auto& step : steps) {
+    const auto& r = step.history;
+    for (std::size_t k = 2; k < r.size(); ++k) {
+      const bool fast = r[k] < 100 * r[k - 1] * r[k - 1] && r[k - 1] < 100 * r[k - 2] * r[k - 2];
+      if (r[k - 2] < 1e-2 && r[k - 2] > 1e-6 && fast) return true;
+    }
+  }
+  return false;
+}
+
+std::string print(const std::vector<fe::LoadStep>& steps) {
+  std::string out;
+  for (const auto& step : steps) {
+    out += "stage " + std::to_string(step.stage) + " load " + std::to_string(step.load) + ":";
+    for (const double r : step.history) {
+      char text[32];
+      std::snprintf(text, sizeof text, " %.1e", r);
+      out += text;
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+WedgeProblem heap(int cells, double slope) {
+  WedgeProblem p;
+  p.cells = cells;
+  p.left_deg = p.right_deg = slope;
+  return p;
+}
+
+std::string failure(const WedgeProblem& p) {
+  try {
+    solve_wedge(p);
+  } catch (const ComputationFailed& error) {
+    return error.what();
+  }
+  return "solved";
+}
+
+std::string refusal(const Settings& settings) {
+  try {
+    make_model("fe_mohr_coulomb_wedge", settings);
+  } catch (const BadParameter& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST(FePlastic, PlasticFlankToRoundOff) {
+  for (const double phi : {28., 35.}) {
+    for (const double dilation : {0., 10., phi}) {
+      const FlankCheck flank = check_plastic_flank(phi, dilation, 1e-2, 4);
+      EXPECT_EQ(flank.plastic_share, 1) << phi << " " << dilation;
+      // Residuals of 1e-11 of a cell's weight leave the stress that much wrong at most.
+      EXPECT_LT(flank.stress_error, 1e-10) << phi << " " << dilation << "\n" << print(flank.steps);
+      EXPECT_LT(flank.corner_error, 1e-10) << phi << " " << dilation;
+    }
+  }
+}
+
+TEST(FePlastic, StripFootingApproachesPrandtlFromAbove) {
+  const double exact = 2 + std::numbers::pi;
+  double before = 1e9;
+  for (const int cells : {1, 2, 3}) {
+    const FootingCheck footing = check_strip_footing(0, 0, cells, 0.1);
+    std::printf("N_c with %d squares under half the strip: %.4f (exact %.4f)\n", cells,
+                footing.capacity, exact);
+    EXPECT_GT(footing.capacity, exact);
+    EXPECT_LT(footing.capacity, before);
+    EXPECT_LT(footing.last_rise, 5e-3);  // it has given way
+    before = footing.capacity;
+  }
+  EXPECT_LT(before, 1.08 * exact);
+}
+
+TEST(FePlastic, HeapRestsOnItsGround) {
+  for (const auto base : {WedgeBase::rough, WedgeBase::frictional}) {
+    for (const auto history : {WedgeHistory::at_once, WedgeHistory::rise, WedgeHistory::grow}) {
+      WedgeProblem p = heap(8, 22);
+      p.base = base;
+      p.history = history;
+      p.layers = 4;
+      p.cohesion = 1e-2;
+      const WedgeResult r = solve_wedge(p);
+      EXPECT_NEAR(r.base_force[1] / r.weight, 1, 1e-8);
+      EXPECT_NEAR(r.base_force[0] / r.weight, 0, 1e-8);
+      const plasticity::MohrCoulombLaw law({p.young, p.poisson, 28, 0, p.cohesion});
+      for (const auto& point : r.points) EXPECT_LE(law.yield(point.stress), 1e-12);
+      EXPECT_TRUE(quadratic(r.steps)) << print(r.steps);
+      // The mirrored heap has the mirrored stress.
+      for (const double x : {0.3, 0.9, 1.7}) {
+        const auto right = r.stress_at({x, -0.9}), left = r.stress_at({-x, -0.9});
+        EXPECT_NEAR(right[1], left[1], 1e-6);
+        EXPECT_NEAR(right[3], -left[3], 1e-6);
+      }
+    }
+  }
+}
+
+TEST(FePlastic, NewtonConvergesQuadratically) {
+  const WedgeResult r = solve_wedge(heap(12, 25));
+  std::printf("%s", print(r.steps).c_str());
+  EXPECT_TRUE(quadratic(r.steps));
+}
+
+TEST(FePlastic, AsymmetricHeapAndItsMirrorImage) {
+  WedgeProblem p = heap(8, 26);
+  p.right_deg = 18;
+  p.cohesion = 1e-2;
+  WedgeProblem mirrored = p;
+  std::swap(mirrored.left_deg, mirrored.right_deg);
+  const WedgeResult one = solve_wedge(p), two = solve_wedge(mirrored);
+  EXPECT_NEAR(one.base_force[1] / one.weight, 1, 1e-8);
+  for (const double x : {-1.2, -0.2, 0.4, 1.5}) {
+    const auto a = one.stress_at({x, -0.8}), b = two.stress_at({-x, -0.8});
+    EXPECT_NEAR(a[0], b[0], 1e-6);
+    EXPECT_NEAR(a[1], b[1], 1e-6);
+    EXPECT_NEAR(a[3], -b[3], 1e-6);
+  }
+}
+
+// Stresses scale with rho g h; the modulus sets the displacements only.
+TEST(FePlastic, StressesScaleWithTheWeight) {
+  WedgeProblem p = heap(8, 24);
+  p.cohesion = 1e-2;
+  WedgeProblem large = p;
+  large.height = 3;
+  large.rho_g = 5e4;
+  WedgeProblem soft = p;
+  soft.young = 100;
+  const WedgeResult a = solve_wedge(p), b = solve_wedge(large), c = solve_wedge(soft);
+  const double scale = 3 * 5e4;
+  for (const double x : {0.1, 0.8}) {
+    EXPECT_LT((b.stress_at({3 * x, -2.4}) / scale - a.stress_at({x, -0.8})).norm(), 1e-7);
+    EXPECT_LT((c.stress_at({x, -0.8}) - a.stress_at({x, -0.8})).norm(), 1e-7);
+    EXPECT_LT((c.displacement_at({x, -0.8}) / 10 - a.displacement_at({x, -0.8})).norm(), 1e-9);
+  }
+}
+
+TEST(FePlastic, HistoriesDiffer) {
+  WedgeProblem p = heap(12, 26);
+  p.layers = 6;
+  p.cohesion = 1e-2;
+  const WedgeResult once = solve_wedge(p);
+  p.history = WedgeHistory::grow;
+  const WedgeResult grown = solve_wedge(p);
+  EXPECT_GT(std::abs(once.stress_at({0, -0.99})[1] - grown.stress_at({0, -0.99})[1]), 1e-3);
+}
+
+TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
+  WedgeProblem p = heap(6, 25);
+  p.base = WedgeBase::smooth;
+  const std::string text = failure(p);
+  EXPECT_THAT(text, HasSubstr("fe_mohr_coulomb_wedge: no equilibrium found beyond 0."));
+  EXPECT_THAT(text, HasSubstr("of the load; Newton's method stopped at"));
+  EXPECT_THAT(text, HasSubstr("choose base = rough or frictional, or raise cohesion"));
+  p.base = WedgeBase::rough;
+  p.left_deg = p.right_deg = 40;  // far above the friction angle
+  EXPECT_THAT(
+      failure(p),
+      HasSubstr("raise cohesion (now 0.001 rho g h), iterations or steps; the slope, 40 deg, is "
+                "above phi_deg, 28"));
+}
+
+TEST(FePlastic, RefusesWhatDoesNotFit) {
+  EXPECT_EQ(refusal({}), "accepted");
+  EXPECT_THAT(refusal({{"dilation_deg", "30"}}),
+              HasSubstr("dilation_deg = 30 is out of range; allowed: 0 to phi_deg, 28"));
+  EXPECT_THAT(refusal({{"left_deg", "30"}, {"cohesion", "0"}}),
+              HasSubstr("slope = 30 is out of range; allowed: 0 to phi_deg, 28, where cohesion"));
+  EXPECT_THAT(refusal({{"layers", "40"}}), HasSubstr("layers = 40 is out of range"));
+}
+
+TEST(FePlastic, ModelGivesStressQuantitiesAndFigures) {
+  const auto model = make_model("fe_mohr_coulomb_wedge",
+                                {{"cells", "8"}, {"left_deg", "22"}, {"cohesion", "0.01"}});
+  Points points(3, 2);
+  points << 0, -0.5, 0.4, -0.7, 5, -0.5;
+  const Stresses s = model->stress(points);
+  EXPECT_LT(s(0, 1), -0.2);
+  EXPECT_LT(s(0, 1), s(0, 0));
+  EXPECT_NEAR(s(0, 2), 0, 1e-2);
+  EXPECT_TRUE(std::isnan(s(2, 0)));
+  const auto quantities = model->quantities(points);
+  ASSERT_EQ(quantities.size(), 7u);
+  EXPECT_EQ(quantities[2].name, "displacement_y");
+  EXPECT_LT(quantities[2].values[0], 0);
+  EXPECT_TRUE(std::isnan(quantities[2].values[2]));
+  const auto figures = model->figures();
+  EXPECT_NEAR(figures.at("weight_ratio"), 1, 1e-8);
+  EXPECT_GT(figures.at("beta_hat_left_deg"), 0);
+}
