@@ -96,8 +96,9 @@ void check_wedge(const WedgeProblem& p) {
     refuse(steepest > p.friction_deg, "slope", steepest,
            fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
   refuse(p.cells < 2, "cells", p.cells, "at least 2");
-  refuse(p.layers < 1 || p.layers > p.cells, "layers", p.layers,
-         fmt::format("1 to cells, {}", p.cells));
+  if (p.history != WedgeHistory::at_once)
+    refuse(p.layers < 1 || p.layers > p.cells, "layers", p.layers,
+           fmt::format("1 to cells, {}", p.cells));
   refuse(p.steps < 1, "steps", p.steps, "at least 1");
 }
 

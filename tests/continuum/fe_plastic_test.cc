@@ -191,7 +191,8 @@ TEST(FePlastic, RefusesWhatDoesNotFit) {
               HasSubstr("dilation_deg = 30 is out of range; allowed: 0 to phi_deg, 28"));
   EXPECT_THAT(refusal({{"left_deg", "30"}, {"cohesion", "0"}}),
               HasSubstr("slope = 30 is out of range; allowed: 0 to phi_deg, 28, where cohesion"));
-  EXPECT_THAT(refusal({{"layers", "40"}}), HasSubstr("layers = 40 is out of range"));
+  EXPECT_THAT(refusal({{"history", "rise"}, {"layers", "40"}}),
+              HasSubstr("layers = 40 is out of range"));
 }
 
 TEST(FePlastic, ModelGivesStressQuantitiesAndFigures) {
