@@ -72,7 +72,7 @@ FlankCheck check_plastic_flank(double phi_deg, double dilation_deg, double shear
         return fe::Support{{true, true}, false};
       },
       {}, settings);
-  solver.load(std::vector<Vector2d>(mesh.triangles.size(), {0, -1}), displacement);
+  solver.load(std::vector<Vector2d>(mesh.triangles.size(), Vector2d(0, -1)), displacement);
 
   FlankCheck out;
   const double scale = syy * 1.5;

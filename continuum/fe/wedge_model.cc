@@ -1,4 +1,5 @@
 // The wedge as a model of the registry, and its further quantities at points.
+#include <array>
 #include <limits>
 
 #include "continuum/fe/wedge.h"

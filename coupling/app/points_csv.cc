@@ -94,7 +94,10 @@ std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& s
   std::string out = points.cols() == 2
                         ? "x,y,sigma_xx,sigma_yy,sigma_xy"
                         : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy";
-  for (const auto& quantity : quantities) out += "," + quantity.name;
+  for (const auto& quantity : quantities) {
+    out += ',';
+    out += quantity.name;
+  }
   out += '\n';
   const auto add = [&out](double value) {
     out += std::isnan(value) ? ",nan" : fmt::format(",{}", value);
