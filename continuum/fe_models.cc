@@ -172,8 +172,11 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
        whole_number("layers", "of the histories rise and grow", "numerics", 8, 1, 1000),
        whole_number("cells", "triangles along each side; a multiple of 2 layers fits the layers",
                     "numerics", 32, 2, 1000),
-       number("tolerance", "-", "residual over a cell's weight at which Newton's method ends",
-              "numerics", 1e-9, 1e-13, 1e-3),
+       number(
+           "tolerance", "-",
+           "residual over a cell's weight at which Newton's method ends; where it stalls 1e-5 will "
+           "do (figure largest_residual)",
+           "numerics", 1e-9, 1e-13, 1e-3),
        whole_number("iterations", "most Newton iterations in a load step", "numerics", 25, 1,
                     1000)},
       make_in_plugin<wedge_name>};

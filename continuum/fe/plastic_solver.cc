@@ -276,7 +276,7 @@ struct PlasticSolver::Impl {
       u += (target - reached) * move;
       if (moved && rate.isZero(0)) elastic_guess(forces, u);
       const NewtonReport report = solve(forces, u);
-      if (!report.converged) {
+      if (!report.converged && !(report.history.back() <= settings.stalled)) {
         step = (target - reached) / 2;
         rate.setZero();
         if (step < settings.least_step)

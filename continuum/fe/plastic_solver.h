@@ -36,10 +36,12 @@ struct PlasticSettings {
   std::string name = "plasticity";  ///< begins the messages of failures
   double force_scale = 1;           ///< a large residual of a node, N (2D: N/m)
   double tolerance = 1e-9;          ///< largest residual of a node over the force scale
-  int iterations = 25;              ///< most Newton iterations in a load step
-  double first_step = 1;            ///< part of a stage's load that is tried first
-  double least_step = 1e-3;         ///< a smaller one is given up
-  double tangent_floor = 1e-9;      ///< of the elastic stiffness, added to the tangent alone
+  /// Where Newton's method stalls, at a corner of the yield surface, this residual will do.
+  double stalled = 1e-5;
+  int iterations = 25;          ///< most Newton iterations in a load step
+  double first_step = 1;        ///< part of a stage's load that is tried first
+  double least_step = 1e-3;     ///< a smaller one is given up
+  double tangent_floor = 1e-9;  ///< of the elastic stiffness, added to the tangent alone
 };
 
 /// One converged load step.

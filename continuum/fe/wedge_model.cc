@@ -1,4 +1,5 @@
 // The wedge as a model of the registry, and its further quantities at points.
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -83,16 +84,18 @@ class WedgeModel : public Model {
   std::map<std::string, double> figures() const override {
     if (!solved_) return {};
     const WedgeCore core = wedge_core(*solved_);
-    double iterations = 0, plastic = 0;
-    for (const auto& step : solved_->steps)
+    double iterations = 0, plastic = 0, residual = 0;
+    for (const auto& step : solved_->steps) {
       iterations += static_cast<double>(step.history.size()) - 1;
+      residual = std::max(residual, step.history.back());
+    }
     for (const auto& p : solved_->points)
       plastic += (p.regime != plasticity::Regime::elastic) * p.area;
     const double weight = solved_->weight;
     return {{"unknowns", solved_->unknowns},
             {"load_steps", static_cast<double>(solved_->steps.size())},
             {"newton_iterations", iterations},
-            {"residual", solved_->steps.back().history.back()},
+            {"largest_residual", residual},
             {"weight_ratio", solved_->base_force[1] / weight},
             {"thrust_ratio", solved_->base_force[0] / weight},
             {"axis_mobilized", core.axis_mobilized},
