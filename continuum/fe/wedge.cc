@@ -241,17 +241,18 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
     }
     core.axis_mobilized += result.mobilized_at({0, -depth}) / kCoreDepths;
   }
+  const auto median = [](std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
   const auto fit = [&](const std::vector<double>& x, double& degrees, double& misfit) {
-    double xd = 0, dd = 0, square = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      xd += std::abs(x[k]) * core.depth[k];
-      dd += core.depth[k] * core.depth[k];
-    }
-    const double tangent = xd / dd;
-    for (std::size_t k = 0; k < x.size(); ++k)
-      square += std::pow(std::abs(x[k]) / core.depth[k] - tangent, 2);
+    std::vector<double> tangents, apart;
+    for (std::size_t k = 0; k < x.size(); ++k) tangents.push_back(std::abs(x[k]) / core.depth[k]);
+    const double tangent = median(tangents);
+    for (const double t : tangents) apart.push_back(std::abs(t - tangent));
     degrees = std::atan(tangent) / kDegree;
-    misfit = std::sqrt(square / static_cast<double>(x.size()));
+    misfit = median(apart);
   };
   fit(core.left, core.left_deg, core.left_misfit);
   fit(core.right, core.right_deg, core.right_misfit);

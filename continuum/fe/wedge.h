@@ -70,9 +70,9 @@ struct WedgeResult {
 struct WedgeCore {
   std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0 at a depth
   double axis_mobilized = 0;               ///< mobilized friction on the axis, mean over the depths
-  /// Angle from the vertical of the straight line from the apex that fits the boundary best, in
-  /// degrees (Cantelaube's beta_hat), and how far the boundary is from it (root mean square over
-  /// the depth).
+  /// Angle from the vertical, in degrees, of the line from the apex that has half of the boundary
+  /// on either side (Cantelaube's beta_hat): the arc tangent of the median of |x|/depth. Misfit:
+  /// the median distance from it in |x|/depth; large, there is no such line.
   double left_deg = 0, right_deg = 0, left_misfit = 0, right_misfit = 0;
 };
 
