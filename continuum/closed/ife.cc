@@ -16,15 +16,16 @@ namespace grainfield::continuum {
 namespace {
 
 using std::numbers::pi;
-// Degree of the polynomials: the balance of forces is met to 1e-9 rho g.
-constexpr int kDegree = 40;
+// Degree of the polynomials: the balance of forces is met to 4e-8 rho g. With higher degrees
+// Newton's method fails, so near is the next solution at the singular slope.
+constexpr int kDegree = 26;
 // Newton's method ends when its step is below this share of the solution.
-constexpr double kConverged = 1e-13;
+constexpr double kConverged = 1e-11;
 constexpr int kMostSteps = 100;
 // Friction angles for which the polynomials suffice, degrees.
-constexpr double kLeastAngle = 5, kLargestAngle = 60;
+constexpr double kLeastAngle = 15, kLargestAngle = 60;
 // Accepted residual between the collocation points, rho g.
-constexpr double kBalanced = 1e-9;
+constexpr double kBalanced = 1e-6;
 // Friction angle at which the straight guess converges, steps away from it and the least of them,
 // rad.
 constexpr double kStart = 0.5, kStep = 0.05, kLeastStep = 1e-3;
@@ -127,25 +128,32 @@ std::optional<Solution> newton(double phi, Solution out) {
   const double cot = 1 / std::tan(phi);
   const Eigen::VectorXd x = points_of(n), xi = cot / 2 * (x.array() + 1);
   const Eigen::MatrixXd d = 2 / cot * differentiation(x);
+  const double s = std::sin(phi), slope_a = 1 / (cot - s * std::cos(phi) / (1 + s * s)),
+               slope_w = cot * slope_a - 1;
   Eigen::MatrixXd jacobian(2 * n + 2, 2 * n + 2);
   Eigen::VectorXd residual(2 * n + 2);
   for (int step = 0; step < kMostSteps; ++step) {
     jacobian.setZero();
     const Eigen::VectorXd da = d * out.a, dw = d * out.w;
-    for (int i = 0; i <= n; ++i) {
+    // On the slope the smooth solution's values, which the equations alone would leave to chance.
+    residual[0] = out.a[0] - slope_a;
+    jacobian(0, 0) = 1;
+    residual[n + 1] = out.w[0] - slope_w;
+    jacobian(n + 1, n + 1) = 1;
+    for (int i = 1; i <= n; ++i) {
       const double delta = cot - xi[i];
-      // The vertical balance, everywhere.
+      // The vertical balance.
       residual[i] =
           -out.w[i] + delta * dw[i] + delta * out.a[i] - xi[i] * (-out.a[i] + delta * da[i]) - 1;
       jacobian.row(i).head(n + 1) = -xi[i] * delta * d.row(i);
       jacobian(i, i) += delta + xi[i];
       jacobian.row(i).tail(n + 1) = delta * d.row(i);
       jacobian(i, n + 1 + i) -= 1;
-      // The horizontal one, but for the slope, where it follows; there the axis has its say.
+      // The horizontal one; on the axis no shear.
       const int row = n + 1 + i;
-      if (i == 0) {
+      if (i == n) {
         residual[row] = out.w[n];
-        jacobian(row, 2 * n + 1) = 1;
+        jacobian(row, row) = 1;
         continue;
       }
       using C = std::complex<double>;

@@ -17,7 +17,7 @@ namespace grainfield::continuum {
 
 class IfeField : public HeapField {
  public:
-  /// `phi` in rad, 5 to 60 degrees. Throws ComputationFailed when Newton's method does not
+  /// `phi` in rad, 15 to 60 degrees. Throws ComputationFailed when Newton's method does not
   /// converge.
   IfeField(double phi, double rho_g);
   /// The polynomials' own derivatives; sigma_xx follows from the yield condition exactly.

@@ -176,13 +176,13 @@ TEST(Heaps, NotANumberOutside) {
 // Smooth fields from polynomials: the balance holds to the collocation's accuracy.
 TEST(Ife, BalancesYieldsEverywhereAndCarriesItsWeight) {
   Random random(9);
-  for (double degrees = 15; degrees <= 40; degrees += 0.5) {
+  for (double degrees = 15; degrees <= 60; degrees += 0.5) {
     const IfeField field(degrees * kDegree, 3);
-    EXPECT_NEAR(base_force(field, 1000) / weight_above(field), 1, 1e-10) << degrees;
+    EXPECT_NEAR(base_force(field, 1000) / weight_above(field), 1, 1e-7) << degrees;
     for (int k = 0; k < 40; ++k) {
       const std::size_t r = k % 2;
       const auto p = random_point(random, field, r);
-      EXPECT_LT(field.equilibrium_residual(r, p.x(), p.y()).norm(), 3e-9) << degrees;
+      EXPECT_LT(field.equilibrium_residual(r, p.x(), p.y()).norm(), 3e-7) << degrees;
       const Eigen::Vector3d s = field.stress(p.x(), p.y());
       EXPECT_NEAR(mobilised_sine(s) / std::sin(field.phi()), 1, 1e-9) << degrees;
       EXPECT_GE(std::fabs(s[1]), std::fabs(s[0]));  // the active state
@@ -233,8 +233,8 @@ TEST(Ife, AgreesWithShootingFromTheAxis) {
   double v = 0, w = 0;
   for (const double share : {0.3, 0.6, 0.8, 0.9}) {
     EXPECT_EQ(shoot(centre, share * cot, v, w), Fate::none);
-    EXPECT_NEAR(-field.stress(share * cot, -1)[1], v, 1e-7);
-    EXPECT_NEAR(field.stress(share * cot, -1)[2], w, 1e-7);
+    EXPECT_NEAR(-field.stress(share * cot, -1)[1], v, 1e-6);
+    EXPECT_NEAR(field.stress(share * cot, -1)[2], w, 1e-6);
   }
   // A little more pressure on the axis or a little less, and there is no way to the slope.
   EXPECT_EQ(shoot(1.001 * centre, 0.99 * cot, v, w), Fate::characteristic);

@@ -231,8 +231,8 @@ TEST(Osl, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal("fpa", {{"mu", "0"}}), HasSubstr("fpa: no parameter 'mu'"));
   EXPECT_THAT(refusal("bcc", {{"phi_deg", "100"}}), HasSubstr("allowed: 1 to 80 deg"));
   EXPECT_THAT(refusal("ife", {{"phi_deg", "0"}}), HasSubstr("phi_deg = 0 is out of range"));
-  EXPECT_THAT(refusal("ife", {{"phi_deg", "61"}}), HasSubstr("allowed: 5 to 60 deg"));
-  for (const char* end : {"5", "60"}) EXPECT_EQ(refusal("ife", {{"phi_deg", end}}), "accepted");
+  EXPECT_THAT(refusal("ife", {{"phi_deg", "61"}}), HasSubstr("allowed: 15 to 60 deg"));
+  for (const char* end : {"15", "60"}) EXPECT_EQ(refusal("ife", {{"phi_deg", end}}), "accepted");
   EXPECT_THAT(refusal("osl_layer", {{"eta", "0"}}), HasSubstr("eta = 0 is out of range"));
   EXPECT_THAT(refusal("osl_layer", {{"base", "rough"}}),
               HasSubstr("base = 'rough' is not one of absorbing, reflecting"));
