@@ -80,8 +80,7 @@ void require_entering(const Problem& problem, const Characteristics& c, const Fl
   throw BadParameter(fmt::format(
       "model {}: eta = {:.6g}, mu = {:.6g} at x = {:.6g}, depth {:.6g} have a characteristic "
       "outside the heap, dx/dy = {:.6g}; allowed: below cot(phi) = {:.6g}, the slope",
-      problem.name, c.eta, problem.mu(x, depth), x, depth,
-      std::max(std::abs(c.downwind), std::abs(c.upwind)), spread));
+      problem.name, c.eta, problem.mu(x, depth), x, depth, x < 0 ? -c.upwind : c.downwind, spread));
 }
 
 }  // namespace grainfield::continuum::osl
