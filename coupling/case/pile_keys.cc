@@ -98,7 +98,7 @@ void sleep(Section s) {
 void change(Section s) {
   s.numbers_or_none("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kPositive,
                     "after the rest gravity is changed to each of these, slowly, always from "
-                    "material.gravity; [] changes nothing",
+                    "material.gravity; [] changes nothing (pile-fields: takes 10 % away)",
                     "Roul 3.5-3.9");
   s.word("method", +IN(string, pile.change.method), {"newton", "damped"},
          "quasi-static solver on the contact network, or slow damped dynamics");

@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kNormal = 1.4826;  // standard deviation over median distance of normal numbers
 
+// Share of normal numbers below one standard deviation above the mean.
+constexpr double kOneAbove = 0.8413;
+
 std::vector<double> known(const std::vector<double>& numbers) {
   std::vector<double> out;
   std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(out),
@@ -41,15 +44,16 @@ RobustMean robust_mean(const std::vector<double>& numbers, int resamples) {
   BootstrapOptions options;
   options.interval = "percentile";
   options.resamples = resamples;
-  const auto interval = bootstrap(
-      out.count,
-      [&](const std::vector<int>& chosen) {
-        std::vector<double> drawn;
-        for (const int r : chosen) drawn.push_back(all[static_cast<std::size_t>(r)]);
-        return Eigen::VectorXd::Constant(1, median_of(std::move(drawn)));
-      },
-      options);
-  out.error = interval[0].error;
+  const Statistic statistic = [&](const std::vector<int>& chosen) -> Eigen::VectorXd {
+    std::vector<double> drawn;
+    for (const int r : chosen) drawn.push_back(all[static_cast<std::size_t>(r)]);
+    return Eigen::VectorXd::Constant(1, median_of(std::move(drawn)));
+  };
+  const Eigen::MatrixXd draws = bootstrap_draws(out.count, statistic, options);
+  const auto interval = bootstrap_intervals(out.count, statistic, draws, options);
+  std::vector<double> sorted(draws.col(0).begin(), draws.col(0).end());
+  std::sort(sorted.begin(), sorted.end());
+  out.error = (sorted_quantile(sorted, kOneAbove) - sorted_quantile(sorted, 1 - kOneAbove)) / 2;
   out.low = interval[0].low;
   out.high = interval[0].high;
   return out;

@@ -18,20 +18,20 @@
 namespace grainfield::coupling {
 namespace {
 
+// Strains come from this share of gravity where the case names no other.
+constexpr double kLowered = 0.9;
+
 std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
-  if (value.pile.change.gravity.empty()) {
-    throw std::invalid_argument(
-        "change.gravity: found none, expected one or more: strains come from a change of gravity "
-        "([8.829] takes 10 % away)");
-  }
+  dem::PileSetup setup = value.pile;
+  if (setup.change.gravity.empty()) setup.change.gravity = {kLowered * setup.material.gravity};
   if (value.grains.files.empty()) {
-    return dem::make_pile_run(value.pile,
+    return dem::make_pile_run(setup,
                               realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
                                                static_cast<std::uint64_t>(number)),
                               threads);
   }
   const FinishedPile pile = finished_pile(value, number);
-  return dem::make_pile_change_run(value.pile, pile.file, pile.group, threads);
+  return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
 }
 
 // Vertical pressure along rows of the grid: what profiles.csv holds.

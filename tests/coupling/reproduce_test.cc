@@ -85,7 +85,28 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "change.gravity_18.6.coordination_ratio",
                                    "dip.ratio",
                                    "dip.difference",
-                                   "dip.p_value"};
+                                   "dip.p_value",
+                                   "rve_size.stress_grains",
+                                   "rve_size.strain_grains",
+                                   "rve_size.fabric_grains",
+                                   "forces.tail_p_value",
+                                   "strain.dip_ratio",
+                                   "strain.cundall.difference_yy_low",
+                                   "strain.liao.difference_yy_low",
+                                   "strain.derivative.difference_yy_low",
+                                   "fabric.anisotropy",
+                                   "fabric.axis_left_deg",
+                                   "fabric.axis_right_deg",
+                                   "fabric.g2",
+                                   "fabric.nu_c_correlation",
+                                   "fabric.nu_correlation",
+                                   "invariants.trace_slope_ratio",
+                                   "change.gravity_0.981.coordination_ratio",
+                                   "change.gravity_18.639.coordination_ratio",
+                                   "elastic.young_over_grain",
+                                   "elastic.bulk_fabric_correlation",
+                                   "elastic.young_fabric_correlation",
+                                   "elastic.shear_fabric_correlation"};
   std::string text = "{\"dip.verdict\": \"dip\"";
   for (const std::string& key : keys) {
     EXPECT_NE(find_summary_key(key), nullptr) << key;
