@@ -261,7 +261,9 @@ ModelInfo ife_info() {
       "ife",
       "heap at the limit of friction everywhere (incipient failure everywhere)",
       2,
-      {friction_angle(), weight()},
+      {number("phi_deg", "deg", "friction angle, and slope of a heap at its angle of repose",
+              "Roul 4.2", 28, kLeastAngle, kLargestAngle),
+       weight()},
       [](const Settings& s) -> std::unique_ptr<Model> {
         return std::make_unique<HeapModel>(
             std::make_unique<IfeField>(number_of(s, "phi_deg") * pi / 180, number_of(s, "rho_g")),
