@@ -1,6 +1,8 @@
 // The finite-element models as the registry lists them. Their solvers are in a library of their own
 // (continuum/fe), which is loaded when the first of them is made: with it come deal.II's two
 // hundred libraries, and a program that only checks a case must not wait for those.
+#include "continuum/fe_models.h"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -53,9 +55,7 @@ fe::MakeFunction plugin() {
 
 template <const char* name>
 std::unique_ptr<Model> make_in_plugin(const Settings& settings) {
-  std::unique_ptr<Model> model;
-  plugin()(name, settings, g_ranks, model);
-  return model;
+  return make_in_fe_library(name, settings);
 }
 
 std::vector<Parameter> common_parameters() {
@@ -92,6 +92,12 @@ std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> part
 }  // namespace
 
 void solve_on(Ranks ranks) { g_ranks = ranks; }
+
+std::unique_ptr<Model> make_in_fe_library(const char* name, const Settings& settings) {
+  std::unique_ptr<Model> model;
+  plugin()(name, settings, g_ranks, model);
+  return model;
+}
 
 ModelInfo fe_elastic_layer_info() {
   return {

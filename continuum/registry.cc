@@ -6,6 +6,7 @@
 #include "continuum/closed/models.h"
 #include "continuum/fe/elastic.h"
 #include "continuum/model.h"
+#include "continuum/osl/models.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -18,7 +19,9 @@ const std::vector<ModelInfo>& registry() {
                                                 liffman_info(),
                                                 fe_elastic_layer_info(),
                                                 fe_elastic_half_space_info(),
-                                                fe_mohr_coulomb_wedge_info()};
+                                                fe_mohr_coulomb_wedge_info(),
+                                                fe_osl_wedge_info(),
+                                                fe_osl_layer_info()};
   return models;
 }
 

@@ -49,6 +49,7 @@ std::string nearest(const std::string& name, const std::vector<std::string>& nam
 
 std::string allowed(const Parameter& parameter) {
   if (!parameter.choices.empty()) return fmt::format("{}", fmt::join(parameter.choices, ", "));
+  if (is_text(parameter)) return "any text";
   const std::string unit = parameter.unit == "-" ? "" : " " + parameter.unit;
   const bool above_zero = parameter.least == kAboveZero;
   const bool bounded_below = parameter.least > -kUnbounded;
@@ -77,6 +78,12 @@ Parameter number(std::string name, std::string unit, std::string meaning, std::s
   return parameter;
 }
 
+Parameter optional_number(std::string name, std::string unit, std::string meaning,
+                          std::string source, double least, double most) {
+  return number(std::move(name), std::move(unit), std::move(meaning), std::move(source),
+                std::numeric_limits<double>::quiet_NaN(), least, most);
+}
+
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most) {
   Parameter parameter =
@@ -90,6 +97,12 @@ Parameter choice(std::string name, std::string meaning, std::string source,
   return {std::move(name),    "-",  std::move(meaning), std::move(source), 0, 0, 0,
           std::move(choices), false};
 }
+
+Parameter text(std::string name, std::string meaning, std::string source) {
+  return {std::move(name), "text", std::move(meaning), std::move(source), 0, 0, 0, {}, false};
+}
+
+bool is_text(const Parameter& parameter) { return parameter.unit == "text"; }
 
 Settings complete(const ModelInfo& info, const Settings& settings) {
   std::vector<std::string> names;
@@ -111,6 +124,8 @@ Settings complete(const ModelInfo& info, const Settings& settings) {
                                        info.name, parameter.name, word, fmt::join(choices, ", "),
                                        nearest(word, choices)));
       full[parameter.name] = word;
+    } else if (is_text(parameter)) {
+      full[parameter.name] = found == settings.end() ? "" : found->second;
     } else if (found == settings.end()) {
       full[parameter.name] = fmt::format("{}", parameter.value);
     } else {

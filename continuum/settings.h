@@ -15,9 +15,16 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 /// A numerical parameter.
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,
                  double value, double least, double most);
+/// A numerical parameter without a default: unset, number_of() gives nan and the meaning says what
+/// holds.
+Parameter optional_number(std::string name, std::string unit, std::string meaning,
+                          std::string source, double least, double most);
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);
+/// A parameter of any text, e.g. a file, empty by default; its unit is "text".
+Parameter text(std::string name, std::string meaning, std::string source);
+bool is_text(const Parameter& parameter);
 /// A parameter of words; the first choice is the default.
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices);

@@ -6,5 +6,8 @@ extern "C" void grainfield_fe_make(const char* name,
                                    grainfield::continuum::Ranks ranks,
                                    std::unique_ptr<grainfield::continuum::Model>& model) {
   grainfield::continuum::fe::choose_ranks(ranks);
-  model = grainfield::continuum::fe::make_model(name, settings);
+  const std::string model_name = name;
+  model = model_name.rfind("fe_osl_", 0) == 0
+              ? grainfield::continuum::fe::make_osl_model(model_name, settings)
+              : grainfield::continuum::fe::make_model(model_name, settings);
 }

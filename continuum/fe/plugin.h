@@ -10,6 +10,8 @@ namespace grainfield::continuum::fe {
 
 /// The named model ("fe_elastic_layer") with complete settings. Throws BadParameter.
 std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings);
+/// The same for "fe_osl_wedge" and "fe_osl_layer".
+std::unique_ptr<Model> make_osl_model(const std::string& name, const Settings& settings);
 
 /// Who solves from now on; see continuum::solve_on.
 void choose_ranks(Ranks ranks);

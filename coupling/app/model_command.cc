@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "continuum/model.h"
+#include "continuum/settings.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
@@ -17,6 +18,7 @@ namespace {
 
 std::string range_of(const continuum::Parameter& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
+  if (continuum::is_text(p)) return "any text";
   // Bounds this far out mean none; the smallest positive number means "above 0".
   constexpr double kFar = 1e300;
   std::string low = p.least < -kFar ? ""
@@ -43,7 +45,10 @@ void list_parameters(const continuum::ModelInfo& info) {
   fmt::print("{}: {}\n", info.name, info.summary);
   for (const auto& p : info.parameters) {
     fmt::print("  {} = {}  ({}; {})\n      {}{}\n", p.name,
-               p.choices.empty() ? fmt::format("{:g}", p.value) : p.choices.front(),
+               !p.choices.empty()      ? p.choices.front()
+               : continuum::is_text(p) ? "\"\""
+               : std::isnan(p.value)   ? "(unset)"
+                                       : fmt::format("{:g}", p.value),
                p.unit.empty() || p.unit == "-" ? "no unit" : p.unit, range_of(p), p.meaning,
                p.source.empty() ? "" : " [" + p.source + "]");
   }

@@ -66,7 +66,8 @@ void average(Section s) {
 void elastic(Section s) {
   s.number("force", "N", +IN(double, elastic.force), kPositive,
            "point load on the surface (2D: force as on one grain)");
-  s.number("height", "m", +IN(double, elastic.height), kPositive, "elastic-layer: its height h",
+  s.number("height", "m", +IN(double, elastic.height), kPositive,
+           "elastic-layer, osl-layer, osl-wedge: height h of the layer or the heap",
            "Roul table 5.1");
   s.number("dim", "-", +IN(Integer, elastic.dim), {2, 3},
            "2: plane strain, 3: space; models of the other dimension are left out");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -38,7 +39,7 @@ bool plain_name(const std::string& text) {
 }
 
 std::string model_value(const continuum::Parameter& parameter, const std::string& value) {
-  return parameter.choices.empty() ? value : "\"" + value + "\"";
+  return parameter.choices.empty() && !continuum::is_text(parameter) ? value : "\"" + value + "\"";
 }
 
 // A suffix that is a folder's name and part of a key: "friction_0.3".
@@ -138,9 +139,12 @@ std::string write_case(const Case& value) {
         out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, given->second));
       } else if (filled_by_run(p.name, value.study)) {
         out += fmt::format("# {} is filled from the run: {}\n", p.name, remark);
+      } else if (std::isnan(p.value)) {
+        out += fmt::format("# {} is unset: {}\n", p.name, remark);
       } else {
-        const std::string standard =
-            p.choices.empty() ? fmt::format("{}", p.value) : p.choices.front();
+        const std::string standard = continuum::is_text(p) ? std::string()
+                                     : p.choices.empty()   ? fmt::format("{}", p.value)
+                                                           : p.choices.front();
         out += fmt::format("# {}\n{} = {}\n", remark, p.name, model_value(p, standard));
       }
     }

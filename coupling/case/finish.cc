@@ -38,6 +38,7 @@ bool is_default(const continuum::ModelInfo& info, const std::string& name,
   for (const auto& p : info.parameters) {
     if (p.name != name) continue;
     if (!p.choices.empty()) return value == p.choices.front();
+    if (continuum::is_text(p)) return value.empty();
     return std::stod(value) == p.value;
   }
   return false;
@@ -104,7 +105,7 @@ void choose_models(Draft& draft) {
 
 void check_elastic(const Draft& draft) {
   const Case& value = draft.value;
-  if (value.study != "elastic-layer") return;
+  if (!section_applies("elastic", value.study) || value.study == "elastic-half-space") return;
   const auto& depths = value.elastic.depths;
   const double deepest = *std::max_element(depths.begin(), depths.end());
   if (deepest > value.elastic.height) {

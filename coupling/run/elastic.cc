@@ -5,35 +5,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "coupling/averaging/average.h"
-#include "coupling/run/models.h"
+#include "coupling/run/models_only.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// Points of a plane through the load, as the models want them: (x, y) or (x, 0, z).
-Eigen::MatrixXd in_space(const Eigen::MatrixXd& plane, int dim) {
-  if (dim == 2) return plane;
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(plane.rows(), 3);
-  out.col(0) = plane.col(0);
-  out.col(2) = plane.col(1);
-  return out;
-}
-
-Field stress_field(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stress, int nx, int ny) {
-  Field out;
-  out.points = points;
-  out.nx = nx;
-  out.ny = ny;
-  const bool plane = stress.cols() == 3;
-  const auto names = plane ? std::vector<const char*>{"sigma_xx", "sigma_yy", "sigma_xy"}
-                           : std::vector<const char*>{"sigma_xx", "sigma_yy", "sigma_zz",
-                                                      "sigma_yz", "sigma_xz", "sigma_xy"};
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    out.add(names[c], plane ? "N/m" : "Pa").value = stress.col(static_cast<Eigen::Index>(c));
-  }
-  return out;
-}
 
 std::vector<ModelChoice> of_dimension(const Case& value) {
   std::vector<ModelChoice> out;
@@ -54,88 +29,18 @@ std::vector<ModelChoice> of_dimension(const Case& value) {
 
 StudyResult analyse_elastic(const Case& value) {
   const ElasticSetup& setup = value.elastic;
-  const int dim = static_cast<int>(setup.dim);
-  const std::vector<ModelChoice> choices = of_dimension(value);
-  std::vector<double> depths = setup.depths;
-  std::sort(depths.begin(), depths.end());
+  const auto [least, most] = std::minmax_element(setup.depths.begin(), setup.depths.end());
   const bool layer = value.study == "elastic-layer";
-  const RunFacts facts{setup.force,
-                       layer ? setup.height : depths.back(),
-                       dim,
-                       depths.front(),
-                       layer ? setup.base : "",
-                       {}};
-  const int vertical = dim == 2 ? 1 : 2;
-
-  std::vector<PointSet> sets;
-  for (const double depth : depths) {
-    sets.push_back({in_space(
-        line_points(-setup.half_width, setup.half_width, static_cast<int>(setup.points), -depth),
-        dim)});
-  }
-  // The map leaves out the load itself, where stresses are infinite.
-  constexpr int kColumns = 61, kRows = 31;
-  const Eigen::MatrixXd grid = grid_points(-setup.half_width, setup.half_width, kColumns,
-                                           -depths.back(), -0.1 * depths.back(), kRows);
-  sets.push_back({in_space(grid, dim)});
-
-  StudyResult out;
-  out.value = value;
-  add_identity(out.summary, value);
-  std::vector<Profile> profiles;
-  std::vector<ModelProfiles> models;
-  double seconds = 0;
-  for (const auto& choice : choices) {
-    const Evaluation e = evaluate_model(choice, facts, sets);
-    seconds += e.seconds;
-    const std::string prefix = "model." + choice.label + ".";
-    out.summary[prefix + "name"] = choice.name;
-    for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
-    out.summary["time.model." + choice.label + "_s"] = e.seconds;
-    Field field = stress_field(grid, e.stresses.back(), kColumns, kRows);
-    field.attributes["model"] = choice.name;
-    for (const auto& [name, setting] : filled_settings(choice, facts)) {
-      field.attributes["model." + name] = setting;
-    }
-    if (&choice == &choices.front()) {
-      out.map = field;
-      for (std::size_t d = 0; d < depths.size(); ++d) {
-        Profile p;
-        p.name = fmt::format("depth {:g} m", depths[d]);
-        p.key = fmt::format("depth_{:g}", depths[d]);
-        p.depth = depths[d];
-        p.quantity = dim == 2 ? "-sigma_yy" : "-sigma_zz";
-        p.unit = dim == 2 ? "N/m" : "Pa";
-        p.x = sets[d].points.col(0);
-        p.mean = -e.stresses[d].col(vertical);
-        p.independent_length = p.x[1] - p.x[0];
-        profiles.push_back(std::move(p));
-      }
-    } else {
-      ModelProfiles m;
-      m.key = choice.label;
-      m.label = model_label(choice);
-      m.family = family_of(choice.name);
-      for (std::size_t d = 0; d < depths.size(); ++d) {
-        m.values.emplace_back(-e.stresses[d].col(vertical));
-      }
-      models.push_back(std::move(m));
-      out.model_maps.push_back({model_label(choice), e.stresses.back().col(vertical)});
-    }
-    out.fields.emplace_back("model_" + choice.label, std::move(field));
-  }
-  out.summary["time.continuum_s"] = seconds;
-  out.comparison = compare(std::move(profiles), std::move(models), facts.force, facts.height);
-  // No grains here: the first model is the reference, and there is nothing to support.
-  std::string sentence;
-  for (const auto& result : out.comparison.results) {
-    sentence +=
-        fmt::format("{}{} differs from {} by {:.2g} % (relative L2)", sentence.empty() ? "" : "; ",
-                    result.label, choices.front().label, 100 * result.overall.rel_l2);
-  }
-  out.comparison.verdict.sentence = sentence + ".";
-  add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
-  return out;
+  ModelsOnly where;
+  where.facts.force = where.load = setup.force;
+  where.facts.height = layer ? setup.height : *most;
+  where.facts.dim = static_cast<int>(setup.dim);
+  where.facts.depth = *least;
+  where.facts.base = layer ? setup.base : "";
+  where.depths = setup.depths;
+  where.half_width = setup.half_width;
+  where.points = static_cast<int>(setup.points);
+  return compare_models(value, of_dimension(value), where);
 }
 
 namespace {

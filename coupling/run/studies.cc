@@ -4,6 +4,7 @@
 
 #include "coupling/run/elastic.h"
 #include "coupling/run/lattice_pile.h"
+#include "coupling/run/osl.h"
 #include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
 
@@ -11,8 +12,8 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-      point_load_study(),         pile_study(), lattice_pile_study(), elastic_layer_study(),
-      elastic_half_space_study(),
+      point_load_study(),         pile_study(),      lattice_pile_study(), elastic_layer_study(),
+      elastic_half_space_study(), osl_wedge_study(), osl_layer_study(),
   };
   return all;
 }

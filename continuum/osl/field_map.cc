@@ -1,0 +1,147 @@
+#include "continuum/osl/field_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+
+#include "continuum/model.h"
+
+namespace grainfield::continuum::osl {
+namespace {
+
+/// Nodes may be off their place on the grid, and the grid short of the domain, by this share of a
+/// step.
+constexpr double kTolerance = 1e-6;
+const std::vector<std::string> kFields = {"rho_g", "eta", "mu"};
+
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
+  throw BadParameter(fmt::format("{}:{}: {}", file, line, why));
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out(1);
+  for (const char ch : text) {
+    if (ch == ',')
+      out.emplace_back();
+    else if (ch != ' ' && ch != '\t' && ch != '\r')
+      out.back() += ch;
+  }
+  return out;
+}
+
+std::vector<std::string> read_header(const std::string& file, int line, const std::string& text) {
+  auto names = split(text);
+  bool good = names.size() >= 3 && names[0] == "x" && names[1] == "y";
+  for (std::size_t i = 2; good && i < names.size(); ++i)
+    good = std::find(kFields.begin(), kFields.end(), names[i]) != kFields.end() &&
+           std::find(names.begin(), names.begin() + static_cast<long>(i), names[i]) ==
+               names.begin() + static_cast<long>(i);
+  if (!good)
+    refuse(file, line,
+           fmt::format("the header is \"{}\"; allowed: x,y and one or more of rho_g,eta,mu", text));
+  return names;
+}
+
+struct Row {
+  int line;
+  std::vector<double> values;
+};
+
+Row read_row(const std::string& file, int line, const std::string& text, std::size_t columns) {
+  Row row{line, {}};
+  for (const auto& word : split(text)) {
+    char* end = nullptr;
+    row.values.push_back(std::strtod(word.c_str(), &end));
+    if (word.empty() || *end != '\0' || !std::isfinite(row.values.back()))
+      refuse(file, line, fmt::format("\"{}\" is not a finite number", word));
+  }
+  if (row.values.size() != columns)
+    refuse(file, line, fmt::format("{} numbers, expected {}", row.values.size(), columns));
+  return row;
+}
+
+}  // namespace
+
+FieldMap read_field_map(const std::string& file) {
+  FieldMap map;
+  map.file = file;
+  if (file.empty()) return map;
+  std::ifstream stream(file);
+  if (!stream) throw BadParameter(file + ": cannot be opened");
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+  int line = 0;
+  for (std::string text; std::getline(stream, text);) {
+    ++line;
+    if (text.empty() || text == "\r" || text[0] == '#') continue;
+    if (names.empty())
+      names = read_header(file, line, text);
+    else
+      rows.push_back(read_row(file, line, text, names.size()));
+  }
+  std::size_t nx = 0;
+  while (nx < rows.size() && rows[nx].values[1] == rows[0].values[1]) ++nx;
+  const std::size_t ny = nx > 0 ? rows.size() / nx : 0;
+  if (nx < 2 || ny < 2 || nx * ny != rows.size())
+    refuse(file, line,
+           fmt::format("{} nodes with {} in the first row form no grid; allowed: 2 x 2 or more",
+                       rows.size(), nx));
+  map.nx = static_cast<int>(nx);
+  map.ny = static_cast<int>(ny);
+  map.x0 = rows[0].values[0];
+  map.y0 = rows[0].values[1];
+  map.dx = (rows[nx - 1].values[0] - map.x0) / static_cast<double>(nx - 1);
+  map.dy = (rows.back().values[1] - map.y0) / static_cast<double>(ny - 1);
+  if (!(map.dx > 0 && map.dy > 0))
+    refuse(file, rows[1].line, "x and y of the nodes must ascend, x fastest");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double x = map.x0 + static_cast<double>(k % nx) * map.dx,
+                 y = map.y0 + static_cast<double>(k / nx) * map.dy;
+    const auto& v = rows[k].values;
+    if (std::abs(v[0] - x) > kTolerance * map.dx || std::abs(v[1] - y) > kTolerance * map.dy)
+      refuse(file, rows[k].line,
+             fmt::format("node ({}, {}) is not on the regular grid, which has ({:.10g}, {:.10g}) "
+                         "here",
+                         v[0], v[1], x, y));
+  }
+  for (std::size_t c = 2; c < names.size(); ++c) {
+    Eigen::VectorXd& values = map.values[names[c]];
+    values.resize(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      values[static_cast<Eigen::Index>(k)] = rows[k].values[c];
+  }
+  return map;
+}
+
+double FieldMap::at(const std::string& name, double x, double y) const {
+  const Eigen::VectorXd& v = values.at(name);
+  const double s = std::clamp((x - x0) / dx, 0., nx - 1.),
+               t = std::clamp((y - y0) / dy, 0., ny - 1.);
+  const int i = std::min(static_cast<int>(s), nx - 2), j = std::min(static_cast<int>(t), ny - 2);
+  const double a = s - i, b = t - j;
+  const int k = i + nx * j;
+  return (1 - b) * ((1 - a) * v[k] + a * v[k + 1]) + b * ((1 - a) * v[k + nx] + a * v[k + nx + 1]);
+}
+
+Field FieldMap::field(const std::string& name, double otherwise) const {
+  if (values.count(name) == 0) return [otherwise](double, double) { return otherwise; };
+  const auto shared = std::make_shared<FieldMap>(*this);
+  return [shared, name](double x, double depth) { return shared->at(name, x, -depth); };
+}
+
+void FieldMap::require_cover(const std::string& model, double half_width, double depth) const {
+  if (values.empty()) return;
+  const double x1 = x0 + (nx - 1) * dx, y1 = y0 + (ny - 1) * dy;
+  if (x0 > -half_width + kTolerance * dx || x1 < half_width - kTolerance * dx ||
+      y0 > -depth + kTolerance * dy || y1 < -kTolerance * dy)
+    throw BadParameter(fmt::format(
+        "model {}: map {} covers x from {:.6g} to {:.6g} and y from {:.6g} to {:.6g}; allowed: a "
+        "map that covers x from {:.6g} to {:.6g} and y from {:.6g} to 0",
+        model, file, x0, x1, y0, y1, -half_width, half_width, -depth));
+}
+
+}  // namespace grainfield::continuum::osl

@@ -1,0 +1,250 @@
+#include "continuum/osl/models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "continuum/fe_models.h"
+#include "continuum/osl/field_map.h"
+#include "continuum/osl/flux.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace osl {
+namespace {
+
+constexpr char wedge_name[] = "fe_osl_wedge";
+constexpr char layer_name[] = "fe_osl_layer";
+/// Points this share of a heap's width beyond its slope are on it.
+constexpr double kOnSlope = 1e-9;
+/// Width of the load and room beyond the farthest characteristic where none are chosen, in depths.
+constexpr double kLoadWidth = 0.1, kRoom = 0.1;
+
+double number_or(const Settings& s, const std::string& name, double otherwise) {
+  const double value = number_of(s, name);
+  return std::isnan(value) ? otherwise : value;
+}
+
+struct Closure {
+  double eta = 0, mu = 0;
+};
+
+/// What is left open is such that the slope yields, eta = eta0 (1 - mu tan(phi)), eta0 = 1 / (1 + 2
+/// tan^2 phi) (Roul 4.24); both open: mu = -tan(phi), half way between BCC and FPA.
+Closure heap_closure(const Settings& s, double phi) {
+  double eta = number_of(s, "eta"), mu = number_of(s, "mu");
+  const double t = std::tan(phi), widening = 1 + 2 * t * t;
+  if (std::isnan(mu)) mu = std::isnan(eta) ? -t : (1 - eta * widening) / t;
+  if (std::isnan(eta)) eta = (1 - mu * t) / widening;
+  return {eta, mu};
+}
+
+/// Coefficients, numerics and what both bodies share.
+Task begin(const std::string& name, const Settings& s, const Closure& closure,
+           const FieldMap& map) {
+  Task task;
+  Problem& p = task.problem;
+  p.name = name;
+  p.weight = map.field("rho_g", number_of(s, "rho_g"));
+  p.eta = map.field("eta", closure.eta);
+  p.mu = map.field("mu", closure.mu);
+  task.order = static_cast<int>(number_of(s, "order"));
+  task.march.tolerance = number_of(s, "tolerance");
+  task.march.most_steps = static_cast<long>(number_of(s, "steps"));
+  return task;
+}
+
+Task wedge_task(const Settings& s) {
+  const double phi = number_of(s, "phi_deg") * std::numbers::pi / 180, slope = 1 / std::tan(phi);
+  const double depth = number_of(s, "h");
+  const FieldMap map = read_field_map(s.at("map"));
+  map.require_cover(wedge_name, slope * depth, depth);
+  Task task = begin(wedge_name, s, heap_closure(s, phi), map);
+  task.slope = slope;
+  const Characteristics c = characteristics(task.problem, 0, 0, 1);
+  require_entering(task.problem, c, upwind_flux(c, 1, -slope), slope, 0, 0);
+  const int columns = static_cast<int>(number_of(s, "columns"));
+  const int rows = static_cast<int>(number_of(s, "rows"));
+  if (s.at("mesh") == "box") {
+    task.mesh = box_mesh(slope * depth, depth, columns, rows);
+    task.problem.weight = [inside = task.problem.weight, slope](double x, double y) {
+      return std::abs(x) < slope * y ? inside(x, y) : 0;
+    };
+  } else {
+    task.mesh = heap_mesh(slope, depth, columns, rows, s.at("mesh") == "aligned" ? c.downwind : 0);
+  }
+  task.figures = {{"c1", c.downwind}, {"c2", c.upwind}, {"half_width", slope * depth}};
+  return task;
+}
+
+Task layer_task(const Settings& s) {
+  const double depth = number_of(s, "h"), load = number_of(s, "F");
+  const double width = number_or(s, "width", kLoadWidth * depth);
+  const FieldMap map = read_field_map(s.at("map"));
+  Task task = begin(layer_name, s, {number_of(s, "eta"), number_of(s, "mu")}, map);
+  Problem& p = task.problem;
+  p.mirrored = s.at("closure") == "mirrored";
+  p.sides = s.at("sides") == "walls" ? Sides::walls : Sides::far;
+  p.wall_friction = number_of(s, "wall_friction");
+  const Characteristics c = characteristics(p, 0, 0, 1);
+  if (p.sides == Sides::walls && !(c.eta > 0))
+    throw BadParameter(fmt::format(
+        "model {}: eta = {:.6g} has both characteristics on one side of the vertical; allowed "
+        "between walls: above 0",
+        layer_name, c.eta));
+  const double reach = std::max(std::abs(c.downwind), std::abs(c.upwind));
+  const double asked = depth * number_or(s, "half_width", reach + kRoom + width / (2 * depth));
+  if (asked < width / 2)
+    throw BadParameter(fmt::format(
+        "model {}: half_width = {:.6g} depths does not fit the load; allowed: at least {:.6g}, "
+        "half of width",
+        layer_name, asked / depth, width / (2 * depth)));
+  // The load ends on borders of columns.
+  const int under =
+      std::max(1, static_cast<int>(std::lround(number_of(s, "columns") * width / (2 * depth))));
+  const double step = width / 2 / under;
+  const int columns = std::max(under, static_cast<int>(std::ceil(asked / step - kOnSlope)));
+  const double half_width = columns * step;
+  task.mesh = box_mesh(half_width, depth, columns, static_cast<int>(number_of(s, "rows")));
+  map.require_cover(layer_name, half_width, depth);
+  p.surface = [load, width](double x, double) -> State {
+    if (!(std::abs(x) < width / 2)) return State::Zero();
+    return {load / width * (1 + std::cos(2 * std::numbers::pi * x / width)), 0};
+  };
+  p.beyond = [weight = p.weight](double x, double y) {
+    // Simpson's rule: exact for a weight that is constant or changes evenly with depth.
+    return State(y / 6 * (weight(x, 0) + 4 * weight(x, y / 2) + weight(x, y)), 0);
+  };
+  task.figures = {
+      {"c1", c.downwind}, {"c2", p.mirrored ? -c.downwind : c.upwind}, {"half_width", half_width}};
+  return task;
+}
+
+class MarchModel : public Model {
+ public:
+  explicit MarchModel(Task task) : task_(std::move(task)) {}
+  Stresses stress(const Points& points) override {
+    Eigen::MatrixXd below = points;
+    below.col(1) *= -1;
+    const MarchResult result = march(task_.problem, task_.mesh, below, task_.march);
+    figures_ = result.figures;
+    Stresses out(points.rows(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      out.row(i) = in_project_axes(task_, result.states[i], points(i, 0), points(i, 1));
+    return out;
+  }
+  std::map<std::string, double> figures() const override {
+    auto all = figures_;
+    all.insert(task_.figures.begin(), task_.figures.end());
+    return all;
+  }
+
+ private:
+  Task task_;
+  std::map<std::string, double> figures_;
+};
+
+template <const char* name>
+std::unique_ptr<Model> make(const Settings& settings) {
+  if (settings.at("solver") == "march")
+    return std::make_unique<MarchModel>(make_task(name, settings));
+  return make_in_fe_library(name, settings);
+}
+
+std::vector<Parameter> with_numerics(std::vector<Parameter> all, int order, int columns, int rows,
+                                     const std::string& columns_meaning) {
+  for (auto& p : std::vector<Parameter>{
+           choice("solver",
+                  "dg: discontinuous Galerkin finite elements; march: finite volumes marched down "
+                  "by Runge-Kutta (ARKode)",
+                  "numerics", {"dg", "march"}),
+           whole_number("order", "dg: polynomial degree; the error falls like size^(order + 1)",
+                        "numerics", order, 0, 8),
+           whole_number("columns", columns_meaning, "numerics", columns, 1, 100000),
+           whole_number("rows", "dg: cells over the depth", "numerics", rows, 1, 100000),
+           number("tolerance", "-", "march: relative error of the integration over depth",
+                  "numerics", 1e-9, 1e-14, 0.1),
+           whole_number("steps", "march: most steps", "numerics", 1000000, 1, 1000000000),
+           text("map",
+                "CSV file of fields on a regular grid, columns x,y and one or more of "
+                "rho_g,eta,mu, which then replace these parameters",
+                "measured fields")})
+    all.push_back(std::move(p));
+  return all;
+}
+
+}  // namespace
+
+Task make_task(const std::string& name, const Settings& settings) {
+  return name == wedge_name ? wedge_task(settings) : layer_task(settings);
+}
+
+Eigen::RowVector3d in_project_axes(const Task& task, const State& u, double x, double y) {
+  const bool outside =
+      task.slope > 0 && !(std::abs(x) <= -task.slope * y * (1 + kOnSlope) ||
+                          (x == 0 && std::abs(y) <= kOnSlope * task.mesh.rows.back()));
+  if (outside || !std::isfinite(u.sum()))
+    return Eigen::RowVector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const double depth = std::clamp(-y, 0., task.mesh.rows.back());
+  const Characteristics c = characteristics(task.problem, x, depth, x < 0 ? -1 : 1);
+  return {-c.sxx(u), -u[0], u[1]};
+}
+
+}  // namespace osl
+
+ModelInfo fe_osl_wedge_info() {
+  return {
+      osl::wedge_name,
+      "heap with oriented stress linearity as a field problem: finite elements or marching", 2,
+      osl::with_numerics(
+          {number("phi_deg", "deg", "slope of the heap, its friction angle", "Roul 4.2", 28, 1, 80),
+           number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
+                  "force balance", 1, kAboveZero, kUnbounded),
+
+           number("h", "m", "height of the heap", "Roul 4.2", 1, kAboveZero, kUnbounded),
+           optional_number("eta", "-", "unset: as the yielding slope asks for", "Roul 4.22, 4.24",
+                           -kUnbounded, kUnbounded),
+           optional_number("mu", "-", "unset: as the yielding slope asks for", "Roul 4.22, 4.24",
+                           -kUnbounded, kUnbounded),
+           choice("mesh",
+                  "aligned: along slopes, axis and the characteristic from the apex; rays: along "
+                  "slopes and axis; box: rectangles, weightless beyond the slopes",
+                  "numerics", {"aligned", "rays", "box"})},
+          2, 16, 16, "columns on either side of the axis"),
+      osl::make<osl::wedge_name>};
+}
+
+ModelInfo fe_osl_layer_info() {
+  return {
+      osl::layer_name,
+      "layer with oriented stress linearity as a field problem: finite elements or marching", 2,
+      osl::with_numerics(
+          {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+           number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+           number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
+                  "force balance", 0, 0, kUnbounded),
+           number("eta", "-", "sigma_xx / sigma_yy without shear", "Roul 4.22", 0.5, -kUnbounded,
+                  kUnbounded),
+           number("mu", "-", "tilts the characteristics", "Roul 4.22", 0, -kUnbounded, kUnbounded),
+           choice("closure", "uniform: mu everywhere as it is; mirrored: with the sign of x",
+                  "Roul 4.22", {"uniform", "mirrored"}),
+           optional_number("width", "m",
+                           "the load is spread as 1 + cos over this width; unset: "
+                           "h/10",
+                           "stated load", kAboveZero, kUnbounded),
+           optional_number("half_width", "h",
+                           "half the width of the domain, in depths; unset: what the load reaches",
+                           "numerics", kAboveZero, 1000),
+           choice("sides",
+                  "far: the layer goes on; walls: rigid walls with wall_friction, which reflect",
+                  "hyperbolic layer", {"far", "walls"}),
+           number("wall_friction", "-", "|sigma_xy| / sigma_xx at walls, down; 0: smooth",
+                  "Janssen", 0, 0, 100)},
+          3, 40, 40, "columns over a length of one depth"),
+      osl::make<osl::layer_name>};
+}
+
+}  // namespace grainfield::continuum

@@ -1,0 +1,50 @@
+// The shipped studies of oriented stress linearity: both solvers side by side.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "coupling/run/osl.h"
+#include "coupling/run/summary_keys.h"
+
+using namespace grainfield::coupling;
+
+namespace {
+
+double number(const StudyResult& result, const std::string& key) {
+  return std::get<double>(result.summary.at(key));
+}
+
+StudyResult shipped(const std::string& name, const Overrides& overrides = {}) {
+  const StudyResult result =
+      analyse_osl(read_case(std::string(GRAINFIELD_CASES) + "/" + name, true, overrides));
+  EXPECT_NO_THROW(require_documented(result.summary));
+  return result;
+}
+
+}  // namespace
+
+TEST(OslRun, HeapMeetsTheClosedFormWhereTheMeshIsAligned) {
+  const StudyResult result = shipped("osl-wedge.toml");
+  EXPECT_LT(number(result, "compare.march.rel_l2"), 1e-6);
+  EXPECT_LT(number(result, "compare.dg_rays.rel_l2"), 2e-3);
+  EXPECT_LT(number(result, "compare.dg_box.rel_l2"), 0.02);
+  for (const char* model : {"dg", "dg_rays", "dg_box", "march"})
+    EXPECT_LT(number(result, std::string("model.") + model + ".force_balance"), 1e-11) << model;
+}
+
+TEST(OslRun, LayerShowsTwoPeaks) {
+  const StudyResult result = shipped("osl-layer.toml");
+  EXPECT_EQ(number(result, "response.peaks"), 2);
+  EXPECT_LT(number(result, "compare.march.rel_l2"), 3e-2);
+  EXPECT_NEAR(number(result, "model.dg.base_force"), 300, 1e-9);
+}
+
+TEST(OslRun, RefusesWhatDoesNotFit) {
+  try {
+    shipped("osl-wedge.toml", {"elastic.depths=[2.0]"});
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("elastic.depths: found 2, allowed: up to elastic.h"));
+  }
+  EXPECT_THROW(shipped("osl-layer.toml", {"compare.models=[\"dg\"]"}), std::invalid_argument);
+  EXPECT_THROW(shipped("osl-layer.toml", {"elastic.dim=3"}), std::invalid_argument);
+}
