@@ -27,15 +27,9 @@ const std::vector<ModelInfo>& registry() {
                                                 orthotropic_half_plane_info(),
                                                 fe_elastic_layer_info(),
                                                 fe_elastic_half_space_info(),
-<<<<<<< HEAD
                                                 fe_osl_wedge_info(),
                                                 fe_osl_layer_info(),
                                                 fe_mohr_coulomb_wedge_info()};
-=======
-                                                fe_mohr_coulomb_wedge_info(),
-                                                fe_osl_wedge_info(),
-                                                fe_osl_layer_info()};
->>>>>>> main
   return models;
 }
 

@@ -14,14 +14,9 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-<<<<<<< HEAD
       point_load_study(),         pile_study(),         pile_fields_study(),
       pile_fit_study(),           lattice_pile_study(), elastic_layer_study(),
       elastic_half_space_study(), osl_wedge_study(),    osl_layer_study(),
-=======
-      point_load_study(),         pile_study(),      lattice_pile_study(), elastic_layer_study(),
-      elastic_half_space_study(), osl_wedge_study(), osl_layer_study(),
->>>>>>> main
   };
   return all;
 }
