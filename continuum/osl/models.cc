@@ -22,6 +22,8 @@ constexpr char layer_name[] = "fe_osl_layer";
 constexpr double kOnSlope = 1e-9;
 /// Width of the load and room beyond the farthest characteristic where none are chosen, in depths.
 constexpr double kLoadWidth = 0.1, kRoom = 0.1;
+/// Of columns of at most half the load's width on either side.
+constexpr double kMostColumns = 1e6;
 
 double number_or(const Settings& s, const std::string& name, double otherwise) {
   const double value = number_of(s, name);
@@ -106,6 +108,11 @@ Task layer_task(const Settings& s) {
   const int under =
       std::max(1, static_cast<int>(std::lround(number_of(s, "columns") * width / (2 * depth))));
   const double step = width / 2 / under;
+  if (!(asked / step <= kMostColumns))
+    throw BadParameter(fmt::format(
+        "model {}: width = {:.6g} m asks for {:.3g} columns over half the layer's width of {:.6g} "
+        "m; allowed: up to {:.0e} columns, a wider load or less half_width",
+        layer_name, width, asked / step, asked, kMostColumns));
   const int columns = std::max(under, static_cast<int>(std::ceil(asked / step - kOnSlope)));
   const double half_width = columns * step;
   task.mesh = box_mesh(half_width, depth, columns, static_cast<int>(number_of(s, "rows")));

@@ -250,6 +250,8 @@ TEST(FeOslModels, RefusalsNameWhatIsAllowed) {
   EXPECT_THAT(refusal("fe_osl_layer", {{"eta", "-1"}}), HasSubstr("hyperbolic range"));
   EXPECT_THAT(refusal("fe_osl_layer", {{"half_width", "0.01"}}),
               HasSubstr("half_width = 0.01 depths does not fit the load; allowed: at least 0.05"));
+  EXPECT_THAT(refusal("fe_osl_layer", {{"width", "1e-300"}}),
+              HasSubstr("width = 1e-300 m asks for 1.61e+300 columns"));
   EXPECT_THAT(refusal("fe_osl_layer", {{"eta", "-0.01"}, {"mu", "1"}, {"sides", "walls"}}),
               HasSubstr("allowed between walls: above 0"));
   EXPECT_THROW(make_model("fe_osl_wedge", {{"solver", "march"}, {"steps", "2"}})
