@@ -176,10 +176,10 @@ TEST(Heaps, NotANumberOutside) {
 // Smooth fields from polynomials: the balance holds to the collocation's accuracy.
 TEST(Ife, BalancesYieldsEverywhereAndCarriesItsWeight) {
   Random random(9);
-  for (double degrees = 15; degrees <= 60; degrees += 0.5) {
+  for (double degrees = 15; degrees <= 60; degrees += 2.5) {
     const IfeField field(degrees * kDegree, 3);
-    EXPECT_NEAR(base_force(field, 1000) / weight_above(field), 1, 1e-7) << degrees;
-    for (int k = 0; k < 40; ++k) {
+    EXPECT_NEAR(base_force(field, 400) / weight_above(field), 1, 1e-7) << degrees;
+    for (int k = 0; k < 200; ++k) {
       const std::size_t r = k % 2;
       const auto p = random_point(random, field, r);
       EXPECT_LT(field.equilibrium_residual(r, p.x(), p.y()).norm(), 3e-7) << degrees;
