@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "continuum/closed/models.h"
+#include "continuum/closed/osl.h"
 #include "continuum/fe_models.h"
 #include "continuum/osl/field_map.h"
 #include "continuum/osl/flux.h"
@@ -30,18 +32,14 @@ double number_or(const Settings& s, const std::string& name, double otherwise) {
   return std::isnan(value) ? otherwise : value;
 }
 
-struct Closure {
-  double eta = 0, mu = 0;
-};
-
-/// What is left open is such that the slope yields, eta = eta0 (1 - mu tan(phi)), eta0 = 1 / (1 + 2
-/// tan^2 phi) (Roul 4.24); both open: mu = -tan(phi), half way between BCC and FPA.
+/// The same closure as of the closed form `osl`: what is left open is such that the slope yields.
 Closure heap_closure(const Settings& s, double phi) {
-  double eta = number_of(s, "eta"), mu = number_of(s, "mu");
-  const double t = std::tan(phi), widening = 1 + 2 * t * t;
-  if (std::isnan(mu)) mu = std::isnan(eta) ? -t : (1 - eta * widening) / t;
-  if (std::isnan(eta)) eta = (1 - mu * t) / widening;
-  return {eta, mu};
+  const double eta = number_of(s, "eta"), mu = number_of(s, "mu");
+  if (std::isnan(eta)) {
+    const double free = std::isnan(mu) ? -std::tan(phi) : mu;
+    return {eta_at_yield(phi, free), free};
+  }
+  return {eta, std::isnan(mu) ? mu_at_yield(phi, eta) : mu};
 }
 
 /// Coefficients, numerics and what both bodies share.
@@ -207,15 +205,12 @@ ModelInfo fe_osl_wedge_info() {
       osl::wedge_name,
       "heap with oriented stress linearity as a field problem: finite elements or marching", 2,
       osl::with_numerics(
-          {number("phi_deg", "deg", "slope of the heap, its friction angle", "Roul 4.2", 28, 1, 80),
-           number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
-                  "force balance", 1, kAboveZero, kUnbounded),
-
+          {friction_angle(), weight(),
            number("h", "m", "height of the heap", "Roul 4.2", 1, kAboveZero, kUnbounded),
-           optional_number("eta", "-", "unset: as the yielding slope asks for", "Roul 4.22, 4.24",
-                           -kUnbounded, kUnbounded),
-           optional_number("mu", "-", "unset: as the yielding slope asks for", "Roul 4.22, 4.24",
-                           -kUnbounded, kUnbounded),
+           optional_number("eta", "-", "unset: as the yielding slope asks for, as of osl",
+                           "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+           optional_number("mu", "-", "unset: as the yielding slope asks for, as of osl",
+                           "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
            choice("mesh",
                   "aligned: along slopes, axis and the characteristic from the apex; rays: along "
                   "slopes and axis; box: rectangles, weightless beyond the slopes",

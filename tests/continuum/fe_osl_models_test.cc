@@ -109,6 +109,15 @@ TEST(FeOslWedge, ElementsAndMarchMeetTheClosedForm) {
   }
 }
 
+TEST(FeOslWedge, LeavesOpenWhatTheClosedFormLeavesOpen) {
+  const Points points = grid(1.8, 1, 10);
+  for (const Settings& s : {Settings{}, Settings{{"eta", "0.6"}}, Settings{{"mu", "0.1"}},
+                            Settings{{"eta", "0.6"}, {"mu", "0.1"}}, Settings{{"phi_deg", "35"}}})
+    EXPECT_LT(difference(make_model("fe_osl_wedge", s)->stress(points),
+                         make_model("osl", s)->stress(points)),
+              1e-11);
+}
+
 TEST(FeOslWedge, OtherMeshesComeNear) {
   const Points points = grid(1.8, 1, 10);
   const Stresses closed = heap(points, 28, -std::tan(28 * std::numbers::pi / 180));
