@@ -101,7 +101,10 @@ class Worker {
   Outcome simulate(std::size_t index, int engine_threads) {
     const Task& task = tasks_[index];
     const std::string checkpoint = task.file + ".checkpoint";
-    const auto run = task.make(engine_threads);
+    const auto run = [&] {
+      const std::lock_guard lock(files);  // a run may begin by reading a file
+      return task.make(engine_threads);
+    }();
     const auto save = [&] {
       const std::lock_guard lock(files);
       run->save(checkpoint);
