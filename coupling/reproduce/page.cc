@@ -94,8 +94,9 @@ std::string reproduction_page(const Results& results) {
         study, value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
         value("source.interval", "{:g}"), value("dem.time_step", "{:.3g}"),
         value("dem.steps", "{:.4g}"), value("dem.grain_steps", "{:.3g}"),
-        value("time.dem_s", "{:.0f}"), value("base.weight_ratio", "{:.6f}"),
-        results.text(study, "version").value_or(""), study);
+        results.plain(study, "time.dem_s").value_or(1) < 1 ? "taken up again, not counted"
+                                                           : value("time.dem_s", "{:.0f}"),
+        value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""), study);
   }
   return out;
 }
