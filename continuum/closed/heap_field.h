@@ -88,7 +88,8 @@ class HeapModel : public Model {
  public:
   HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures);
   Stresses stress(const Points& points) override { return field_->stress(points); }
-  /// Those given, `mobilised_sine_ratio`, and `ray_K_deg` of the rays between regions, from the left.
+  /// Those given, `mobilised_sine_ratio`, and `ray_K_deg` of the rays between regions, from the
+  /// left.
   std::map<std::string, double> figures() const override { return figures_; }
   const HeapField& field() const { return *field_; }
 

@@ -20,7 +20,7 @@ struct RobustMean {
   double median = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();  ///< half the width of the middle 68 %
                                                             ///< of the draws
-  double low = std::numeric_limits<double>::quiet_NaN();  ///< ends of the 95 % interval
+  double low = std::numeric_limits<double>::quiet_NaN();    ///< ends of the 95 % interval
   double high = std::numeric_limits<double>::quiet_NaN();
   int count = 0;  ///< numbers that are not nan
 };

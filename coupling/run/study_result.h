@@ -20,8 +20,8 @@ struct StudyResult {
   Summary summary;
   NamedFields fields;
   std::vector<std::pair<std::string, std::string>> texts;  ///< further files: name, content
-  Field base_unloaded, map;               ///< for the report; may be empty
-  std::vector<ModelMap> model_maps;       ///< on map's points
+  Field base_unloaded, map;                                ///< for the report; may be empty
+  std::vector<ModelMap> model_maps;                        ///< on map's points
   std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty
   /// Builds report.html from this result and its first realization (null without grains). Empty:
   /// the page of a loaded layer.
