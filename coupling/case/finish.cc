@@ -144,6 +144,25 @@ void check_heap(const Draft& draft) {
   }
 }
 
+// A list of the fit needs at least one entry, and none twice: the same values would count twice.
+template <class T>
+void check_list(const Draft& draft, const std::string& key, std::vector<T> list) {
+  if (list.empty()) reject(written(draft, key), key, "found an empty list, expected one or more");
+  std::sort(list.begin(), list.end());
+  const auto twice = std::adjacent_find(list.begin(), list.end());
+  if (twice != list.end()) {
+    reject(written(draft, key), key,
+           fmt::format("found {} twice, allowed: every entry once", *twice));
+  }
+}
+
+void check_fit(const Draft& draft) {
+  if (!section_applies("fit", draft.value.study)) return;
+  check_list(draft, "fit.models", draft.value.fit.models);
+  check_list(draft, "fit.components", draft.value.fit.components);
+  check_list(draft, "fit.heights", draft.value.fit.heights);
+}
+
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
@@ -204,6 +223,7 @@ void finish(Draft& draft) {
   choose_models(draft);
   check_elastic(draft);
   check_heap(draft);
+  check_fit(draft);
   check_grains(draft);
   check_sweep(draft);
 }

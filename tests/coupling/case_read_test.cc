@@ -37,6 +37,19 @@ Case accepted(const std::string& text, const Overrides& set = {}, bool quick = f
   return read_case(folder.write("x.toml", text), quick, set);
 }
 
+TEST(ReadCase, FitsNeedEveryEntryOnce) {
+  const auto fit = [](const std::string& line) {
+    return complaint("study = \"pile-fit\"\n[fit]\n" + line + "\n");
+  };
+  EXPECT_EQ(fit("models = [\"osl\", \"bcc\"]"), "");
+  EXPECT_THAT(fit("models = []"), HasSubstr("x.toml:3: fit.models: found an empty list"));
+  EXPECT_THAT(fit("components = []"), HasSubstr("x.toml:3: fit.components: found an empty list"));
+  EXPECT_THAT(fit("models = [\"osl\", \"osl\"]"), HasSubstr("fit.models: found osl twice"));
+  EXPECT_THAT(fit("components = [\"sigma_yy\", \"sigma_yy\"]"),
+              HasSubstr("fit.components: found sigma_yy twice"));
+  EXPECT_THAT(fit("heights = [0.1, 0.2, 0.1]"), HasSubstr("fit.heights: found 0.1 twice"));
+}
+
 TEST(ReadCase, FillsTheStructsAndKeepsDefaults) {
   const Case value = accepted(R"(title = "t"
 [packing]
