@@ -185,7 +185,7 @@ std::string allowed(const Key& key) {
   }
   if (lower && upper) return fmt::format("{} to {}", key.least, key.most);
   if (lower) return fmt::format("{:g} or more", key.least);
-  return "any";
+  return "any finite number";
 }
 
 std::string value_text(const Key& key, const Case& value) {

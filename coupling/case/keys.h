@@ -40,7 +40,7 @@ bool key_applies(const Key& key, const std::string& study);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);
-/// "0 to 2", "above 0, up to 1e12", "smooth | rough", "any".
+/// "0 to 2", "above 0, up to 1e12", "smooth | rough", "any finite number".
 std::string allowed(const Key& key);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);

@@ -41,6 +41,16 @@ std::string optional_number(const Results& r, const std::string& study, const st
   return value && !std::isnan(*value) ? fmt::format(fmt::runtime(format), *value) : "";
 }
 
+// What the grains took: CPU time where every start was counted.
+std::string grain_seconds(const Results& r, const std::string& study) {
+  if (const auto cpu = r.plain(study, "time.dem_cpu_s"); cpu && !std::isnan(*cpu)) {
+    return fmt::format("{:.0f} CPU", *cpu);
+  }
+  if (r.plain(study, "time.dem_s").value_or(1) < 1) return "taken up again, not counted";
+  const std::string wall = optional_number(r, study, "time.dem_s", "{:.0f}");
+  return wall.empty() ? "" : wall + " wall";
+}
+
 }  // namespace
 
 std::string reproduction_page(const Results& results) {
@@ -77,8 +87,8 @@ std::string reproduction_page(const Results& results) {
       "\n## How they were run\n\n"
       "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step "
       "2e-6 s.\n\n"
-      "| study | grains | realizations | interval (s) | time step (s) | steps | grain-steps | wall "
-      "time of the grains (s) | base force / weight | version | command |\n"
+      "| study | grains | realizations | interval (s) | time step (s) | steps | grain-steps | time "
+      "of the grains (s) | base force / weight | version | command |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const std::string& study : studies) {
     if (!results.has(study)) {
@@ -94,9 +104,8 @@ std::string reproduction_page(const Results& results) {
         study, value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
         value("source.interval", "{:g}"), value("dem.time_step", "{:.3g}"),
         value("dem.steps", "{:.4g}"), value("dem.grain_steps", "{:.3g}"),
-        results.plain(study, "time.dem_s").value_or(1) < 1 ? "taken up again, not counted"
-                                                           : value("time.dem_s", "{:.0f}"),
-        value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""), study);
+        grain_seconds(results, study), value("base.weight_ratio", "{:.6f}"),
+        results.text(study, "version").value_or(""), study);
   }
   return out;
 }

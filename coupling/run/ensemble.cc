@@ -1,12 +1,15 @@
 #include "coupling/run/ensemble.h"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -24,6 +27,15 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+// CPU time of the calling thread, s: other work on the machine does not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string cpu_file(const std::string& file) { return file + ".cpu"; }
 
 // A slice is long enough to cost nothing and short enough to stop at once.
 constexpr double kSliceSeconds = 0.05;
@@ -105,13 +117,22 @@ class Worker {
       const std::lock_guard lock(files);  // a run may begin by reading a file
       return task.make(engine_threads);
     }();
+    double cpu = 0, counted_at = thread_seconds();
+    const auto record_cpu = [&] {
+      const double now = thread_seconds();
+      cpu += engine_threads * (now - counted_at);
+      counted_at = now;
+      std::ofstream(cpu_file(task.file)) << cpu << '\n';
+    };
     const auto save = [&] {
       const std::lock_guard lock(files);
       run->save(checkpoint);
+      record_cpu();
     };
     if (fs::exists(checkpoint)) {
       const std::lock_guard lock(files);
       run->restore(checkpoint);
+      cpu = cpu_seconds(task.file);
     }
     auto saved = Clock::now();
     long slice = 64;
@@ -139,6 +160,7 @@ class Worker {
     }
     {
       const std::lock_guard lock(files);
+      record_cpu();
       write_realization(task.file, run->result());
     }
     fs::remove(checkpoint);
@@ -229,6 +251,12 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
     if (options.progress) options.progress(worker.progress(mine, seconds_since(start)));
   }
   throw_first(ranks.gather(describe(worker)));
+}
+
+double cpu_seconds(const std::string& file) {
+  double seconds = 0;
+  std::ifstream in(cpu_file(file));
+  return in >> seconds ? seconds : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace grainfield::coupling

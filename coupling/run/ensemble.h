@@ -44,7 +44,13 @@ struct EnsembleOptions {
 /// Does the tasks whose file does not exist yet (those of other ranks are done there: task t on
 /// rank t mod size) and waits for all ranks. With fewer tasks than threads each run gets several.
 /// Continues from checkpoints beside the files. Throws what the first failing task (by number)
-/// threw, on every rank; Interrupted, after all runs are saved, when stopped.
+/// threw, on every rank; Interrupted, after all runs are saved, when stopped. Beside each file it
+/// leaves FILE.cpu, what cpu_seconds reads.
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options);
+
+/// CPU time that the realization of this file took, s: of the thread that steps it, times the
+/// threads it had; all starts together, so that it can be told of a run that was resumed. nan where
+/// it was not recorded.
+double cpu_seconds(const std::string& file);
 
 }  // namespace grainfield::coupling

@@ -203,14 +203,18 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
   return seconds_since(start);
 }
 
-StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
+// Of the member's realizations, in their order; none for a study of models alone.
+std::vector<std::string> realization_files(const SweepCase& member, const Workplace& place) {
   const Case& value = member.value;
-  const Study& study = study_of(value);
   std::vector<std::string> files;
-  for (std::int64_t r = 0; study.has_grains() && r < value.ensemble.realizations; ++r) {
+  for (std::int64_t r = 0; study_of(value).has_grains() && r < value.ensemble.realizations; ++r) {
     files.push_back(member_file(place, member.suffix, r));
   }
-  return study.analyse(value, files, threads);
+  return files;
+}
+
+StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
+  return study_of(member.value).analyse(member.value, realization_files(member, place), threads);
 }
 
 // Averages, models and outputs of all members. `times` adds what only the run knows.
@@ -263,7 +267,12 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
   const std::vector<SweepCase> members = sweep_cases(value);
   const double dem_seconds = simulate(members, place, ranks, options);
   analyse_all(value, members, place, ranks, options, [&](std::size_t m, Summary& summary) {
-    if (study_of(members[m].value).has_grains()) summary["time.dem_s"] = dem_seconds;
+    if (study_of(members[m].value).has_grains()) {
+      double cpu = 0;
+      for (const auto& file : realization_files(members[m], place)) cpu += cpu_seconds(file);
+      summary["time.dem_cpu_s"] = cpu;
+      summary["time.dem_s"] = dem_seconds;
+    }
     summary["time.total_s"] = seconds_since(start);
   });
 }

@@ -275,6 +275,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"verdict.position_error", "-", "its standard error over realizations"},
       {"model.*.name", "text", "registry name of a compared model"},
       {"model.*.*", "-", "figure of a model's evaluation, e.g. unknowns"},
+      {"time.dem_cpu_s", "s",
+       "CPU time of the realizations, all starts together; of a sweep: of each member"},
       {"time.dem_s", "s",
        "wall time of the realizations (this start; of a sweep: of all members together)"},
       {"time.analysis_s", "s", "wall time of averaging and comparison"},

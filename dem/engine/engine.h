@@ -86,6 +86,12 @@ struct Diagnostics {
   int awake = 0;  ///< free grains that do not sleep
 };
 
+/// What measure() says of the motion alone: read without looking at a contact.
+struct Motion {
+  double kinetic_energy = 0;  ///< J
+  int awake = 0;              ///< free grains that do not sleep
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -109,6 +115,7 @@ class Engine {
   virtual int grains() const = 0;  ///< without fixed ones
   virtual double time_step() const = 0;
   virtual Diagnostics measure() const = 0;
+  virtual Motion motion() const = 0;
   virtual Snapshot snapshot() const = 0;
 
   /// The whole state, in bits, and back. restore() expects an engine made with the same settings

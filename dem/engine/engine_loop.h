@@ -119,6 +119,7 @@ class EngineLoop final : public Engine {
   int grains() const override { return free_; }
   double time_step() const override { return settings_.time_step; }
   Diagnostics measure() const override;
+  Motion motion() const override;
   Snapshot snapshot() const override;
   std::string image() const override;
   void restore(const std::string& image) override;

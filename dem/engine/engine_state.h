@@ -88,10 +88,7 @@ Diagnostics EngineLoop<Shape, Law, Integrator>::measure() const {
   for (int i = 0; i < n; ++i) {
     const Body& b = bodies_[i];
     if (b.inverse_mass == 0) continue;
-    if (!asleep_[i]) ++d.awake;
     const double mass = inertias_[i].mass;
-    d.kinetic_energy += 0.5 * mass * (b.vx * b.vx + b.vy * b.vy) +
-                        (b.inverse_inertia > 0 ? 0.5 * b.spin * b.spin / b.inverse_inertia : 0.0);
     double fx = resultant[i][0] + mass * settings_.gravity_x;
     double fy = resultant[i][1] + mass * settings_.gravity_y;
     if (i == applied_index_) {
@@ -108,7 +105,23 @@ Diagnostics EngineLoop<Shape, Law, Integrator>::measure() const {
   d.unbalanced_force_ratio = d.mean_contact_force > 0
                                  ? d.mean_unbalanced_force / d.mean_contact_force
                                  : std::numeric_limits<double>::infinity();
+  const Motion m = motion();
+  d.kinetic_energy = m.kinetic_energy;
+  d.awake = m.awake;
   return d;
+}
+
+template <class Shape, class Law, class Integrator>
+Motion EngineLoop<Shape, Law, Integrator>::motion() const {
+  Motion m;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& b = bodies_[i];
+    if (b.inverse_mass == 0) continue;
+    if (!asleep_[i]) ++m.awake;
+    m.kinetic_energy += 0.5 * inertias_[i].mass * (b.vx * b.vx + b.vy * b.vy) +
+                        (b.inverse_inertia > 0 ? 0.5 * b.spin * b.spin / b.inverse_inertia : 0.0);
+  }
+  return m;
 }
 
 template <class Shape, class Law, class Integrator>

@@ -138,7 +138,17 @@ void check_shape(const ShapeSetup& s) {
   if (s.kind == "rand1") {
     require(s.axis_ratio >= 1 && s.axis_ratio <= kMostAxisRatio, "axis_ratio", s.axis_ratio,
             fmt::format("1 to {:g} (major over minor axis)", kMostAxisRatio));
-  } else if (s.kind == "irregular") {
+  } else {
+    require(s.axis_ratio == 1, "axis_ratio", s.axis_ratio,
+            "1, because only grains of shape.kind \"rand1\" are stretched");
+  }
+  if (s.kind != "outline" && !s.outline.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "shape.outline: found {} numbers, allowed: none with shape.kind \"{}\"; set shape.kind = "
+        "\"outline\"",
+        s.outline.size(), s.kind));
+  }
+  if (s.kind == "irregular") {
     require(s.side >= 0 && std::isfinite(s.side), "side", s.side,
             "above 0, or 0 to take it from shape.radius");
   } else if (s.kind == "outline") {

@@ -241,7 +241,7 @@ void PileRun::pour_point() {
     release_grain();
   }
   if (phase_steps_ == (awake_samples_ + 1) * kSampleEvery) {
-    awake_sum_ += engine_->measure().awake;
+    awake_sum_ += engine_->motion().awake;
     ++awake_samples_;
   }
   if (poured_ == setup_.source.grains && in_flight_.empty()) end_pour();
@@ -282,7 +282,7 @@ bool PileRun::join(const Flight& f) {
 
 void PileRun::pour_line() {
   if (poured_ > 0) {
-    awake_sum_ += engine_->measure().awake;
+    awake_sum_ += engine_->motion().awake;
     ++awake_samples_;
     const double fall =
         std::sqrt(2 * (setup_.source.clearance + largest_diameter_) / setup_.material.gravity);
@@ -333,7 +333,7 @@ bool PileRun::settled(int grains) const {
   const double r = 0.5 * mean_diameter_;
   const double energy = setup_.material.density * total_area(grains_) / setup_.source.grains *
                         setup_.material.gravity * r;
-  return engine_->measure().kinetic_energy <= kSettledShare * energy * grains;
+  return engine_->motion().kinetic_energy <= kSettledShare * energy * grains;
 }
 
 void PileRun::end_pour() {

@@ -77,6 +77,13 @@ void check_pile(const PileSetup& s) {
   require(s.source.clearance > 0, "source.clearance", s.source.clearance, "above 0");
   require(std::isfinite(s.source.move), "source.move", s.source.move, "a finite number");
   require(std::isfinite(s.source.shift), "source.shift", s.source.shift, "a finite number");
+  if (s.source.kind == "point") {
+    require(s.source.shift == 0, "source.shift", s.source.shift,
+            "0 with source.kind \"point\", whose funnel moves by source.move");
+  } else {
+    require(s.source.move == 0, "source.move", s.source.move,
+            "0 with source.kind \"line\", whose layers move by source.shift");
+  }
   require_word(s.floor.kind, "floor.kind", {"smooth", "rough"});
   require(s.floor.length > 0, "floor.length", s.floor.length, "above 0");
   require_word(s.change.method, "change.method", {"newton", "damped"});
@@ -117,10 +124,17 @@ void check_source(const PileSetup& s, const std::vector<ShapedGrain>& grains) {
     base = std::max(base, s.source.length);
   }
   const double floor = kFloorReserve * base + 2 * diameter;
+  const bool by_line = s.source.kind == "line" && base > heap.base;
+  const std::string why =
+      by_line
+          ? fmt::format("m for source.length = {:g} m; raise floor.length or lower source.length",
+                        s.source.length)
+          : fmt::format(
+                "m, or the pile of {} grains runs off its floor; raise floor.length or "
+                "lower source.grains",
+                s.source.grains);
   require(s.floor.length >= floor, "floor.length", s.floor.length,
-          fmt::format("at least {:g} m, or the pile of {} grains runs off its floor; raise "
-                      "floor.length or lower source.grains",
-                      round_up(floor), s.source.grains));
+          fmt::format("at least {:g} {}", round_up(floor), why));
 }
 
 double resting_top(const Snapshot& s) {

@@ -8,6 +8,7 @@
 #include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
+#include "tests/paths.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,6 +8,7 @@
 #include "coupling/case/document.h"
 #include "coupling/case/keys.h"
 #include "program.h"
+#include "tests/paths.h"
 
 namespace grainfield::coupling {
 namespace {

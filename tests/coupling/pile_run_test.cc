@@ -9,6 +9,7 @@
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "program.h"
+#include "tests/paths.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -94,9 +95,11 @@ TEST(PileRun, LeavesEverything) {
                           "change.gravity_8.829.coordination_ratio",
                           "source.interval",
                           "dem.grain_steps",
+                          "time.dem_cpu_s",
                           "time.dem_s"}) {
     EXPECT_EQ(s.count(key), 1U) << key;
   }
+  EXPECT_GT(std::get<double>(s.at("time.dem_cpu_s")), 0);
   // The pile is at rest only to 1e-3.
   EXPECT_NEAR(std::get<double>(s.at("base.weight_ratio")), 1, 0.02);
   const std::string csv = testing::read_text(folder / "out/profiles.csv");

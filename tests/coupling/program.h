@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/paths.h"
+
 namespace grainfield::coupling::testing {
 
 namespace fs = std::filesystem;

@@ -9,6 +9,7 @@
 #include "coupling/reproduce/page.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
+#include "tests/paths.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "dem/snapshot/snapshot.h"
 #include "tests/benchmarks/packing_scene.h"
+#include "tests/paths.h"
 
 namespace grainfield::test {
 

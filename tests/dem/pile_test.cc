@@ -286,6 +286,30 @@ TEST(Pile, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal(s), HasSubstr("change.gravity: found 5, allowed: every value once"));
 }
 
+// A key that would change nothing is refused, and a floor too short for the line blames the line.
+TEST(Pile, RefusesWhatHasNoEffect) {
+  PileSetup s = small("point", "regular");
+  s.shape.axis_ratio = 2;
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("shape.axis_ratio: found 2, allowed: 1, because only"));
+  s = small("point", "disk");
+  s.shape.outline = {0, 0, 1, 0, 0, 1};
+  EXPECT_THAT(refusal(s), testing::HasSubstr("shape.outline: found 6 numbers, allowed: none"));
+  s = small("point", "disk");
+  s.source.shift = 0.1;
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("source.shift: found 0.1, allowed: 0 with source.kind"));
+  s = small("line", "disk");
+  s.source.move = 0.1;
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("source.move: found 0.1, allowed: 0 with source.kind"));
+  s = small("line", "disk");
+  s.source.length = 3.9;
+  s.floor.length = 4;
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("m for source.length = 3.9 m; raise floor.length or lower"));
+}
+
 // The value that a message names is accepted.
 TEST(Pile, RemediesHelp) {
   PileSetup s = small("point", "disk");

@@ -80,6 +80,23 @@ TEST(PolygonBoost, AreaAndCrossingsOfRandomPairs) {
   EXPECT_LT(worst, 1e-12);
 }
 
+// Second moments about `centre` (xx, yy, xy) of the triangles between it and the sides: of one
+// triangle area / 12 (sum of v v' over its corners + s s'), s the sum of its corners.
+std::array<double, 3> moments_by_triangles(const Outline& outline, const Point& centre) {
+  std::array<double, 3> m{};
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const auto& p = outline[k];
+    const auto& q = outline[(k + 1) % outline.size()];
+    const double ax = p[0] - centre.x(), ay = p[1] - centre.y();
+    const double bx = q[0] - centre.x(), by = q[1] - centre.y();
+    const double w = (ax * by - ay * bx) / 24;
+    m[0] += w * (ax * ax + bx * bx + (ax + bx) * (ax + bx));
+    m[1] += w * (ay * ay + by * by + (ay + by) * (ay + by));
+    m[2] += w * (ax * ay + bx * by + (ax + bx) * (ay + by));
+  }
+  return m;
+}
+
 TEST(PolygonBoost, CentroidAndMoments) {
   Random random(12);
   for (int k = 0; k < 2000; ++k) {
@@ -90,11 +107,15 @@ TEST(PolygonBoost, CentroidAndMoments) {
       y -= 2;
     }
     const Polygon polygon = boost_polygon(outline);
-    Point centroid;
+    Point centroid(0, 0);
     bg::centroid(polygon, centroid);
     EXPECT_NEAR(area_of(outline), bg::area(polygon), 1e-13);
     EXPECT_NEAR(centroid_of(outline)[0], centroid.x(), 1e-12);
     EXPECT_NEAR(centroid_of(outline)[1], centroid.y(), 1e-12);
+    const auto exact = moments_by_triangles(outline, centroid), ours = second_moments_of(outline);
+    const double polar = exact[0] + exact[1];
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ours[c], exact[c], 1e-12 * polar);
+    EXPECT_NEAR(polar_moment_of(outline), polar, 1e-12 * polar);
   }
 }
 
