@@ -111,13 +111,19 @@ std::string slope_word(double ratio) {
                      std::fabs(std::log(ratio)) > std::log(1.25) ? "nonlinear" : "linear", ratio);
 }
 
+std::string director_word(double degrees) {
+  return fmt::format("{}: mean long axis {:.1f}° from the horizontal",
+                     std::fabs(degrees) <= 10 ? "horizontal" : "inclined", degrees);
+}
+
 }  // namespace
 
 const std::vector<SourceFigure>& source_figures() {
   constexpr const char *kPoint = "pile-point-source", *kLine = "pile-line-source",
                        *kElliptic = "pile-elliptic", *kAsymmetricLine = "pile-asymmetric-line",
                        *kAsymmetricPoint = "pile-asymmetric-point",
-                       *kGravity = "pile-gravity-levels", *kFields = "pile-fields";
+                       *kGravity = "pile-gravity-levels", *kFields = "pile-fields",
+                       *kFieldsLine = "pile-fields-line", *kFieldsElliptic = "pile-fields-elliptic";
   // Of a point source over the surface; a flat fraction is one without it.
   constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
@@ -159,6 +165,12 @@ const std::vector<SourceFigure>& source_figures() {
            "rve_size.fabric_grains", rve_word),
       word("Roul fig. 3.7", "tail of P(n) of the base forces above the mean", kFields,
            "exponential", {"exponential"}, "forces.tail_p_value", tail_word),
+      number("Roul fig. 3.14", "order of the long axes, round grains", "", kFields,
+             "no direction (0-0.05)", 0, 0.05, of(kFields, "orientation.order"), 1),
+      word("Roul fig. 3.15", "mean long axis, elliptic grains", kFieldsElliptic, "horizontal",
+           {"horizontal"}, "orientation.director_deg", director_word),
+      number("Roul fig. 3.17", "vertical strain under the apex over that beside it, line source",
+             "", kFieldsLine, "1 or more (no dip)", 1, 2, of(kFieldsLine, "strain.dip_ratio")),
       number("Roul fig. 3.19", "vertical strain under the apex over that beside it, point source",
              "", kFields, "below 1 (dip)", 0, 1, of(kFields, "strain.dip_ratio")),
       number("Roul fig. 3.19", "Cundall's strain against Cambou's, lowest row", "", kFields,
