@@ -91,6 +91,8 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "rve_size.strain_grains",
                                    "rve_size.fabric_grains",
                                    "forces.tail_p_value",
+                                   "orientation.order",
+                                   "orientation.director_deg",
                                    "strain.dip_ratio",
                                    "strain.cundall.difference_yy_low",
                                    "strain.liao.difference_yy_low",
