@@ -17,6 +17,8 @@ namespace grainfield::continuum {
 namespace {
 
 constexpr char layer_name[] = "fe_elastic_layer";
+constexpr char orthotropic_name[] = "fe_orthotropic_layer";
+constexpr char core_name[] = "fe_cantelaube_core";
 constexpr char half_space_name[] = "fe_elastic_half_space";
 constexpr char wedge_name[] = "fe_mohr_coulomb_wedge";
 
@@ -83,6 +85,18 @@ std::vector<Parameter> numerical_parameters(const std::string& tolerances, int r
                    500, 1, 100000)};
 }
 
+std::vector<Parameter> layer_parameters() {
+  return {
+      number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+      choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"}),
+      number("half_width", "h", "half the width of the domain, in depths", "numerics", 8, 1, 1000),
+      choice("sides",
+             "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
+             "without shear, as of a box",
+             "elasticity", {"free", "smooth"}),
+      whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1, 1000)};
+}
+
 std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
   std::vector<Parameter> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
@@ -100,22 +114,39 @@ std::unique_ptr<Model> make_in_fe_library(const char* name, const Settings& sett
 }
 
 ModelInfo fe_elastic_layer_info() {
+  return {layer_name, "elastic layer on a rigid base under a point load, finite elements", 0,
+          joined({common_parameters(), layer_parameters(),
+                  numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
+          make_in_plugin<layer_name>};
+}
+
+ModelInfo fe_orthotropic_layer_info() {
+  const char* source = "Otto et al. 2003";
   return {
-      layer_name, "elastic layer on a rigid base under a point load, finite elements", 0,
-      joined({common_parameters(),
-              {number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
-               choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6",
-                      {"smooth", "rough"}),
-               number("half_width", "h", "half the width of the domain, in depths", "numerics", 8,
-                      1, 1000),
-               choice("sides",
-                      "free: no traction, as far out in an unbounded layer; smooth: rigid walls "
-                      "without shear, as of a box",
-                      "elasticity", {"free", "smooth"}),
-               whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1,
-                            1000)},
-              numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
-      make_in_plugin<layer_name>};
+      orthotropic_name,
+      "layer with vertical and horizontal elastic axes on a rigid base under a line load, finite "
+      "elements",
+      2,
+      joined(
+          {{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+            number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
+                   -kUnbounded, kUnbounded),
+            number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+            optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
+                            kAboveZero, kUnbounded),
+            optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+            optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+            optional_number("nu_xy", "-",
+                            "-eps_yy/eps_xx under sigma_xx; between max(-r, -sqrt(t)) and sqrt(t). "
+                            "Needed with moduli and on a rough base; a smooth one does not feel it",
+                            source, -kUnbounded, kUnbounded),
+            text("map",
+                 "instead of constants: CSV file of a regular grid, columns x,y and young,poisson "
+                 "(elastic_map.csv) or E_x,E_y,nu_xy,G; beyond the grid as on its border",
+                 "elastic constants")},
+           layer_parameters(),
+           numerical_parameters("over F/h; 0: 2e-4", 8)}),
+      make_in_plugin<orthotropic_name>};
 }
 
 ModelInfo fe_elastic_half_space_info() {
@@ -138,6 +169,43 @@ ModelInfo fe_elastic_half_space_info() {
            numerical_parameters(
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
       make_in_plugin<half_space_name>};
+}
+
+ModelInfo fe_cantelaube_core_info() {
+  const char* source = "Roul 4.3";
+  return {
+      core_name,
+      "heap with an elastic core solved under its plastic flanks, finite elements",
+      2,
+      {number("phi_deg", "deg", "friction angle and slope", source, 28, 5, 60),
+       number("rho_g", "N/m^2", "weight per area of the section", source, 1, kAboveZero,
+              kUnbounded),
+       number("h", "m", "height; the base is y = -h", source, 1, kAboveZero, kUnbounded),
+       choice("branch",
+              "half tip angle of the core: that of the closed form's branch, see cantelaube; plus "
+              "also chooses sigma_yy as the largest compression of a yielding axis",
+              source, {"zero", "minus", "plus"}),
+       optional_number("beta_hat_deg", "deg",
+                       "half tip angle of the core instead of a branch's; below 90 - phi_deg",
+                       source, kAboveZero, 90),
+       choice("axis",
+              "branch: the condition of the branch; continuous: no displacement across; yields: "
+              "sigma_xx in the ratio of the friction angle to sigma_yy",
+              source, {"branch", "continuous", "yields"}),
+       choice("base",
+              "closed: the displacement of the closed form; rough: rigid, no displacement; smooth: "
+              "rigid, no shear; elastic: springs in both directions",
+              "elasticity", {"closed", "rough", "smooth", "elastic"}),
+       number("base_stiffness", "E/h", "springs of an elastic base, per area", "elasticity", 1,
+              kAboveZero, kUnbounded),
+       number("nu", "-", "Poisson's ratio of the core", "elasticity", 0.3, 0, 0.49),
+       whole_number("degree", "polynomial degree of the elements", "numerics", 2, 1, 4),
+       whole_number("refinement", "halvings of the three cells of the half core", "numerics", 4, 0,
+                    10),
+       whole_number("adaptive", "further cycles of adaptive refinement", "numerics", 0, 0, 20),
+       whole_number("iterations", "most solves for a yielding axis on a mesh", "numerics", 100, 1,
+                    10000)},
+      make_in_plugin<core_name>};
 }
 
 ModelInfo fe_mohr_coulomb_wedge_info() {

@@ -26,7 +26,9 @@ const std::vector<ModelInfo>& registry() {
                                                 osl_layer_info(),
                                                 orthotropic_half_plane_info(),
                                                 fe_elastic_layer_info(),
+                                                fe_orthotropic_layer_info(),
                                                 fe_elastic_half_space_info(),
+                                                fe_cantelaube_core_info(),
                                                 fe_osl_wedge_info(),
                                                 fe_osl_layer_info(),
                                                 fe_mohr_coulomb_wedge_info()};

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <limits>
 
 #include "continuum/closed/models.h"
@@ -9,6 +11,10 @@
 
 namespace grainfield::continuum {
 namespace {
+
+/// Of the integral along the angle: bisections, where strains are steep, and relative error.
+constexpr unsigned kIntegralDepth = 12;
+constexpr double kIntegralTolerance = 1e-11;
 
 class OrthotropicHalfPlane : public Model {
  public:
@@ -54,6 +60,56 @@ std::unique_ptr<Model> make(const Settings& s) {
 }
 
 }  // namespace
+
+PlaneModuli plane_strain_moduli(double E, double nu) {
+  return {E / (1 - nu * nu), E / (1 - nu * nu), nu / (1 - nu), E / (2 * (1 + nu))};
+}
+
+Eigen::Matrix3d compliance(const PlaneModuli& m) {
+  Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
+  s(0, 0) = 1 / m.E_x;
+  s(1, 1) = 1 / m.E_y;
+  s(0, 1) = s(1, 0) = -m.nu_xy / m.E_x;
+  s(2, 2) = 1 / m.G;
+  return s;
+}
+
+Eigen::Matrix3d stiffness(const PlaneModuli& m) { return compliance(m).inverse(); }
+
+bool is_stable(const PlaneModuli& m) {
+  return m.E_x > 0 && m.E_y > 0 && m.G > 0 && m.nu_xy * m.nu_xy < m.E_x / m.E_y;
+}
+
+std::array<double, 2> orthotropic_displacement(double F, const PlaneModuli& moduli, double x,
+                                               double y) {
+  const Orthotropy o = orthotropy(moduli);
+  const Eigen::Matrix3d s = compliance(moduli);
+  // Angle from the downward axis towards +x; radial direction (sin, -cos), tangential (cos, sin).
+  const auto strain = [&](double angle) -> Eigen::Vector3d {
+    const auto stress = orthotropic_stress(F, o, std::sin(angle), -std::cos(angle));
+    return s * Eigen::Vector3d(stress[0], stress[1], stress[2]);
+  };
+  const double c = -strain(0)[1];
+  // g' = e_tt (tangential) + (2 e_rt - c . tangential) (radial).
+  const auto derivative = [&](double angle, int axis) {
+    const Eigen::Vector3d e = strain(angle);
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    const double tangential = e[0] * cosine * cosine + e[1] * sine * sine + e[2] * sine * cosine;
+    const double shear = 2 * (e[0] - e[1]) * sine * cosine + e[2] * (sine * sine - cosine * cosine);
+    const double radial = shear - c * sine;
+    return axis == 0 ? tangential * cosine + radial * sine : tangential * sine - radial * cosine;
+  };
+  const double angle = std::atan2(x, -y);
+  std::array<double, 2> u{};
+  for (int axis = 0; axis < 2; ++axis) {
+    u[static_cast<std::size_t>(axis)] =
+        boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+            [&](double a) { return derivative(a, axis); }, 0., angle, kIntegralDepth,
+            kIntegralTolerance);
+  }
+  u[1] += c * std::log(std::hypot(x, y));
+  return u;
+}
 
 ModelInfo orthotropic_half_plane_info() {
   const char* source = "Otto et al. 2003";

@@ -12,10 +12,24 @@
 // x = +-y sqrt(-r), for r < 0; for r -> -sqrt(t) they sharpen into the two characteristics
 // x = +-t^(1/4) y of a hyperbolic (OSL) material with eta = sqrt(t).
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 
 namespace grainfield::continuum {
+
+/// Elastic constants of the plane, Pa (2D: N/m); plane strain: of the reduced compliances.
+struct PlaneModuli {
+  double E_x = 1, E_y = 1, nu_xy = 0, G = 0.5;
+};
+/// Those of an isotropic material of Young's modulus E and Poisson's ratio nu in plane strain.
+PlaneModuli plane_strain_moduli(double E, double nu);
+/// Strains xx, yy, 2 xy of a stress xx, yy, xy; symmetric.
+Eigen::Matrix3d compliance(const PlaneModuli& moduli);
+/// The inverse of compliance(): positive definite for E_x, E_y, G > 0 and nu_xy^2 < E_x/E_y.
+Eigen::Matrix3d stiffness(const PlaneModuli& moduli);
+/// Whether the moduli are of a stable material, see stiffness().
+bool is_stable(const PlaneModuli& moduli);
 
 /// Ratios of elastic constants that the stress depends on.
 struct Orthotropy {
@@ -25,6 +39,18 @@ struct Orthotropy {
 inline Orthotropy orthotropy(double E_x, double E_y, double nu_xy, double G) {
   return {(E_x / G - 2 * nu_xy) / 2, E_x / E_y};
 }
+
+inline Orthotropy orthotropy(const PlaneModuli& m) {
+  return orthotropy(m.E_x, m.E_y, m.nu_xy, m.G);
+}
+
+/// Displacement x, y at x, y (y <= 0, not both 0) of the half plane under the line load F, for
+/// stable moduli. Like Flamant's it grows with the logarithm of distance; the point at unit
+/// distance below the load stays at rest. The strain is e(theta)/r, so that u = c log r + g(theta),
+/// with c vertical and g the integral of known functions of the angle, done numerically (to 1e-11
+/// of g).
+std::array<double, 2> orthotropic_displacement(double F, const PlaneModuli& moduli, double x,
+                                               double y);
 
 /// Stress xx, yy, xy at x, y (y up, y < 0), N/m, tension positive; T may be complex. Needs t > 0,
 /// r > -sqrt(t).

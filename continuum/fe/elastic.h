@@ -15,8 +15,13 @@ void solve_on(Ranks ranks);
 
 /// A layer on a rigid base under a point load, plane strain or 3D.
 ModelInfo fe_elastic_layer_info();
+/// A layer with two elastic axes on a rigid base under a line load, constants or a map of them.
+ModelInfo fe_orthotropic_layer_info();
 /// A half plane or half space under a load on a small patch.
 ModelInfo fe_elastic_half_space_info();
+
+/// The elastic core of Cantelaube's heap as a boundary value problem.
+ModelInfo fe_cantelaube_core_info();
 
 /// A heap of Mohr-Coulomb material under its own weight, plane strain (fe/wedge.h).
 ModelInfo fe_mohr_coulomb_wedge_info();

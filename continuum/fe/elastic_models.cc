@@ -12,12 +12,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 
 #include "continuum/closed/half_space.h"
+#include "continuum/fe/box_model.h"
 #include "continuum/fe/elastic.h"
-#include "continuum/fe/elastic_solver.h"
-#include "continuum/fe/parallel.h"
 #include "continuum/fe/plugin.h"
 #include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
@@ -25,25 +23,14 @@
 namespace grainfield::continuum {
 namespace {
 
-using fe::BoundaryCondition;
+using fe::BoxModel;
 using fe::ElasticProblem;
-using fe::ElasticSolver;
-using fe::kStresses;
+using fe::kOnBorder;
+using fe::number_or;
 using fe::Stress;
 using fe::Vector;
 template <int dim>
 using Point = dealii::Point<dim>;
-
-/// Values that differ from a border's coordinate by less than this part of the domain are on it.
-constexpr double kOnBorder = 1e-9;
-/// Share of the error indicator whose cells are refined in a cycle.
-constexpr double kRefinedShare = 0.8;
-
-/// The parameter's value; 0 stands for the dimension's own default.
-double number_or(const Settings& settings, const std::string& name, double fallback) {
-  const double value = number_of(settings, name);
-  return value == 0 ? fallback : value;
-}
 
 template <int dim>
 Stress<dim> point_load_stress(double F, double nu, const Point<dim>& p) {
@@ -71,159 +58,13 @@ Vector<dim> point_load_displacement(double F, double E, double nu, const Point<d
   return u;
 }
 
-/// What both models share: the box x >= 0, bottom <= vertical <= 0, refinement until the stresses
-/// at probe points stand still, and the way from points of the full space into the meshed part.
-template <int dim>
-class BoxModel : public Model {
- public:
-  BoxModel(const std::string& name, const Settings& s, double tolerance, int degree)
-      : load_(number_of(s, "F")),
-        young_(number_of(s, "E")),
-        poisson_(number_of(s, "nu")),
-        tolerance_(number_or(s, "tolerance", tolerance)),
-        refinements_(static_cast<int>(number_of(s, "refinements"))),
-        degree_(static_cast<int>(number_or(s, "degree", degree))),
-        iterations_(static_cast<int>(number_of(s, "iterations"))),
-        name_(name) {}
-
-  Stresses stress(const Points& points) override {
-    if (!solver_) {
-      solver_ = std::make_unique<ElasticSolver<dim>>(fe::communicator(ranks_), degree_, iterations_,
-                                                     name_);
-      try {
-        build_mesh(solver_->mesh());
-        solve();
-      } catch (...) {
-        solver_.reset();
-        throw;
-      }
-    }
-    std::vector<Point<dim>> inside;
-    std::vector<Eigen::Index> rows;
-    for (Eigen::Index i = 0; i < points.rows(); ++i) {
-      if (const auto p = fold(points.row(i))) {
-        inside.push_back(*p);
-        rows.push_back(i);
-      }
-    }
-    Stresses out =
-        Stresses::Constant(points.rows(), kStresses<dim>, std::numeric_limits<double>::quiet_NaN());
-    const Eigen::MatrixXd found = stress_in_mesh(inside);
-    const auto components = fe::stress_components<dim>();
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      for (int c = 0; c < kStresses<dim>; ++c) {
-        // A mirrored point: each horizontal index of the component that was mirrored flips the
-        // sign.
-        double sign = 1;
-        const auto [a, b] = components[c];
-        if (a != b) {
-          if (a < dim - 1 && points(rows[n], a) < 0) sign = -sign;
-          if (b < dim - 1 && points(rows[n], b) < 0) sign = -sign;
-        }
-        out(rows[n], c) = sign * found(static_cast<Eigen::Index>(n), c);
-      }
-    }
-    return out;
-  }
-
-  std::map<std::string, double> figures() const override {
-    auto all = solver_ ? solver_->figures() : std::map<std::string, double>();
-    all.insert(figures_.begin(), figures_.end());
-    return all;
-  }
-
- protected:
-  virtual void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) = 0;
-  virtual ElasticProblem<dim> problem() const = 0;
-  /// Where the stress must stand still, and the stress against which its change is measured.
-  virtual std::vector<Point<dim>> probes() const = 0;
-  virtual double scale(const Point<dim>& probe) const = 0;
-  /// What the elements' stress is added to.
-  virtual Stress<dim> closed_part(const Point<dim>&) const { return {}; }
-  virtual double refinement_weight(const Point<dim>&) const { return 1; }
-
-  BoundaryCondition<dim> mirror_plane(int axis) const {
-    BoundaryCondition<dim> mirror;
-    mirror.fixed[axis] = true;
-    return mirror;
-  }
-  static Point<dim> horizontal_and_height(double x, double height) {
-    Point<dim> p;
-    p[0] = x;
-    p[dim - 1] = height;
-    return p;
-  }
-
-  double load_, young_, poisson_;
-  double half_width_ = 0, bottom_ = 0;  ///< of the box; set by build_mesh
-  std::map<std::string, double> figures_;
-
- private:
-  void solve() {
-    const auto equations = problem();
-    const auto points = probes();
-    Eigen::MatrixXd before;
-    for (int cycle = 0;; ++cycle) {
-      solver_->solve(equations);
-      const Eigen::MatrixXd after = solver_->stress_at(points);
-      figures_["refinement_cycles"] = cycle;
-      if (cycle > 0) {
-        double change = 0;
-        for (std::size_t n = 0; n < points.size(); ++n) {
-          const auto row = static_cast<Eigen::Index>(n);
-          change =
-              std::max(change, (after - before).row(row).cwiseAbs().maxCoeff() / scale(points[n]));
-        }
-        figures_["change"] = change;
-        if (change <= tolerance_) return;
-        if (cycle >= refinements_)
-          throw ComputationFailed(fmt::format(
-              "{}: the stress still changes by {:.1e} of its scale in refinement {}, {:.0e} is "
-              "asked; raise refinements, degree or tolerance",
-              name_, change, cycle, tolerance_));
-      }
-      before = after;
-      solver_->refine_worst(kRefinedShare,
-                            [this](const Point<dim>& p) { return refinement_weight(p); });
-    }
-  }
-
-  Eigen::MatrixXd stress_in_mesh(const std::vector<Point<dim>>& points) const {
-    Eigen::MatrixXd found = solver_->stress_at(points);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      const auto closed = closed_part(points[n]);
-      for (int c = 0; c < kStresses<dim>; ++c) found(static_cast<Eigen::Index>(n), c) += closed[c];
-    }
-    return found;
-  }
-
-  /// The point's image in the meshed part; none outside the domain.
-  std::optional<Point<dim>> fold(const Eigen::RowVectorXd& point) const {
-    Point<dim> p;
-    const double slack = kOnBorder * half_width_;
-    for (int d = 0; d < dim - 1; ++d) {
-      p[d] = std::abs(point(d));
-      if (!(p[d] <= half_width_ + slack)) return std::nullopt;
-      p[d] = std::min(p[d], half_width_);
-    }
-    const double height = point(dim - 1);
-    if (!(height < 0) || !(height >= bottom_ - slack)) return std::nullopt;
-    p[dim - 1] = std::max(height, bottom_);
-    return p;
-  }
-
-  double tolerance_;
-  int refinements_, degree_, iterations_;
-  std::string name_;
-  Ranks ranks_ = fe::chosen_ranks();
-  std::unique_ptr<ElasticSolver<dim>> solver_;
-};
-
 template <int dim>
 class ElasticLayer : public BoxModel<dim> {
  public:
   explicit ElasticLayer(const Settings& s)
       : BoxModel<dim>("fe_elastic_layer", s, dim == 2 ? 2e-4 : 5e-3, dim == 2 ? 3 : 2),
+        young_(number_of(s, "E")),
+        poisson_(number_of(s, "nu")),
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
@@ -243,7 +84,7 @@ class ElasticLayer : public BoxModel<dim> {
   }
 
   ElasticProblem<dim> problem() const override {
-    const double F = this->load_, E = this->young_, nu = this->poisson_;
+    const double F = this->load_, E = young_, nu = poisson_;
     const auto displacement = [=](const Point<dim>& p) {
       return -point_load_displacement<dim>(F, E, nu, p);
     };
@@ -276,11 +117,11 @@ class ElasticLayer : public BoxModel<dim> {
                     std::numeric_limits<double>::min());
   }
   Stress<dim> closed_part(const Point<dim>& p) const override {
-    return point_load_stress<dim>(this->load_, this->poisson_, p);
+    return point_load_stress<dim>(this->load_, poisson_, p);
   }
 
  private:
-  double h_, ratio_;
+  double young_, poisson_, h_, ratio_;
   unsigned int cells_;
   bool rough_, free_sides_;
 };
@@ -290,6 +131,8 @@ class ElasticHalfSpace : public BoxModel<dim> {
  public:
   explicit ElasticHalfSpace(const Settings& s)
       : BoxModel<dim>("fe_elastic_half_space", s, dim == 2 ? 2e-3 : 1e-2, 3),
+        young_(number_of(s, "E")),
+        poisson_(number_of(s, "nu")),
         depth_(number_of(s, "depth")),
         patch_(number_of(s, "patch") * depth_),
         cells_(number_or(s, "cells", dim == 2 ? 2 : 1)) {
@@ -328,7 +171,7 @@ class ElasticHalfSpace : public BoxModel<dim> {
   }
 
   ElasticProblem<dim> problem() const override {
-    ElasticProblem<dim> equations{this->young_, this->poisson_, {}, {}};
+    ElasticProblem<dim> equations{young_, poisson_, {}, {}};
     for (int axis = 0; axis < dim - 1; ++axis) {
       equations.boundaries[2 * axis] = this->mirror_plane(axis);
       equations.boundaries[2 * axis + 1].fixed.fill(true);
@@ -362,7 +205,7 @@ class ElasticHalfSpace : public BoxModel<dim> {
   }
 
  private:
-  double depth_, patch_, cells_;
+  double young_, poisson_, depth_, patch_, cells_;
   int levels_ = 0;
 };
 
@@ -376,6 +219,8 @@ std::unique_ptr<Model> make(const Settings& s) {
 
 std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& settings) {
   if (name == "fe_elastic_layer") return make<ElasticLayer>(settings);
+  if (name == "fe_orthotropic_layer") return make_orthotropic_layer(settings);
+  if (name == "fe_cantelaube_core") return make_cantelaube_core(settings);
   if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(settings);
   if (name == "fe_mohr_coulomb_wedge") return make_wedge_model(settings);
   throw BadParameter("no finite-element model '" + name + "'");

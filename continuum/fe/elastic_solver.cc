@@ -30,6 +30,8 @@ using namespace dealii;
 
 /// Of |b - A x| against |b|: far below any discretization error of interest.
 constexpr double kResidual = 1e-10;
+/// Of a cell's diameter: a vertex this near to a pin is the one meant.
+constexpr double kAtVertex = 1e-6;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -119,6 +121,15 @@ std::unique_ptr<Epetra_MultiVector> rigid_motions(const Mapping<dim>& mapping,
 }  // namespace
 
 template <int dim>
+Stiffness<dim> isotropic_stiffness(double E, double nu) {
+  const double shear = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+  Stiffness<dim> c = Stiffness<dim>::Zero();
+  c.template topLeftCorner<dim, dim>().setConstant(lambda);
+  for (int i = 0; i < kStresses<dim>; ++i) c(i, i) += i < dim ? 2 * shear : shear;
+  return c;
+}
+
+template <int dim>
 fe::Vector<dim> traction(const Stress<dim>& stress, const fe::Vector<dim>& normal) {
   fe::Vector<dim> t;
   const auto components = stress_components<dim>();
@@ -142,15 +153,38 @@ ElasticSolver<dim>::ElasticSolver(MPI_Comm comm, int degree, int max_iterations,
       dofs_(mesh_),
       stress_dofs_(mesh_) {}
 
+namespace {
+
+/// C eps of a displacement gradient.
 template <int dim>
-Stress<dim> ElasticSolver<dim>::stress_of(const Tensor<2, dim>& gradient) const {
-  Stress<dim> s;
+Stress<dim> stress_of(const Stiffness<dim>& stiffness, const Tensor<2, dim>& gradient) {
   const auto components = stress_components<dim>();
+  Eigen::Matrix<double, kStresses<dim>, 1> strain;
   for (int c = 0; c < kStresses<dim>; ++c) {
     const auto [i, j] = components[c];
-    s[c] = shear_ * (gradient[i][j] + gradient[j][i]) + (i == j ? lambda_ * trace(gradient) : 0.);
+    strain[c] = i == j ? gradient[i][i] : gradient[i][j] + gradient[j][i];
   }
+  const Eigen::Matrix<double, kStresses<dim>, 1> stress = stiffness * strain;
+  Stress<dim> s;
+  for (int c = 0; c < kStresses<dim>; ++c) s[c] = stress[c];
   return s;
+}
+
+}  // namespace
+
+template <int dim>
+void ElasticSolver<dim>::pin(const ElasticProblem<dim>& problem) {
+  if (problem.pins.empty()) return;
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (cell->is_artificial()) continue;
+    for (const unsigned int v : cell->vertex_indices()) {
+      for (const auto& [point, held] : problem.pins) {
+        if (cell->vertex(v).distance(point) > kAtVertex * cell->diameter()) continue;
+        for (int d = 0; d < dim; ++d)
+          if (held[d]) constraints_.add_line(cell->vertex_dof_index(v, d));
+      }
+    }
+  }
 }
 
 template <int dim>
@@ -170,6 +204,7 @@ void ElasticSolver<dim>::distribute(const ElasticProblem<dim>& problem) {
     VectorTools::interpolate_boundary_values(mapping_, dofs_, id, BoundaryValues<dim>(condition),
                                              constraints_, mask);
   }
+  pin(problem);
   constraints_.close();
 }
 
@@ -186,9 +221,12 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
   // Boundary and body data are arbitrary functions: two points more than the elements need.
   const QGauss<dim> force_quadrature(degree_ + 3);
   const QGauss<dim - 1> face_quadrature(degree_ + 3);
-  FEValues<dim> values(mapping_, element_, quadrature, update_gradients | update_JxW_values);
-  FEValues<dim> force_values(mapping_, element_, force_quadrature,
-                             update_values | update_quadrature_points | update_JxW_values);
+  FEValues<dim> values(
+      mapping_, element_, quadrature,
+      update_gradients | update_JxW_values | (varies_ ? update_quadrature_points : update_default));
+  FEValues<dim> force_values(
+      mapping_, element_, force_quadrature,
+      update_values | update_gradients | update_quadrature_points | update_JxW_values);
   FEFaceValues<dim> face_values(
       mapping_, element_, face_quadrature,
       update_values | update_quadrature_points | update_JxW_values | update_normal_vectors);
@@ -196,10 +234,6 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
   const int n = static_cast<int>(element_.n_dofs_per_cell());
   const auto components = stress_components<dim>();
   // K = sum_q B^T D B with B the strain of each shape function in Voigt's order, shear doubled.
-  Eigen::Matrix<double, kStresses<dim>, kStresses<dim>> elastic;
-  elastic.setZero();
-  elastic.template topLeftCorner<dim, dim>().setConstant(lambda_);
-  for (int c = 0; c < kStresses<dim>; ++c) elastic(c, c) += c < dim ? 2 * shear_ : shear_;
   Eigen::Matrix<double, kStresses<dim>, Eigen::Dynamic> strain(kStresses<dim>, n), stress = strain;
   Eigen::MatrixXd k(n, n);
   FullMatrix<double> cell_matrix(n, n);
@@ -209,7 +243,7 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
 
   for (const auto& cell : dofs_.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
-    const double size = similar_size(*cell);
+    const double size = varies_ ? 0 : similar_size(*cell);
     if (size == 0) {
       values.reinit(cell);
       k.setZero();
@@ -224,7 +258,10 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
             if (a != b && b == component) strain(c, i) += gradient[a];
           }
         }
-        stress.noalias() = values.JxW(q) * elastic * strain;
+        if (varies_)
+          stress.noalias() = values.JxW(q) * varies_(values.quadrature_point(q)) * strain;
+        else
+          stress.noalias() = values.JxW(q) * stiffness_ * strain;
         k.noalias() += strain.transpose() * stress;
       }
     }
@@ -233,8 +270,8 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
       for (int j = 0; j < n; ++j) cell_matrix(i, j) = scale * k(i, j);
 
     cell_rhs = 0;
+    if (problem.body_force || problem.initial_stress) force_values.reinit(cell);
     if (problem.body_force) {
-      force_values.reinit(cell);
       for (const unsigned int q : force_values.quadrature_point_indices()) {
         const auto f = problem.body_force(force_values.quadrature_point(q));
         for (int i = 0; i < n; ++i)
@@ -242,11 +279,37 @@ void ElasticSolver<dim>::assemble(const ElasticProblem<dim>& problem) {
                          force_values.shape_value(i, q) * force_values.JxW(q);
       }
     }
+    if (problem.initial_stress) {
+      for (const unsigned int q : force_values.quadrature_point_indices()) {
+        const auto s0 = problem.initial_stress(force_values.quadrature_point(q));
+        // sigma_0 : grad v of a shape function is its component of sigma_0 times the gradient.
+        for (int i = 0; i < n; ++i)
+          cell_rhs(i) -= traction<dim>(s0, force_values.shape_grad(
+                                               i, q))[element_.system_to_component_index(i).first] *
+                         force_values.JxW(q);
+      }
+    }
     for (const auto& face : cell->face_iterators()) {
       if (!face->at_boundary()) continue;
       const auto found = problem.boundaries.find(face->boundary_id());
-      if (found == problem.boundaries.end() || !found->second.traction) continue;
+      if (found == problem.boundaries.end()) continue;
+      const auto& spring = found->second.spring;
+      const bool springs = spring.norm() > 0;
+      if (!found->second.traction && !springs) continue;
       face_values.reinit(cell, face);
+      for (const unsigned int q : face_values.quadrature_point_indices()) {
+        if (!springs) break;
+        for (int i = 0; i < n; ++i) {
+          const auto component = element_.system_to_component_index(i).first;
+          const double weighted =
+              spring[component] * face_values.shape_value(i, q) * face_values.JxW(q);
+          if (weighted == 0) continue;
+          for (int j = 0; j < n; ++j)
+            if (element_.system_to_component_index(j).first == component)
+              cell_matrix(i, j) += weighted * face_values.shape_value(j, q);
+        }
+      }
+      if (!found->second.traction) continue;
       for (const unsigned int q : face_values.quadrature_point_indices()) {
         const auto t =
             found->second.traction(face_values.quadrature_point(q), face_values.normal_vector(q));
@@ -324,7 +387,7 @@ void ElasticSolver<dim>::recover_stress() {
     for (unsigned int q = 0; q < gauss.size(); ++q)
       extrapolate(i, q) = through.shape_value(q, nodes[i]);
 
-  FEValues<dim> values(mapping_, element_, gauss, update_gradients);
+  FEValues<dim> values(mapping_, element_, gauss, update_gradients | update_quadrature_points);
   std::vector<Tensor<2, dim>> gradients(gauss.size());
   std::vector<types::global_dof_index> indices(stress_element_.n_dofs_per_cell());
   Eigen::MatrixXd at_gauss(gauss.size(), kStresses<dim>);
@@ -333,7 +396,7 @@ void ElasticSolver<dim>::recover_stress() {
     values.reinit(cell);
     values[FEValuesExtractors::Vector(0)].get_function_gradients(solution_, gradients);
     for (unsigned int q = 0; q < gauss.size(); ++q) {
-      const auto s = stress_of(gradients[q]);
+      const auto s = stress_of<dim>(stiffness_at(values.quadrature_point(q)), gradients[q]);
       for (int c = 0; c < kStresses<dim>; ++c) at_gauss(q, c) = s[c];
     }
     const Eigen::MatrixXd at_nodes = extrapolate * at_gauss;
@@ -358,8 +421,9 @@ void ElasticSolver<dim>::recover_stress() {
 
 template <int dim>
 void ElasticSolver<dim>::solve(const ElasticProblem<dim>& problem) {
-  shear_ = problem.E / (2 * (1 + problem.nu));
-  lambda_ = problem.E * problem.nu / ((1 + problem.nu) * (1 - 2 * problem.nu));
+  stiffness_ =
+      problem.stiffness ? *problem.stiffness : isotropic_stiffness<dim>(problem.E, problem.nu);
+  varies_ = problem.stiffness_at;
   const double start = now();
   distribute(problem);
   assemble(problem);
@@ -435,7 +499,8 @@ std::array<double, 3> ElasticSolver<dim>::errors(
       const auto& p = values.quadrature_point(q);
       const auto exact = stress(p);
       sums[0] += (found[q] - displacement(p)).norm_square() * values.JxW(q);
-      sums[1] += (stress_of(gradients[q]) - exact).norm_square() * values.JxW(q);
+      sums[1] +=
+          (stress_of<dim>(stiffness_at(p), gradients[q]) - exact).norm_square() * values.JxW(q);
       for (int c = 0; c < kStresses<dim>; ++c)
         sums[2] += std::pow(recovered[q][c] - exact[c], 2) * values.JxW(q);
     }
@@ -444,6 +509,8 @@ std::array<double, 3> ElasticSolver<dim>::errors(
   return sums;
 }
 
+template Stiffness<2> isotropic_stiffness<2>(double, double);
+template Stiffness<3> isotropic_stiffness<3>(double, double);
 template fe::Vector<2> traction<2>(const Stress<2>&, const fe::Vector<2>&);
 template fe::Vector<3> traction<3>(const Stress<3>&, const fe::Vector<3>&);
 template class ElasticSolver<2>;

@@ -1,7 +1,7 @@
-// Isotropic linear elasticity on distributed adaptive meshes of quadrilaterals or hexahedra, the
-// same code in 2D (plane strain) and 3D. Internal to fe/: needs deal.II.
+// Linear elasticity on distributed adaptive meshes of quadrilaterals or hexahedra, isotropic or
+// not, uniform or not; the same code in 2D (plane strain) and 3D. Internal to fe/: needs deal.II.
 //
-// div sigma + f = 0, sigma = lambda tr(eps) I + 2 G eps, continuous elements of any degree. The
+// div sigma + f = 0, sigma = C eps + sigma_0, continuous elements of any degree. The
 // assembled matrix is solved by conjugate gradients, preconditioned by smoothed-aggregation
 // algebraic multigrid (Trilinos ML) that knows the rigid motions: iterations, and with them the
 // time per unknown, hardly grow with the mesh.
@@ -20,6 +20,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ constexpr std::array<std::pair<int, int>, kStresses<dim>> stress_components() {
   else
     return {{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
 }
+/// C: stored stress of the strains xx, yy, 2 xy (3D likewise in the order of Stress).
+template <int dim>
+using Stiffness = Eigen::Matrix<double, kStresses<dim>, kStresses<dim>>;
+/// lambda tr(eps) I + 2 G eps of Young's modulus and Poisson's ratio.
+template <int dim>
+Stiffness<dim> isotropic_stiffness(double E, double nu);
 /// The traction of a stress on a surface.
 template <int dim>
 Vector<dim> traction(const Stress<dim>& stress, const Vector<dim>& normal);
@@ -50,15 +57,25 @@ struct BoundaryCondition {
   std::array<bool, dim> fixed{};  ///< components of the displacement that are given
   /// Their values; none = 0.
   std::function<Vector<dim>(const dealii::Point<dim>&)> displacement = {};
-  /// Of the components that are not fixed; none = free.
+  /// Of the components that are not fixed; none = free. With an initial stress: of the whole
+  /// stress.
   std::function<Vector<dim>(const dealii::Point<dim>&, const Vector<dim>& normal)> traction = {};
+  /// Springs under the components that are not fixed: traction -spring u more, N/m3.
+  Vector<dim> spring = {};
 };
 
 template <int dim>
 struct ElasticProblem {
   double E = 1, nu = 0.3;
-  std::map<dealii::types::boundary_id, BoundaryCondition<dim>> boundaries;
+  std::map<dealii::types::boundary_id, BoundaryCondition<dim>> boundaries = {};
   std::function<Vector<dim>(const dealii::Point<dim>&)> body_force = {};
+  /// Instead of E and nu: the same everywhere, or from place to place.
+  std::optional<Stiffness<dim>> stiffness = {};
+  std::function<Stiffness<dim>(const dealii::Point<dim>&)> stiffness_at = {};
+  /// sigma_0; not part of the stress that the solver returns.
+  std::function<Stress<dim>(const dealii::Point<dim>&)> initial_stress = {};
+  /// Vertices of the mesh of which these components are held at 0, against rigid motions.
+  std::vector<std::pair<dealii::Point<dim>, std::array<bool, dim>>> pins = {};
 };
 
 template <int dim>
@@ -68,7 +85,7 @@ class ElasticSolver {
   ElasticSolver(MPI_Comm comm, int degree, int max_iterations, std::string name);
 
   dealii::parallel::distributed::Triangulation<dim>& mesh() { return mesh_; }
-  /// Assembles and solves on the present mesh, recovers the stress. Throws ComputationFailed.
+  /// Assembles and solves on the present mesh, recovers the stress C eps. Throws ComputationFailed.
   void solve(const ElasticProblem<dim>& problem);
   /// Refines the cells that carry `share` of the jumps of the gradient (Kelly et al. 1983), each
   /// weighted by the function at the cell's centre.
@@ -87,12 +104,16 @@ class ElasticSolver {
   void assemble(const ElasticProblem<dim>& problem);
   void solve_linear();
   void recover_stress();
-  Stress<dim> stress_of(const dealii::Tensor<2, dim>& gradient) const;
+  void pin(const ElasticProblem<dim>& problem);
+  Stiffness<dim> stiffness_at(const dealii::Point<dim>& point) const {
+    return varies_ ? varies_(point) : stiffness_;
+  }
 
   MPI_Comm comm_;
   int degree_, max_iterations_;
   std::string name_;
-  double lambda_ = 0, shear_ = 0;
+  Stiffness<dim> stiffness_;
+  std::function<Stiffness<dim>(const dealii::Point<dim>&)> varies_;
   dealii::MappingQ1<dim> mapping_;
   dealii::parallel::distributed::Triangulation<dim> mesh_;
   dealii::FESystem<dim> element_, stress_element_;

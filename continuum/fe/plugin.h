@@ -10,6 +10,10 @@ namespace grainfield::continuum::fe {
 
 /// The named model ("fe_elastic_layer") with complete settings. Throws BadParameter.
 std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings);
+/// "fe_orthotropic_layer" with complete settings. Throws BadParameter.
+std::unique_ptr<Model> make_orthotropic_layer(const Settings& settings);
+/// "fe_cantelaube_core" with complete settings. Throws BadParameter.
+std::unique_ptr<Model> make_cantelaube_core(const Settings& settings);
 /// The same for "fe_osl_wedge" and "fe_osl_layer".
 std::unique_ptr<Model> make_osl_model(const std::string& name, const Settings& settings);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "continuum/closed/half_space.h"
 #include "continuum/fe/elastic_solver.h"
 #include "continuum/fe/parallel.h"
 
@@ -18,7 +19,7 @@ using Point = dealii::Point<dim>;
 /// u_i = a_i prod_j sin(k x_j + i + j / 2): no symmetry that could hide an error.
 template <int dim>
 struct Manufactured {
-  double lambda, shear;
+  double lambda = 0, shear = 0;
   static constexpr double k = 2;
 
   static double amplitude(int i) { return 1 + 0.5 * i; }
@@ -95,7 +96,127 @@ ManufacturedErrors solve(int degree, double nu, int refinement, bool mixed) {
   return {errors[0], errors[1], errors[2], solver.figures()};
 }
 
+/// Orthotropic constants that vary with the place, C(x) = m(x) C_0, m = 1 + sin(x + 2 y + 0.3) / 3,
+/// and an initial stress sigma_0, on the displacement of Manufactured: the solution is chosen, the
+/// force follows.
+struct MappedManufactured {
+  Manufactured<2> u{};
+  fe::Stiffness<2> c0;
+
+  explicit MappedManufactured(const PlaneModuli& moduli) : c0(stiffness(moduli)) {}
+  static double phase(const Point<2>& p) { return p[0] + 2 * p[1] + 0.3; }
+  static double factor(const Point<2>& p) { return 1 + std::sin(phase(p)) / 3; }
+  static Stress<2> initial(const Point<2>& p) {
+    Stress<2> s;
+    s[0] = 0.2 * std::sin(3 * p[1]) + 0.1 * p[0] * p[0];
+    s[1] = 0.3 * std::cos(2 * p[0] + p[1]);
+    s[2] = 0.1 * std::exp(p[0] - p[1]);
+    return s;
+  }
+  /// C_0 eps, or its derivative along an axis.
+  Eigen::Vector3d plain(const Point<2>& p, int along = -1) const {
+    return c0 * Eigen::Vector3d(Manufactured<2>::derivative(p, 0, 0, along),
+                                Manufactured<2>::derivative(p, 1, 1, along),
+                                Manufactured<2>::derivative(p, 0, 1, along) +
+                                    Manufactured<2>::derivative(p, 1, 0, along));
+  }
+  Stress<2> stress(const Point<2>& p) const {
+    Stress<2> s;
+    for (int c = 0; c < 3; ++c) s[c] = factor(p) * plain(p)[c];
+    return s;
+  }
+  Vector<2> force(const Point<2>& p) const {
+    const double slope = std::cos(phase(p)) / 3;
+    const Eigen::Vector3d s = plain(p), dx = factor(p) * plain(p, 0) + slope * s,
+                          dy = factor(p) * plain(p, 1) + 2 * slope * s;
+    Vector<2> f;
+    f[0] = -(dx[0] + dy[2]) - 0.2 * p[0] + 0.1 * std::exp(p[0] - p[1]);
+    f[1] = -(dx[2] + dy[1]) - 0.1 * std::exp(p[0] - p[1]) + 0.3 * std::sin(2 * p[0] + p[1]);
+    return f;
+  }
+};
+
 }  // namespace
+
+ManufacturedErrors solve_manufactured_map(int degree, const PlaneModuli& moduli, int refinement,
+                                          bool uniform) {
+  const MappedManufactured exact(moduli);
+  fe::ElasticProblem<2> problem;
+  const auto factor = [&](const Point<2>& p) {
+    return uniform ? 1. : MappedManufactured::factor(p);
+  };
+  const auto stress = [&](const Point<2>& p) {
+    return exact.stress(p) * (factor(p) / MappedManufactured::factor(p));
+  };
+  if (uniform) {
+    problem.stiffness = exact.c0;
+  } else {
+    problem.stiffness_at = [&](const Point<2>& p) -> fe::Stiffness<2> {
+      return factor(p) * exact.c0;
+    };
+    problem.initial_stress = MappedManufactured::initial;
+  }
+  problem.body_force = [&](const Point<2>& p) {
+    if (!uniform) return exact.force(p);
+    const Eigen::Vector3d dx = exact.plain(p, 0), dy = exact.plain(p, 1);
+    Vector<2> f;
+    f[0] = -(dx[0] + dy[2]);
+    f[1] = -(dx[2] + dy[1]);
+    return f;
+  };
+  // Springs under one side: the traction that the solution leaves for them beside its own.
+  constexpr double kSpring = 2;
+  for (int id = 0; id < 4; ++id) {
+    auto& boundary = problem.boundaries[static_cast<unsigned int>(id)];
+    boundary.displacement = [&](const Point<2>& p) { return exact.u.displacement(p); };
+    boundary.fixed = {id == 0 || id == 2, id == 0};
+    if (id == 1) boundary.spring[0] = boundary.spring[1] = kSpring;
+    boundary.traction = [&, id, stress](const Point<2>& p, const Vector<2>& normal) {
+      Vector<2> t = fe::traction<2>(
+          stress(p) + (uniform ? Stress<2>() : MappedManufactured::initial(p)), normal);
+      if (id == 1) t += kSpring * exact.u.displacement(p);
+      return t;
+    };
+  }
+  fe::ElasticSolver<2> solver(fe::communicator(fe::chosen_ranks()), degree, 500,
+                              "manufactured problem");
+  dealii::GridGenerator::hyper_cube(solver.mesh(), 0, 1, true);
+  solver.mesh().refine_global(static_cast<unsigned int>(refinement));
+  solver.solve(problem);
+  const auto errors =
+      solver.errors([&](const Point<2>& p) { return exact.u.displacement(p); }, stress);
+  return {errors[0], errors[1], errors[2], solver.figures()};
+}
+
+ManufacturedErrors solve_below_load(int degree, int cells) {
+  constexpr double kNu = 0.3, kGap = 0.05;
+  fe::ElasticProblem<2> problem;
+  problem.nu = kNu;
+  const auto displacement = [](const Point<2>& p) {
+    const auto found = flamant_displacement(1, 1, kNu, p[0], p[1]);
+    Vector<2> u;
+    u[0] = found[0];
+    u[1] = found[1];
+    return u;
+  };
+  for (unsigned int id = 0; id < 4; ++id) {
+    problem.boundaries[id].fixed.fill(true);
+    problem.boundaries[id].displacement = displacement;
+  }
+  fe::ElasticSolver<2> solver(fe::communicator(fe::chosen_ranks()), degree, 500,
+                              "box below a load");
+  const auto n = static_cast<unsigned int>(cells);
+  dealii::GridGenerator::subdivided_hyper_rectangle(
+      solver.mesh(), {n, n}, Point<2>(-0.5, -1 - kGap), Point<2>(0.5, -kGap), true);
+  solver.solve(problem);
+  const auto errors = solver.errors(displacement, [](const Point<2>& p) {
+    const auto found = flamant_stress(1., p[0], p[1]);
+    Stress<2> s;
+    for (unsigned int c = 0; c < 3; ++c) s[c] = found[c];
+    return s;
+  });
+  return {errors[0], errors[1], errors[2], solver.figures()};
+}
 
 ManufacturedErrors solve_manufactured(int dim, int degree, double nu, int refinement, bool mixed) {
   return dim == 2 ? solve<2>(degree, nu, refinement, mixed)

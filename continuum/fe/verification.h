@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "continuum/closed/orthotropic.h"
+
 namespace grainfield::continuum {
 
 /// Errors of one solve on a mesh of cubes of edge 2^-refinement.
@@ -20,5 +22,18 @@ struct ManufacturedErrors {
 /// Throws ComputationFailed.
 ManufacturedErrors solve_manufactured(int dim, int degree, double nu, int refinement,
                                       bool mixed = false);
+
+/// The same in 2D with orthotropic constants: `uniform`, or C(x, y) = (1 + sin(x + 2 y + 0.3)/3)
+/// C_0 with an initial stress. Of the unit square's sides the left one is held, the lower one
+/// smooth, the right one on springs, the upper one under its traction. `stress` and `recovered` are
+/// of C eps, without the initial stress.
+ManufacturedErrors solve_manufactured_map(int degree, const PlaneModuli& moduli, int refinement,
+                                          bool uniform);
+
+/// Plane strain on a unit square whose upper side is 0.05 below a point load on a half plane
+/// (Flamant), F = E = 1, nu = 0.3, with the exact displacement on all its sides, on cells x cells
+/// squares: what tests/benchmarks/against_fe_peers.sh gives to other programs too. Throws
+/// ComputationFailed.
+ManufacturedErrors solve_below_load(int degree, int cells);
 
 }  // namespace grainfield::continuum

@@ -1,6 +1,7 @@
 #include "continuum/osl/field_map.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,6 @@ namespace {
 /// Nodes may be off their place on the grid, and the grid short of the domain, by this share of a
 /// step.
 constexpr double kTolerance = 1e-6;
-const std::vector<std::string> kFields = {"rho_g", "eta", "mu"};
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
   throw BadParameter(fmt::format("{}:{}: {}", file, line, why));
@@ -33,16 +33,18 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-std::vector<std::string> read_header(const std::string& file, int line, const std::string& text) {
+std::vector<std::string> read_header(const std::string& file, int line, const std::string& text,
+                                     const std::vector<std::string>& fields) {
   auto names = split(text);
   bool good = names.size() >= 3 && names[0] == "x" && names[1] == "y";
   for (std::size_t i = 2; good && i < names.size(); ++i)
-    good = std::find(kFields.begin(), kFields.end(), names[i]) != kFields.end() &&
+    good = std::find(fields.begin(), fields.end(), names[i]) != fields.end() &&
            std::find(names.begin(), names.begin() + static_cast<long>(i), names[i]) ==
                names.begin() + static_cast<long>(i);
   if (!good)
     refuse(file, line,
-           fmt::format("the header is \"{}\"; allowed: x,y and one or more of rho_g,eta,mu", text));
+           fmt::format("the header is \"{}\"; allowed: x,y and one or more of {}", text,
+                       fmt::join(fields, ",")));
   return names;
 }
 
@@ -51,12 +53,14 @@ struct Row {
   std::vector<double> values;
 };
 
-Row read_row(const std::string& file, int line, const std::string& text, std::size_t columns) {
+Row read_row(const std::string& file, int line, const std::string& text, std::size_t columns,
+             bool may_lack) {
   Row row{line, {}};
   for (const auto& word : split(text)) {
     char* end = nullptr;
     row.values.push_back(std::strtod(word.c_str(), &end));
-    if (word.empty() || *end != '\0' || !std::isfinite(row.values.back()))
+    const bool lacks = may_lack && row.values.size() > 2 && std::isnan(row.values.back());
+    if (word.empty() || *end != '\0' || !(lacks || std::isfinite(row.values.back())))
       refuse(file, line, fmt::format("\"{}\" is not a finite number", word));
   }
   if (row.values.size() != columns)
@@ -67,6 +71,11 @@ Row read_row(const std::string& file, int line, const std::string& text, std::si
 }  // namespace
 
 FieldMap read_field_map(const std::string& file) {
+  return read_field_map(file, {"rho_g", "eta", "mu"}, false);
+}
+
+FieldMap read_field_map(const std::string& file, const std::vector<std::string>& fields,
+                        bool may_lack) {
   FieldMap map;
   map.file = file;
   if (file.empty()) return map;
@@ -79,9 +88,9 @@ FieldMap read_field_map(const std::string& file) {
     ++line;
     if (text.empty() || text == "\r" || text[0] == '#') continue;
     if (names.empty())
-      names = read_header(file, line, text);
+      names = read_header(file, line, text, fields);
     else
-      rows.push_back(read_row(file, line, text, names.size()));
+      rows.push_back(read_row(file, line, text, names.size(), may_lack));
   }
   std::size_t nx = 0;
   while (nx < rows.size() && rows[nx].values[1] == rows[0].values[1]) ++nx;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "continuum/osl/problem.h"
 
@@ -14,7 +15,7 @@ struct FieldMap {
   std::string file;
   double x0 = 0, y0 = 0, dx = 0, dy = 0;          ///< m
   int nx = 0, ny = 0;                             ///< at least 2 each
-  std::map<std::string, Eigen::VectorXd> values;  ///< by name: rho_g, eta, mu
+  std::map<std::string, Eigen::VectorXd> values;  ///< by name, e.g. rho_g, eta, mu
 
   /// Bilinear between the nodes; beyond the grid as on its border.
   double at(const std::string& name, double x, double y) const;
@@ -28,5 +29,8 @@ struct FieldMap {
 /// node, x ascending fastest. Throws BadParameter "FILE:LINE: ..." for a missing file, another
 /// header, numbers that are not finite, nodes that form no regular grid. An empty name: no fields.
 FieldMap read_field_map(const std::string& file);
+/// The same with these columns instead. `may_lack`: a value (not a place) may be nan.
+FieldMap read_field_map(const std::string& file, const std::vector<std::string>& fields,
+                        bool may_lack);
 
 }  // namespace grainfield::continuum::osl

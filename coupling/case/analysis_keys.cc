@@ -67,16 +67,22 @@ void elastic(Section s) {
   s.number("force", "N", +IN(double, elastic.force), kPositive,
            "point load on the surface (2D: force as on one grain)");
   s.number("height", "m", +IN(double, elastic.height), kPositive,
-           "elastic-layer, osl-layer, osl-wedge: height h of the layer or the heap",
-           "Roul table 5.1");
+           "height h of the layer or the heap; elastic-half-space has none", "Roul table 5.1");
   s.number("dim", "-", +IN(Integer, elastic.dim), {2, 3},
            "2: plane strain, 3: space; models of the other dimension are left out");
   s.word("base", +IN(string, elastic.base), {"smooth", "rough"},
-         "elastic-layer: base of every model that has one and does not set it", "Roul 5.5");
+         "elastic-layer, orthotropic-layer: base of every model that has one and does not set it",
+         "Roul 5.5");
   s.number("depths", "m", +IN(Numbers, elastic.depths), kPositive, "profiles below the surface");
   s.number("half_width", "m", +IN(double, elastic.half_width), kPositive,
            "profiles reach this far to either side of the load");
   s.number("points", "-", +IN(Integer, elastic.points), {3, 100000}, "of a profile");
+  s.number("r", "-", +IN(double, elastic.r), {-1e6, 1e6},
+           "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1; a half plane has "
+           "two peaks below 0",
+           "Otto et al. 2003");
+  s.number("t", "-", +IN(double, elastic.t), {0, 1e6, true},
+           "E_x/E_y; isotropic: 1", "Otto et al. 2003");
 }
 
 void compare(Section s) {
@@ -84,8 +90,7 @@ void compare(Section s) {
       "models", +[](Case& c) -> Words& { return model_names(c); }, {},
       "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
       "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
-      "elastic-layer) are filled "
-      "from the run unless set");
+      "elastic-layer; base, r and t of orthotropic-layer) are filled from the run unless set");
 }
 
 void output(Section s) {

@@ -85,6 +85,7 @@ struct ElasticSetup {
   std::vector<double> depths = {0.05, 0.1, 0.15};  ///< m
   double half_width = 0.3;                         ///< m
   std::int64_t points = 61;
+  double r = 1, t = 1;  ///< orthotropic-layer: anisotropy
 };
 
 struct OutputSetup {

@@ -30,13 +30,16 @@ std::vector<ModelChoice> of_dimension(const Case& value) {
 StudyResult analyse_elastic(const Case& value) {
   const ElasticSetup& setup = value.elastic;
   const auto [least, most] = std::minmax_element(setup.depths.begin(), setup.depths.end());
-  const bool layer = value.study == "elastic-layer";
+  const bool heap = value.study == "wedge-core", layer = value.study != "elastic-half-space";
   ModelsOnly where;
-  where.facts.force = where.load = setup.force;
+  where.facts.force = setup.force;
+  // Pressures of a heap are counted in h times a weight of 1 N/m2.
+  where.load = heap ? setup.height * setup.height : setup.force;
   where.facts.height = layer ? setup.height : *most;
   where.facts.dim = static_cast<int>(setup.dim);
   where.facts.depth = *least;
-  where.facts.base = layer ? setup.base : "";
+  where.facts.base = layer && !heap ? setup.base : "";
+  if (value.study == "orthotropic-layer") where.facts.numbers = {{"r", setup.r}, {"t", setup.t}};
   where.depths = setup.depths;
   where.half_width = setup.half_width;
   where.points = static_cast<int>(setup.points);
@@ -50,6 +53,7 @@ Study elastic_study(const char* name, const char* meaning) {
   out.name = name;
   out.meaning = meaning;
   out.sections = {"elastic"};
+  out.without = {"elastic.r", "elastic.t"};
   out.fills = {"F", "h", "dim", "depth"};
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
     return analyse_elastic(value);
@@ -62,6 +66,23 @@ Study elastic_study(const char* name, const char* meaning) {
 Study elastic_layer_study() {
   Study out = elastic_study("elastic-layer", "finite elements of a loaded layer, closed form");
   out.fills.emplace_back("base");
+  return out;
+}
+
+Study orthotropic_layer_study() {
+  Study out = elastic_study("orthotropic-layer",
+                            "finite elements of a loaded layer with two elastic axes, half plane");
+  out.without = {"elastic.dim"};
+  out.fills = {"F", "h", "base", "r", "t"};
+  return out;
+}
+
+Study wedge_core_study() {
+  Study out =
+      elastic_study("wedge-core", "finite elements of a heap's elastic core, Cantelaube's form");
+  for (const char* key : {"elastic.force", "elastic.dim", "elastic.base"})
+    out.without.emplace_back(key);
+  out.fills = {"h"};
   return out;
 }
 

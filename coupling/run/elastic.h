@@ -12,6 +12,8 @@ namespace grainfield::coupling {
 StudyResult analyse_elastic(const Case& value);
 
 Study elastic_layer_study();
+Study orthotropic_layer_study();
 Study elastic_half_space_study();
+Study wedge_core_study();
 
 }  // namespace grainfield::coupling

@@ -37,7 +37,7 @@ Study osl_study(const char* name, const char* meaning) {
   out.name = name;
   out.meaning = meaning;
   out.sections = {"elastic"};
-  out.without = {"elastic.dim", "elastic.base"};
+  out.without = {"elastic.dim", "elastic.base", "elastic.r", "elastic.t"};
   out.fills = {"h"};
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
     return analyse_osl(value);

@@ -38,6 +38,25 @@ TEST(Manufactured, TwoDimensionsDegreeThreeNearlyIncompressible) {
 TEST(Manufactured, HangingNodesKeepTheOrder) { expect_orders(2, 2, 0.2, 2, 5, true); }
 TEST(Manufactured, ThreeDimensionsDegreeOne) { expect_orders(3, 1, 0.3, 1, 3); }
 
+TEST(Manufactured, OrthotropicConstantAndMapped) {
+  const PlaneModuli soft_in_shear{2, 1, 0.3, 0.15}, two_peaks{1, 1, 0.9, 2.5};
+  for (const auto& [moduli, degree, first, last] :
+       {std::tuple{soft_in_shear, 1, 3, 6}, {soft_in_shear, 2, 2, 5}, {two_peaks, 3, 2, 4}}) {
+    for (const bool uniform : {true, false}) {
+      ManufacturedErrors coarse = solve_manufactured_map(degree, moduli, first, uniform);
+      for (int refinement = first + 1; refinement <= last; ++refinement) {
+        const auto fine = solve_manufactured_map(degree, moduli, refinement, uniform);
+        const auto order = [](double a, double b) { return std::log2(a / b); };
+        EXPECT_NEAR(order(coarse.displacement, fine.displacement), degree + 1, kOrder)
+            << degree << " " << refinement << uniform;
+        EXPECT_NEAR(order(coarse.stress, fine.stress), degree, kOrder) << degree << uniform;
+        EXPECT_GT(order(coarse.recovered, fine.recovered), degree - kOrder) << degree << uniform;
+        coarse = fine;
+      }
+    }
+  }
+}
+
 TEST(Manufactured, IterationsHardlyGrowWithTheMesh) {
   const double few = solve_manufactured(2, 1, 0.3, 5).figures.at("cg_iterations");
   const double many = solve_manufactured(2, 1, 0.3, 7).figures.at("cg_iterations");

@@ -180,3 +180,49 @@ TEST(Orthotropic, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal({{"E_x", "1"}, {"G", "1"}}),
               HasSubstr("found 2 of E_x, E_y, G; allowed: all three, with nu_xy, or none"));
 }
+
+// Strain of the displacement, by Richardson's differences, against Hooke's law, random media.
+TEST(Orthotropic, DisplacementHasTheStrainsOfTheStress) {
+  Random random(6);
+  for (int k = 0; k < 300; ++k) {
+    const Orthotropy o = random_medium(random);
+    const double least = std::max(-o.r, -std::sqrt(o.t));
+    PlaneModuli m;
+    m.nu_xy = least + random.uniform(0.05, 0.95) * (std::sqrt(o.t) - least);
+    m.E_x = std::exp(random.uniform(-1, 1));
+    m.E_y = m.E_x / o.t;
+    m.G = m.E_x / (2 * (o.r + m.nu_xy));
+    ASSERT_TRUE(is_stable(m));
+    const double x = random.uniform(-2, 2), y = -random.uniform(0.05, 2);
+    const auto difference = [&](int axis, double h) -> Eigen::Vector2d {
+      const double dx = axis == 0 ? h : 0, dy = axis == 1 ? h : 0;
+      const auto a = orthotropic_displacement(3, m, x + dx, y + dy),
+                 b = orthotropic_displacement(3, m, x - dx, y - dy);
+      return Eigen::Vector2d(a[0] - b[0], a[1] - b[1]) / (2 * h);
+    };
+    const auto derivative_of_u = [&](int axis) -> Eigen::Vector2d {
+      const double h =
+          2e-3 * std::fabs(y) * std::sqrt(o.r + std::sqrt(o.t)) / (1 + std::fabs(x / y));
+      return (4 * difference(axis, h / 2) - difference(axis, h)) / 3;
+    };
+    const Eigen::Vector2d ux = derivative_of_u(0), uy = derivative_of_u(1);
+    const auto stress = orthotropic_stress(3, o, x, y);
+    const Eigen::Vector3d strain = compliance(m) * Eigen::Vector3d(stress[0], stress[1], stress[2]);
+    const double size = strain.cwiseAbs().maxCoeff() + std::fabs(ux[1]) + std::fabs(uy[0]);
+    EXPECT_NEAR(ux[0], strain[0], 1e-6 * size) << k;
+    EXPECT_NEAR(uy[1], strain[1], 1e-6 * size) << k;
+    EXPECT_NEAR(ux[1] + uy[0], strain[2], 1e-6 * size) << k;
+  }
+}
+
+TEST(Orthotropic, IsotropicDisplacementIsFlamants) {
+  Random random(7);
+  for (int k = 0; k < 300; ++k) {
+    const double nu = random.uniform(0, 0.49), E = 2;
+    const double x = random.uniform(-2, 2), y = -random.uniform(0, 2);
+    const auto a = orthotropic_displacement(3, plane_strain_moduli(E, nu), x, y);
+    const auto b = flamant_displacement(3, E, nu, x, y);
+    EXPECT_NEAR(a[0], b[0], 1e-10);
+    EXPECT_NEAR(a[1], b[1], 1e-10);
+  }
+}

@@ -1,0 +1,175 @@
+// A box of elastic material under a load at the origin, solved on adaptively refined meshes: what
+// the layers and the half space share. Internal to fe/: needs deal.II.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "continuum/fe/elastic_solver.h"
+#include "continuum/fe/parallel.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum::fe {
+
+/// Values that differ from a border's coordinate by less than this part of the domain are on it.
+inline constexpr double kOnBorder = 1e-9;
+/// Share of the error indicator whose cells are refined in a cycle.
+inline constexpr double kRefinedShare = 0.8;
+
+/// The parameter's value; 0 stands for the dimension's own default.
+inline double number_or(const Settings& settings, const std::string& name, double fallback) {
+  const double value = number_of(settings, name);
+  return value == 0 ? fallback : value;
+}
+
+/// What layers and half spaces share: the box |x| <= half width (its mirrored half x >= 0, in 3D
+/// also y >= 0), bottom <= vertical <= 0, refinement until the stresses
+/// at probe points stand still, and the way from points of the full space into the meshed part.
+template <int dim>
+class BoxModel : public Model {
+ public:
+  BoxModel(const std::string& name, const Settings& s, double tolerance, int degree)
+      : load_(number_of(s, "F")),
+        tolerance_(number_or(s, "tolerance", tolerance)),
+        refinements_(static_cast<int>(number_of(s, "refinements"))),
+        degree_(static_cast<int>(number_or(s, "degree", degree))),
+        iterations_(static_cast<int>(number_of(s, "iterations"))),
+        name_(name) {}
+
+  Stresses stress(const Points& points) override {
+    if (!solver_) {
+      solver_ =
+          std::make_unique<ElasticSolver<dim>>(communicator(ranks_), degree_, iterations_, name_);
+      try {
+        build_mesh(solver_->mesh());
+        solve();
+      } catch (...) {
+        solver_.reset();
+        throw;
+      }
+    }
+    std::vector<dealii::Point<dim>> inside;
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      if (const auto p = fold(points.row(i))) {
+        inside.push_back(*p);
+        rows.push_back(i);
+      }
+    }
+    Stresses out =
+        Stresses::Constant(points.rows(), kStresses<dim>, std::numeric_limits<double>::quiet_NaN());
+    const Eigen::MatrixXd found = stress_in_mesh(inside);
+    const auto components = stress_components<dim>();
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      for (int c = 0; c < kStresses<dim>; ++c) {
+        // A mirrored point: each horizontal index of the component that was mirrored flips the
+        // sign.
+        double sign = 1;
+        const auto [a, b] = components[c];
+        if (a != b) {
+          if (mirrored_ && a < dim - 1 && points(rows[n], a) < 0) sign = -sign;
+          if (mirrored_ && b < dim - 1 && points(rows[n], b) < 0) sign = -sign;
+        }
+        out(rows[n], c) = sign * found(static_cast<Eigen::Index>(n), c);
+      }
+    }
+    return out;
+  }
+
+  std::map<std::string, double> figures() const override {
+    auto all = solver_ ? solver_->figures() : std::map<std::string, double>();
+    all.insert(figures_.begin(), figures_.end());
+    return all;
+  }
+
+ protected:
+  virtual void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) = 0;
+  virtual ElasticProblem<dim> problem() const = 0;
+  /// Where the stress must stand still, and the stress against which its change is measured.
+  virtual std::vector<dealii::Point<dim>> probes() const = 0;
+  virtual double scale(const dealii::Point<dim>& probe) const = 0;
+  /// What the elements' stress is added to.
+  virtual Stress<dim> closed_part(const dealii::Point<dim>&) const { return {}; }
+  virtual double refinement_weight(const dealii::Point<dim>&) const { return 1; }
+
+  BoundaryCondition<dim> mirror_plane(int axis) const {
+    BoundaryCondition<dim> mirror;
+    mirror.fixed[axis] = true;
+    return mirror;
+  }
+  static dealii::Point<dim> horizontal_and_height(double x, double height) {
+    dealii::Point<dim> p;
+    p[0] = x;
+    p[dim - 1] = height;
+    return p;
+  }
+
+  double load_;
+  bool mirrored_ = true;                ///< only x >= 0 is meshed; false: in 2D the whole width
+  double half_width_ = 0, bottom_ = 0;  ///< of the box; set by build_mesh
+  std::map<std::string, double> figures_;
+
+ private:
+  void solve() {
+    const auto equations = problem();
+    const auto points = probes();
+    Eigen::MatrixXd before;
+    for (int cycle = 0;; ++cycle) {
+      solver_->solve(equations);
+      const Eigen::MatrixXd after = solver_->stress_at(points);
+      figures_["refinement_cycles"] = cycle;
+      if (cycle > 0) {
+        double change = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+          const auto row = static_cast<Eigen::Index>(n);
+          change =
+              std::max(change, (after - before).row(row).cwiseAbs().maxCoeff() / scale(points[n]));
+        }
+        figures_["change"] = change;
+        if (change <= tolerance_) return;
+        if (cycle >= refinements_)
+          throw ComputationFailed(fmt::format(
+              "{}: the stress still changes by {:.1e} of its scale in refinement {}, {:.0e} is "
+              "asked; raise refinements, degree or tolerance",
+              name_, change, cycle, tolerance_));
+      }
+      before = after;
+      solver_->refine_worst(kRefinedShare,
+                            [this](const dealii::Point<dim>& p) { return refinement_weight(p); });
+    }
+  }
+
+  Eigen::MatrixXd stress_in_mesh(const std::vector<dealii::Point<dim>>& points) const {
+    Eigen::MatrixXd found = solver_->stress_at(points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const auto closed = closed_part(points[n]);
+      for (int c = 0; c < kStresses<dim>; ++c) found(static_cast<Eigen::Index>(n), c) += closed[c];
+    }
+    return found;
+  }
+
+  /// The point's image in the meshed part; none outside the domain.
+  std::optional<dealii::Point<dim>> fold(const Eigen::RowVectorXd& point) const {
+    dealii::Point<dim> p;
+    const double slack = kOnBorder * half_width_;
+    for (int d = 0; d < dim - 1; ++d) {
+      if (!(std::abs(point(d)) <= half_width_ + slack)) return std::nullopt;
+      p[d] = std::clamp(mirrored_ ? std::abs(point(d)) : point(d), -half_width_, half_width_);
+    }
+    const double height = point(dim - 1);
+    if (!(height < 0) || !(height >= bottom_ - slack)) return std::nullopt;
+    p[dim - 1] = std::max(height, bottom_);
+    return p;
+  }
+
+  double tolerance_;
+  int refinements_, degree_, iterations_;
+  std::string name_;
+  Ranks ranks_ = chosen_ranks();
+  std::unique_ptr<ElasticSolver<dim>> solver_;
+};
+
+}  // namespace grainfield::continuum::fe
