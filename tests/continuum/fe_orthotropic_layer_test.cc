@@ -124,8 +124,7 @@ TEST(FeOrthotropicLayer, MeetsTheFourierTransformOnTheBase) {
   struct Medium {
     double r, t, nu;
   };
-  for (const auto& [r, t, nu] :
-       {Medium{0.3, 1, 0.5}, {-0.4, 1, 0.7}, {-0.8, 1, 0.9}, {2.5, 0.4, 0.1}, {-0.2, 3, 1.1}}) {
+  for (const auto& [r, t, nu] : {Medium{-0.8, 1, 0.9}, {2.5, 0.4, 0.1}, {-0.2, 3, 1.1}}) {
     for (const bool rough : {false, true}) {
       const auto model = make_model("fe_orthotropic_layer", {{"r", text_of(r)},
                                                              {"t", text_of(t)},
