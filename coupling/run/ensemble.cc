@@ -134,6 +134,10 @@ class Worker {
       run->restore(checkpoint);
       cpu = cpu_seconds(task.file);
     }
+    run->set_watch([&](const dem::Progress& now) {
+      note(index, now);
+      return !halt_ && !interrupted();
+    });
     auto saved = Clock::now();
     long slice = 64;
     while (!run->done()) {

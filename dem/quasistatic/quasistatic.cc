@@ -117,7 +117,8 @@ class Relaxation {
   }
 
   QuasistaticResult run() {
-    double share = 0, step = 1.0 / settings_.first_steps;
+    double& share = share_;
+    double step = 1.0 / settings_.first_steps;
     while (share < 1) {
       step = std::min(step, 1 - share);
       const double next = step > 1 - share - 1e-12 ? 1 : share + step;
@@ -161,6 +162,7 @@ class Relaxation {
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_.size());
     Eigen::VectorXd r;
     for (int k = 0; k < kMostFlowSteps; ++k) {
+      if (settings_.go_on && !settings_.go_on(share_)) throw RelaxationStopped();
       const bool free = drag_.maxCoeff() == 0;
       if (!network_.residual(zero, r)) return false;
       const double now = r.cwiseAbs().maxCoeff();
@@ -258,6 +260,7 @@ class Relaxation {
   Vec3 force_;
   NewtonProblem problem_;
   Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness
+  double share_ = 0;             // of the change that is done
   int steps_ = 0, iterations_ = 0;
 };
 

@@ -6,6 +6,9 @@
 // by Coulomb), gravity and the applied force. Newton's method with KINSOL, the tangent stiffness
 // with stick and slip assembled per contact and factorized sparse; loads in adaptive steps.
 #pragma once
+#include <functional>
+#include <stdexcept>
+
 #include "dem/engine/engine.h"
 
 namespace grainfield::dem {
@@ -15,6 +18,14 @@ struct QuasistaticSettings {
   int max_iterations = 50;               ///< Newton steps of one load step
   int first_steps = 1;                   ///< equal load steps to begin with; halved when one fails
   double least_step = 1e-3;              ///< share of the whole change below which it gives up
+  /// Asked before every Newton solve, with the share of the change that is done; false: give up
+  /// with RelaxationStopped. Empty: never asked.
+  std::function<bool(double share)> go_on;
+};
+
+/// go_on said no.
+struct RelaxationStopped : std::runtime_error {
+  RelaxationStopped() : std::runtime_error("quasi-static relaxation stopped") {}
 };
 
 struct QuasistaticResult {

@@ -17,6 +17,8 @@
 namespace grainfield::dem {
 namespace {
 
+// Share of a run with changes of gravity at which the pile is at rest, for the progress.
+constexpr double kEndOfRest = 0.85;
 // Rest and settling are judged every so many steps, counted within a phase.
 constexpr long kCheckEvery = 200;
 // While grains are poured the number awake is read this often: it looks at every contact.
@@ -79,6 +81,7 @@ class PileRun final : public Run {
   void begin_change();
   void end_change(Snapshot state, double unbalanced_force_ratio);
   bool settled(int grains) const;
+  double change_share() const;
   double in_phase() const { return static_cast<double>(phase_steps_) * engine_->time_step(); }
   Snapshot named(Snapshot snapshot, const std::string& state) const;
   std::string change_name(std::size_t k) const;
@@ -402,9 +405,19 @@ void PileRun::solve() {
   const double gravity = setup_.change.gravity[changed_.size()];
   QuasistaticSettings settings;
   settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
+  if (watch_) {
+    const Progress before = progress();
+    settings.go_on = [this, before](double share) {
+      Progress now = before;
+      now.fraction += share * change_share();
+      return watch_(now);
+    };
+  }
   QuasistaticResult r;
   try {
     r = relax(*pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
+  } catch (const RelaxationStopped&) {
+    return;
   } catch (const ComputationFailed& failure) {
     throw ComputationFailed(fmt::format("change.gravity = {:g}: {}; or set change.method = damped",
                                         gravity, failure.what()));
@@ -438,6 +451,12 @@ Snapshot PileRun::named(Snapshot s, const std::string& state) const {
   return s;
 }
 
+// Of the whole run.
+double PileRun::change_share() const {
+  const auto changes = static_cast<double>(setup_.change.gravity.size());
+  return changes > 0 ? (1 - kEndOfRest) / changes : 0;
+}
+
 Progress PileRun::progress() const {
   const Diagnostics d = engine_->measure();
   Progress p;
@@ -447,9 +466,8 @@ Progress PileRun::progress() const {
   p.awake = d.awake;
   p.kinetic_energy = d.kinetic_energy;
   p.unbalanced_force_ratio = d.unbalanced_force_ratio;
-  const auto changes = static_cast<double>(setup_.change.gravity.size());
-  const double end_of_rest = changes > 0 ? 0.85 : 1;
-  const double one = changes > 0 ? (1 - end_of_rest) / changes : 0;
+  const double end_of_rest = setup_.change.gravity.empty() ? 1 : kEndOfRest;
+  const double one = change_share();
   const double changed = end_of_rest + one * static_cast<double>(changed_.size());
   switch (phase_) {
     case Phase::pour:

@@ -192,12 +192,22 @@ class PileChangeRun final : public Run {
     const double gravity = setup_.change.gravity[k];
     QuasistaticSettings settings;
     settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
+    if (watch_) {
+      const Progress before = progress();
+      settings.go_on = [this, before](double share) {
+        Progress now = before;
+        now.fraction += share / static_cast<double>(changed_.size());
+        return watch_(now);
+      };
+    }
     try {
       QuasistaticResult r = relax(pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
       r.state.attributes = pile_.attributes;
       r.state.attributes["state"] = change_name(gravity);
       ratio_[k] = r.unbalanced_force_ratio;
       changed_[k] = std::move(r.state);
+    } catch (const RelaxationStopped&) {
+      return;
     } catch (const ComputationFailed& failure) {
       throw ComputationFailed(
           fmt::format("change.gravity = {:g} of {}: {}; or leave this gravity out", gravity, where_,

@@ -2,6 +2,7 @@
 // Run.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -45,6 +46,13 @@ class Run {
   virtual void restore(const std::string& file) = 0;
   /// Valid once done().
   virtual RunResult result() const = 0;
+
+  /// Called from inside an advance() that takes long, with the state so far; false asks it to
+  /// return as soon as it can, as it was before.
+  void set_watch(std::function<bool(const Progress&)> watch) { watch_ = std::move(watch); }
+
+ protected:
+  std::function<bool(const Progress&)> watch_;
 };
 
 /// Throws std::invalid_argument naming the key of the setup that does not hold

@@ -237,6 +237,25 @@ TEST(Pile, NewtonAgreesWithDampedDynamics) {
   EXPECT_LT(std::sqrt(difference / moved), 0.01);
 }
 
+// A solve that is told to stop leaves the run as it was, and the run goes on to the same bits.
+TEST(Pile, NewtonStopsWhenToldTo) {
+  PileSetup s = with_changes("line", "rand1");
+  s.change.gravity = {9.7};
+  s.change.method = "newton";
+  const auto whole = make_pile_run(s, 4, 1), stopped = make_pile_run(s, 4, 1);
+  finish(*whole);
+  int asked = 0;
+  stopped->set_watch([&](const Progress& p) {
+    EXPECT_EQ(p.phase, "gravity_9.7");
+    return ++asked > 3;
+  });
+  for (int k = 0; k < 100000 && asked < 3; ++k) stopped->advance(1000);
+  ASSERT_EQ(asked, 3);
+  EXPECT_FALSE(stopped->done());
+  finish(*stopped);
+  EXPECT_TRUE(same(whole->result().snapshots[1].second, stopped->result().snapshots[1].second));
+}
+
 std::string refusal(const PileSetup& s) {
   try {
     make_pile_run(s, 1, 1);

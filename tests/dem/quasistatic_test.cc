@@ -358,6 +358,25 @@ TEST(Quasistatic, ReportsARearrangement) {
   EXPECT_EQ(c.gained, out.contacts_gained);
 }
 
+// The one who watches sees how far it is and can end it.
+TEST(Quasistatic, StopsWhenToldTo) {
+  const Snapshot rest = relax(block(8, 5, 0.5), area_law(0.3), {0, -kG, 0}, {}, {}).state;
+  QuasistaticSettings q;
+  q.first_steps = 4;
+  std::vector<double> shares;
+  q.go_on = [&](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  relax(rest, area_law(0.3), {0, -0.5 * kG, 0}, {}, q);
+  ASSERT_GE(shares.size(), 3U);
+  EXPECT_EQ(shares.front(), 0);
+  EXPECT_GT(shares.back(), 0.25);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  q.go_on = [](double share) { return share == 0; };
+  EXPECT_THROW(relax(rest, area_law(0.3), {0, -0.5 * kG, 0}, {}, q), RelaxationStopped);
+}
+
 std::string refusal(const Snapshot& s, const EngineSettings& e, const AppliedForce& force,
                     const QuasistaticSettings& q) {
   try {
