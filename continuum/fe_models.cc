@@ -243,9 +243,17 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
               source, {"at_once", "rise", "grow"}),
        whole_number("steps", "equal load steps to try for the heap's or a layer's weight",
                     "numerics", 1, 1, 1000),
+       number("viscous_step", "-",
+              "a step of the load that fails and is not longer than this part is taken in "
+              "viscoplastic time, until the material is at rest; 0: never",
+              "Duvaut and Lions 1972", 0.25, 0, 1),
        whole_number("layers", "of the histories rise and grow", "numerics", 8, 1, 1000),
        whole_number("cells", "triangles along each side; a multiple of 2 layers fits the layers",
                     "numerics", 32, 2, 1000),
+       whole_number("refinements",
+                    "times that the triangles with the largest estimated errors of stress are cut "
+                    "and the heap is laid anew; figure stress_error says what is left",
+                    "numerics", 0, 0, 12),
        number(
            "tolerance", "-",
            "residual over a cell's weight at which Newton's method ends; where it stalls 1e-5 will "

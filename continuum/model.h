@@ -2,10 +2,12 @@
 // A new model is one file that implements Model and one line in continuum/registry.cc.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainfield::continuum {
@@ -48,6 +50,14 @@ struct Quantity {
   Eigen::VectorXd values;
 };
 
+/// A model's own mesh of triangles with what it knows there, for files of pictures.
+struct MeshField {
+  Points corners;  ///< n x 2, m
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<Quantity> at_corners, in_triangles;
+  std::vector<std::pair<std::string, Points>> lines;  ///< of its own, by name
+};
+
 /// A model with its parameters set.
 class Model {
  public:
@@ -58,6 +68,8 @@ class Model {
   /// What the model knows at the points besides the stress, in the order to be written; most models
   /// nothing. Throws ComputationFailed.
   virtual std::vector<Quantity> quantities(const Points&) { return {}; }
+  /// The mesh it was solved on; without triangles where there is none. Throws ComputationFailed.
+  virtual MeshField mesh() { return {}; }
   /// Figures of the evaluation that belong into summary.json, e.g. unknowns, iterations, residual.
   virtual std::map<std::string, double> figures() const { return {}; }
 };

@@ -24,6 +24,14 @@ using plasticity::Vector4;
 constexpr int kQuick = 8;
 /// A step is stretched to a stage's end where less than this part of it would remain.
 constexpr double kSliver = 0.01;
+/// Steps of viscoplastic time, over the time of relaxation: the first, the shortest that is tried,
+/// the longest before the material without viscosity is tried.
+constexpr double kFirstTime = 1, kLeastTime = 1e-3, kLongTime = 1e4;
+/// Most Newton iterations in one of them: a shorter one is better than more.
+constexpr int kCreepIterations = 10;
+/// Flow without rest: so many steps later the overstress is more than this share.
+constexpr std::size_t kPatience = 30;
+constexpr double kFading = 0.5;
 
 /// xx, yy, zz, xy of a strain in the plane.
 Vector4 in_space(const Eigen::Vector3d& e) { return {e[0], e[1], 0, e[2]}; }
@@ -50,7 +58,9 @@ struct ContactForce {
   double shear = 0;  ///< of the spring afterwards
 };
 
-ContactForce contact_force(const ContactNode& node, const Ground& ground, const Vector2d& move) {
+/// `relaxed`: how much of what is beyond the limit of friction slips in this step, of 1.
+ContactForce contact_force(const ContactNode& node, const Ground& ground, const Vector2d& move,
+                           double relaxed) {
   ContactForce out;
   const double k = ground.stiffness * node.length;
   const double gap = node.gap + move[1], shear = node.shear + move[0];
@@ -64,9 +74,10 @@ ContactForce contact_force(const ContactNode& node, const Ground& ground, const 
     out.shear = shear;
   } else {
     const double sign = shear > 0 ? 1 : -1;
-    out.force[0] = -sign * most;
-    out.stiffness(0, 1) = -sign * ground.friction * k;
-    out.shear = sign * most / k;
+    out.shear = (1 - relaxed) * shear + relaxed * sign * most / k;
+    out.force[0] = -k * out.shear;
+    out.stiffness(0, 0) = (1 - relaxed) * k;
+    out.stiffness(0, 1) = -relaxed * sign * ground.friction * k;
   }
   return out;
 }
@@ -74,9 +85,9 @@ ContactForce contact_force(const ContactNode& node, const Ground& ground, const 
 }  // namespace
 
 struct PlasticSolver::Impl {
-  Impl(const TriangleMesh& mesh, const plasticity::MohrCoulomb& material, const Supports& supports,
+  Impl(const TriangleMesh& mesh, const Material& material, const Supports& supports,
        const Ground& ground_, PlasticSettings settings_)
-      : settings(std::move(settings_)), ground(ground_), law(material), grid(mesh) {
+      : settings(std::move(settings_)), ground(ground_), grid(mesh) {
     const auto& cells = grid.cells;
     displacement = zeros();
     for (const QuadraticCell& cell : cells) {
@@ -86,7 +97,10 @@ struct PlasticSolver::Impl {
         state.area = cell.areas[q];
       }
     }
+    for (const QuadraticCell& cell : cells)
+      laws.emplace_back(material((cell.points[0] + cell.points[1] + cell.points[2]) / 3));
     body.assign(cells.size(), Vector2d::Zero());
+    surface = zeros();
     active.assign(cells.size(), true);
     find_supports(supports);
     find_free();
@@ -125,6 +139,19 @@ struct PlasticSolver::Impl {
     for (std::size_t i = 0; i < free.size(); ++i) free[i] = free[i] && !fixed[i];
   }
 
+  /// Nodal forces of tractions on the boundary, with Simpson's weights.
+  Eigen::VectorXd forces_of(const Traction& traction) const {
+    Eigen::VectorXd out = zeros();
+    for (const BoundaryEdge& edge : grid.edges) {
+      const Vector2d force = edge.length * traction(edge.middle);
+      for (std::size_t node = 0; node < 3; ++node)
+        for (std::size_t d = 0; d < 2; ++d)
+          out[edge.unknowns[node][d]] +=
+              force[static_cast<Eigen::Index>(d)] * (node < 2 ? 1. / 6 : 4. / 6);
+    }
+    return out;
+  }
+
   Eigen::VectorXd forces_of(const std::vector<Vector2d>& force) const {
     Eigen::VectorXd out = zeros();
     for (std::size_t c = 0; c < grid.cells.size(); ++c)
@@ -133,7 +160,17 @@ struct PlasticSolver::Impl {
   }
 
   Returned update(std::size_t c, std::size_t q, const CellVector& u) const {
-    return law(points[c * kPoints + q].elastic_strain + in_space(grid.cells[c].strain[q] * u));
+    const Vector4 trial =
+        points[c * kPoints + q].elastic_strain + in_space(grid.cells[c].strain[q] * u);
+    const plasticity::MohrCoulombLaw& law = laws[c];
+    Returned out = law(trial);
+    if (relaxed < 1 && out.regime != Regime::elastic) {
+      const double rest = 1 - relaxed;
+      out.stress = relaxed * out.stress + rest * (law.elasticity() * trial);
+      out.elastic_strain = relaxed * out.elastic_strain + rest * trial;
+      out.tangent = relaxed * out.tangent + rest * law.elasticity();
+    }
+    return out;
   }
 
   /// Internal forces less what the ground gives.
@@ -151,7 +188,7 @@ struct PlasticSolver::Impl {
     for (const ContactNode& node : contacts) {
       if (!node.active) continue;
       const auto [x, y] = node.unknowns;
-      const Vector2d f = contact_force(node, ground, {u[x], u[y]}).force;
+      const Vector2d f = contact_force(node, ground, {u[x], u[y]}, relaxed).force;
       out[x] -= f[0];
       out[y] -= f[1];
     }
@@ -167,7 +204,7 @@ struct PlasticSolver::Impl {
       const CellVector local = cell.gather(u);
       CellMatrix k = CellMatrix::Zero();
       for (std::size_t q = 0; q < kPoints; ++q) {
-        Matrix4 tangent = law.elasticity();
+        Matrix4 tangent = laws[c].elasticity();
         if (!elastic) tangent = update(c, q, local).tangent + settings.tangent_floor * tangent;
         k += cell.areas[q] * cell.strain[q].transpose() * in_plane(tangent) * cell.strain[q];
       }
@@ -176,7 +213,7 @@ struct PlasticSolver::Impl {
     for (const ContactNode& node : contacts) {
       if (!node.active) continue;
       const auto [x, y] = node.unknowns;
-      const Eigen::Matrix2d k = contact_force(node, ground, {u[x], u[y]}).stiffness;
+      const Eigen::Matrix2d k = contact_force(node, ground, {u[x], u[y]}, relaxed).stiffness;
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) {
           const unsigned int row = i == 0 ? x : y, column = j == 0 ? x : y;
@@ -184,7 +221,7 @@ struct PlasticSolver::Impl {
         }
     }
     for (unsigned int i = 0; i < free.size(); ++i)
-      if (!free[i]) grid.add(i, i, law.constants().E);
+      if (!free[i]) grid.add(i, i, laws.front().constants().E);
     return grid.factorize();
   }
 
@@ -194,7 +231,7 @@ struct PlasticSolver::Impl {
   }
 
   /// The increment to these external forces; u comes in as first guess with the prescribed values.
-  NewtonReport solve(const Eigen::VectorXd& target, Eigen::VectorXd& u) {
+  NewtonReport solve(const Eigen::VectorXd& target, Eigen::VectorXd& u, int iterations) {
     NewtonProblem problem;
     problem.residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& r) {
       r = (internal(at) - target) / settings.force_scale;
@@ -206,7 +243,7 @@ struct PlasticSolver::Impl {
       grid.solve(x);
       clear_held(x);
     };
-    return newton(problem, {settings.tolerance, settings.iterations}, u);
+    return newton(problem, {settings.tolerance, iterations}, u);
   }
 
   /// Spreads the prescribed values of u as elastic cells would: without that the cells at the
@@ -220,7 +257,7 @@ struct PlasticSolver::Impl {
       const CellVector local = cell.gather(u);
       CellVector f = CellVector::Zero();
       for (std::size_t q = 0; q < kPoints; ++q)
-        f -= cell.areas[q] * cell.strain[q].transpose() * in_plane(law.elasticity()) *
+        f -= cell.areas[q] * cell.strain[q].transpose() * in_plane(laws[c].elasticity()) *
              cell.strain[q] * local;
       cell.scatter(f, r);
     }
@@ -253,14 +290,72 @@ struct PlasticSolver::Impl {
     for (ContactNode& node : contacts) {
       if (!node.active) continue;
       const auto [x, y] = node.unknowns;
-      node.shear = contact_force(node, ground, {u[x], u[y]}).shear;
+      node.shear = contact_force(node, ground, {u[x], u[y]}, relaxed).shear;
       node.gap += u[y];
     }
     displacement += u;
   }
 
-  void load(const std::vector<Vector2d>& body_force, const Displacement& moved) {
-    const Eigen::VectorXd from = forces_of(body), to = forces_of(body_force);
+  bool settled(const NewtonReport& report) const {
+    return report.converged || report.history.back() <= settings.stalled;
+  }
+
+  /// Largest difference of the stress from what the material bears, over the stress scale.
+  double overstress() const {
+    double most = 0;
+    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
+      if (!active[c]) continue;
+      for (std::size_t q = 0; q < kPoints; ++q) {
+        const PointState& p = points[c * kPoints + q];
+        most = std::max(most, (laws[c](p.elastic_strain).stress - p.stress).cwiseAbs().maxCoeff());
+      }
+    }
+    return most / settings.stress_scale;
+  }
+
+  /// The same increment in viscoplastic time. False, and nothing has changed: no rest found.
+  bool creep(const Eigen::VectorXd& forces, Eigen::VectorXd u, LoadStep& step) {
+    const auto points_before = points;
+    const auto contacts_before = contacts;
+    const Eigen::VectorXd displacement_before = displacement;
+    double time = kFirstTime;
+    std::vector<double> left;
+    while (static_cast<int>(left.size()) < settings.viscous_steps && time >= kLeastTime) {
+      // A long step of time is as good as none: the material without viscosity.
+      relaxed = time > kLongTime ? 1 : time / (1 + time);
+      Eigen::VectorXd move = u;
+      const NewtonReport report =
+          solve(forces, move, std::min(kCreepIterations, settings.iterations));
+      step.iterations += report.iterations;
+      if (!settled(report)) {
+        time = std::min(time, kLongTime) / 4;
+        continue;
+      }
+      accept(move);
+      u.setZero();
+      left.push_back(overstress());
+      step.history = report.history;
+      step.overstress = left.back();
+      step.viscous_steps = static_cast<int>(left.size());
+      if (relaxed == 1 || left.back() <= settings.overstress) {
+        relaxed = 1;
+        return true;
+      }
+      if (left.size() > kPatience && left.back() > kFading * left[left.size() - 1 - kPatience])
+        break;
+      time *= report.iterations <= kQuick / 2 ? 4 : report.iterations <= kQuick ? 2 : 1;
+    }
+    relaxed = 1;
+    points = points_before;
+    contacts = contacts_before;
+    displacement = displacement_before;
+    return false;
+  }
+
+  void load(const std::vector<Vector2d>& body_force, const Displacement& moved,
+            const Traction& traction) {
+    const Eigen::VectorXd pressed = traction ? forces_of(traction) : surface;
+    const Eigen::VectorXd from = forces_of(body) + surface, to = forces_of(body_force) + pressed;
     Eigen::VectorXd move = zeros(), rate = zeros();  // prescribed; of the last step
     if (moved)
       for (std::size_t i = 0; i < fixed.size(); ++i)
@@ -268,6 +363,7 @@ struct PlasticSolver::Impl {
           move[static_cast<Eigen::Index>(i)] =
               moved(grid.positions[i])[static_cast<Eigen::Index>(grid.components[i])];
     double reached = 0, step = std::min(1., settings.first_step);
+    LoadStep record;
     while (reached < 1) {
       const double target = reached + (1 + kSliver) * step >= 1 ? 1 : reached + step;
       const Eigen::VectorXd forces = from + target * (to - from);
@@ -275,43 +371,60 @@ struct PlasticSolver::Impl {
       clear_held(u);
       u += (target - reached) * move;
       if (moved && rate.isZero(0)) elastic_guess(forces, u);
-      const NewtonReport report = solve(forces, u);
-      if (!report.converged && !(report.history.back() <= settings.stalled)) {
-        step = (target - reached) / 2;
+      const NewtonReport report = solve(forces, u, settings.iterations);
+      record.iterations += report.iterations;
+      if (settled(report)) {
+        record.history = report.history;
+        accept(u);
+        rate = u / (target - reached);
+      } else {
         rate.setZero();
-        if (step < settings.least_step)
-          throw ComputationFailed(fmt::format(
-              "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at a "
-              "residual of {:.1e} in iteration {} ({})",
-              settings.name, reached, stage > 0 ? fmt::format(" of stage {}", stage + 1) : "",
-              report.history.back(), report.iterations, report.why));
-        continue;
+        if (target - reached > settings.viscous_step ||
+            !creep(forces, (target - reached) * move, record)) {
+          step = (target - reached) / 2;
+          if (step < settings.least_step)
+            throw ComputationFailed(fmt::format(
+                "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at "
+                "a residual of {:.1e} in iteration {} ({}){}",
+                settings.name, reached, stage > 0 ? fmt::format(" of stage {}", stage + 1) : "",
+                report.history.back(), report.iterations, report.why,
+                settings.viscous_step > 0
+                    ? fmt::format(", in viscoplastic time the overstress stayed at {:.1e}",
+                                  record.overstress)
+                    : ""));
+          continue;
+        }
       }
-      accept(u);
-      rate = u / (target - reached);
       step = target - reached;
-      if (report.iterations <= kQuick) step *= 2;
+      if (report.converged && report.iterations <= kQuick) step *= 2;
       reached = target;
-      steps.push_back({stage, reached, report.history});
+      record.stage = stage;
+      record.load = reached;
+      steps.push_back(record);
+      record = {};
     }
     body = body_force;
+    surface = pressed;
     ++stage;
   }
 
   PlasticSettings settings;
   Ground ground;
-  plasticity::MohrCoulombLaw law;
   QuadraticTriangles grid;
-  std::vector<bool> active, fixed, free;  ///< cells; unknowns
+  std::vector<plasticity::MohrCoulombLaw> laws;  ///< of the cells
+  std::vector<bool> active, fixed, free;         ///< cells; unknowns
   std::vector<PointState> points;
   std::vector<ContactNode> contacts;
   Eigen::VectorXd displacement;
   std::vector<Vector2d> body;  ///< force on each cell now
+  Eigen::VectorXd surface;     ///< of the tractions, now
   std::vector<LoadStep> steps;
   int stage = 0;
+  double relaxed =
+      1;  ///< t / (1 + t) of the present step of viscoplastic time; 1: rate-independent
 };
 
-PlasticSolver::PlasticSolver(const TriangleMesh& mesh, const plasticity::MohrCoulomb& material,
+PlasticSolver::PlasticSolver(const TriangleMesh& mesh, const Material& material,
                              const Supports& supports, const Ground& ground,
                              PlasticSettings settings)
     : impl_(std::make_unique<Impl>(mesh, material, supports, ground, std::move(settings))) {}
@@ -322,9 +435,9 @@ void PlasticSolver::activate(const std::vector<bool>& cells) {
   impl_->find_free();
 }
 
-void PlasticSolver::load(const std::vector<Vector2d>& body_force,
-                         const Displacement& displacement) {
-  impl_->load(body_force, displacement);
+void PlasticSolver::load(const std::vector<Vector2d>& body_force, const Displacement& displacement,
+                         const Traction& traction) {
+  impl_->load(body_force, displacement, traction);
 }
 
 const std::vector<PointState>& PlasticSolver::points() const { return impl_->points; }
@@ -375,7 +488,7 @@ Eigen::MatrixXd PlasticSolver::corner_displacement() const {
 
 Vector2d PlasticSolver::reaction(const std::function<bool(const Vector2d&)>& where) const {
   const auto& grid = impl_->grid;
-  Eigen::VectorXd forces = -impl_->forces_of(impl_->body);
+  Eigen::VectorXd forces = -impl_->forces_of(impl_->body) - impl_->surface;
   for (std::size_t c = 0; c < grid.cells.size(); ++c) {
     if (!impl_->active[c]) continue;
     CellVector f = CellVector::Zero();

@@ -6,6 +6,14 @@
 // displacement increment du by Newton's method with line search (newton.h), the consistent tangent
 // and a sparse direct factorization (UMFPACK). Strains are small. A step that does not converge is
 // halved; one that converges quickly is followed by a larger one.
+//
+// A short step that does not converge is taken in viscoplastic time (Duvaut and Lions 1972; as a
+// solver Zienkiewicz and Cormeau 1974): the stress of a time step relaxes from the trial stress
+// towards its return P,  sigma = (trial + t P(trial)) / (1 + t),  t the step over the time of
+// relaxation, and so does the friction of the ground. Its tangent is regular for small t, whatever
+// the flow. Under a constant load such steps go on, t growing as Newton allows, until nothing is
+// left of the overstress |sigma - P(sigma)|: the end is a state of the rate-independent material,
+// one of several where the flow is not associated. Overstress that stays means flow without rest.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -42,6 +50,12 @@ struct PlasticSettings {
   double first_step = 1;        ///< part of a stage's load that is tried first
   double least_step = 1e-3;     ///< a smaller one is given up
   double tangent_floor = 1e-9;  ///< of the elastic stiffness, added to the tangent alone
+  double stress_scale = 1;      ///< a large stress, N/m^2 (2D: N/m)
+  /// A step that fails is taken in viscoplastic time when it is not longer than this part of the
+  /// stage's load; 0: never.
+  double viscous_step = 0.25;
+  int viscous_steps = 150;   ///< most steps of viscoplastic time in a load step
+  double overstress = 1e-7;  ///< over the stress scale, at which the material is at rest
 };
 
 /// One converged load step.
@@ -49,6 +63,9 @@ struct LoadStep {
   int stage = 0;                ///< calls of load() before this one
   double load = 0;              ///< part of the stage's load reached
   std::vector<double> history;  ///< largest residual before each Newton iteration, and at the end
+  int viscous_steps = 0;        ///< of viscoplastic time that it took; history is the last one's
+  int iterations = 0;           ///< of Newton's method, in steps that failed as well
+  double overstress = 0;        ///< left, over the stress scale
 };
 
 /// State at a point of integration.
@@ -65,10 +82,12 @@ struct PointState {
 class PlasticSolver {
  public:
   using Supports = std::function<Support(const Eigen::Vector2d&)>;
+  using Material = std::function<plasticity::MohrCoulomb(const Eigen::Vector2d&)>;
 
-  /// `supports` is asked at every node (corners and middles of edges) on the boundary of the mesh.
-  PlasticSolver(const TriangleMesh& mesh, const plasticity::MohrCoulomb& material,
-                const Supports& supports, const Ground& ground, PlasticSettings settings);
+  /// `material` is asked at the centre of every cell, `supports` at every node (corners and middles
+  /// of edges) on the boundary of the mesh.
+  PlasticSolver(const TriangleMesh& mesh, const Material& material, const Supports& supports,
+                const Ground& ground, PlasticSettings settings);
   ~PlasticSolver();
 
   /// Cells that take part from now on; those new come without stress and strain, whatever the
@@ -76,10 +95,13 @@ class PlasticSolver {
   void activate(const std::vector<bool>& cells);
 
   /// Goes from the present load to this one along a straight line. `body_force` (N/m^3; 2D N/m^2)
-  /// per cell; `displacement` of the prescribed components, added to what they are (none: zero).
-  /// Throws ComputationFailed naming the last converged load.
+  /// per cell; `displacement` of the prescribed components, added to what they are (none: zero);
+  /// `traction` at the middle of every edge of the boundary (none: as it is). Throws
+  /// ComputationFailed naming the last converged load.
   using Displacement = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
-  void load(const std::vector<Eigen::Vector2d>& body_force, const Displacement& displacement = {});
+  using Traction = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
+  void load(const std::vector<Eigen::Vector2d>& body_force, const Displacement& displacement = {},
+            const Traction& traction = {});
 
   /// Three points per cell, cell by cell; those of cells not active keep zero stress.
   const std::vector<PointState>& points() const;

@@ -15,23 +15,46 @@ struct FlankCheck {
   std::vector<fe::LoadStep> steps;
 };
 
-/// Cohesionless material under a slope at its friction angle, at the limit everywhere: stress
-/// (sin^2 b, 1 + cos^2 b, sin b cos b) times minus the depth below the slope, b = 90 degrees - phi
-/// (Cantelaube's flank). A triangle out of it gets the displacements that belong to this stress
-/// plus a uniform plastic flow of `shear` along its border, and its weight. With nu = 0.3 the
-/// out-of-plane stress is the middle one for phi of 25 to 55 degrees.
+/// Cohesionless material under an infinite slope: stress (k, 1 + k t^2, -k t) (y + t x), t the
+/// slope's tangent, below y = -t x. `share` says which k: 0 the active one,
+/// (cos phi/(1 + sqrt(1 - cos^2 phi/cos^2 slope)))^2, 1 the passive one, both at the limit
+/// everywhere (the same where the slope is phi: Cantelaube's flank); between them, elastic. A
+/// triangle out of it gets the displacements that belong to this stress plus, at the limit, a
+/// uniform plastic flow of `shear` along its border, and its weight. With nu = 0.3 the out-of-plane
+/// stress is the middle one for phi of 25 to 55 degrees.
+struct InfiniteSlope {
+  double phi_deg = 28, slope_deg = 28, dilation_deg = 0;
+  double share = 0;
+  double shear = 1e-2;
+  int cells = 4;
+};
+FlankCheck check_infinite_slope(const InfiniteSlope& slope);
+
+/// Cantelaube's flank: the slope at the friction angle.
 FlankCheck check_plastic_flank(double phi_deg, double dilation_deg, double shear, int cells);
 
-/// Mean pressure over cohesion under a rigid rough strip pressed into weightless ground until it
-/// gives way: N_c, (2 + pi) without friction. `cells`: squares, of four triangles each, under half
-/// the strip.
+/// Prandtl's bearing capacities of weightless ground under a strip: N_q = exp(pi tan phi)
+/// tan^2(45 deg + phi/2) (mean pressure over a surcharge beside the strip, no cohesion) and
+/// N_c = (N_q - 1) cot phi, 2 + pi without friction (over the cohesion, no surcharge).
+double prandtl_n_q(double phi_deg);
+double prandtl_n_c(double phi_deg);
+
+/// Mean pressure under a rigid rough strip pressed into weightless ground until it gives way.
+/// `cells`: squares, of four triangles each, under half the strip; outwards they grow with tan phi.
+struct Footing {
+  double phi_deg = 0, dilation_deg = 0;
+  bool surcharge = false;  ///< N_q: no cohesion, a surcharge of 1; else N_c: a cohesion of 1
+  int cells = 2;
+  double settlement = 0.4;  ///< over half the strip's width, E = 200 times Prandtl's pressure/5
+};
 struct FootingCheck {
   std::vector<double> settlement;  ///< over half the strip's width, per load step
-  std::vector<double> pressure;    ///< mean, over the cohesion
+  std::vector<double> pressure;    ///< mean, over the cohesion or the surcharge
   double capacity = 0;             ///< the last pressure
   double last_rise = 0;            ///< of the pressure in the last tenth of the settlement, of 1
+  int unknowns = 0;
   std::vector<fe::LoadStep> steps;
 };
-FootingCheck check_strip_footing(double phi_deg, double dilation_deg, int cells, double settlement);
+FootingCheck check_strip_footing(const Footing& footing);
 
 }  // namespace grainfield::continuum

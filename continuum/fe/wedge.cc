@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
+#include "continuum/fe/triangle_refinement.h"
 #include "continuum/model.h"
 
 namespace grainfield::continuum {
@@ -99,20 +101,11 @@ void check_wedge(const WedgeProblem& p) {
   if (p.history != WedgeHistory::at_once)
     refuse(p.layers < 1 || p.layers > p.cells, "layers", p.layers,
            fmt::format("1 to cells, {}", p.cells));
+  refuse(p.refinements < 0, "refinements", p.refinements, "at least 0");
+  refuse(!(p.refine_share > 0 && p.refine_share <= 1), "refine_share", p.refine_share,
+         "above 0, at most 1");
+  refuse(!(p.viscous_step >= 0 && p.viscous_step <= 1), "viscous_step", p.viscous_step, "0 to 1");
   refuse(p.steps < 1, "steps", p.steps, "at least 1");
-}
-
-int WedgeResult::triangle_at(const Vector2d& point) const {
-  const Lattice lattice(problem);
-  const int n = problem.cells;
-  const Eigen::Vector3d parts = lattice.parts(point, problem.height);
-  if (!(parts.minCoeff() >= -kOnBorder)) return -1;
-  const double row = std::clamp(parts[0], 0., 1.) * n, across = std::clamp(parts[2], 0., 1.) * n;
-  const int r = std::min(static_cast<int>(row), n - 1);
-  const int i = std::min(static_cast<int>(across), n - 1 - r);
-  const bool down = (row - r) + (across - i) > 1 && i + r + 1 < n;
-  // Row r starts after sum_{k<r} (2 (n - k) - 1) triangles.
-  return r * (2 * n - r) + 2 * i + (down ? 1 : 0);
 }
 
 namespace {
@@ -125,6 +118,32 @@ Eigen::Vector3d corner_weights(const fe::TriangleMesh& mesh, int triangle, const
     system.col(k) << mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])], 1;
   return system.inverse() * Eigen::Vector3d(point[0], point[1], 1);
 }
+
+}  // namespace
+
+int WedgeResult::triangle_at(const Vector2d& point) const {
+  const Lattice lattice(problem);
+  const int n = problem.cells;
+  const Eigen::Vector3d parts = lattice.parts(point, problem.height);
+  if (!(parts.minCoeff() >= -kOnBorder)) return -1;
+  const double row = std::clamp(parts[0], 0., 1.) * n, across = std::clamp(parts[2], 0., 1.) * n;
+  const int r = std::min(static_cast<int>(row), n - 1);
+  const int i = std::min(static_cast<int>(across), n - 1 - r);
+  const bool down = (row - r) + (across - i) > 1 && i + r + 1 < n;
+  // Row r starts after sum_{k<r} (2 (n - k) - 1) triangles.
+  const int whole = r * (2 * n - r) + 2 * i + (down ? 1 : 0);
+  const auto& parts_of = pieces[static_cast<std::size_t>(whole)];
+  int best = parts_of.front();
+  double depth = -std::numeric_limits<double>::infinity();
+  for (const int piece : parts_of) {
+    if (parts_of.size() == 1) break;
+    const double inside = corner_weights(mesh, piece, point).minCoeff();
+    if (inside > depth) depth = inside, best = piece;
+  }
+  return best;
+}
+
+namespace {
 
 Eigen::VectorXd interpolated(const WedgeResult& result, const Eigen::MatrixXd& values,
                              const Vector2d& point) {
@@ -158,12 +177,34 @@ double WedgeResult::mobilized_at(const Vector2d& point) const {
   return (p[0] - p[2]) / (-(p[0] + p[2]) * std::sin(problem.friction_deg * kDegree));
 }
 
-WedgeResult solve_wedge(const WedgeProblem& p) {
-  check_wedge(p);
+namespace {
+
+/// Errors of the stress by recovery, of every triangle.
+void estimate_errors(WedgeResult& r) {
+  double all = 0, size = 0;
+  r.errors.assign(r.mesh.triangles.size(), 0);
+  for (std::size_t t = 0; t < r.mesh.triangles.size(); ++t) {
+    for (std::size_t q = 0; q < fe::kPoints; ++q) {
+      const fe::PointState& p = r.points[fe::kPoints * t + q];
+      const Eigen::Vector3d weights = corner_weights(r.mesh, static_cast<int>(t), p.position);
+      Vector4 smooth = Vector4::Zero();
+      for (int k = 0; k < 3; ++k)
+        smooth +=
+            weights[k] * r.stress.row(r.mesh.triangles[t][static_cast<std::size_t>(k)]).transpose();
+      r.errors[t] += p.area * (p.stress - smooth).squaredNorm();
+      size += p.area * p.stress.squaredNorm();
+    }
+    all += r.errors[t];
+    r.errors[t] = std::sqrt(r.errors[t]);
+  }
+  r.relative_error = std::sqrt(all / size);
+}
+
+WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   const Lattice lattice(p);
   WedgeResult out;
   out.problem = p;
-  out.mesh = fe::triangle_lattice(lattice.left, lattice.right, Vector2d::Zero(), p.cells);
+  out.mesh = mesh;
 
   const double scale = p.rho_g * p.height;
   const plasticity::MohrCoulomb material{p.young * scale, p.poisson, p.friction_deg, p.dilation_deg,
@@ -173,9 +214,11 @@ WedgeResult solve_wedge(const WedgeProblem& p) {
   fe::PlasticSettings settings;
   settings.name = "fe_mohr_coulomb_wedge";
   settings.force_scale = p.rho_g * cell_area;
+  settings.stress_scale = scale;
   settings.tolerance = p.tolerance;
   settings.iterations = p.iterations;
   settings.first_step = 1. / p.steps;
+  settings.viscous_step = p.viscous_step;
   fe::Ground ground{p.base_stiffness * p.young * scale / p.height,
                     std::tan(p.base_friction_deg * kDegree)};
   const double slack = kOnBorder * p.height;
@@ -188,7 +231,18 @@ WedgeResult solve_wedge(const WedgeProblem& p) {
     if (p.base == WedgeBase::smooth) return {{(x - held).norm() < slack, true}, false};
     return {{false, false}, true};
   };
-  fe::PlasticSolver solver(out.mesh, material, supports, ground, settings);
+  fe::PlasticSolver solver(
+      out.mesh,
+      [&](const Vector2d& x) {
+        plasticity::MohrCoulomb here = material;
+        if (p.elasticity) {
+          const Vector2d constants = p.elasticity(x);
+          here.E = constants[0];
+          here.nu = constants[1];
+        }
+        return here;
+      },
+      supports, ground, settings);
 
   const std::size_t triangles = out.mesh.triangles.size();
   std::vector<int> layer(triangles, 0);
@@ -220,7 +274,34 @@ WedgeResult solve_wedge(const WedgeProblem& p) {
   out.weight = p.rho_g * width * p.height / 2;
   out.base_force = solver.reaction(on_base);
   out.unknowns = solver.unknowns();
+  estimate_errors(out);
   return out;
+}
+
+}  // namespace
+
+WedgeResult solve_wedge(const WedgeProblem& p) {
+  check_wedge(p);
+  const Lattice lattice(p);
+  auto mesh = fe::triangle_lattice(lattice.left, lattice.right, Vector2d::Zero(), p.cells);
+  const std::size_t whole = mesh.triangles.size();
+  std::vector<int> lattice_cell(whole);
+  std::iota(lattice_cell.begin(), lattice_cell.end(), 0);
+  for (int cycle = 0;; ++cycle) {
+    WedgeResult out = solve_on(p, mesh);
+    if (cycle == p.refinements) {
+      out.pieces.resize(whole);
+      for (std::size_t t = 0; t < lattice_cell.size(); ++t)
+        out.pieces[static_cast<std::size_t>(lattice_cell[t])].push_back(static_cast<int>(t));
+      return out;
+    }
+    std::vector<int> parent;
+    mesh = fe::refined(mesh, fe::largest_errors(out.errors, p.refine_share), parent);
+    std::vector<int> cell(parent.size());
+    for (std::size_t t = 0; t < parent.size(); ++t)
+      cell[t] = lattice_cell[static_cast<std::size_t>(parent[t])];
+    lattice_cell = std::move(cell);
+  }
 }
 
 WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
@@ -232,23 +313,27 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
     for (const double side : {-1., 1.}) {
       const double slope = side < 0 ? p.left_deg : p.right_deg;
       const double outside = depth / std::tan(slope * kDegree);
-      double x = outside;
-      for (int s = kCoreSamples - 1; s >= 0; --s) {
-        x = outside * s / kCoreSamples;
-        if (result.mobilized_at({side * x, -depth}) < mobilized) break;
-      }
+      double x = kNan;
+      for (int s = kCoreSamples - 1; s >= 0 && std::isnan(x); --s)
+        if (result.mobilized_at({side * outside * s / kCoreSamples, -depth}) < mobilized)
+          x = outside * s / kCoreSamples;
       (side < 0 ? core.left : core.right).push_back(side * x);
     }
     core.axis_mobilized += result.mobilized_at({0, -depth}) / kCoreDepths;
   }
   const auto median = [](std::vector<double> values) {
+    if (values.empty()) return kNan;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
   const auto fit = [&](const std::vector<double>& x, double& degrees, double& misfit) {
     std::vector<double> tangents, apart;
-    for (std::size_t k = 0; k < x.size(); ++k) tangents.push_back(std::abs(x[k]) / core.depth[k]);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (std::isnan(x[k])) continue;
+      tangents.push_back(std::abs(x[k]) / core.depth[k]);
+      core.share += 0.5 / static_cast<double>(x.size());
+    }
     const double tangent = median(tangents);
     for (const double t : tangents) apart.push_back(std::abs(t - tangent));
     degrees = std::atan(tangent) / kDegree;

@@ -8,6 +8,7 @@
 // hardly).
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,14 @@ struct WedgeProblem {
   int steps = 1;   ///< at_once: equal steps of gravity; layers: steps for the weight of each
   int layers = 8;  ///< of rise and grow
   int cells = 32;  ///< triangles along each side of the heap; a multiple of 2 layers fits them
+  /// Adaptive refinement: so many times the triangles with the largest estimated errors of stress,
+  /// which hold `refine_share` of the sum of squares, are cut, and the heap is laid anew.
+  int refinements = 0;
+  double refine_share = 0.5;
+  /// Measured Young's modulus (N/m^2; 2D N/m) and Poisson's ratio at a place in place of young and
+  /// poisson; empty: those.
+  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> elasticity;
+  double viscous_step = 0.25;  ///< PlasticSettings::viscous_step
   double tolerance = 1e-9;
   int iterations = 25;
 };
@@ -51,6 +60,12 @@ struct WedgeResult {
   std::vector<fe::PointState> points;  ///< three per triangle
   std::vector<fe::LoadStep> steps;     ///< with each step's Newton history
   double weight = 0;                   ///< of the heap
+  /// Of each triangle: 2-norm over its area of the stress minus the recovered, continuous one
+  /// (Zienkiewicz and Zhu 1987); and all of them over the 2-norm of the stress.
+  std::vector<double> errors;
+  double relative_error = 0;
+  /// Of each triangle of the lattice: those it was cut into.
+  std::vector<std::vector<int>> pieces;
   Eigen::Vector2d base_force = Eigen::Vector2d::Zero();  ///< of the ground on the heap
   int unknowns = 0;
 
@@ -68,7 +83,8 @@ struct WedgeResult {
 /// depth the first place where the friction is no longer mobilized. Inside, about the axis, the
 /// heap may yield again (Cantelaube's branches with a yield line there).
 struct WedgeCore {
-  std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0 at a depth
+  std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0; nan: all at the limit
+  double share = 0;                        ///< of the depths and sides that have a boundary
   double axis_mobilized = 0;               ///< mobilized friction on the axis, mean over the depths
   /// Angle from the vertical, in degrees, of the line from the apex that has half of the boundary
   /// on either side (Cantelaube's beta_hat): the arc tangent of the median of |x|/depth. Misfit:

@@ -9,6 +9,22 @@
 namespace grainfield::continuum {
 namespace {
 
+/// Of a cell: the share of its points that yielded last, and the means of their plastic strains.
+struct CellMeans {
+  double plastic = 0, shear = 0, volume = 0;
+};
+
+CellMeans cell_means(const WedgeResult& r, int triangle) {
+  CellMeans out;
+  for (std::size_t q = 0; q < 3; ++q) {
+    const auto& p = r.points[3 * static_cast<std::size_t>(triangle) + q];
+    out.plastic += (p.regime != plasticity::Regime::elastic) / 3.;
+    out.shear += p.plastic_shear / 3;
+    out.volume += p.plastic_strain.head<3>().sum() / 3;
+  }
+  return out;
+}
+
 class WedgeModel : public Model {
  public:
   explicit WedgeModel(const Settings& s) {
@@ -39,6 +55,8 @@ class WedgeModel : public Model {
     p.layers = whole("layers");
     p.cells = whole("cells");
     p.iterations = whole("iterations");
+    p.refinements = whole("refinements");
+    p.viscous_step = number_of(s, "viscous_step");
     p.tolerance = number_of(s, "tolerance");
     check_wedge(p);
   }
@@ -66,17 +84,53 @@ class WedgeModel : public Model {
       const int triangle = r.triangle_at(at);
       if (triangle < 0) continue;
       const Eigen::Vector2d u = r.displacement_at(at);
-      // Of the cell: the share of its points that yielded last, and the means of their strains.
-      double plastic = 0, shear = 0, volume = 0;
-      for (std::size_t q = 0; q < 3; ++q) {
-        const auto& p = r.points[3 * static_cast<std::size_t>(triangle) + q];
-        plastic += (p.regime != plasticity::Regime::elastic) / 3.;
-        shear += p.plastic_shear / 3;
-        volume += p.plastic_strain.head<3>().sum() / 3;
-      }
-      const std::array<double, 7> values{
-          r.stress_at(at)[2], u[0], u[1], r.mobilized_at(at), plastic, shear, volume};
+      const CellMeans means = cell_means(r, triangle);
+      const std::array<double, 7> values{r.stress_at(at)[2], u[0],          u[1],
+                                         r.mobilized_at(at), means.plastic, means.shear,
+                                         means.volume};
       for (std::size_t k = 0; k < values.size(); ++k) out[k].values[i] = values[k];
+    }
+    return out;
+  }
+
+  MeshField mesh() override {
+    solve();
+    const WedgeResult& r = *solved_;
+    MeshField out;
+    const auto corners = static_cast<Eigen::Index>(r.mesh.vertices.size());
+    out.corners.resize(corners, 2);
+    for (Eigen::Index i = 0; i < corners; ++i)
+      out.corners.row(i) = r.mesh.vertices[static_cast<std::size_t>(i)].transpose();
+    out.triangles = r.mesh.triangles;
+    int column = 0;
+    for (const char* name : {"sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy"})
+      out.at_corners.push_back({name, r.stress.col(column++)});
+    out.at_corners.push_back({"displacement_x", r.displacement.col(0)});
+    out.at_corners.push_back({"displacement_y", r.displacement.col(1)});
+    const auto triangles = static_cast<Eigen::Index>(r.mesh.triangles.size());
+    for (const char* name : {"plastic", "plastic_shear", "plastic_volume", "mobilized"})
+      out.in_triangles.push_back({name, Eigen::VectorXd(triangles)});
+    for (Eigen::Index t = 0; t < triangles; ++t) {
+      const CellMeans means = cell_means(r, static_cast<int>(t));
+      const Eigen::Vector2d centre =
+          (out.corners.row(r.mesh.triangles[t][0]) + out.corners.row(r.mesh.triangles[t][1]) +
+           out.corners.row(r.mesh.triangles[t][2]))
+              .transpose() /
+          3;
+      out.in_triangles[0].values[t] = means.plastic;
+      out.in_triangles[1].values[t] = means.shear;
+      out.in_triangles[2].values[t] = means.volume;
+      out.in_triangles[3].values[t] = r.mobilized_at(centre);
+    }
+    const WedgeCore core = wedge_core(r);
+    const auto rows = static_cast<Eigen::Index>(core.depth.size());
+    for (const auto& [name, side] :
+         {std::pair("core_left", &core.left), std::pair("core_right", &core.right)}) {
+      Points line(rows, 2);
+      for (Eigen::Index i = 0; i < rows; ++i)
+        line.row(i) << (*side)[static_cast<std::size_t>(i)],
+            -core.depth[static_cast<std::size_t>(i)];
+      out.lines.emplace_back(name, std::move(line));
     }
     return out;
   }
@@ -84,10 +138,12 @@ class WedgeModel : public Model {
   std::map<std::string, double> figures() const override {
     if (!solved_) return {};
     const WedgeCore core = wedge_core(*solved_);
-    double iterations = 0, plastic = 0, residual = 0;
+    double iterations = 0, plastic = 0, residual = 0, viscous = 0, overstress = 0;
     for (const auto& step : solved_->steps) {
-      iterations += static_cast<double>(step.history.size()) - 1;
+      iterations += step.iterations;
       residual = std::max(residual, step.history.back());
+      viscous += step.viscous_steps;
+      overstress = std::max(overstress, step.overstress);
     }
     for (const auto& p : solved_->points)
       plastic += (p.regime != plasticity::Regime::elastic) * p.area;
@@ -96,8 +152,12 @@ class WedgeModel : public Model {
             {"load_steps", static_cast<double>(solved_->steps.size())},
             {"newton_iterations", iterations},
             {"largest_residual", residual},
+            {"viscous_steps", viscous},
+            {"largest_overstress", overstress},
+            {"stress_error", solved_->relative_error},
             {"weight_ratio", solved_->base_force[1] / weight},
             {"thrust_ratio", solved_->base_force[0] / weight},
+            {"core_share", core.share},
             {"axis_mobilized", core.axis_mobilized},
             {"plastic_share", plastic * problem_.rho_g / weight},
             {"beta_hat_left_deg", core.left_deg},

@@ -85,6 +85,23 @@ void elastic(Section s) {
            "E_x/E_y; isotropic: 1", "Otto et al. 2003");
 }
 
+void wedge(Section s) {
+  s.number("phi_deg", "deg", +IN(double, wedge.phi_deg), {1, 60}, "friction angle");
+  s.number("left_deg", "deg", +IN(double, wedge.left_deg), {1, 80}, "slope on the left");
+  s.number("right_deg", "deg", +IN(double, wedge.right_deg), {1, 80}, "slope on the right");
+  s.number("rho_g", "N/m2", +IN(double, wedge.rho_g), kPositive, "weight of a unit area");
+  s.number("height", "m", +IN(double, wedge.height), kPositive, "of the heap");
+  s.number("depths", "-", +IN(Numbers, wedge.depths), {0, 1, true},
+           "profiles below the apex, as shares of the height; the base, 1, is always one");
+  s.number("points", "-", +IN(Integer, wedge.points), {11, 100000}, "of a profile");
+  s.word("histories", +IN(Words, wedge.histories), {"at_once", "rise", "grow"},
+         "every finite-element heap is solved for each of these, with each of dilations_deg and "
+         "bases; empty: as its own settings say");
+  s.number("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.word("bases", +IN(Words, wedge.bases), {},
+         "likewise: rough, smooth, or the friction angle of a frictional base, e.g. \"20\"");
+}
+
 void compare(Section s) {
   s.word(
       "models", +[](Case& c) -> Words& { return model_names(c); }, {},
@@ -113,6 +130,7 @@ void declare_analysis_keys(std::vector<Key>& keys) {
   ensemble({keys, "ensemble"});
   average({keys, "average"});
   elastic({keys, "elastic"});
+  wedge({keys, "wedge"});
   compare({keys, "compare"});
   output({keys, "output"});
   sweep({keys, "sweep"});

@@ -153,8 +153,8 @@ std::string write_case(const Case& value) {
 }
 
 std::string grain_keys_text(const Case& value) {
-  static const std::vector<std::string> others{"average", "heap",    "fields", "fit",
-                                               "elastic", "compare", "output"};
+  static const std::vector<std::string> others{"average", "heap",  "fields",  "fit",
+                                               "elastic", "wedge", "compare", "output"};
   std::string out;
   for (const Key& key : keys()) {
     if (!key_applies(key, value.study) || key.path() == "title" ||

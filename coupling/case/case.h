@@ -88,6 +88,18 @@ struct ElasticSetup {
   double r = 1, t = 1;  ///< orthotropic-layer: anisotropy
 };
 
+/// Heap of the study wedge.
+struct WedgeSetup {
+  double phi_deg = 28, left_deg = 28, right_deg = 28;  ///< friction angle, slopes
+  double rho_g = 1;                                    ///< N/m^3 (2D: N/m^2)
+  double height = 1;                                   ///< m
+  std::vector<double> depths = {0.5, 0.75, 1};         ///< of the height; the base is always seen
+  std::int64_t points = 121;
+  std::vector<std::string> histories;  ///< all combinations of what is listed
+  std::vector<double> dilations_deg;
+  std::vector<std::string> bases;  ///< rough, smooth, or the friction angle of a frictional one
+};
+
 struct OutputSetup {
   bool snapshots = true;
   bool vtu = true;
@@ -128,6 +140,7 @@ struct Case {
   FieldsSetup fields;
   FitSetup fit;
   ElasticSetup elastic;
+  WedgeSetup wedge;
   CompareSetup compare;
   OutputSetup output;
   SweepSetup sweep;

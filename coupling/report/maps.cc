@@ -63,6 +63,13 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
       p += "\n";
     }
     p += "EOD\n";
+    for (std::size_t l = 0; l < map.lines.size(); ++l) {
+      p += fmt::format("$m{}_{} << EOD\n", k, l);
+      for (const auto& at : map.lines[l].points.rowwise()) {
+        p += at.allFinite() ? fmt::format("{:.6g} {:.6g}\n", at[0], at[1]) : "\n";
+      }
+      p += "EOD\n";
+    }
   }
   const auto [low_limit, high_limit] = colour_range(all, diverging);
   p += diverging ? style::diverging : style::sequential_palette;
@@ -92,7 +99,10 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
     const Eigen::RowVector2d high = all[k].points.colwise().maxCoeff();
     p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", low.x(), high.x(), low.y(),
                      high.y());
-    p += fmt::format("plot $m{} using 1:2:3 with image\n", k);
+    p += fmt::format("plot $m{} using 1:2:3 with image", k);
+    for (std::size_t l = 0; l < all[k].lines.size(); ++l)
+      p += fmt::format(", $m{}_{} using 1:2 with lines {}", k, l, all[k].lines[l].look);
+    p += "\n";
   }
   p += "unset multiplot\n";
   return picture;

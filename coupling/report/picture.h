@@ -31,12 +31,19 @@ struct Frame {
 Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
                const std::vector<Frame>& frames);
 
+/// A line drawn over a map.
+struct Overlay {
+  Eigen::MatrixXd points;  ///< n x 2
+  std::string look;        ///< of gnuplot's `with lines`, e.g. "lw 1 lc rgb 'white'"
+};
+
 /// One map of a column on a regular grid; several side by side share the colour scale.
 struct Map {
   std::string title;
   int nx = 0, ny = 0;
   Eigen::MatrixXd points;  ///< nx*ny x 2
   Eigen::VectorXd value;
+  std::vector<Overlay> lines = {};
 };
 /// `diverging`: blue - white - red about 0; else dark - bright over the values' own range.
 Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,

@@ -9,6 +9,7 @@
 #include "coupling/run/osl.h"
 #include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
+#include "coupling/run/wedge.h"
 
 namespace grainfield::coupling {
 
@@ -17,7 +18,7 @@ const std::vector<Study>& studies() {
       point_load_study(),         pile_study(),         pile_fields_study(),
       pile_fit_study(),           lattice_pile_study(), elastic_layer_study(),
       elastic_half_space_study(), osl_wedge_study(),    osl_layer_study(),
-      orthotropic_layer_study(),  wedge_core_study(),
+      orthotropic_layer_study(),  wedge_core_study(),   wedge_study(),
   };
   return all;
 }

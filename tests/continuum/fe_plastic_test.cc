@@ -87,21 +87,50 @@ TEST(FePlastic, PlasticFlankToRoundOff) {
   }
 }
 
+// The stress is linear: exact, at the limit of friction and below it.
+TEST(FePlastic, InfiniteSlopeToRoundOff) {
+  for (const double phi : {25., 38.}) {
+    for (const double steepness : {0.3, 0.7, 0.95}) {
+      for (const double share : {0., 0.5, 1.}) {
+        InfiniteSlope slope;
+        slope.phi_deg = phi;
+        slope.slope_deg = steepness * phi;
+        slope.dilation_deg = phi / 2;
+        slope.share = share;
+        const FlankCheck found = check_infinite_slope(slope);
+        EXPECT_EQ(found.plastic_share, share == 0.5 ? 0 : 1) << phi << " " << steepness;
+        // Residuals of 1e-11 of a cell's weight; the passive stress is up to seven times larger.
+        EXPECT_LT(found.stress_error, 1e-10) << phi << " " << steepness << " " << share;
+        EXPECT_LT(found.corner_error, 1e-10) << phi << " " << steepness << " " << share;
+      }
+    }
+  }
+}
+
 // The strip's border is a singular point: order 1.
 TEST(FePlastic, StripFootingApproachesPrandtlFromAbove) {
-  const double exact = 2 + std::numbers::pi;
+  const double exact = prandtl_n_c(0);
   std::vector<double> error;
   for (const int cells : {1, 2, 4}) {
-    const FootingCheck footing = check_strip_footing(0, 0, cells, 0.4);
+    Footing footing;
+    footing.cells = cells;
+    const FootingCheck found = check_strip_footing(footing);
     std::printf("N_c with %d squares under half the strip: %.4f (exact %.4f)\n", cells,
-                footing.capacity, exact);
-    EXPECT_LT(footing.last_rise, 1e-3);  // it has given way
-    error.push_back(footing.capacity - exact);
+                found.capacity, exact);
+    EXPECT_LT(found.last_rise, 1e-3);  // it has given way
+    error.push_back(found.capacity - exact);
     EXPECT_GT(error.back(), 0);
   }
   EXPECT_NEAR(std::log2(error[0] / error[1]), 1, 0.2);
   EXPECT_NEAR(std::log2(error[1] / error[2]), 1, 0.2);
   EXPECT_LT(std::abs(2 * error[2] - error[1]), 0.01 * exact);  // extrapolated
+}
+
+TEST(FePlastic, PrandtlsCapacities) {
+  EXPECT_DOUBLE_EQ(prandtl_n_c(0), 2 + std::numbers::pi);
+  EXPECT_NEAR(prandtl_n_c(1e-4), 2 + std::numbers::pi, 1e-4);
+  EXPECT_NEAR(prandtl_n_c(30), 30.1396, 1e-4);
+  EXPECT_NEAR(prandtl_n_q(30), 18.4011, 1e-4);
 }
 
 TEST(FePlastic, HeapRestsOnItsGround) {

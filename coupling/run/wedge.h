@@ -1,0 +1,35 @@
+// Elastic-plastic heaps beside the closed wedges, without grains: how they were laid, their
+// dilation and their base against what presses on the base.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "coupling/case/case.h"
+#include "coupling/run/studies.h"
+#include "coupling/run/study_result.h"
+
+namespace grainfield::coupling {
+
+/// The pressure on the base in words and figures.
+struct BaseShape {
+  double axis = 0;        ///< mean pressure within 5 % of the half width about x = 0, N/m
+  double largest = 0;     ///< N/m
+  double largest_at = 0;  ///< |x| of it, m
+  double quarter = 0;     ///< mean at x = +-1/4 of the half width, N/m
+  double dip_ratio = 0;   ///< axis over largest
+  std::string word;       ///< dip: dip_ratio < 0.98, the largest elsewhere; else plateau: quarter
+                          ///< >= 0.98 axis; else peak
+};
+/// Of pressures at ascending x of which some lie on either side of 0; nan points are left out.
+/// `half_width`: of the base. Throws std::invalid_argument where no value lies near the axis.
+BaseShape base_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& pressure, double half_width);
+
+/// Evaluates the case's models on horizontal lines through the heap. Where [wedge] lists histories,
+/// dilations or bases, every finite-element heap of the case is solved for all their combinations,
+/// and one without equilibrium is an entry of the table; else it fails the study. Throws what
+/// models throw, and std::invalid_argument for fewer than two models or no finite-element heap.
+StudyResult analyse_wedge(const Case& value);
+
+Study wedge_study();
+
+}  // namespace grainfield::coupling

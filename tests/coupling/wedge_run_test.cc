@@ -1,0 +1,148 @@
+// The study of elastic-plastic heaps: shapes of base pressures, slip lines, shipped cases.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "continuum/model.h"
+#include "coupling/output/triangles_vtu.h"
+#include "coupling/run/slip_lines.h"
+#include "coupling/run/summary_keys.h"
+#include "coupling/run/wedge.h"
+
+using namespace grainfield::coupling;
+using testing::HasSubstr;
+
+namespace {
+
+StudyResult shipped(const std::string& name, const Overrides& overrides) {
+  const StudyResult result =
+      analyse_wedge(read_case(std::string(GRAINFIELD_CASES) + "/" + name, true, overrides));
+  EXPECT_NO_THROW(require_documented(result.summary));
+  return result;
+}
+
+std::string refusal(const std::string& name, const Overrides& overrides) {
+  try {
+    shipped(name, overrides);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+std::string word(const StudyResult& result, const std::string& key) {
+  return std::get<std::string>(result.summary.at(key));
+}
+
+/// Pressure of a closed wedge on a base of half width cot(28 deg).
+BaseShape closed_shape(const std::string& branch) {
+  const auto model = grainfield::continuum::make_model("cantelaube", {{"branch", branch}});
+  const double half = 1 / std::tan(28 * std::numbers::pi / 180) * (1 - 1e-9);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(121, -half, half);
+  Eigen::MatrixXd points(121, 2);
+  points << x, Eigen::VectorXd::Constant(121, -1);
+  return base_shape(x, -model->stress(points).col(1), half);
+}
+
+}  // namespace
+
+TEST(WedgeRun, ShapesOfTheClosedBranches) {
+  EXPECT_EQ(closed_shape("minus").word, "dip");
+  EXPECT_EQ(closed_shape("zero").word, "plateau");
+  EXPECT_EQ(closed_shape("plus").word, "peak");
+  EXPECT_NEAR(closed_shape("zero").dip_ratio, 1, 1e-9);
+  EXPECT_NEAR(closed_shape("minus").largest_at, std::tan(22.496 * std::numbers::pi / 180), 0.032);
+  EXPECT_THROW(base_shape(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 1, 1), 3),
+               std::invalid_argument);
+}
+
+// Under uniform stress the lines are straight, at 45 degrees - phi/2 to the larger compression.
+TEST(WedgeRun, SlipLinesOfUniformStress) {
+  const double phi = 30, ratio = 1. / 3;  // active: sxx = syy/3 is at the limit
+  const PlaneStress stress = [&](const Eigen::MatrixXd& p) -> Eigen::MatrixXd {
+    Eigen::MatrixXd out(p.rows(), 3);
+    for (Eigen::Index i = 0; i < p.rows(); ++i) {
+      const bool inside = p.row(i).cwiseAbs().maxCoeff() < 1;
+      out.row(i) << -ratio, inside ? -1 : std::nan(""), 0;
+    }
+    return out;
+  };
+  SlipLines how;
+  how.phi_deg = phi;
+  Eigen::MatrixXd seeds(3, 2);
+  seeds << 0, 0, 0.3, 0, 0.31, 0;  // the third is too near to the second
+  const auto lines = slip_lines(stress, seeds, how);
+  ASSERT_EQ(lines.size(), 4u);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const Eigen::RowVector2d way = lines[k].bottomRows(1) - lines[k].topRows(1);
+    // 30 degrees from the vertical.
+    EXPECT_NEAR(std::abs(way[0] / way[1]), std::tan(std::numbers::pi / 6), 1e-9);
+    EXPECT_GT(std::abs(way[1]), 1.9);
+  }
+  // Below the limit there are none.
+  how.phi_deg = 40;
+  EXPECT_TRUE(slip_lines(stress, seeds, how).empty());
+}
+
+TEST(WedgeRun, TrianglesAndLinesAsVtu) {
+  grainfield::continuum::MeshField mesh;
+  mesh.corners.resize(3, 2);
+  mesh.corners << 0, 0, 1, 0, 0, 1;
+  mesh.triangles = {{0, 1, 2}};
+  mesh.at_corners = {{"height", Eigen::Vector3d(0, 0, 1)}};
+  mesh.in_triangles = {{"share", Eigen::VectorXd::Constant(1, 0.5)}};
+  const std::string text = triangles_vtu(mesh);
+  EXPECT_THAT(text, HasSubstr("NumberOfPoints=\"3\" NumberOfCells=\"1\""));
+  EXPECT_THAT(text, HasSubstr("Name=\"height\""));
+  EXPECT_THAT(text, HasSubstr("0 1 2\n"));
+  mesh.in_triangles[0].values.resize(2);
+  EXPECT_THROW(triangles_vtu(mesh), std::invalid_argument);
+  Eigen::MatrixXd line(3, 2);
+  line << 0, 0, std::nan(""), 0, 1, 1;
+  EXPECT_THAT(lines_vtu({line}), HasSubstr("NumberOfPoints=\"2\" NumberOfCells=\"1\""));
+}
+
+TEST(WedgeRun, HeapsBesideTheClosedWedges) {
+  const StudyResult result = shipped(
+      "wedge-elastoplastic.toml",
+      {"compare.models=[\"associated\",\"dilation_10\",\"minus\",\"zero\",\"plus\",\"ife\"]",
+       "model.associated.cells=12", "model.dilation_10.cells=12"});
+  for (const std::string heap : {"associated", "dilation_10"}) {
+    EXPECT_EQ(word(result, "wedge." + heap + ".base_shape"), "peak");
+    EXPECT_EQ(word(result, "wedge." + heap + ".nearest"), "ife");
+    EXPECT_NEAR(std::get<double>(result.summary.at("model." + heap + ".weight_ratio")), 1, 1e-6);
+  }
+  EXPECT_EQ(word(result, "wedge.minus.base_shape"), "dip");
+  const auto file = [&](const std::string& name) {
+    for (const auto& [found, text] : result.texts)
+      if (found == name) return text;
+    return std::string();
+  };
+  EXPECT_THAT(file("wedge_associated.vtu"), HasSubstr("plastic_shear"));
+  EXPECT_THAT(file("slip_lines_associated.vtu"), HasSubstr("Name=\"line\""));
+  EXPECT_THAT(file("core_associated.vtu"), HasSubstr("NumberOfCells=\"2\""));
+  EXPECT_THAT(file("heaps.csv"), HasSubstr("associated;0."));
+}
+
+TEST(WedgeRun, MapCountsHeapsWithoutEquilibrium) {
+  const StudyResult result =
+      shipped("wedge-map.toml", {"wedge.histories=[\"at_once\"]", "wedge.dilations_deg=[28]",
+                                 "wedge.bases=[\"rough\",\"smooth\"]", "model.heap.cells=8"});
+  EXPECT_EQ(std::get<std::int64_t>(result.summary.at("wedge.heaps")), 2);
+  EXPECT_EQ(std::get<std::int64_t>(result.summary.at("wedge.equilibria")), 1);
+  EXPECT_THAT(word(result, "wedge.heap_at_once_dilation28_basesmooth.failed"),
+              HasSubstr("no equilibrium found beyond"));
+}
+
+TEST(WedgeRun, RefusesWhatDoesNotFit) {
+  EXPECT_THAT(refusal("wedge-map.toml", {"wedge.bases=[\"wet\"]"}),
+              HasSubstr("wedge.bases: found \"wet\", expected rough, smooth, or a friction angle"));
+  EXPECT_THAT(refusal("wedge-map.toml", {"wedge.dilations_deg=[30]"}),
+              HasSubstr("wedge.dilations_deg: found 30, expected at most wedge.phi_deg, 28"));
+  EXPECT_THAT(refusal("wedge-map.toml", {"compare.models=[\"minus\",\"zero\"]"}),
+              HasSubstr("compare.models: found no fe_mohr_coulomb_wedge"));
+  EXPECT_THAT(refusal("wedge-map.toml", {"compare.models=[\"heap\"]"}),
+              HasSubstr("compare.models: found 1 model(s)"));
+}
