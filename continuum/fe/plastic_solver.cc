@@ -30,8 +30,10 @@ constexpr double kFirstTime = 1, kLeastTime = 1e-3, kLongTime = 1e4;
 /// Most Newton iterations in one of them: a shorter one is better than more.
 constexpr int kCreepIterations = 10;
 /// Flow without rest: so many steps later the overstress is more than this share.
-constexpr std::size_t kPatience = 30;
+constexpr std::size_t kPatience = 20;
 constexpr double kFading = 0.5;
+/// So many ever shorter steps without rest: the load that the body bears has been reached.
+constexpr int kRestless = 3;
 
 /// xx, yy, zz, xy of a strain in the plane.
 Vector4 in_space(const Eigen::Vector3d& e) { return {e[0], e[1], 0, e[2]}; }
@@ -364,6 +366,7 @@ struct PlasticSolver::Impl {
               moved(grid.positions[i])[static_cast<Eigen::Index>(grid.components[i])];
     double reached = 0, step = std::min(1., settings.first_step);
     LoadStep record;
+    int restless = 0;  // steps in a row that found no rest in viscoplastic time
     while (reached < 1) {
       const double target = reached + (1 + kSliver) * step >= 1 ? 1 : reached + step;
       const Eigen::VectorXd forces = from + target * (to - from);
@@ -381,8 +384,10 @@ struct PlasticSolver::Impl {
         rate.setZero();
         if (target - reached > settings.viscous_step ||
             !creep(forces, (target - reached) * move, record)) {
-          step = (target - reached) / 2;
-          if (step < settings.least_step)
+          const bool crept = target - reached <= settings.viscous_step;
+          restless += crept;
+          step = (target - reached) / (crept ? 4 : 2);
+          if (step < settings.least_step || restless == kRestless)
             throw ComputationFailed(fmt::format(
                 "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at "
                 "a residual of {:.1e} in iteration {} ({}){}",
@@ -398,6 +403,7 @@ struct PlasticSolver::Impl {
       step = target - reached;
       if (report.converged && report.iterations <= kQuick) step *= 2;
       reached = target;
+      restless = 0;
       record.stage = stage;
       record.load = reached;
       steps.push_back(record);

@@ -32,7 +32,9 @@ void converges(double phi, bool surcharge, const std::vector<int>& meshes, doubl
     EXPECT_LT(found.last_rise, 2e-3) << phi << " " << surcharge << " " << cells;
     error.push_back(found.capacity / exact - 1);
     EXPECT_GT(error.back(), 0) << phi << " " << surcharge << " " << cells;
-    if (error.size() > 1) EXPECT_LT(error.back(), 0.65 * error[error.size() - 2]);
+    if (error.size() > 1) {
+      EXPECT_LT(error.back(), 0.65 * error[error.size() - 2]);
+    }
   }
   // Order 1 from the two finest meshes, each of twice the cells of the one before.
   const double extrapolated = 2 * error.back() - error[error.size() - 2];

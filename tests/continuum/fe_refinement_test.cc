@@ -75,7 +75,9 @@ TEST(FeRefinement, RandomMarksKeepAreaBoundaryAndAngles) {
       }
       for (std::size_t t = 0; t < marks.size(); ++t) {
         EXPECT_NEAR(covered[t], area(mesh, t), 1e-12);
-        if (marks[t]) EXPECT_GE(pieces[t], 2);
+        if (marks[t]) {
+          EXPECT_GE(pieces[t], 2);
+        }
       }
       // A hanging node would be an edge that one triangle has alone.
       EXPECT_NEAR(boundary(next), outline, 1e-9);
