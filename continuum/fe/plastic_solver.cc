@@ -378,6 +378,7 @@ struct PlasticSolver::Impl {
       record.iterations += report.iterations;
       if (settled(report)) {
         record.history = report.history;
+        record.overstress = 0;
         accept(u);
         rate = u / (target - reached);
       } else {
@@ -387,7 +388,7 @@ struct PlasticSolver::Impl {
           const bool crept = target - reached <= settings.viscous_step;
           restless += crept;
           step = (target - reached) / (crept ? 4 : 2);
-          if (step < settings.least_step || restless == kRestless)
+          if (step < settings.least_step || (restless >= kRestless && reached > 0))
             throw ComputationFailed(fmt::format(
                 "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at "
                 "a residual of {:.1e} in iteration {} ({}){}",

@@ -208,7 +208,7 @@ TEST(FePlastic, HistoriesDiffer) {
 }
 
 TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
-  WedgeProblem p = heap(6, 25);
+  WedgeProblem p = heap(4, 25);
   p.base = WedgeBase::smooth;
   const std::string text = failure(p);
   EXPECT_THAT(text, HasSubstr("fe_mohr_coulomb_wedge: no equilibrium found beyond 0."));
