@@ -29,9 +29,10 @@ constexpr double kSliver = 0.01;
 constexpr double kFirstTime = 1, kLeastTime = 1e-3, kLongTime = 1e4;
 /// Most Newton iterations in one of them: a shorter one is better than more.
 constexpr int kCreepIterations = 10;
-/// Flow without rest: so many steps later the overstress is more than this share.
+/// Flow without rest: so many steps and so many times of relaxation later the overstress is more
+/// than this share.
 constexpr std::size_t kPatience = 20;
-constexpr double kFading = 0.5;
+constexpr double kPatientTime = 5, kFading = 0.5;
 /// So many ever shorter steps without rest: the load that the body bears has been reached.
 constexpr int kRestless = 3;
 
@@ -321,7 +322,7 @@ struct PlasticSolver::Impl {
     const auto contacts_before = contacts;
     const Eigen::VectorXd displacement_before = displacement;
     double time = kFirstTime;
-    std::vector<double> left;
+    std::vector<double> left, clock{0};  // overstress after each step; time
     while (static_cast<int>(left.size()) < settings.viscous_steps && time >= kLeastTime) {
       // A long step of time is as good as none: the material without viscosity.
       relaxed = time > kLongTime ? 1 : time / (1 + time);
@@ -336,6 +337,7 @@ struct PlasticSolver::Impl {
       accept(move);
       u.setZero();
       left.push_back(overstress());
+      clock.push_back(clock.back() + time);
       step.history = report.history;
       step.overstress = left.back();
       step.viscous_steps = static_cast<int>(left.size());
@@ -343,7 +345,9 @@ struct PlasticSolver::Impl {
         relaxed = 1;
         return true;
       }
-      if (left.size() > kPatience && left.back() > kFading * left[left.size() - 1 - kPatience])
+      if (left.size() > kPatience &&
+          clock.back() - clock[clock.size() - 1 - kPatience] > kPatientTime &&
+          left.back() > kFading * left[left.size() - 1 - kPatience])
         break;
       time *= report.iterations <= kQuick / 2 ? 4 : report.iterations <= kQuick ? 2 : 1;
     }

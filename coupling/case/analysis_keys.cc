@@ -97,7 +97,7 @@ void wedge(Section s) {
   s.word("histories", +IN(Words, wedge.histories), {"at_once", "rise", "grow"},
          "every finite-element heap is solved for each of these, with each of dilations_deg and "
          "bases; empty: as its own settings say");
-  s.number("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.numbers_or_none("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
   s.word("bases", +IN(Words, wedge.bases), {},
          "likewise: rough, smooth, or the friction angle of a frictional base, e.g. \"20\"");
 }
