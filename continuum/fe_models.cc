@@ -230,6 +230,12 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
        number("E", "rho_g h", "Young's modulus; strains, not stresses, go with 1/E", "elasticity",
               1000, kAboveZero, kUnbounded),
        number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49),
+       text(
+           "map",
+           "file of measured elastic constants in place of E and nu: elastic_map.csv of a study "
+           "of elastic constants (columns x,y,young,poisson; SI units, apex at the origin); empty: "
+           "none",
+           "measured"),
        choice("base",
               "rough: no displacement; frictional: Coulomb friction on stiff springs; smooth: no "
               "shear, on which only cohesion holds a heap",

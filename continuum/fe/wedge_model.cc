@@ -1,8 +1,15 @@
 // The wedge as a model of the registry, and its further quantities at points.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <string>
 
+#include "continuum/elastic_field.h"
 #include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
 
@@ -23,6 +30,30 @@ CellMeans cell_means(const WedgeResult& r, int triangle) {
     out.volume += p.plastic_strain.head<3>().sum() / 3;
   }
   return out;
+}
+
+/// Young's modulus and Poisson's ratio of a map. Throws BadParameter where it is not isotropic.
+std::function<Eigen::Vector2d(const Eigen::Vector2d&)> measured(const std::string& file) {
+  constexpr double kIsotropic = 1e-6;
+  const auto field = std::make_shared<const ElasticField>(read_elastic_field(file));
+  return [field, file](const Eigen::Vector2d& at) -> Eigen::Vector2d {
+    // Plane strain: lambda + 2 mu, lambda, mu.
+    const Eigen::Matrix3d c = field->at(at[0], at[1]);
+    const double lambda = c(0, 1), mu = c(2, 2);
+    if (std::abs(c(0, 0) - c(1, 1)) > kIsotropic * c(0, 0) ||
+        std::abs(c(0, 0) - lambda - 2 * mu) > kIsotropic * c(0, 0))
+      throw BadParameter(fmt::format(
+          "fe_mohr_coulomb_wedge: map {} is not isotropic at ({:.4g}, {:.4g}); allowed: a map with "
+          "the columns young,poisson",
+          file, at[0], at[1]));
+    const double poisson = lambda / (2 * (lambda + mu));
+    if (!(poisson >= 0 && poisson < 0.5))
+      throw BadParameter(
+          fmt::format("fe_mohr_coulomb_wedge: map {} has poisson = {:.4g} at ({:.4g}, {:.4g}); "
+                      "allowed: 0 to below 0.5",
+                      file, poisson, at[0], at[1]));
+    return {2 * mu * (1 + poisson), poisson};
+  };
 }
 
 class WedgeModel : public Model {
@@ -58,6 +89,7 @@ class WedgeModel : public Model {
     p.refinements = whole("refinements");
     p.viscous_step = number_of(s, "viscous_step");
     p.tolerance = number_of(s, "tolerance");
+    if (!s.at("map").empty()) p.elasticity = measured(s.at("map"));
     check_wedge(p);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -230,6 +231,38 @@ TEST(FePlastic, RefusesWhatDoesNotFit) {
               HasSubstr("slope = 30 is out of range; allowed: 0 to phi_deg, 28, where cohesion"));
   EXPECT_THAT(refusal({{"history", "rise"}, {"layers", "40"}}),
               HasSubstr("layers = 40 is out of range"));
+}
+
+// A map of one value is the same heap; a stiffer left half is not symmetric, and balances.
+TEST(FePlastic, ElasticConstantsFromAMap) {
+  const auto write = [](const std::string& name, double left, double poisson) {
+    const std::string file = testing::TempDir() + name;
+    std::ofstream out(file);
+    out << "# a map\nx,y,young,poisson,young_error,poisson_error\n";
+    for (const double y : {-1., 0.})
+      for (const double x : {-2., -0.1, 0.1, 2.})
+        out << x << "," << y << "," << (x < 0 ? left : 1000) << "," << poisson << ",nan,nan\n";
+    return file;
+  };
+  Settings settings{{"cells", "8"}, {"left_deg", "24"}, {"dilation_deg", "28"}};
+  Points points(2, 2);
+  points << -0.7, -0.9, 0.7, -0.9;
+  const Stresses plain = make_model("fe_mohr_coulomb_wedge", settings)->stress(points);
+  settings["map"] = write("even.csv", 1000, 0.3);
+  const Stresses even = make_model("fe_mohr_coulomb_wedge", settings)->stress(points);
+  EXPECT_LT((even - plain).cwiseAbs().maxCoeff(), 1e-8);
+  settings["map"] = write("stiff.csv", 8000, 0.3);
+  const auto model = make_model("fe_mohr_coulomb_wedge", settings);
+  const Stresses stiff = model->stress(points);
+  EXPECT_GT(std::abs(stiff(0, 1) - stiff(1, 1)), 1e-3);
+  EXPECT_NEAR(model->figures().at("weight_ratio"), 1, 1e-8);
+  settings["map"] = write("bad.csv", 1000, -0.2);
+  try {
+    make_model("fe_mohr_coulomb_wedge", settings)->stress(points);
+    FAIL();
+  } catch (const BadParameter& error) {
+    EXPECT_THAT(error.what(), HasSubstr("poisson = -0.2"));
+  }
 }
 
 TEST(FePlastic, ModelGivesStressQuantitiesAndFigures) {
