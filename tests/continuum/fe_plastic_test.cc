@@ -240,7 +240,7 @@ TEST(FePlastic, ElasticConstantsFromAMap) {
     std::ofstream out(file);
     out << "# a map\nx,y,young,poisson,young_error,poisson_error\n";
     for (const double y : {-1., 0.})
-      for (const double x : {-2., -0.1, 0.1, 2.})
+      for (const double x : {-3., -1., 1., 3.})
         out << x << "," << y << "," << (x < 0 ? left : 1000) << "," << poisson << ",nan,nan\n";
     return file;
   };

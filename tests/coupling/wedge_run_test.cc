@@ -10,6 +10,7 @@
 #include "coupling/run/slip_lines.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/run/wedge.h"
+#include "tests/paths.h"
 
 using namespace grainfield::coupling;
 using testing::HasSubstr;
