@@ -81,8 +81,8 @@ void elastic(Section s) {
            "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1; a half plane has "
            "two peaks below 0",
            "Otto et al. 2003");
-  s.number("t", "-", +IN(double, elastic.t), {0, 1e6, true},
-           "E_x/E_y; isotropic: 1", "Otto et al. 2003");
+  s.number("t", "-", +IN(double, elastic.t), {0, 1e6, true}, "E_x/E_y; isotropic: 1",
+           "Otto et al. 2003");
 }
 
 void wedge(Section s) {
