@@ -303,7 +303,8 @@ struct PlasticSolver::Impl {
     return report.converged || report.history.back() <= settings.stalled;
   }
 
-  /// Largest difference of the stress from what the material bears, over the stress scale.
+  /// Largest difference of the stress from what the material bears, in the heap and in friction on
+  /// the ground, over the stress scale.
   double overstress() const {
     double most = 0;
     for (std::size_t c = 0; c < grid.cells.size(); ++c) {
@@ -313,11 +314,26 @@ struct PlasticSolver::Impl {
         most = std::max(most, (laws[c](p.elastic_strain).stress - p.stress).cwiseAbs().maxCoeff());
       }
     }
+    for (const ContactNode& node : contacts) {
+      if (!node.active || node.gap > 0) continue;
+      most = std::max(most, ground.stiffness * (std::abs(node.shear) + ground.friction * node.gap));
+    }
     return most / settings.stress_scale;
   }
 
-  /// The same increment in viscoplastic time. False, and nothing has changed: no rest found.
-  bool creep(const Eigen::VectorXd& forces, Eigen::VectorXd u, LoadStep& step) {
+  /// How the same increment ends in viscoplastic time.
+  enum class Creep {
+    rest,
+    flow,       ///< the overstress does not fall: it slides
+    no_steps,   ///< settings.viscous_steps are used up
+    no_newton,  ///< Newton's method fails in the shortest step of time too
+  };
+
+  /// Nothing has changed unless it comes to rest.
+  Creep creep(const Eigen::VectorXd& forces, Eigen::VectorXd u, LoadStep& step) {
+    step.overstress = 0;
+    step.viscous_steps = 0;
+    Creep end = Creep::no_steps;
     const auto points_before = points;
     const auto contacts_before = contacts;
     const Eigen::VectorXd displacement_before = displacement;
@@ -343,19 +359,38 @@ struct PlasticSolver::Impl {
       step.viscous_steps = static_cast<int>(left.size());
       if (relaxed == 1 || left.back() <= settings.overstress) {
         relaxed = 1;
-        return true;
+        return Creep::rest;
       }
       if (left.size() > kPatience &&
           clock.back() - clock[clock.size() - 1 - kPatience] > kPatientTime &&
-          left.back() > kFading * left[left.size() - 1 - kPatience])
+          left.back() > kFading * left[left.size() - 1 - kPatience]) {
+        end = Creep::flow;
         break;
+      }
       time *= report.iterations <= kQuick / 2 ? 4 : report.iterations <= kQuick ? 2 : 1;
     }
+    if (time < kLeastTime) end = Creep::no_newton;
     relaxed = 1;
     points = points_before;
     contacts = contacts_before;
     displacement = displacement_before;
-    return false;
+    return end;
+  }
+
+  std::string what(Creep end, const LoadStep& step) const {
+    switch (end) {
+      case Creep::flow:
+        return fmt::format(", in viscoplastic time the overstress stayed at {:.1e}",
+                           step.overstress);
+      case Creep::no_steps:
+        return fmt::format(", in viscoplastic time the overstress was still {:.1e} after {} steps",
+                           step.overstress, settings.viscous_steps);
+      case Creep::no_newton:
+        return ", nor was one found in viscoplastic time";
+      case Creep::rest:
+        break;
+    }
+    return "";
   }
 
   void load(const std::vector<Vector2d>& body_force, const Displacement& moved,
@@ -370,7 +405,7 @@ struct PlasticSolver::Impl {
               moved(grid.positions[i])[static_cast<Eigen::Index>(grid.components[i])];
     double reached = 0, step = std::min(1., settings.first_step);
     LoadStep record;
-    int restless = 0;  // steps in a row that found no rest in viscoplastic time
+    int restless = 0;  // steps in a row that slid in viscoplastic time
     while (reached < 1) {
       const double target = reached + (1 + kSliver) * step >= 1 ? 1 : reached + step;
       const Eigen::VectorXd forces = from + target * (to - from);
@@ -383,25 +418,22 @@ struct PlasticSolver::Impl {
       if (settled(report)) {
         record.history = report.history;
         record.overstress = 0;
+        record.viscous_steps = 0;
         accept(u);
         rate = u / (target - reached);
       } else {
         rate.setZero();
-        if (target - reached > settings.viscous_step ||
-            !creep(forces, (target - reached) * move, record)) {
-          const bool crept = target - reached <= settings.viscous_step;
-          restless += crept;
+        const bool crept = target - reached <= settings.viscous_step;
+        const Creep end = crept ? creep(forces, (target - reached) * move, record) : Creep::rest;
+        if (!crept || end != Creep::rest) {
+          restless += end == Creep::flow;
           step = (target - reached) / (crept ? 4 : 2);
           if (step < settings.least_step || (restless >= kRestless && reached > 0))
             throw ComputationFailed(fmt::format(
                 "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at "
                 "a residual of {:.1e} in iteration {} ({}){}",
                 settings.name, reached, stage > 0 ? fmt::format(" of stage {}", stage + 1) : "",
-                report.history.back(), report.iterations, report.why,
-                settings.viscous_step > 0
-                    ? fmt::format(", in viscoplastic time the overstress stayed at {:.1e}",
-                                  record.overstress)
-                    : ""));
+                report.history.back(), report.iterations, report.why, what(end, record)));
           continue;
         }
       }

@@ -79,6 +79,13 @@ class Analysis {
             fmt::format("wedge.bases: found \"{}\", expected rough, smooth, or a friction angle "
                         "from 0 to 80 degrees",
                         base));
+    for (const auto& [key, slope] : {std::pair<const char*, double>{"left_deg", setup_.left_deg},
+                                     {"right_deg", setup_.right_deg}})
+      if (slope > setup_.phi_deg)
+        throw std::invalid_argument(
+            fmt::format("wedge.{}: found {:g}, expected at most wedge.phi_deg, {:g}: no slope is "
+                        "steeper than the friction angle",
+                        key, slope, setup_.phi_deg));
     for (const double dilation : setup_.dilations_deg)
       if (dilation > setup_.phi_deg)
         throw std::invalid_argument(

@@ -142,6 +142,8 @@ TEST(WedgeRun, RefusesWhatDoesNotFit) {
               HasSubstr("wedge.bases: found \"wet\", expected rough, smooth, or a friction angle"));
   EXPECT_THAT(refusal("wedge-map.toml", {"wedge.dilations_deg=[30]"}),
               HasSubstr("wedge.dilations_deg: found 30, expected at most wedge.phi_deg, 28"));
+  EXPECT_THAT(refusal("wedge-map.toml", {"wedge.left_deg=30"}),
+              HasSubstr("wedge.left_deg: found 30, expected at most wedge.phi_deg, 28: no slope"));
   EXPECT_THAT(refusal("wedge-map.toml", {"compare.models=[\"minus\",\"zero\"]"}),
               HasSubstr("compare.models: found no fe_mohr_coulomb_wedge"));
   EXPECT_THAT(refusal("wedge-map.toml", {"compare.models=[\"heap\"]"}),
