@@ -13,6 +13,7 @@ struct Column {
   std::string unit;             ///< "N/m", "1", ...
   Eigen::VectorXd value;        ///< mean over realizations; nan where there is none
   Eigen::VectorXd error;        ///< standard error of the mean; nan with one realization; may be empty
+  Eigen::MatrixXd samples;      ///< points x realizations: the single values; empty: not kept
 };
 
 /// Points with columns. A regular grid also knows its shape, so that it can be drawn as a map.

@@ -70,9 +70,13 @@ std::optional<Rays> canonical(const Cubic& u) {
 class Core {
  public:
   explicit Core(const AsymmetricHeap& heap)
+      : Core(heap, flank_coefficient(heap.phi, heap.left, heap.left_active),
+             flank_coefficient(heap.phi, heap.right, heap.right_active)) {}
+  // With coefficients of their own: the roots of the heap do not count.
+  Core(const AsymmetricHeap& heap, double k_left, double k_right)
       : heap_(heap),
-        left_(mirrored(flank_stress(heap.phi, heap.left, heap.left_active))),
-        right_(flank_stress(heap.phi, heap.right, heap.right_active)),
+        left_(mirrored(flank_stress(heap.left, k_left))),
+        right_(flank_stress(heap.right, k_right)),
         cubic_(cubic_of(right_ - left_)) {}
 
   std::optional<Rays> linear() const {
@@ -162,6 +166,16 @@ std::string described(const AsymmetricHeap& heap) {
                      heap.left / kDegree, heap.right / kDegree);
 }
 
+SectorField one_core(const Core& core, const Rays& rays, double rho_g, double phi) {
+  return {{{"left flank", core.first(), rays.left},
+           {"core", rays.left, rays.right},
+           {"right flank", rays.right, core.last()}},
+          {rho_g * core.left(), rho_g * (core.left() + rays.left_kink * kink_stress(rays.left)),
+           rho_g * core.right()},
+          rho_g,
+          phi};
+}
+
 SectorField one_core(const AsymmetricHeap& heap, const Core& core, double rho_g) {
   const auto rays = core.linear();
   if (!rays)
@@ -169,13 +183,19 @@ SectorField one_core(const AsymmetricHeap& heap, const Core& core, double rho_g)
         "model cantelaube_asymmetric: with {} and these roots no linear core fits between the "
         "flanks; allowed: left_root and right_root = active, slopes up to phi_deg",
         described(heap)));
-  return {{{"left flank", core.first(), rays->left},
-           {"core", rays->left, rays->right},
-           {"right flank", rays->right, core.last()}},
-          {rho_g * core.left(), rho_g * (core.left() + rays->left_kink * kink_stress(rays->left)),
-           rho_g * core.right()},
-          rho_g,
-          heap.phi};
+  return one_core(core, *rays, rho_g, heap.phi);
+}
+
+SectorField sectors(const Core& core, const Rays& rays, double ray, double kink, double rho_g,
+                    double phi) {
+  const LinearStress left = core.left() + rays.left_kink * kink_stress(rays.left);
+  return SectorField({{"left flank", core.first(), rays.left},
+                      {"left core", rays.left, ray},
+                      {"right core", ray, rays.right},
+                      {"right flank", rays.right, core.last()}},
+                     {rho_g * core.left(), rho_g * left, rho_g * (left + kink * kink_stress(ray)),
+                      rho_g * core.right()},
+                     rho_g, phi);
 }
 
 AsymmetricHeap heap_of(const Settings& s) {
@@ -227,9 +247,24 @@ double flank_coefficient(double phi, double alpha, bool active) {
 }
 
 LinearStress flank_stress(double phi, double alpha, bool active) {
-  const double k = flank_coefficient(phi, alpha, active), t = std::tan(alpha);
+  return flank_stress(alpha, flank_coefficient(phi, alpha, active));
+}
+
+LinearStress flank_stress(double alpha, double k) {
+  const double t = std::tan(alpha);
   // Depth below the slope: -t x - y.
   return Eigen::Vector3d(k, 1 + t * t * k, -t * k) * Eigen::RowVector2d(t, 1);
+}
+
+std::optional<SectorField> kinked_field(const KinkedCore& heap, double rho_g, double phi) {
+  const Core core({phi, heap.left, heap.right, true, true}, heap.k_left, heap.k_right);
+  if (heap.kink == 0) {
+    const auto rays = core.linear();
+    return rays ? std::optional(one_core(core, *rays, rho_g, phi)) : std::nullopt;
+  }
+  const auto found = core.with_kink(heap.ray, heap.kink);
+  if (!found) return std::nullopt;
+  return sectors(core, *found, heap.ray, heap.kink, rho_g, phi);
 }
 
 std::optional<SectorField> yielding_field(const AsymmetricHeap& heap, CoreBranch branch,
@@ -240,15 +275,7 @@ std::optional<SectorField> yielding_field(const AsymmetricHeap& heap, CoreBranch
   if (!kink) return std::nullopt;
   const auto found = core.with_kink(yield_ray, *kink);
   if (!found) return std::nullopt;
-  const Rays& rays = *found;
-  const LinearStress left = core.left() + rays.left_kink * kink_stress(rays.left);
-  return SectorField({{"left flank", core.first(), rays.left},
-                      {"left core", rays.left, yield_ray},
-                      {"right core", yield_ray, rays.right},
-                      {"right flank", rays.right, core.last()}},
-                     {rho_g * core.left(), rho_g * left,
-                      rho_g * (left + *kink * kink_stress(yield_ray)), rho_g * core.right()},
-                     rho_g, heap.phi);
+  return sectors(core, *found, yield_ray, *kink, rho_g, heap.phi);
 }
 
 std::optional<std::pair<double, double>> yield_rays(const AsymmetricHeap& heap, CoreBranch branch) {

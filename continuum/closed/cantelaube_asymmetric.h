@@ -35,6 +35,20 @@ struct AsymmetricHeap {
 double flank_coefficient(double phi, double alpha, bool active);
 /// The flank on the right (x > 0) for rho g = 1. The left one is its mirror image.
 LinearStress flank_stress(double phi, double alpha, bool active);
+/// The same for any coefficient k above 0, at yield or not.
+LinearStress flank_stress(double alpha, double k);
+
+/// Flanks of any coefficients between slopes (rad), and a core with a kink of slope `kink` (rho g;
+/// below 0 a dip) of the pressure along the ray of angle `ray` (rad from the downward vertical);
+/// kink 0: one linear core, whatever the ray. In equilibrium and continuous, whether or not
+/// anything yields. Regions as yielding_field; `phi` is noted only. Empty where no such core fits
+/// between the flanks and about the ray.
+struct KinkedCore {
+  double left = 0, right = 0;      ///< slopes
+  double k_left = 0, k_right = 0;  ///< coefficients of the flanks
+  double ray = 0, kink = 0;
+};
+std::optional<SectorField> kinked_field(const KinkedCore& heap, double rho_g, double phi);
 
 /// Branches minus and plus: a core that yields on the ray of angle `yield_ray` from the downward
 /// vertical (rad, positive to the right), where the pressure along it has a dip or a peak; regions:

@@ -17,6 +17,7 @@ void add_cases(CLI::App& app, Action& action);
 void add_model(CLI::App& app, Action& action);
 void add_average(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
+void add_fit(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);

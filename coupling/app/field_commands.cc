@@ -181,14 +181,29 @@ void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("compare", "compare averaged fields with continuum models");
   auto request = std::make_shared<CompareRequest>();
   auto models = std::make_shared<std::vector<std::string>>();
-  command->add_option("fields", request->file, "FIELD.h5 of run or average --response")->required();
+  command->add_option("fields", request->file, "FIELD.h5 of run or average")->required();
   command
       ->add_option("--model", *models,
-                   "NAME, NAME:p=v,... or LABEL=NAME:p=v,...; F and h come from "
-                   "the file")
+                   "NAME, NAME:p=v,... or LABEL=NAME:p=v,...; what the file knows is filled in: F, "
+                   "h; of heaps rho_g, phi_deg, left_deg, right_deg, h")
       ->required();
   command->add_option("--field", request->fields, "only these fields of the file")
       ->allow_extra_args(false);
+  command
+      ->add_option("--components", request->lines.components,
+                   "of sigma_xx, sigma_yy, sigma_xy; default sigma_yy")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"sigma_xx", "sigma_yy", "sigma_xy"}));
+  command
+      ->add_option("--heights", request->lines.heights,
+                   "rows of a map: shares of the height; default 0.1,0.25,0.4 (layers "
+                   "0.75,0.5,0.25)")
+      ->delimiter(',');
+  command
+      ->add_option("--origin", request->lines.origin,
+                   "X,Y of the models' origin in a field of frame packing, m")
+      ->delimiter(',')
+      ->expected(2);
   command->add_option("-o,--output", request->folder, "folder; default results/compare-FIELD");
   command->callback([=, &action] {
     action = [=] {
@@ -196,7 +211,9 @@ void add_compare(CLI::App& app, Action& action) {
       if (request->folder.empty()) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
-      fmt::print("{}\n", compare_field(*request));
+      const CompareOutcome outcome = compare_field(*request);
+      if (!outcome.note.empty()) fmt::print("{}\n", outcome.note);
+      fmt::print("{}\n", outcome.verdict);
       fmt::print("report: {}/report.html\n", request->folder);
       return 0;
     };

@@ -39,6 +39,7 @@ int parse_and_act(int argc, char** argv) {
   add_model(app, action);
   add_average(app, action);
   add_compare(app, action);
+  add_fit(app, action);
   add_import(app, action);
   add_reproduce(app, action);
   add_structure(app, action);

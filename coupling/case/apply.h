@@ -27,6 +27,9 @@ void apply(Draft& draft, const Assignment& assignment);
 /// limits between keys, the stable time step. Fills Case::models.
 void finish(Draft& draft);
 
+/// Those of finish() that concern [fit] alone.
+void check_fit(const Draft& draft);
+
 /// Where compare.models of the case's study lives.
 std::vector<std::string>& model_names(Case& value);
 

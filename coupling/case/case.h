@@ -72,6 +72,8 @@ struct FitSetup {
   std::vector<double> heights = {0.1, 0.25, 0.4};
   double width_diameters = 2;
   std::string covariance = "auto";
+  double left_deg = 0, right_deg = 0;  ///< slopes of the flanks; 0: measured
+  double friction_deg = 0;             ///< of the two-sided models; 0: the steeper slope
   double huber = 0;
   std::int64_t bootstrap = 200;
 };

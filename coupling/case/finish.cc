@@ -156,13 +156,6 @@ void check_list(const Draft& draft, const std::string& key, std::vector<T> list)
   }
 }
 
-void check_fit(const Draft& draft) {
-  if (!section_applies("fit", draft.value.study)) return;
-  check_list(draft, "fit.models", draft.value.fit.models);
-  check_list(draft, "fit.components", draft.value.fit.components);
-  check_list(draft, "fit.heights", draft.value.fit.heights);
-}
-
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
@@ -212,6 +205,13 @@ void check_sweep(const Draft& draft) {
 }
 
 }  // namespace
+
+void check_fit(const Draft& draft) {
+  if (!section_applies("fit", draft.value.study)) return;
+  check_list(draft, "fit.models", draft.value.fit.models);
+  check_list(draft, "fit.components", draft.value.fit.components);
+  check_list(draft, "fit.heights", draft.value.fit.heights);
+}
 
 std::vector<std::string>& model_names(Case& value) {
   const Study* study = find_study(value.study);

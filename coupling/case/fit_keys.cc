@@ -35,6 +35,11 @@ void fit(Section s) {
       "width_diameters", "-", +IN(double, fit.width_diameters), {0, 100, true},
       "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
       "keeps points further from the flanks");
+  s.number("left_deg", "deg", +IN(double, fit.left_deg), {0, 89},
+           "slope of the left flank; 0: measured on every heap");
+  s.number("right_deg", "deg", +IN(double, fit.right_deg), {0, 89}, "the same on the right");
+  s.number("friction_deg", "deg", +IN(double, fit.friction_deg), {0, 89},
+           "friction angle of the models that take the flanks apart; 0: the steeper slope");
   s.word("covariance", +IN(string, fit.covariance), {"auto", "parametric", "sample", "diagonal"},
          "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 piles");
   s.number("huber", "-", +IN(double, fit.huber), kNotNegative,

@@ -223,11 +223,27 @@ Covariance sample(const FitData& data) {
   return out;
 }
 
+// Values taken as independent with the errors they came with.
+Covariance given(const FitData& data) {
+  Covariance out;
+  out.kind = "diagonal";
+  out.note =
+      "single realizations unknown (a parametric covariance needs 3): the field's standard errors, "
+      "values taken as independent";
+  out.effective_values = data.values();
+  out.of_mean = data.error.cwiseAbs2().asDiagonal();
+  set_whitener(out, 1);
+  return out;
+}
+
 Covariance unknown(const FitData& data) {
   const int n = data.values();
   Covariance out;
   out.kind = "unknown";
-  out.note = "one realization: no errors; all values count alike";
+  out.note =
+      "one realization, and a diagonal covariance needs 2, a parametric one 3: no errors, all "
+      "values "
+      "count alike";
   out.effective_values = n;
   out.of_mean = Eigen::MatrixXd::Identity(n, n);
   out.whitener = out.of_mean;
@@ -252,7 +268,7 @@ Covariance covariance_of(const FitData& data, const std::string& kind) {
     if (asked == "sample") return sample(data);
     return asked == "parametric" ? parametric(data) : diagonal(data);
   }
-  if (found == 1) return unknown(data);
+  if (found == 1) return data.error.size() > 0 ? given(data) : unknown(data);
   const std::string next = asked == "sample" && found >= 3 ? "parametric" : "diagonal";
   Covariance out = next == "parametric" ? parametric(data) : diagonal(data);
   out.note = fmt::format("{} covariance of {} values needs {} realizations, found {}: {} instead",

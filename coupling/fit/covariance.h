@@ -32,8 +32,9 @@ struct Covariance {
 int least_realizations(const std::string& kind, int values);
 
 /// `kind`: "auto" (parametric where there are realizations for it) or one of the above. Falls back
-/// to the next kind with a note when there are too few realizations. With one realization: equal
-/// errors of unknown size (of_mean = 1), noted. Throws std::invalid_argument for an unknown kind or
+/// to the next kind with a note when there are too few realizations. With one realization: diagonal
+/// with data.error where there are such, else equal errors of unknown size (kind "unknown",
+/// of_mean = 1), noted. Throws std::invalid_argument for an unknown kind or
 /// data that do not pass check().
 Covariance covariance_of(const FitData& data, const std::string& kind = "auto");
 

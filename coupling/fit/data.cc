@@ -13,10 +13,12 @@ FitData rows_of(const FitData& data, const std::vector<int>& rows) {
   const auto n = static_cast<Eigen::Index>(rows.size());
   out.points.resize(n, data.points.cols());
   out.samples.resize(n, data.samples.cols());
+  if (data.error.size() > 0) out.error.resize(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const int row = rows[static_cast<std::size_t>(k)];
     out.points.row(k) = data.points.row(row);
     out.samples.row(k) = data.samples.row(row);
+    if (data.error.size() > 0) out.error[k] = data.error[row];
     out.component.push_back(data.component[static_cast<std::size_t>(row)]);
     out.level.push_back(data.level[static_cast<std::size_t>(row)]);
   }
@@ -26,9 +28,10 @@ FitData rows_of(const FitData& data, const std::vector<int>& rows) {
 void check(const FitData& data) {
   const auto n = static_cast<std::size_t>(data.samples.rows());
   if (data.points.rows() != data.samples.rows() || data.component.size() != n ||
-      data.level.size() != n || data.points.cols() != 2) {
+      data.level.size() != n || data.points.cols() != 2 ||
+      (data.error.size() != 0 && data.error.size() != data.samples.rows())) {
     throw std::invalid_argument(
-        "data to fit: points, components, levels and samples differ in size");
+        "data to fit: points, components, levels, samples and errors differ in size");
   }
   if (n == 0 || data.samples.cols() == 0) throw std::invalid_argument("data to fit: no values");
   for (const std::string& c : data.components) {
@@ -45,6 +48,9 @@ void check(const FitData& data) {
   }
   if (!data.samples.allFinite() || !data.points.allFinite()) {
     throw std::invalid_argument("data to fit: a value or a point is not finite");
+  }
+  if (data.error.size() > 0 && !(data.error.allFinite() && data.error.minCoeff() > 0)) {
+    throw std::invalid_argument("data to fit: a standard error is not above 0");
   }
 }
 

@@ -14,6 +14,9 @@ struct FitData {
   std::vector<std::string> components;  ///< of sigma_xx, sigma_yy, sigma_xy
   std::vector<std::string> levels;      ///< names, e.g. "height 0.25"
   Eigen::MatrixXd samples;              ///< values x realizations, N/m
+  /// Standard errors of the mean where single realizations are not known (samples: one column, the
+  /// mean); else empty.
+  Eigen::VectorXd error;
 
   int values() const { return static_cast<int>(samples.rows()); }
   int realizations() const { return static_cast<int>(samples.cols()); }

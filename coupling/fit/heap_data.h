@@ -1,12 +1,17 @@
-// Stresses of an ensemble of heaps on horizontal lines, as data for fits.
+// Stresses of an ensemble of heaps on horizontal lines, as data for fits: from the grains, or from
+// a field that was averaged before.
 #pragma once
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "coupling/field.h"
 #include "coupling/fit/data.h"
 #include "coupling/fit/models.h"
 #include "coupling/run/pile_frame.h"
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 
@@ -16,12 +21,33 @@ struct HeapData {
   std::vector<PileFrame> frames;  ///< one per realization
   double width = 0;               ///< of the averaging kernel, m
   int left_out = 0;               ///< values that some realization does not have
+  std::string note;               ///< what the reader must know of the heaps; may be empty
 };
 
-/// Coarse-grained stresses (Lucy kernel, fit.width_diameters) of every file's snapshot "pile" at
-/// fit.heights, on points half an independent length apart, no nearer to the flanks than the
-/// kernel reaches. Throws std::invalid_argument for a file without a heap, and when fewer than 10
-/// values are left.
-HeapData heap_data(const Case& value, const std::vector<std::string>& files, int threads);
+/// Heaps one after the other, so that one at a time is in memory.
+struct HeapReader {
+  std::size_t count = 0;
+  std::function<dem::Snapshot(std::size_t)> read;
+  std::function<std::string(std::size_t)> name;  ///< for messages
+};
+
+/// The snapshot "pile" of every realization file of a run.
+HeapReader heaps_of_runs(const std::vector<std::string>& files);
+
+/// Coarse-grained stresses (Lucy kernel, width_diameters) of every heap at setup.heights, on points
+/// half an independent length apart, no nearer to the flanks than the kernel reaches. Slopes and
+/// friction angle are measured unless setup gives them. Throws std::invalid_argument naming the
+/// heap that has no slope, and when fewer than 10 values are left.
+HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads);
+
+/// The same from a field in the heaps' frame (lengths over h) with the values of single
+/// realizations, as `grainfield average --frame heap` leaves it: of its horizontal rows those
+/// nearest to setup.heights. Without single values the mean alone. `where` names the field in
+/// messages. Throws std::invalid_argument for another frame, missing components, heights that the
+/// field does not have, and as above.
+HeapData heap_data(const FitSetup& setup, const Field& field, const std::string& where);
+
+/// Whether one of the models takes the two flanks apart (models.h).
+bool takes_flanks_apart(const std::vector<std::string>& models);
 
 }  // namespace grainfield::coupling

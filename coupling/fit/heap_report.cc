@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "continuum/closed/cantelaube.h"
@@ -25,6 +26,35 @@ const FittedParameter* parameter_of(const Fit& fit, const std::string& name) {
     if (p.parameter.name == name) return &p;
   }
   return nullptr;
+}
+
+// A number that follows from the parameters, with errors by linear propagation: their correlations
+// are those of the covariance in both.
+void add_derived(Summary& summary, const std::string& key, const Fit& fit,
+                 const std::function<double(const Eigen::VectorXd&)>& of) {
+  const auto n = static_cast<Eigen::Index>(fit.parameters.size());
+  Eigen::VectorXd at(n), gradient(n), error(n), drawn(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const FittedParameter& p = fit.parameters[static_cast<std::size_t>(k)];
+    at[k] = p.value;
+    error[k] = p.error;
+    drawn[k] = p.bootstrap_error;
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double h = 1e-6 * std::max(1.0, std::fabs(at[k]));
+    Eigen::VectorXd more = at, less = at;
+    more[k] += h;
+    less[k] -= h;
+    gradient[k] = (of(more) - of(less)) / (2 * h);
+  }
+  const auto spread = [&](const Eigen::VectorXd& errors) {
+    const Eigen::VectorXd part = gradient.cwiseProduct(errors);
+    return std::sqrt(std::max(0.0, part.dot(fit.correlation * part)));
+  };
+  const bool known = error.allFinite() && fit.correlation.allFinite();
+  summary[key] = of(at);
+  summary[key + ".error"] = known ? spread(error) : std::nan("");
+  summary[key + ".bootstrap_error"] = known && drawn.allFinite() ? spread(drawn) : std::nan("");
 }
 
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "nan"; }
@@ -123,7 +153,11 @@ std::string weights_note(const HeapFits& fits) {
       "effective values",
       fits.heaps.data.values(), fits.heaps.data.realizations(), fits.heaps.data.levels.size(),
       c.kind, c.correlation_length, c.effective_values);
-  return c.note.empty() ? out : out + "; " + c.note;
+  if (!c.note.empty()) out += "; " + c.note;
+  for (const FitModel& model : fits.absent) {
+    out += fmt::format("; {} left out: {}", model.name, model.absent);
+  }
+  return fits.heaps.note.empty() ? out : out + "; " + fits.heaps.note;
 }
 
 // The component along one height: the piles and some models.
@@ -211,6 +245,12 @@ void add_fits(Summary& summary, const HeapFits& fits) {
   const double slope = fits.heaps.facts.slope_deg;
   summary["fit.values"] = fits.heaps.data.values();
   summary["fit.slope_deg"] = slope;
+  if (fits.heaps.facts.left_deg > 0) {
+    summary["fit.left_deg"] = fits.heaps.facts.left_deg;
+    summary["fit.right_deg"] = fits.heaps.facts.right_deg;
+    summary["fit.friction_deg"] = fits.heaps.facts.friction();
+  }
+  summary["fit.weights"] = weights_note(fits);
   summary["fit.covariance"] = fits.covariance.kind;
   summary["fit.correlation_length"] = fits.covariance.correlation_length;
   summary["fit.effective_values"] = fits.covariance.effective_values;
@@ -227,12 +267,19 @@ void add_fits(Summary& summary, const HeapFits& fits) {
     const FittedParameter *eta = parameter_of(f, "eta"), *mu = parameter_of(f, "mu");
     if (mu != nullptr) {
       const double phi = slope * kDegree;
-      const continuum::Closure closure{
-          eta != nullptr ? eta->value : continuum::eta_at_yield(phi, mu->value), mu->value};
-      const continuum::StressRatio ratio = continuum::ratio_of(closure);
-      summary[prefix + "K"] = ratio.K;
-      summary[prefix + "tau_deg"] = ratio.tau / kDegree;
-      if (eta == nullptr) summary[prefix + "eta"] = closure.eta;
+      const auto closure = [=](const Eigen::VectorXd& p) {
+        if (p.size() == 2) return continuum::Closure{p[0], p[1]};
+        return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};
+      };
+      add_derived(summary, prefix + "K", f,
+                  [=](const Eigen::VectorXd& p) { return continuum::ratio_of(closure(p)).K; });
+      add_derived(summary, prefix + "tau_deg", f, [=](const Eigen::VectorXd& p) {
+        return continuum::ratio_of(closure(p)).tau / kDegree;
+      });
+      if (eta == nullptr) {
+        add_derived(summary, prefix + "eta", f,
+                    [=](const Eigen::VectorXd& p) { return closure(p).eta; });
+      }
     }
     summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
     summary[prefix + "rel_l2"] = f.rel_l2;

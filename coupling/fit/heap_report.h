@@ -3,21 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "coupling/fit/heap_data.h"
-#include "coupling/fit/selection.h"
+#include "coupling/fit/heap_fits.h"
 #include "coupling/output/tables.h"
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
-
-/// Everything that was fitted to one ensemble.
-struct HeapFits {
-  HeapData heaps;
-  Covariance covariance;
-  std::vector<FitModel> models;
-  std::vector<Fit> fits;  ///< in the order of models
-  Selection selection;
-};
 
 /// fit.MODEL.*, fit.* and verdict.*: see summary_keys.cc.
 void add_fits(Summary& summary, const HeapFits& fits);

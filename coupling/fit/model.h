@@ -24,6 +24,7 @@ struct FitModel {
   /// Points (n x 2, models' frame), parameters -> n x 3 stresses xx, yy, xy in N/m, tension
   /// positive; nan outside the model's domain or for parameters it cannot take.
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> stress;
+  std::string absent;  ///< why there is no such field for this heap; empty: there is
 };
 
 }  // namespace grainfield::coupling

@@ -11,6 +11,7 @@
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/heap_field.h"
 #include "continuum/closed/osl.h"
+#include "coupling/fit/two_sided_models.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -34,9 +35,12 @@ MatrixXd nothing(const MatrixXd& points) {
 // One that needs no search.
 FitModel fixed(const std::string& name, const std::string& label,
                std::function<MatrixXd(const MatrixXd&)> stress) {
-  return {name, label, {}, {VectorXd(0)}, [stress](const MatrixXd& points, const VectorXd&) {
-            return stress(points);
-          }};
+  return {name,
+          label,
+          {},
+          {VectorXd(0)},
+          [stress](const MatrixXd& points, const VectorXd&) { return stress(points); },
+          ""};
 }
 
 FitParameter beta_hat(double phi) {
@@ -44,9 +48,10 @@ FitParameter beta_hat(double phi) {
           90 - phi / kDegree - 0.1};
 }
 
-MatrixXd hydrostatic(const MatrixXd& points, double slope, double rho_g) {
+MatrixXd hydrostatic(const MatrixXd& points, double left, double right, double rho_g) {
   MatrixXd out = nothing(points);
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    const double slope = points(k, 0) < 0 ? left : right;
     const double depth = -points(k, 1) - std::fabs(points(k, 0)) * std::tan(slope);
     if (depth < 0) continue;
     out.row(k) << -rho_g * depth, -rho_g * depth, 0;
@@ -83,8 +88,11 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
   using continuum::Closure;
   using continuum::CoreBranch;
   std::vector<FitModel> out;
-  out.push_back(fixed("hydrostatic", "weight above, isotropic",
-                      [=](const MatrixXd& points) { return hydrostatic(points, phi, rho_g); }));
+  out.push_back(fixed(
+      "hydrostatic", "weight above, isotropic",
+      [=, left = facts.left() * kDegree, right = facts.right() * kDegree](const MatrixXd& points) {
+        return hydrostatic(points, left, right, rho_g);
+      }));
   const std::vector<std::pair<std::string, CoreBranch>> branches{
       {"minus", CoreBranch::minus}, {"zero", CoreBranch::zero}, {"plus", CoreBranch::plus}};
   for (const auto& [name, branch] : branches) {
@@ -101,7 +109,8 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                  {numbers({22}), numbers({38}), numbers({48})},
                  [=](const MatrixXd& points, const VectorXd& p) {
                    return continuum::cantelaube_field(phi, p[0] * kDegree, rho_g).stress(points);
-                 }});
+                 },
+                 ""});
   const double b = std::numbers::pi / 2 - phi;
   const double sxx = std::pow(std::sin(b), 2), syy = 1 + std::pow(std::cos(b), 2),
                sxy = std::sin(b) * std::cos(b);
@@ -124,7 +133,8 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                  starts,
                  [=](const MatrixXd& points, const VectorXd& p) {
                    return cantelaube_free(points, p, phi, rho_g, facts.smoothing);
-                 }});
+                 },
+                 ""});
   // c1 < cot(phi) and eta > 0, nan elsewhere.
   const auto osl = [=](const MatrixXd& points, double eta, double mu) {
     const Closure closure{eta, mu};
@@ -140,18 +150,20 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                  {numbers({-0.8}), numbers({-0.3}), numbers({0.0}), numbers({0.2})},
                  [=](const MatrixXd& points, const VectorXd& p) {
                    return osl(points, continuum::eta_at_yield(phi, p[0]), p[0]);
-                 }});
-  out.push_back(
-      {"osl",
-       "oriented stress linearity, eta and mu fitted",
-       {eta, mu},
-       {numbers({0.6, 0.0}), numbers({0.75, -0.3}), numbers({0.95, -0.9})},
-       [=](const MatrixXd& points, const VectorXd& p) { return osl(points, p[0], p[1]); }});
+                 },
+                 ""});
+  out.push_back({"osl",
+                 "oriented stress linearity, eta and mu fitted",
+                 {eta, mu},
+                 {numbers({0.6, 0.0}), numbers({0.75, -0.3}), numbers({0.95, -0.9})},
+                 [=](const MatrixXd& points, const VectorXd& p) { return osl(points, p[0], p[1]); },
+                 ""});
   out.push_back(fixed("fpa", "fixed principal axes",
                       [=](const MatrixXd& points) { return osl(points, 1, -2 * std::tan(phi)); }));
   out.push_back(fixed("bcc", "Bouchaud, Cates and Claudin: mu = 0", [=](const MatrixXd& points) {
     return osl(points, continuum::eta_at_yield(phi, 0), 0);
   }));
+  for (FitModel& model : two_sided_models(facts)) out.push_back(std::move(model));
   return out;
 }
 

@@ -14,9 +14,18 @@ struct HeapFacts {
   double height = 1;        ///< m; apex at (0, 0), inside y < 0
   double smoothing = 0.02;  ///< m: width over which cantelaube passes from core to flank, the
                             ///< kernel's standard deviation along a line
+  double left_deg = 0, right_deg = 0;  ///< slopes for models that take the flanks apart; 0:
+                                       ///< slope_deg
+  double friction_deg = 0;             ///< of these models; 0: the steeper slope
+
+  double left() const { return left_deg > 0 ? left_deg : slope_deg; }
+  double right() const { return right_deg > 0 ? right_deg : slope_deg; }
+  double friction() const {
+    return friction_deg > 0 ? friction_deg : (left() > right() ? left() : right());
+  }
 };
 
-/// Models of a symmetric heap, apex at (0, 0), y up:
+/// Models of a heap, apex at (0, 0), y up; of symmetric ones:
 ///   hydrostatic            no parameter
 ///   cantelaube_minus, _zero, _plus   the branches of the theory, no parameter
 ///   cantelaube_continuous  beta_hat free, the core follows from continuity
@@ -25,6 +34,7 @@ struct HeapFacts {
 ///   osl_yield              mu free, eta from yield at the slope
 ///   osl                    eta and mu free
 ///   fpa, bcc               members of the family, no parameter
+/// and those of heaps with two slopes (two_sided_models.h).
 std::vector<FitModel> heap_models(const HeapFacts& facts);
 
 /// The one of that name; throws std::invalid_argument with the names there are.

@@ -81,6 +81,24 @@ double level_score(const FitData& data, const Covariance& c, const FitModel& mod
 
 }  // namespace
 
+void mark_supported(std::vector<Score>& ranking, double least_aicc) {
+  for (Score& s : ranking) {
+    const bool clearly_behind =
+        s.aicc_difference > least_aicc && s.behind > 2 * s.behind_error;  // false for nan
+    s.supported = &s == &ranking.front() || !clearly_behind;
+  }
+  // Who is at least as far behind in both as one that is not supported is not supported either.
+  const std::vector<Score> judged = ranking;
+  for (std::size_t k = 1; k < ranking.size(); ++k) {
+    for (const Score& other : judged) {
+      if (!other.supported && ranking[k].aicc_difference >= other.aicc_difference &&
+          ranking[k].behind >= other.behind) {
+        ranking[k].supported = false;
+      }
+    }
+  }
+}
+
 Selection select(const FitData& data, const Covariance& covariance,
                  const std::vector<FitModel>& models, const std::vector<Fit>& fits,
                  const SelectionOptions& options) {
@@ -102,7 +120,6 @@ Selection select(const FitData& data, const Covariance& covariance,
   const std::size_t best = order.front();
   Selection out;
   const int r = data.realizations();
-  int supported = 0;
   for (const std::size_t k : order) {
     Score s;
     s.name = models[k].name;
@@ -115,13 +132,13 @@ Selection select(const FitData& data, const Covariance& covariance,
         r >= kLeastRealizations
             ? std::sqrt((behind.array() - behind.mean()).square().sum() / (r - 1.0) / r)
             : kNan;
-    const bool cannot_tell = !std::isfinite(s.behind);
-    const bool clearly_behind =
-        s.aicc_difference > options.least_aicc && (!cannot_tell && s.behind > 2 * s.behind_error);
-    s.supported = k == best || !clearly_behind;
-    supported += s.supported ? 1 : 0;
     out.ranking.push_back(s);
   }
+  mark_supported(out.ranking, options.least_aicc);
+  std::stable_partition(out.ranking.begin(), out.ranking.end(),
+                        [](const Score& s) { return s.supported; });
+  const auto supported = std::count_if(out.ranking.begin(), out.ranking.end(),
+                                       [](const Score& s) { return s.supported; });
   out.distinguishable = supported == 1 && m > 1 && r >= kLeastRealizations;
   std::vector<std::string> names;
   for (const Score& s : out.ranking) {

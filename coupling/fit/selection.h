@@ -3,8 +3,10 @@
 // Two independent judges: AICc on all data, and cross-validation: parameters from some realizations
 // (or from some heights), scored on those left out by the whitened squared difference. A model wins
 // when it is ahead of the runner-up in AICc by more than `least_aicc` and in the cross-validation
-// by more than twice the standard error of the difference over the parts left out. Otherwise the
-// models that are not behind the best in both are "not distinguishable".
+// by more than twice the standard error of the difference over the parts left out. A model that is
+// so far behind the best is not supported, nor is any that is at least as far behind in both: a
+// larger deficit with a larger error is no better support than a smaller one. The rest are "not
+// distinguishable".
 #pragma once
 #include <string>
 #include <vector>
@@ -27,11 +29,15 @@ struct Score {
   double level_score = 0;        ///< the same over the levels left out; nan below 2 levels
   double behind = 0;             ///< mean difference of realization_score to the best
   double behind_error = 0;       ///< its standard error over the realizations
-  bool supported = false;        ///< not behind the winner
+  bool supported = false;        ///< see above
 };
 
+/// Sets `supported` of scores with their differences to the best, which is the first: see above.
+/// Without cross-validation (behind nan) all are supported.
+void mark_supported(std::vector<Score>& ranking, double least_aicc);
+
 struct Selection {
-  std::vector<Score> ranking;  ///< best first: by AICc
+  std::vector<Score> ranking;  ///< the supported ones first, each part by AICc
   bool distinguishable = false;
   std::string sentence;  ///< for people, one line
 };

@@ -22,6 +22,8 @@ namespace h5 = dem::hdf5;
 constexpr const char* format_version = "1";
 constexpr const char* user_attribute = "attribute.";  // prefix of Field::attributes in the file
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 h5::Handle create_group(hid_t parent, const std::string& name, const std::string& file) {
   h5::Handle group(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                    H5Gclose);
@@ -49,6 +51,13 @@ void check(const NamedFields& fields) {
                                               name, field.nx, field.ny, n));
     for (const Column& column : field.columns) {
       check_name(column.name);
+      if (column.samples.size() != 0 &&
+          (column.samples.rows() != n || column.samples.cols() != field.realizations))
+        throw std::invalid_argument(
+            fmt::format("field \"{}\": column \"{}\" has {} x {} single values for {} points and "
+                        "{} realizations",
+                        name, column.name, column.samples.rows(), column.samples.cols(), n,
+                        field.realizations));
       if (column.value.size() != n || (column.error.size() != 0 && column.error.size() != n))
         throw std::invalid_argument(
             fmt::format("field \"{}\": column \"{}\" has {} values and {} errors for {} points",
@@ -85,6 +94,16 @@ void write_one(hid_t root, const std::string& name, const Field& field, const st
     h5::write(values, column.name, to_vector(column.value), 1, column.unit);
     if (column.error.size())
       h5::write(errors, column.name, to_vector(column.error), 1, column.unit);
+  }
+  if (std::any_of(field.columns.begin(), field.columns.end(),
+                  [](const Column& column) { return column.samples.size() != 0; })) {
+    const h5::Handle samples = create_group(group, "samples", file);
+    for (const Column& column : field.columns)
+      if (column.samples.size() != 0) {
+        const RowMajor rows = column.samples;
+        h5::write(samples, column.name, {rows.data(), rows.data() + rows.size()},
+                  static_cast<int>(rows.cols()), column.unit);
+      }
   }
   h5::write_attribute(group, "columns", fmt::format("{}", fmt::join(names, ",")));
 }
@@ -175,6 +194,17 @@ Field read_field(const std::string& file, const std::string& name) {
     column.value = to_eigen(h5::read_doubles(values, column_name, 1, where + "/value"));
     if (H5Lexists(errors, column_name.c_str(), H5P_DEFAULT) > 0)
       column.error = to_eigen(h5::read_doubles(errors, column_name, 1, where + "/error"));
+  }
+  if (H5Lexists(group, "samples", H5P_DEFAULT) > 0) {
+    const h5::Handle samples = open_group(group, "samples", where);
+    for (Column& column : field.columns) {
+      if (H5Lexists(samples, column.name.c_str(), H5P_DEFAULT) <= 0) continue;
+      const std::vector<double> all =
+          h5::read_doubles(samples, column.name, field.realizations, where + "/samples");
+      column.samples = Eigen::Map<const RowMajor>(
+          all.data(), static_cast<Eigen::Index>(all.size()) / field.realizations,
+          field.realizations);
+    }
   }
   try {
     check({{name, field}});

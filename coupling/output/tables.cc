@@ -27,6 +27,11 @@ std::vector<Eigen::Index> chosen(Eigen::Index points, int rows) {
   return all;
 }
 
+// Of a CSV; a nan has no sign.
+std::string number(double value) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
+}
+
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
 
 struct Style {
@@ -111,20 +116,20 @@ std::string profiles_csv(const Comparison& c) {
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     const Profile& p = c.profiles[k];
     for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}", quote_csv(p.name), p.depth, p.x[i],
-                          p.mean[i], error_at(p, i));
+      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
+                          number(p.mean[i]), number(error_at(p, i)));
       for (const ModelProfiles& m : c.models) {
         const double value = m.values[k][i], difference = p.mean[i] - value;
-        text +=
-            fmt::format(",{:.9g},{:.9g},{:.6g}", value, difference, difference / error_at(p, i));
+        text += "," + number(value) + "," + number(difference) + "," +
+                number(difference / error_at(p, i));
       }
       text += "\n";
     }
   }
   for (const Profile& p : c.beside) {
     for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}", quote_csv(p.name), p.depth, p.x[i],
-                          p.mean[i], error_at(p, i));
+      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
+                          number(p.mean[i]), number(error_at(p, i)));
       for (std::size_t m = 0; m < c.models.size(); ++m) text += ",nan,nan,nan";
       text += "\n";
     }

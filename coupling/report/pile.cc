@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <tuple>
 
 namespace grainfield::coupling {
 namespace {
@@ -26,6 +27,7 @@ void add_models(const Comparison& c, std::size_t profile, Frame& frame) {
 }
 
 std::string scale_note(const Comparison& c) {
+  if (c.scale.stress != "rho g h") return c.scale.note + ".";
   return fmt::format(
       "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own). "
       "The grey band is one standard error over {} realization{} on either side.",
@@ -57,25 +59,36 @@ void add_base(Report& report, const PileReport& in) {
 
 void add_cuts(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
-  std::vector<Frame> frames;
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    if (c.profiles[k].key == "base") continue;
-    Frame frame;
-    frame.title = c.profiles[k].name;
-    frame.series.push_back(series_of(c, c.profiles[k], grains_label(c), true));
-    add_models(c, k, frame);
-    frames.push_back(std::move(frame));
+  for (const auto& [quantity, title, label] :
+       {std::tuple{"-sigma_yy", "Vertical pressure on horizontal cuts", "-σ_{yy}"},
+        {"-sigma_xx", "Horizontal pressure on horizontal cuts", "-σ_{xx}"},
+        {"sigma_xy", "Shear on horizontal cuts", "σ_{xy}"}}) {
+    std::vector<Frame> frames;
+    for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+      if (c.profiles[k].key == "base" || c.profiles[k].quantity != quantity) continue;
+      Frame frame;
+      frame.title = c.profiles[k].name;
+      frame.series.push_back(series_of(c, c.profiles[k], grains_label(c), true));
+      add_models(c, k, frame);
+      frames.push_back(std::move(frame));
+    }
+    if (frames.empty()) continue;
+    Picture picture =
+        curves(title, fmt::format("x / h ({} at 0)", c.scale.x_from),
+               c.scale.stress == "rho g h" ? fmt::format("{}  (ρ g h)", label)
+                                           : fmt::format("{}  ({})", label, c.scale.stress),
+               frames);
+    picture.caption = "Averaged by " + in.averaged + ". " + scale_note(c);
+    report.sections.emplace_back(std::move(picture));
   }
-  if (frames.empty()) return;
-  Picture picture = curves("Vertical pressure on horizontal cuts", "x / h (apex at 0)",
-                           "-σ_{yy}  (ρ g h)", frames);
-  picture.caption = "Averaged by " + in.averaged + ". " + scale_note(c);
-  report.sections.emplace_back(std::move(picture));
 }
 
 void add_maps(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   if (in.map.nx < 2 || in.map.ny < 2) return;
+  for (const char* column : {"volume_fraction", "sigma_xx", "sigma_yy", "sigma_xy"}) {
+    if (in.map.find(column) == nullptr) return;
+  }
   const auto map = [&](const char* title, const char* column, double factor) {
     const Column* found = in.map.find(column);
     Eigen::VectorXd value = factor * found->value;

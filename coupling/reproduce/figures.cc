@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/reproduce/fit_figures.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -127,7 +129,7 @@ const std::vector<SourceFigure>& source_figures() {
   // Of a point source over the surface; a flat fraction is one without it.
   constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
-  static const std::vector<SourceFigure> all{
+  static const std::vector<SourceFigure> own{
       number("Roul 3.1", "angle of repose, point source", "deg", kPoint, "28", 27, 29,
              of(kPoint, "repose.mean_deg")),
       number("Roul 3.1", "angle of repose, line source", "deg", kLine, "27", 26, 28,
@@ -206,6 +208,11 @@ const std::vector<SourceFigure>& source_figures() {
       number("Roul fig. 3.26", "correlation of G with tr F", "", kFields, "roughly linear (0.7-1)",
              0.7, 1, of(kFields, "elastic.shear_fabric_correlation")),
   };
+  static const std::vector<SourceFigure> all = [] {
+    std::vector<SourceFigure> out = own;
+    for (SourceFigure& figure : fit_figures()) out.push_back(std::move(figure));
+    return out;
+  }();
   return all;
 }
 

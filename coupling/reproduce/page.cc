@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/reproduce/figures.h"
+#include "coupling/reproduce/misprints.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -65,7 +66,9 @@ std::string reproduction_page(const Results& results) {
       "or, for the ratios of volume fraction and coordination, of the effect that the source "
       "reports "
       "(0.09, 0.08, 0.04). The steeper flank is the one with the larger mean, whichever side it "
-      "is: the study's page says which was meant. A "
+      "is: the study's page says which was meant. Errors of fitted constants: the larger of the "
+      "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
+      "exceeds 1 + 3 √(2/dof). A "
       "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
       "beside the apex minus that under it). Nothing was tuned to agree.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"
@@ -106,6 +109,13 @@ std::string reproduction_page(const Results& results) {
         value("dem.steps", "{:.4g}"), value("dem.grain_steps", "{:.3g}"),
         grain_seconds(results, study), value("base.weight_ratio", "{:.6f}"),
         results.text(study, "version").value_or(""), study);
+  }
+  out +=
+      "\n## Misprints and inconsistencies of the sources\n\n"
+      "Re-derived from the field equations; the program uses what holds.\n\n"
+      "| where | printed | holds |\n|---|---|---|\n";
+  for (const Misprint& m : misprints()) {
+    out += fmt::format("| {} | {} | {} |\n", m.where, m.printed, m.holds);
   }
   return out;
 }

@@ -15,6 +15,8 @@
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/nearest.h"
+#include "coupling/averaging/region.h"
+#include "coupling/run/pile_frame.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -64,22 +66,25 @@ struct Extents {
   double depth = 0, left = -std::numeric_limits<double>::infinity(),
          right = std::numeric_limits<double>::infinity(), diameter = 0, load = 0;
   int dim = 2;
+  std::vector<PileFrame> heaps;  // frame "heap" only
 };
 
 // From the request's frame to the packing's axes, and the extents in the request's frame.
 struct Placed {
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> to_packing;
   double left = 0, right = 0, depth = 0;
+  PileFrame heap = {};  // frame "heap" only
 };
 
 Placed place(const dem::Snapshot& s, const std::string& frame) {
   if (frame == "packing" && s.dim == 3) return {[](const auto& points) { return points; }, 0, 0, 0};
   const LayerFrame layer = layer_frame(s);
   if (frame == "heap") {
-    const HeapFrame heap = heap_frame(s);
+    const PileFrame heap = pile_frame(s);
+    const Region region(s);
     return {[heap](const auto& points) { return heap.to_packing(points); },
-            (heap.left - heap.apex_x) / heap.height, (heap.right - heap.apex_x) / heap.height,
-            heap.height};
+            (region.left() - heap.apex_x) / heap.height,
+            (region.right() - heap.apex_x) / heap.height, heap.height, heap};
   }
   if (frame == "packing")
     return {[](const auto& points) { return points; }, layer.left, layer.right, layer.depth()};
@@ -99,6 +104,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request) {
     out.diameter += mean_diameter(s) / n;
     out.left = std::max(out.left, placed.left);
     out.right = std::min(out.right, placed.right);
+    if (request.frame == "heap") out.heaps.push_back(placed.heap);
     const double force = -s.applied_force.y();
     if (request.response && &item != &items.front() && force != out.load) {
       throw std::invalid_argument(
@@ -127,6 +133,26 @@ Eigen::MatrixXd points_of(const AverageRequest& request, const Extents& all,
   std::vector<double> heights;
   for (const double share : request.cuts) heights.push_back(bottom + share * (top - bottom));
   return cut_points(all.left, all.right, request.nx, heights);
+}
+
+// The single values of the stresses, for covariances.
+Field with_samples(const Ensemble& ensemble) {
+  Field out = ensemble.mean();
+  if (ensemble.realizations() < 2) return out;
+  for (Column& column : out.columns) {
+    if (column.name.compare(0, 6, "sigma_") == 0) column.samples = ensemble.samples(column.name);
+  }
+  return out;
+}
+
+// "31.2,30.7": one number per heap.
+std::string each(const std::vector<PileFrame>& heaps,
+                 const std::function<double(const PileFrame&)>& number) {
+  std::string out;
+  for (const PileFrame& heap : heaps) {
+    out += fmt::format("{}{}", out.empty() ? "" : ",", number(heap));
+  }
+  return out;
 }
 
 }  // namespace
@@ -166,6 +192,14 @@ NamedFields average_files(AverageRequest request, Gaps* gaps) {
     field.attributes["kernel"] = options.kernel;
     field.attributes["width"] = fmt::format("{}", options.width);
     field.attributes["h"] = fmt::format("{}", all.depth);
+    if (!all.heaps.empty()) {
+      field.attributes["heap.h"] = each(all.heaps, [](const auto& f) { return f.height; });
+      field.attributes["rho_g_h"] = each(all.heaps, [](const auto& f) { return f.pressure(); });
+      field.attributes["left_deg"] =
+          each(all.heaps, [](const auto& f) { return f.repose_left_deg; });
+      field.attributes["right_deg"] =
+          each(all.heaps, [](const auto& f) { return f.repose_right_deg; });
+    }
     if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
     field.attributes["frame"] = request.frame == "layer" ? "models: load at (0, 0), surface y = 0"
                                 : request.frame == "heap"
@@ -193,8 +227,8 @@ NamedFields average_files(AverageRequest request, Gaps* gaps) {
     }
   }
   NamedFields out;
-  out.emplace_back(request.response ? "response" : "average", finish(fields.mean()));
-  if (base) out.emplace_back("base_response", finish(base_fields.mean()));
+  out.emplace_back(request.response ? "response" : "average", finish(with_samples(fields)));
+  if (base) out.emplace_back("base_response", finish(with_samples(base_fields)));
   return out;
 }
 

@@ -31,8 +31,10 @@ struct AverageRequest {
 };
 
 /// Mean and standard error over the snapshots (or pairs), in the frame: field "average" or
-/// "response", and with a response in the layer's frame also "base_response". Attributes: method,
-/// kernel, width, h, and F where a load is known. `gaps` (may be null) is told which points have no
+/// "response", and with a response in the layer's frame also "base_response"; of several
+/// realizations with the single values of the stresses. Attributes: method, kernel, width, h, F
+/// where a load is known, and of heaps, one number per realization separated by commas: heap.h (m),
+/// rho_g_h (N/m), left_deg, right_deg. `gaps` (may be null) is told which points have no
 /// value. Throws std::invalid_argument for snapshots without a partner, different loads, an unknown
 /// frame, 3D snapshots without points in the packing's frame, and what averaging throws.
 NamedFields average_files(AverageRequest request, Gaps* gaps = nullptr);

@@ -1,179 +1,250 @@
 #include "coupling/run/compare_field.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
+#include <set>
 #include <stdexcept>
 
-#include "coupling/averaging/kernel.h"
 #include "coupling/compare/compare.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
+#include "coupling/report/pile.h"
 #include "coupling/report/point_load.h"
-#include "coupling/run/models.h"
+#include "coupling/run/heap_field.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// One horizontal line of a field.
-struct Line {
-  Profile profile;
-  Eigen::MatrixXd points;
-  bool base = false;
-};
+constexpr double kSame = 1e-9;  // relative: loads and sizes of fields that belong together
 
-std::string attribute(const Field& field, const std::string& name, const std::string& where) {
-  const auto at = field.attributes.find(name);
-  if (at == field.attributes.end()) {
-    throw std::invalid_argument(fmt::format(
-        "{}: has no attribute \"{}\"; fields come from `grainfield run` or `grainfield average "
-        "--response`",
-        where, name));
-  }
-  return at->second;
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
 }
 
-double number(const Field& field, const std::string& name, const std::string& where) {
-  return std::stod(attribute(field, name, where));
-}
-
-Line line_of(const Field& field, Eigen::Index first, Eigen::Index count, const std::string& name,
-             const std::string& key, const std::string& where) {
-  const Column* column = field.find("sigma_yy");
-  if (column == nullptr || field.points.cols() != 2) {
-    throw std::invalid_argument(where + ": has no column \"sigma_yy\" in two dimensions");
-  }
-  Line out;
-  out.points = field.points.middleRows(first, count);
-  if ((out.points.col(1).array() != out.points(0, 1)).any()) {
-    throw std::invalid_argument(where + ": its points are neither a horizontal line nor a grid");
-  }
-  out.profile.name = name;
-  out.profile.key = key;
-  out.profile.depth = -out.points(0, 1);
-  out.profile.x = out.points.col(0);
-  out.profile.mean = -column->value.segment(first, count);
-  if (column->error.size() == column->value.size()) {
-    out.profile.error = column->error.segment(first, count);
-  }
-  out.base = name.compare(0, 4, "base") == 0;
-  return out;
-}
-
-// The whole field where it is a line; of a grid the rows nearest to 1/4, 1/2 and 3/4 of the depth.
-std::vector<Line> lines_of(const Field& field, const std::string& name, const std::string& where) {
-  if (field.nx == 0) return {line_of(field, 0, field.points.rows(), name, name, where)};
-  std::vector<Line> out;
-  for (const double share : {0.25, 0.5, 0.75}) {
-    const auto row = static_cast<Eigen::Index>(std::lround((1 - share) * (field.ny - 1)));
-    out.push_back(line_of(field, row * field.nx, field.nx,
-                          fmt::format("{} at depth {:g} h", name, share),
-                          fmt::format("depth_{:g}", share), where));
-  }
-  return out;
+// Fields that hold the packing's stress as it is looked at first: no model, no other averaging.
+bool is_candidate(const std::string& name, const Field& field) {
+  return field.find("sigma_yy") != nullptr && field.attributes.count("method") > 0 &&
+         name != "base_unloaded" && !starts_with(name, "model_") &&
+         name.find("_unloaded") == std::string::npos && !starts_with(name, "particle_centre") &&
+         !starts_with(name, "area_exact");
 }
 
 std::vector<std::string> chosen(const CompareRequest& request) {
   if (!request.fields.empty()) return request.fields;
-  std::vector<std::string> lines, maps;
+  std::vector<std::string> lines, maps, heap_lines, heap_maps, others;
   for (const auto& name : list_fields(request.file)) {
     const Field field = read_field(request.file, name);
-    if (field.find("sigma_yy") == nullptr || field.attributes.count("F") == 0) continue;
-    if (name == "base_unloaded" || name.compare(0, 6, "model_") == 0) continue;
-    if (name.find("_unloaded") != std::string::npos) continue;
-    if (name.compare(0, 15, "particle_centre") == 0) continue;
-    (field.nx == 0 ? lines : maps).push_back(name);
+    if (!is_candidate(name, field)) continue;
+    if (is_heap_field(field)) {
+      // The base of a pile's run is "base"; averages of the same place stand beside it.
+      if (name.size() > 5 && name.compare(name.size() - 5, 5, "_base") == 0) continue;
+      (field.nx == 0 ? heap_lines : heap_maps).push_back(name);
+    } else if (field.attributes.count("F") > 0) {
+      (field.nx == 0 ? lines : maps).push_back(name);
+    } else {
+      others.push_back(name);
+    }
   }
   // A file of a run holds lines at its depths; one of `average` a map and the base.
   if (lines.empty() || (lines.size() == 1 && lines.front() == "base_response")) {
     lines.insert(lines.begin(), maps.begin(), maps.end());
   }
-  if (lines.empty()) {
-    throw std::invalid_argument(request.file +
-                                ": holds no response to compare (made with --response?)");
+  if (!lines.empty()) return lines;
+  if (!heap_lines.empty()) return heap_lines;
+  if (!heap_maps.empty()) return {heap_maps.front()};
+  if (!others.empty()) return {others.front()};
+  throw std::invalid_argument(request.file + ": holds no averaged stress to compare");
+}
+
+void require_same(const SceneField& first, const SceneField& next, const std::string& file) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(
+        fmt::format("{}: fields {} and {} differ in {}; compare one of them (--field)", file,
+                    first.name, next.name, what));
+  };
+  const auto differ = [](double a, double b) {
+    return std::isfinite(a) != std::isfinite(b) || std::fabs(a - b) > kSame * std::fabs(a);
+  };
+  if (first.scene != next.scene) refuse("what they show (load, heap, layer)");
+  if (differ(first.facts.force, next.facts.force)) {
+    refuse(fmt::format("F ({:g} and {:g} N)", first.facts.force, next.facts.force));
   }
-  return lines;
+  if (differ(first.facts.height, next.facts.height)) {
+    refuse(fmt::format("h ({:g} and {:g} m)", first.facts.height, next.facts.height));
+  }
+  if (first.field.realizations != next.field.realizations) {
+    refuse(
+        fmt::format("realizations ({} and {})", first.field.realizations, next.field.realizations));
+  }
+}
+
+// A model that needs a load where there is none.
+void require_load(const ModelChoice& choice, const RunFacts& facts, const std::string& file) {
+  if (std::isfinite(facts.force) || choice.settings.count("F") > 0) return;
+  for (const auto& parameter : continuum::find_model(choice.name).parameters) {
+    if (parameter.name != "F") continue;
+    throw std::invalid_argument(fmt::format(
+        "model {}: needs the load F, and {} holds no response to a load; average one (`grainfield "
+        "average --response`), or set it: --model {}:F=...",
+        choice.label, file, choice.name));
+  }
+}
+
+Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
+                    std::vector<ModelProfiles> models) {
+  const double h = scene.facts.height;
+  const int n = scene.field.realizations;
+  if (scene.scene == Scene::response) {
+    return compare(std::move(profiles), std::move(models), scene.facts.force, h, n);
+  }
+  Comparison out = compare(std::move(profiles), std::move(models), scene.unit * h, h, n);
+  if (scene.scene == Scene::heap) {
+    out.scale = {"h", "rho g h", "apex",
+                 fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
+                             "realizations: {}",
+                             h, scene.unit, n)};
+  } else {
+    out.scale = {"h", "N/m", "origin", fmt::format("h = {:.6g} m; realizations: {}", h, n)};
+  }
+  return out;
+}
+
+void add_figures_of(const SceneField& scene, const Comparison& comparison, std::size_t main,
+                    Summary& summary) {
+  const double h = scene.facts.height;
+  if (scene.scene == Scene::response) {
+    summary["layer.depth"] = h;
+    summary["layer.F_over_h"] = scene.unit;
+    add_comparison(summary, comparison, main);
+    return;
+  }
+  for (const auto& [key, figure] : summary_figures(comparison, main)) {
+    // The response.* keys speak of a load.
+    if (!starts_with(key, "response.")) summary[key] = figure;
+  }
+  summary["verdict.best_model"] = comparison.verdict.best_model;
+  summary["verdict.sentence"] = comparison.verdict.sentence;
+  if (scene.scene == Scene::heap) {
+    summary["pile.height"] = h;
+    summary["heap.rho_g_h"] = scene.unit;
+  } else {
+    summary["layer.depth"] = h;
+  }
+}
+
+Report page_of(const CompareRequest& request, const SceneField& scene, const Comparison& comparison,
+               const Field& map, const std::vector<ModelMap>& models, const ReportRows& made) {
+  const std::string title = "Comparison of " + request.file;
+  if (scene.scene == Scene::response) {
+    PointLoadReport page;
+    page.title = title;
+    page.comparison = comparison;
+    page.map = map;
+    page.models = models;
+    page.made = made;
+    return point_load_report(page);
+  }
+  PileReport page;
+  page.title = title;
+  page.subtitle = comparison.scale.note;
+  page.sentence = comparison.verdict.sentence;
+  page.comparison = comparison;
+  page.map = map;
+  page.averaged = scene.seen;
+  page.made = made;
+  return pile_report(page);
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder, error.message()));
+  }
 }
 
 }  // namespace
 
-std::string compare_field(const CompareRequest& request) {
-  std::vector<Line> lines;
-  RunFacts facts;
-  std::unique_ptr<Kernel> kernel;
+CompareOutcome compare_field(const CompareRequest& request) {
+  std::vector<SceneField> scenes;
+  std::vector<FieldLine> lines;
   Field map;
-  int realizations = 1;
+  std::set<std::string> kernels;
+  std::vector<std::string> seen;
   for (const auto& name : chosen(request)) {
-    const Field field = read_field(request.file, name);
     const std::string where = request.file + ":" + name;
-    facts.force = number(field, "F", where);
-    facts.height = number(field, "h", where);
-    realizations = field.realizations;
-    const bool kernel_known = attribute(field, "method", where) == "coarse_graining";
-    kernel = make_kernel(kernel_known ? attribute(field, "kernel", where) : "heaviside",
-                         number(field, "width", where));
-    for (auto& line : lines_of(field, name, where)) {
-      const double depth = line.profile.depth;
-      facts.depth = facts.depth > 0 ? std::min(facts.depth, depth) : depth;
-      lines.push_back(std::move(line));
-    }
-    if (field.nx > 0) map = field;
+    SceneField scene = scene_field(read_field(request.file, name), name, request.lines, where);
+    if (!scenes.empty()) require_same(scenes.front(), scene, request.file);
+    for (auto& line : lines_of(scene, request.lines, where)) lines.push_back(std::move(line));
+    if (scene.field.nx > 0) map = scene.field;
+    kernels.insert(scene.seen);
+    seen.push_back(fmt::format("{}: {}", name, scene.seen));
+    scenes.push_back(std::move(scene));
   }
+  const SceneField& scene = scenes.front();
+  RunFacts facts = scene.facts;
+  facts.depth = lines.front().profile.depth;
   std::vector<PointSet> sets;
   std::vector<Profile> profiles;
   std::size_t main = lines.size() - 1;
+  const bool heap = scene.scene == Scene::heap;
   for (std::size_t l = 0; l < lines.size(); ++l) {
-    sets.push_back({lines[l].points, lines[l].base ? Seen::along_x : Seen::in_plane, kernel.get()});
-    lines[l].profile.independent_length = kernel->independent_length();
-    profiles.push_back(lines[l].profile);
-    if (lines[l].base) main = l;
+    const FieldLine& line = lines[l];
+    sets.push_back(
+        {line.points, line.base ? Seen::along_x : Seen::in_plane, line.kernel.get(), heap});
+    facts.depth = std::min(facts.depth, line.profile.depth);
+    profiles.push_back(line.profile);
+    if (line.base) main = l;
   }
-  if (map.nx > 0) sets.push_back({map.points, Seen::exactly, nullptr});
+  if (heap) facts.depth = facts.height;
+  if (map.nx > 0) sets.push_back({map.points, Seen::exactly, nullptr, heap});
 
-  StudyResult result;
-  result.value.name = std::filesystem::path(request.file).filename().string();
+  Summary summary;
   std::vector<ModelProfiles> models;
+  std::vector<ModelMap> model_maps;
   for (const auto& choice : request.models) {
+    require_load(choice, facts, request.file);
     const Evaluation e = evaluate_model(choice, facts, sets);
     ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
-    for (std::size_t l = 0; l < lines.size(); ++l) m.values.emplace_back(-e.stresses[l].col(1));
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      const double sign = lines[l].component == 2 ? 1 : -1;
+      m.values.emplace_back(sign * e.stresses[l].col(lines[l].component));
+    }
     models.push_back(std::move(m));
-    if (map.nx > 0) result.model_maps.push_back({model_label(choice), e.stresses.back().col(1)});
-    result.summary["model." + choice.label + ".name"] = choice.name;
+    if (map.nx > 0) model_maps.push_back({model_label(choice), e.stresses.back().col(1)});
+    summary["model." + choice.label + ".name"] = choice.name;
     for (const auto& [key, figure] : e.figures) {
-      result.summary["model." + choice.label + "." + key] = figure;
+      summary["model." + choice.label + "." + key] = figure;
     }
   }
-  const Comparison comparison =
-      compare(std::move(profiles), std::move(models), facts.force, facts.height, realizations);
-  result.summary["version"] = std::string(GRAINFIELD_VERSION);
-  result.summary["ensemble.realizations"] = static_cast<std::int64_t>(realizations);
-  result.summary["layer.depth"] = facts.height;
-  result.summary["layer.F_over_h"] = facts.force / facts.height;
-  add_comparison(result.summary, comparison, main);
-  require_documented(result.summary);
+  const Comparison comparison = compared(scene, std::move(profiles), std::move(models));
+  summary["version"] = std::string(GRAINFIELD_VERSION);
+  summary["ensemble.realizations"] = static_cast<std::int64_t>(scene.field.realizations);
+  add_figures_of(scene, comparison, main, summary);
+  require_documented(summary);
 
-  std::error_code error;
-  std::filesystem::create_directories(request.folder, error);
-  if (error) {
-    throw std::invalid_argument(
-        fmt::format("{}: cannot write there: {}", request.folder, error.message()));
+  CompareOutcome out{comparison.verdict.sentence, ""};
+  if (kernels.size() > 1) {
+    out.note = fmt::format(
+        "fields seen through different kernels, models through each one's own: "
+        "{}",
+        fmt::join(seen, "; "));
   }
-  PointLoadReport page;
-  page.title = "Comparison of " + request.file;
-  page.comparison = comparison;
-  page.map = map;
-  page.models = result.model_maps;
-  page.made = {{"fields", request.file}, {"version", GRAINFIELD_VERSION}};
+  make_folder(request.folder);
+  const ReportRows made{{"fields", request.file},
+                        {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
+                        {"version", GRAINFIELD_VERSION}};
   write_profiles(request.folder, comparison);
-  write_report(request.folder + "/report.html", point_load_report(page));
-  write_summary(request.folder + "/summary.json", result.summary);
-  return comparison.verdict.sentence;
+  write_report(request.folder + "/report.html",
+               page_of(request, scene, comparison, map, model_maps, made));
+  write_summary(request.folder + "/summary.json", summary);
+  return out;
 }
 
 }  // namespace grainfield::coupling

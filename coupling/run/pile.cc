@@ -49,10 +49,14 @@ class Analysis {
 
  private:
   // Values of a scaled field in N/m on points in m, in the heap's frame.
-  Field in_metres(Field field, const AverageOptions* options) const {
+  Field in_metres(const Ensemble& ensemble, const AverageOptions* options) const {
+    Field field = ensemble.mean();
     field.points *= piles_.height();
     for (Column& column : field.columns) {
       if (column.name.compare(0, 6, "sigma_") != 0) continue;
+      if (ensemble.realizations() > 1) {
+        column.samples = piles_.pressure() * ensemble.samples(column.name);
+      }
       column.unit = "N/m";
       column.value *= piles_.pressure();
       column.error *= piles_.pressure();
@@ -64,6 +68,8 @@ class Analysis {
     }
     field.attributes["h"] = fmt::format("{}", piles_.height());
     field.attributes["rho_g_h"] = fmt::format("{}", piles_.pressure());
+    field.attributes["left_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_left_deg));
+    field.attributes["right_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_right_deg));
     field.attributes["frame"] =
         "heap: apex at (0, 0), floor y = -h; every pile scaled by its own height and rho g h";
     return field;
@@ -100,13 +106,13 @@ class Analysis {
 
   void add_fields(StudyResult& out) const {
     for (const PileAverages& a : piles_.methods()) {
-      Field map = in_metres(a.map.mean(), &a.options);
+      Field map = in_metres(a.map, &a.options);
       if (&a == &piles_.methods().front()) out.map = map;
       out.fields.emplace_back(a.method + "_map", std::move(map));
-      out.fields.emplace_back(a.method + "_base", in_metres(a.base.mean(), &a.options));
+      out.fields.emplace_back(a.method + "_base", in_metres(a.base, &a.options));
       for (std::size_t k = 0; k < a.cuts.size(); ++k) {
         out.fields.emplace_back(fmt::format("{}_height_{:g}", a.method, value_.heap.heights[k]),
-                                in_metres(a.cuts[k].mean(), &a.options));
+                                in_metres(a.cuts[k], &a.options));
       }
       const std::string prefix = "average." + a.method + ".";
       out.summary[prefix + "balance_rms"] = a.balance_rms;
@@ -114,8 +120,7 @@ class Analysis {
       out.summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
           a.options.width;
     }
-    out.fields.emplace_back("base",
-                            in_metres(piles_.base().mean(), &piles_.methods().front().options));
+    out.fields.emplace_back("base", in_metres(piles_.base(), &piles_.methods().front().options));
   }
 
   RunFacts facts() const {

@@ -35,6 +35,19 @@ void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
   frame.half_right = right - frame.apex_x;
 }
 
+double floor_of(const dem::Snapshot& pile) {
+  for (const dem::Wall& wall : pile.walls) {
+    if (wall.name == "floor") return wall.point.y();
+  }
+  return layer_frame(pile).floor;
+}
+
+// Positions of grains only: what the measures of a heap look at.
+dem::Snapshot on_floor_zero(dem::Snapshot pile, double floor) {
+  for (dem::Grain& grain : pile.grains) grain.position.y() -= floor;
+  return pile;
+}
+
 double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
   return window.empty() ? nan : dem::volume_fraction(pile, window);
 }
@@ -52,9 +65,16 @@ double PileFrame::in_half_bases(double x) const {
   return (x - apex_x) / (x < apex_x ? half_left : half_right);
 }
 
-PileFrame pile_frame(const dem::Snapshot& pile) {
-  if (pile.dim != 2) throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
+PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
+  if (heap_as_it_is.dim != 2) {
+    throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
+  }
+  const double floor = floor_of(heap_as_it_is);
+  dem::Snapshot moved;
+  if (floor != 0) moved = on_floor_zero(heap_as_it_is, floor);
+  const dem::Snapshot& pile = floor != 0 ? moved : heap_as_it_is;
   PileFrame frame;
+  frame.floor = floor;
   frame.diameter = mean_diameter(pile);
   frame.gravity = pile.gravity.norm();
   double mass = 0, area = 0;

@@ -8,12 +8,11 @@ namespace grainfield::coupling {
 namespace {
 
 // Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 90.
-TEST(Fit, IntervalsCoverTheTruth) {
-  const auto models = heap_models({kSlope, kRhoG, kHeight});
-  dem::Random random(11);
-  for (const Truth& truth : truths()) {
+void expect_coverage(const std::vector<FitModel>& models, const std::vector<Truth>& all,
+                     FitData data, std::uint64_t seed) {
+  dem::Random random(seed);
+  for (const Truth& truth : all) {
     const FitModel& model = find_fit_model(models, truth.model);
-    FitData data = places(15);
     const Eigen::VectorXd exact = predict(data, model, truth.parameters);
     std::vector<int> inside(model.parameters.size(), 0);
     for (int trial = 0; trial < 100; ++trial) {
@@ -30,6 +29,14 @@ TEST(Fit, IntervalsCoverTheTruth) {
       EXPECT_GE(inside[k], 90) << truth.model << " " << model.parameters[k].name;
     }
   }
+}
+
+TEST(Fit, IntervalsCoverTheTruth) {
+  expect_coverage(heap_models({kSlope, kRhoG, kHeight}), truths(), places(15), 11);
+}
+
+TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
+  expect_coverage(heap_models(two_slopes()), two_sided_truths(), places(15, kLeft, kRight), 21);
 }
 
 // Of 100 ensembles at least 95 name the model that made them; with an effect far below the noise

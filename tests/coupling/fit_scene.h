@@ -21,7 +21,7 @@ inline double normal(dem::Random& random) {
 }
 
 // Three heights, all components, `per` points on each.
-inline FitData places(int per) {
+inline FitData places(int per, double left_deg = kSlope, double right_deg = kSlope) {
   FitData data;
   data.components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   data.levels = {"0.1", "0.4", "0.6"};
@@ -30,9 +30,10 @@ inline FitData places(int per) {
   for (int c = 0; c < 3; ++c) {
     for (int level = 0; level < 3; ++level) {
       const double y = -(1 - heights[level]) * kHeight;
-      const double half = 0.95 * -y / std::tan(kSlope * std::numbers::pi / 180);
+      const double left = 0.95 * y / std::tan(left_deg * std::numbers::pi / 180);
+      const double right = 0.95 * -y / std::tan(right_deg * std::numbers::pi / 180);
       for (int k = 0; k < per; ++k) {
-        points.emplace_back(-half + 2 * half * k / (per - 1), y);
+        points.emplace_back(left + (right - left) * k / (per - 1), y);
         data.component.push_back(c);
         data.level.push_back(level);
       }
@@ -81,6 +82,21 @@ inline std::vector<Truth> truths() {
           {"cantelaube", vector({0.34, 0.49, -0.2, 0.78, 1.23, 0.38, 35})},
           {"osl_yield", vector({-0.3})},
           {"osl", vector({0.74, -0.31})}};
+}
+
+// Heaps with two slopes, 31 degrees on the left and 22 on the right.
+inline constexpr double kLeft = 31, kRight = 22;
+inline HeapFacts two_slopes() {
+  HeapFacts facts{(kLeft + kRight) / 2, kRhoG, kHeight};
+  facts.left_deg = kLeft;
+  facts.right_deg = kRight;
+  return facts;
+}
+inline std::vector<Truth> two_sided_truths() {
+  return {{"cantelaube_asymmetric_plus", vector({2})},
+          {"cantelaube_asymmetric_friction", vector({36})},
+          {"cantelaube_asymmetric_flanks", vector({0.55, 0.45})},
+          {"cantelaube_asymmetric", vector({0.6, 0.4, 4, -0.25})}};
 }
 
 }  // namespace grainfield::coupling

@@ -26,6 +26,57 @@ TEST(Fit, WithoutNoiseTheConstantsComeBack) {
   }
 }
 
+TEST(Fit, WithoutNoiseTheConstantsOfTwoSlopesComeBack) {
+  const auto models = heap_models(two_slopes());
+  for (const Truth& truth : two_sided_truths()) {
+    const FitModel& model = find_fit_model(models, truth.model);
+    EXPECT_EQ(model.absent, "");
+    FitData data = places(31, kLeft, kRight);
+    int outside = 0;
+    data.samples.col(0) = predict(data, model, truth.parameters, &outside);
+    ASSERT_EQ(outside, 0) << truth.model;
+    const Fit f = fit(data, covariance_of(data), model);
+    EXPECT_LT(f.rel_l2, 1e-4) << truth.model;
+    for (std::size_t k = 0; k < f.parameters.size(); ++k) {
+      EXPECT_NEAR(f.parameters[k].value, truth.parameters[k],
+                  5e-3 * (1 + std::fabs(truth.parameters[k])))
+          << truth.model << " " << f.parameters[k].parameter.name;
+    }
+  }
+}
+
+// Equal slopes at the friction angle: the theory with two slopes is Cantelaube's.
+TEST(Fit, TwoEqualSlopesGiveTheSymmetricTheory) {
+  const auto models = heap_models({kSlope, kRhoG, kHeight});
+  FitData data = places(21);
+  data.samples.setZero();
+  const auto at = [&](const std::string& name) {
+    const FitModel& model = find_fit_model(models, name);
+    Eigen::VectorXd p(static_cast<Eigen::Index>(model.parameters.size()));
+    if (p.size() == 1) p[0] = 0;  // the vertical ray
+    return predict(data, model, p);
+  };
+  for (const char* branch : {"_zero", "_plus"}) {
+    const Eigen::VectorXd one = at(std::string("cantelaube") + branch);
+    const Eigen::VectorXd two = at(std::string("cantelaube_asymmetric") + branch);
+    EXPECT_LT((one - two).norm(), 1e-6 * one.norm()) << branch;
+  }
+}
+
+// A heap with flanks so far apart that no core yields with a dip: the model is absent, and said so.
+TEST(Fit, ModelsThatDoNotExistSayWhy) {
+  HeapFacts facts = two_slopes();
+  facts.left_deg = 31;
+  facts.right_deg = 8;
+  int absent = 0;
+  for (const FitModel& model : heap_models(facts)) absent += model.absent.empty() ? 0 : 1;
+  for (const FitModel& model : heap_models(facts)) {
+    if (model.absent.empty()) continue;
+    EXPECT_NE(model.absent.find("between flanks of 31.0 and 8.0 degrees"), std::string::npos);
+  }
+  EXPECT_LE(absent, 2);
+}
+
 TEST(Fit, CovarianceFindsSizeAndLengthOfTheNoise) {
   dem::Random random(5);
   FitData data = places(25);

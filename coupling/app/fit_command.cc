@@ -1,0 +1,83 @@
+// fit: models fitted to heaps that are there.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "coupling/app/commands.h"
+#include "coupling/fit/fit_files.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::vector<std::string> quoted;
+  for (const std::string& word : words) quoted.push_back("\"" + word + "\"");
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "fit", "fit stress models to heaps: constants with errors, ranking, tables, report");
+  struct Given {
+    FitRequest request;
+    std::vector<std::string> models, components;
+    std::vector<double> heights;
+    std::string covariance;
+    double width = 0;
+  };
+  auto given = std::make_shared<Given>();
+  FitRequest& request = given->request;
+  command
+      ->add_option("inputs", request.inputs,
+                   "heaps: SNAPSHOT.h5 (its piles) or SNAPSHOT.h5:group of run or import; or one "
+                   "FIELD.h5[:field] of run or average --frame heap")
+      ->required();
+  command
+      ->add_option("--model", given->models,
+                   "NAME, repeatable (grainfield keys fit); default all for symmetric heaps")
+      ->allow_extra_args(false);
+  command->add_option("--heights", given->heights, "fit.heights: shares of the heap's height")
+      ->delimiter(',');
+  command->add_option("--components", given->components, "fit.components")->delimiter(',');
+  auto* width = command->add_option("--width-diameters", given->width,
+                                    "fit.width_diameters: of the averaging (snapshots only)");
+  command->add_option("--covariance", given->covariance,
+                      "fit.covariance: auto | parametric | sample | diagonal");
+  command->add_option("--case", request.case_file, "TOML file: its [fit] counts");
+  command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", request.folder, "folder; default results/fit-INPUT");
+  command->add_option("--threads", request.threads, "the results do not depend on it");
+  command->callback([=, &action] {
+    action = [=] {
+      FitRequest wanted = given->request;
+      Overrides& set = wanted.overrides;
+      if (!given->models.empty()) set.push_back("fit.models=" + quoted_list(given->models));
+      if (!given->heights.empty()) {
+        set.push_back(fmt::format("fit.heights=[{}]", fmt::join(given->heights, ", ")));
+      }
+      if (!given->components.empty()) {
+        set.push_back("fit.components=" + quoted_list(given->components));
+      }
+      if (width->count() > 0) set.push_back(fmt::format("fit.width_diameters={}", given->width));
+      if (!given->covariance.empty()) {
+        set.push_back("fit.covariance=\"" + given->covariance + "\"");
+      }
+      if (wanted.folder.empty()) {
+        wanted.folder =
+            "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
+      }
+      const FitOutcome outcome = fit_files(wanted);
+      fmt::print("fitted to {}: {}\n", outcome.packings.size() == 1 ? "one input" : "packings",
+                 fmt::join(outcome.packings, ", "));
+      fmt::print("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,143 @@
+// Data for fits from a field in the heaps' frame.
+#include "coupling/run/heap_field.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "coupling/averaging/kernel.h"
+#include "coupling/fit/heap_data.h"
+#include "coupling/fit/heap_rows.h"
+#include "coupling/run/field_rows.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kNearRow = 0.05;  // of h: a row further from a height than this is another one
+constexpr double kSameRow = 1e-6;  // of h
+const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
+
+[[noreturn]] void refuse(const std::string& where, const std::string& what) {
+  throw std::invalid_argument(where + ": " + what);
+}
+
+const FieldRow& row_at(const std::vector<FieldRow>& rows, double share, const std::string& where) {
+  const FieldRow& best = nearest_row(rows, share - 1);
+  if (std::fabs(1 + best.y - share) > kNearRow) {
+    throw std::invalid_argument(
+        fmt::format("fit.heights: found {:g}; {} has no row nearer than {:g} h to it, its rows go "
+                    "from {:.3g} to {:.3g}",
+                    share, where, kNearRow, 1 + rows.front().y, 1 + rows.back().y));
+  }
+  return best;
+}
+
+std::string kernel_name(const Field& field, const std::string& where) {
+  return field_attribute(field, "method", where) == "coarse_graining"
+             ? field_attribute(field, "kernel", where)
+             : "heaviside";
+}
+
+}  // namespace
+
+HeapData heap_data(const FitSetup& setup, const Field& field, const std::string& where) {
+  if (field.points.cols() != 2) refuse(where, "is 3D; fits of heaps need a 2D field");
+  std::vector<std::string> missing;
+  std::vector<const Column*> columns;
+  bool single = true;
+  for (const std::string& name : kComponents) {
+    columns.push_back(field.find(name));
+    const bool wanted =
+        std::find(setup.components.begin(), setup.components.end(), name) != setup.components.end();
+    if (wanted && columns.back() == nullptr) missing.push_back(name);
+    if (wanted && columns.back() != nullptr && columns.back()->samples.size() == 0) single = false;
+  }
+  if (!missing.empty()) {
+    refuse(where, fmt::format("has no column {}, which the fit needs (fit.components)",
+                              fmt::join(missing, ", ")));
+  }
+  const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
+  HeapData out;
+  const HeapFieldFacts facts = heap_field_facts(field, count, where);
+  const std::vector<double>& pressures = facts.pressure;
+  const double height = facts.mean_height(), pressure = facts.mean_pressure();
+  for (std::size_t r = 0; r < count; ++r) {
+    PileFrame one;
+    one.height = facts.height[r];
+    one.repose_left_deg = facts.left_deg[r];
+    one.repose_right_deg = facts.right_deg[r];
+    // pressure() is their product.
+    one.grain_density = pressures[r] / facts.height[r];
+    one.volume_fraction = one.gravity = 1;
+    out.frames.push_back(one);
+  }
+  const HeapSlopes slope = slopes_of(setup, out.frames);
+  out.width = field_number(field, "width", where);
+  const auto kernel = make_kernel(kernel_name(field, where), out.width);
+  const double length = kernel->independent_length();
+  out.facts = facts_of(setup, slope, length / (2 * std::sqrt(std::numbers::pi)) / height);
+  const Eigen::MatrixXd points = field.points / (facts.in_metres ? height : 1.0);
+  const std::vector<FieldRow> rows = horizontal_rows(points, kSameRow);
+
+  std::vector<Eigen::Index> chosen;
+  std::vector<int> level;
+  const double reach = kernel->range() / height, apart = (single ? 0.5 : 1) * length / height;
+  std::vector<double> used;
+  for (const double share : setup.heights) {
+    const FieldRow& row = row_at(rows, share, where);
+    if (std::find(used.begin(), used.end(), row.y) != used.end()) continue;
+    used.push_back(row.y);
+    out.data.levels.push_back(fmt::format("{:.3g}", 1 + row.y));
+    const double from = reach + row.y / slope.left(), to = -row.y / slope.right() - reach;
+    double last = from - 2 * apart;
+    for (const Eigen::Index k : row.at) {
+      const double x = points(k, 0);
+      if (x < from || x > to || x < last + (1 - kSameRow) * apart) continue;
+      last = x;
+      chosen.push_back(k);
+      level.push_back(static_cast<int>(out.data.levels.size()) - 1);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(chosen.size());
+  Eigen::MatrixXd places(n, 2);
+  Eigen::MatrixXd all =
+      Eigen::MatrixXd::Constant(3 * n, static_cast<Eigen::Index>(count), std::nan(""));
+  Eigen::MatrixXd errors = Eigen::MatrixXd::Constant(3 * n, 1, std::nan(""));
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const Eigen::Index k = chosen[static_cast<std::size_t>(p)];
+    places.row(p) = points.row(k);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const Column* column = columns[static_cast<std::size_t>(c)];
+      if (column == nullptr) continue;
+      for (std::size_t r = 0; r < count; ++r) {
+        const auto at = static_cast<Eigen::Index>(r);
+        all(c * n + p, at) = (single ? column->samples(k, at) : column->value[k]) / pressures[r];
+      }
+      if (column->error.size() > k) errors(c * n + p, 0) = column->error[k] / pressure;
+    }
+  }
+  keep_rows(setup, places, level, all, out);
+  if (!single && field.realizations > 1) {
+    HeapData beside;
+    beside.data.levels = out.data.levels;
+    // Errors of the same rows: those that have a value but no error end the use of errors.
+    for (Eigen::Index row = 0; row < errors.rows(); ++row) {
+      if (!std::isfinite(all(row, 0))) errors(row, 0) = std::nan("");
+    }
+    keep_rows(setup, places, level, errors, beside);
+    if (beside.data.values() == out.data.values() && (beside.data.samples.array() > 0).all()) {
+      out.data.error = beside.data.samples.col(0);
+    }
+    out.note = fmt::format(
+        "{} holds the mean of {} realizations without their single values (average them anew with "
+        "`grainfield average --frame heap`)",
+        where, field.realizations);
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

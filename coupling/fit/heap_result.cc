@@ -1,0 +1,64 @@
+#include "coupling/fit/heap_result.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "coupling/fit/heap_report.h"
+#include "coupling/report/report.h"
+
+namespace grainfield::coupling {
+namespace {
+
+Report page_of(const StudyResult& result, const Realization* first, const HeapFits& fits,
+               const std::function<dem::Snapshot()>& drawn) {
+  Report out;
+  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  const HeapFacts& facts = fits.heaps.facts;
+  out.subtitle = fmt::format("{} pile{}, slope {:.1f} deg", fits.heaps.frames.size(),
+                             fits.heaps.frames.size() == 1 ? "" : "s", facts.slope_deg);
+  if (facts.left_deg > 0) {
+    out.subtitle += fmt::format(" ({:.1f} left, {:.1f} right, friction angle {:.1f})",
+                                facts.left_deg, facts.right_deg, facts.friction());
+  }
+  out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+  for (Section& section : fit_sections(fits)) out.sections.push_back(std::move(section));
+  if (first != nullptr) {
+    out.sections.emplace_back(packing("Network of forces", (*first)["pile"]));
+  } else if (drawn) {
+    out.sections.emplace_back(packing("Network of forces", drawn()));
+  }
+  Table made{"How it was made", "", {}, {}};
+  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
+  out.sections.emplace_back(std::move(made));
+  return out;
+}
+
+}  // namespace
+
+StudyResult heap_result(const Case& value, HeapData heaps, int threads,
+                        std::function<dem::Snapshot()> drawn) {
+  StudyResult out;
+  out.value = value;
+  const auto fits =
+      std::make_shared<const HeapFits>(fit_heaps(value.fit, std::move(heaps), threads));
+  out.comparison = profiles_of(*fits);
+  add_fits(out.summary, *fits);
+  out.comparison.verdict.best_model = fits->selection.ranking.front().name;
+  out.comparison.verdict.sentence = fits->selection.sentence;
+  out.summary["verdict.sentence"] = fits->selection.sentence;
+  out.texts = {{"fits.csv", fits_csv(*fits)},
+               {"fits.md", fits_markdown(*fits)},
+               {"fits.tex", fits_tex(*fits)}};
+  out.overview = {{"best model", "verdict.best_model"},
+                  {"beta_hat (deg)", "fit.cantelaube.beta_hat_deg"},
+                  {"b1", "fit.cantelaube.b1"},
+                  {"eta", "fit.osl.eta"},
+                  {"mu", "fit.osl.mu"}};
+  out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
+    return page_of(result, first, *fits, drawn);
+  };
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,17 @@
+// What fits of heaps leave, from their data to a result that is written.
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "coupling/fit/heap_data.h"
+#include "coupling/run/study_result.h"
+
+namespace grainfield::coupling {
+
+/// Fits, tables, summary keys and page. `value`: name, title and fit of the case count. `drawn`: a
+/// heap for the page where no realization is at hand; called while the page is made; may be empty.
+/// Throws as fit_heaps.
+StudyResult heap_result(const Case& value, HeapData heaps, int threads,
+                        std::function<dem::Snapshot()> drawn = nullptr);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,139 @@
+#include "coupling/fit/heap_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr int kLeastValues = 10;
+const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
+
+double tangent(double degrees) { return std::tan(degrees * std::numbers::pi / 180); }
+
+// Mean over the heaps that have one; nan without.
+double mean_of(const std::vector<PileFrame>& frames, double PileFrame::*member) {
+  double sum = 0;
+  int count = 0;
+  for (const PileFrame& frame : frames) {
+    if (!std::isfinite(frame.*member)) continue;
+    sum += frame.*member;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::nan("");
+}
+
+// The mean of the heaps' own means over both flanks.
+double mean_slope(const std::vector<PileFrame>& frames) {
+  double sum = 0;
+  int heaps = 0;
+  for (const PileFrame& frame : frames) {
+    double own = 0;
+    int count = 0;
+    for (const double slope : {frame.repose_left_deg, frame.repose_right_deg}) {
+      if (!std::isfinite(slope)) continue;
+      own += slope;
+      ++count;
+    }
+    if (count == 0) continue;
+    sum += own / count;
+    ++heaps;
+  }
+  return heaps > 0 ? sum / heaps : std::nan("");
+}
+
+}  // namespace
+
+double HeapSlopes::left() const { return tangent(apart ? left_deg : mean_deg); }
+double HeapSlopes::right() const { return tangent(apart ? right_deg : mean_deg); }
+
+bool takes_flanks_apart(const std::vector<std::string>& models) {
+  return std::any_of(models.begin(), models.end(), [](const std::string& name) {
+    return name.compare(0, 21, "cantelaube_asymmetric") == 0;
+  });
+}
+
+HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames) {
+  HeapSlopes out;
+  const bool given = setup.left_deg > 0 && setup.right_deg > 0;
+  out.left_deg = setup.left_deg > 0 ? setup.left_deg : mean_of(frames, &PileFrame::repose_left_deg);
+  out.right_deg =
+      setup.right_deg > 0 ? setup.right_deg : mean_of(frames, &PileFrame::repose_right_deg);
+  if (!std::isfinite(out.left_deg)) out.left_deg = out.right_deg;
+  if (!std::isfinite(out.right_deg)) out.right_deg = out.left_deg;
+  if (!std::isfinite(out.left_deg)) {
+    throw std::invalid_argument(
+        "fit: no heap has flanks long enough for a slope (five columns of a grain diameter on a "
+        "side); use larger heaps, or set fit.left_deg and fit.right_deg");
+  }
+  out.mean_deg = given || setup.left_deg > 0 || setup.right_deg > 0
+                     ? (out.left_deg + out.right_deg) / 2
+                     : mean_slope(frames);
+  out.apart = takes_flanks_apart(setup.models);
+  for (const double slope : {out.left_deg, out.right_deg}) {
+    if (slope > 0 && slope < 89) continue;
+    throw std::invalid_argument(fmt::format(
+        "fit: found a flank of {:.1f} degrees, allowed: above 0, up to 89; the snapshot "
+        "is no heap with its apex up, or set fit.left_deg and fit.right_deg",
+        slope));
+  }
+  return out;
+}
+
+HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing) {
+  HeapFacts out{slopes.mean_deg, 1, 1, smoothing};
+  if (slopes.apart) {
+    out.left_deg = slopes.left_deg;
+    out.right_deg = slopes.right_deg;
+  }
+  const double steeper =
+      slopes.apart ? std::max(slopes.left_deg, slopes.right_deg) : slopes.mean_deg;
+  if (setup.friction_deg > 0) {
+    if (setup.friction_deg < steeper) {
+      throw std::invalid_argument(
+          fmt::format("fit.friction_deg: found {:g}, allowed: from the steeper slope, {:.2f}",
+                      setup.friction_deg, steeper));
+    }
+    out.friction_deg = setup.friction_deg;
+  }
+  return out;
+}
+
+void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
+               const Eigen::MatrixXd& all, HeapData& out) {
+  const Eigen::Index n = points.rows();
+  FitData& data = out.data;
+  data.components = setup.components;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t c = 0; c < setup.components.size(); ++c) {
+    const auto at = std::find(kComponents.begin(), kComponents.end(), setup.components[c]);
+    const Eigen::Index first = (at - kComponents.begin()) * n;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      if (!all.row(first + p).allFinite()) {
+        ++out.left_out;
+        continue;
+      }
+      rows.push_back(first + p);
+      data.component.push_back(static_cast<int>(c));
+      data.level.push_back(level[static_cast<std::size_t>(p)]);
+    }
+  }
+  if (static_cast<int>(rows.size()) < kLeastValues) {
+    throw std::invalid_argument(fmt::format(
+        "fit.heights: found {} values in the heaps, needed: {} or more; choose lower heights, a "
+        "smaller fit.width_diameters or larger piles",
+        rows.size(), kLeastValues));
+  }
+  data.points.resize(static_cast<Eigen::Index>(rows.size()), 2);
+  data.samples.resize(static_cast<Eigen::Index>(rows.size()), all.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    data.points.row(static_cast<Eigen::Index>(k)) = points.row(rows[k] % n);
+    data.samples.row(static_cast<Eigen::Index>(k)) = all.row(rows[k]);
+  }
+}
+
+}  // namespace grainfield::coupling

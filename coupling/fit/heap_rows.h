@@ -1,0 +1,34 @@
+// What both sources of heap data share: geometry of the mean heap, lines through it, and the rows
+// that every realization has.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/fit/heap_data.h"
+
+namespace grainfield::coupling {
+
+/// The slopes of the mean heap and their tangents.
+struct HeapSlopes {
+  double left_deg = 0, right_deg = 0, mean_deg = 0;
+  bool apart = false;  ///< lines end at their own flank, not at the mean one's
+
+  double left() const;   ///< tangent of the slope that ends lines on the left
+  double right() const;  ///< and on the right
+};
+
+/// Measured slopes, or setup's where it gives them. Heaps without one do not count. Throws
+/// std::invalid_argument naming the keys where no heap has one.
+HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames);
+
+/// The models' constants, rho g = h = 1; `smoothing` over h. Throws std::invalid_argument for a
+/// friction angle below the slopes.
+HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing);
+
+/// Chooses the components and drops rows that are not finite in every realization. `all`: values of
+/// sigma_xx on all points, then sigma_yy, sigma_xy; columns realizations. `level`: of each point.
+/// Throws std::invalid_argument when fewer than 10 values are left.
+void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
+               const Eigen::MatrixXd& all, HeapData& out);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,37 @@
+// The attributes of a field in the heaps' frame (average_files.h, pile.cc), read back.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/field.h"
+
+namespace grainfield::coupling {
+
+/// One number per realization; of a field without single values one mean each.
+struct HeapFieldFacts {
+  std::vector<double> height;               ///< h, m
+  std::vector<double> pressure;             ///< rho g h, N/m: what to divide values by
+  std::vector<double> left_deg, right_deg;  ///< slopes; nan: not known
+  bool in_metres = false;                   ///< points in m; else over h
+
+  double mean_height() const;
+  double mean_pressure() const;
+};
+
+/// Whether the field is in the heaps' frame: apex at (0, 0), over h or in m.
+bool is_heap_field(const Field& field);
+
+/// `count`: realizations whose values are used; 1: the mean. Throws std::invalid_argument beginning
+/// with `where` for another frame, missing attributes or numbers that do not fit.
+HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std::string& where);
+
+/// The same field in m and N/m of the mean heap: every realization scaled by its own rho g h where
+/// there are single values of the stresses.
+Field in_mean_heap(Field field, const std::string& where);
+
+/// The attribute; throws std::invalid_argument beginning with `where` where it is missing.
+std::string field_attribute(const Field& field, const std::string& name, const std::string& where);
+/// The same as a number; throws likewise when it is none.
+double field_number(const Field& field, const std::string& name, const std::string& where);
+
+}  // namespace grainfield::coupling
