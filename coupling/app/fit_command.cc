@@ -17,6 +17,12 @@ std::string quoted_list(const std::vector<std::string>& words) {
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
+// "FILE:/a, FILE:/b"; of many the first and the last.
+std::string shown(const std::vector<std::string>& names) {
+  if (names.size() <= 4) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{} packings, {} to {}", names.size(), names.front(), names.back());
+}
+
 }  // namespace
 
 void add_fit(CLI::App& app, Action& action) {
@@ -72,8 +78,7 @@ void add_fit(CLI::App& app, Action& action) {
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const FitOutcome outcome = fit_files(wanted);
-      fmt::print("fitted to {}: {}\n", outcome.packings.size() == 1 ? "one input" : "packings",
-                 fmt::join(outcome.packings, ", "));
+      fmt::print("fitted to {}\n", shown(outcome.packings));
       fmt::print("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
       return 0;
     };

@@ -14,12 +14,21 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kRange = 2;  // of the Lucy kernel, widths
+constexpr double kRange = 2;     // of the Lucy kernel, widths
+constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 PileFrame frame_of(const HeapReader& heaps, std::size_t k) {
   try {
-    PileFrame frame = pile_frame(heaps.read(k));
+    const dem::Snapshot heap = heaps.read(k);
+    if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
+    const dem::Vec3& g = heap.gravity;
+    if (heap.dim == 2 && !(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
+      throw std::invalid_argument(
+          fmt::format("found gravity ({:g}, {:g}), needed: downwards, along -y (import --gravity)",
+                      g.x(), g.y()));
+    }
+    PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
     }

@@ -101,7 +101,7 @@ void write_one(hid_t root, const std::string& name, const Field& field, const st
     for (const Column& column : field.columns)
       if (column.samples.size() != 0) {
         const RowMajor rows = column.samples;
-        h5::write(samples, column.name, {rows.data(), rows.data() + rows.size()},
+        h5::write(samples, column.name, std::vector<double>(rows.data(), rows.data() + rows.size()),
                   static_cast<int>(rows.cols()), column.unit);
       }
   }

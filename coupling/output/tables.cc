@@ -120,8 +120,8 @@ std::string profiles_csv(const Comparison& c) {
                           number(p.mean[i]), number(error_at(p, i)));
       for (const ModelProfiles& m : c.models) {
         const double value = m.values[k][i], difference = p.mean[i] - value;
-        text += "," + number(value) + "," + number(difference) + "," +
-                number(difference / error_at(p, i));
+        text += fmt::format(",{},{},{}", number(value), number(difference),
+                            number(difference / error_at(p, i)));
       }
       text += "\n";
     }

@@ -127,10 +127,12 @@ std::vector<SourceFigure> fit_figures() {
               {"β̂", "deg", "35", 35}});
   out.push_back(in_words("Roul 4.3", "Cantelaube, point source: branch nearest to β̂", point,
                          "35° (dip branch: 22°)", {"zero"}, branch(point)));
-  out.push_back(in_words("Roul fig. 4.4", "the same, seven free numbers: agreement", point,
-                         "very good", {"within the errors"}, quality(point, "cantelaube", 7)));
-  out.push_back(in_words("Roul 4.3", "the same, dip branch without free numbers: agreement", point,
-                         "not well", {"beyond the errors"}, quality(point, "cantelaube_minus", 0)));
+  out.push_back(in_words("Roul fig. 4.4", "Cantelaube, point source, seven free numbers: agreement",
+                         point, "very good", {"within the errors"},
+                         quality(point, "cantelaube", 7)));
+  out.push_back(
+      in_words("Roul 4.3", "Cantelaube, point source, dip branch without free numbers: agreement",
+               point, "not well", {"beyond the errors"}, quality(point, "cantelaube_minus", 0)));
   cantelaube(line, "line", "Roul 4.16, 4.17",
              {{"a1", "", "0.15", 0.15},
               {"a2", "", "0.64", 0.64},
@@ -141,9 +143,10 @@ std::vector<SourceFigure> fit_figures() {
               {"β̂", "deg", "49", 49}});
   out.push_back(in_words("Roul 4.3", "Cantelaube, line source: branch nearest to β̂", line,
                          "49°, called plateau: is the + branch", {"plus"}, branch(line)));
-  out.push_back(in_words("Roul fig. 4.5", "the same, seven free numbers: agreement", line,
-                         "very good", {"within the errors"}, quality(line, "cantelaube", 7)));
-  out.push_back(in_words("Roul 4.3", "the same, + branch without free numbers: agreement", line,
+  out.push_back(in_words("Roul fig. 4.5", "Cantelaube, line source, seven free numbers: agreement",
+                         line, "very good", {"within the errors"}, quality(line, "cantelaube", 7)));
+  out.push_back(in_words("Roul 4.3",
+                         "Cantelaube, line source, + branch without free numbers: agreement", line,
                          "works well", {"within the errors"}, quality(line, "cantelaube_plus", 0)));
   for (const Constant& c : {Constant{"η", "", "0.74", 0.74}, Constant{"μ", "", "-0.31", -0.31},
                             Constant{"K", "", "1.345", 1.345}, Constant{"τ", "deg", "85", 85}}) {

@@ -28,7 +28,7 @@ void write_heaps(const Folder& folder) {
     test::StressedHeap setup;
     setup.floor = 0.3;
     setup.apex_x = 1.7;
-    setup.noise = 0.3;
+    setup.noise = 0.2;
     setup.seed = static_cast<std::uint64_t>(k);
     const dem::Snapshot heap =
         test::stressed_heap(setup, [&](double x, double y) { return field.stress(x, y); });

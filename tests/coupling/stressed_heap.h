@@ -16,7 +16,8 @@ namespace grainfield::test {
 
 struct StressedHeap {
   double left_deg = 28, right_deg = 28;  ///< slopes
-  double height = 0.3, diameter = 0.01;  ///< m
+  double diameter = 0.01;                ///< m
+  int rows = 35;                         ///< height: diameter + (rows - 1) sqrt(3)/2 diameter
   double floor = 0, apex_x = 0;          ///< m
   double noise = 0;                      ///< contact forces: relative, uniform
   std::uint64_t seed = 1;
@@ -28,7 +29,7 @@ inline double lattice_rho_g() { return 5000 * 9.81 * std::numbers::pi / (2 * std
 /// `stress`: xx, yy, xy at a point seen from the apex (y up), tension positive; nan: none.
 inline dem::Snapshot stressed_heap(const StressedHeap& setup,
                                    const std::function<Eigen::Vector3d(double, double)>& stress) {
-  const double d = setup.diameter, lift = d * std::sqrt(3.0) / 2, h = setup.height;
+  const double d = setup.diameter, lift = d * std::sqrt(3.0) / 2, h = d + (setup.rows - 1) * lift;
   const double left = std::tan(setup.left_deg * std::numbers::pi / 180);
   const double right = std::tan(setup.right_deg * std::numbers::pi / 180);
   dem::Random random(setup.seed);
@@ -41,14 +42,15 @@ inline dem::Snapshot stressed_heap(const StressedHeap& setup,
   wall.friction = 0.5;
   s.walls.push_back(wall);
   std::map<std::pair<int, int>, std::int64_t> at;  // row, column in half diameters
-  const int rows = static_cast<int>(h / lift);
-  for (int row = 0; row < rows; ++row) {
+  for (int row = 0; row < setup.rows; ++row) {
     const double y = d / 2 + row * lift - h;  // from the apex
     const int reach = static_cast<int>(2 * h / std::min(left, right) / d) + 2;
     for (int column = -reach; column <= reach; ++column) {
       if ((column + row) % 2 != 0) continue;
       const double x = column * d / 2;
-      if (y + d / 2 > (x < 0 ? left : -right) * x) continue;
+      // The surface's steps lie about the slope's line, but for the apex.
+      const double over = std::fabs(x) < d ? 1e-9 : 0.4 * lift;
+      if (y + d / 2 - over > (x < 0 ? left : -right) * x) continue;
       dem::Grain g;
       g.id = static_cast<std::int64_t>(s.grains.size());
       g.position = {setup.apex_x + x, setup.floor + h + y, 0};
