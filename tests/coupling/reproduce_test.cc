@@ -39,6 +39,26 @@ TEST(Reproduce, EveryFigureNamesAShippedCase) {
   }
 }
 
+TEST(Reproduce, FitsGiveTheLargerErrorAndQualityInWords) {
+  const Folder folder;
+  folder.write("fit-osl-point.json",
+               R"({"fit.values": 402, "fit.osl.eta": 0.72, "fit.osl.eta.error": 0.004,
+ "fit.osl.eta.bootstrap_error": 0.02, "fit.osl.mu": -0.5, "fit.osl.mu.error": 0.03,
+ "fit.osl.mu.bootstrap_error": "nan", "fit.osl.chi2_per_dof": 1.3, "fit.osl.rel_l2": 0.08})");
+  folder.write("fit-asymmetric.json",
+               R"({"fit.cantelaube_asymmetric.kink": -0.3,
+ "fit.cantelaube_asymmetric.kink.error": 0.1, "fit.cantelaube_asymmetric.ray_deg": 4})");
+  const std::string page = reproduction_page(Results(folder.path()));
+  EXPECT_THAT(page, HasSubstr("| OSL, point source: η | 0.74 | 0.720 ± 0.020 | agrees |"));
+  EXPECT_THAT(page, HasSubstr("| -0.500 ± 0.030 | differs by 0.18 (6.0 standard errors) |"));
+  EXPECT_THAT(page, HasSubstr("| beyond the errors: χ²/dof 1.30 (chance: up to 1.21), relative L2 "
+                              "8.0 % | differs |"));
+  EXPECT_THAT(page, HasSubstr("| dip: kink -0.30 ± 0.10 ρg on the ray at 4° from the vertical | "
+                              "agrees |"));
+  // The misprints follow.
+  EXPECT_THAT(page, HasSubstr("| Wellmann 6 | \"c_end = 0.4\" | 0.04 |"));
+}
+
 TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
   const Folder folder;
   folder.write("pile-point-source.json",
@@ -109,9 +129,30 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "elastic.young_over_grain",
                                    "elastic.bulk_fabric_correlation",
                                    "elastic.young_fabric_correlation",
-                                   "elastic.shear_fabric_correlation"};
-  std::string text = "{\"dip.verdict\": \"dip\"";
-  for (const std::string& key : keys) {
+                                   "elastic.shear_fabric_correlation",
+                                   "fit.values",
+                                   "fit.cantelaube.a1",
+                                   "fit.cantelaube.a2",
+                                   "fit.cantelaube.b1",
+                                   "fit.cantelaube.a_xx",
+                                   "fit.cantelaube.a_yy",
+                                   "fit.cantelaube.a_xy",
+                                   "fit.cantelaube.beta_hat_deg",
+                                   "fit.osl.eta",
+                                   "fit.osl.mu",
+                                   "fit.osl.K",
+                                   "fit.osl.tau_deg",
+                                   "fit.cantelaube_asymmetric.kink",
+                                   "fit.cantelaube_asymmetric.kink.error",
+                                   "fit.cantelaube_asymmetric.ray_deg"};
+  std::set<std::string> all = keys;
+  for (const char* model :
+       {"cantelaube", "cantelaube_minus", "cantelaube_plus", "osl", "cantelaube_asymmetric_zero"}) {
+    all.insert(std::string("fit.") + model + ".chi2_per_dof");
+    all.insert(std::string("fit.") + model + ".rel_l2");
+  }
+  std::string text = "{\"dip.verdict\": \"dip\", \"fit.cantelaube.branch\": \"zero\"";
+  for (const std::string& key : all) {
     EXPECT_NE(find_summary_key(key), nullptr) << key;
     text += ", \"" + key + "\": 1.5";
   }
