@@ -27,7 +27,7 @@ void add_models(const Comparison& c, std::size_t profile, Frame& frame) {
 }
 
 std::string scale_note(const Comparison& c) {
-  if (c.scale.stress != "rho g h") return c.scale.note + ".";
+  if (c.scale.stress == "N/m") return c.scale.note + ".";
   return fmt::format(
       "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own). "
       "The grey band is one standard error over {} realization{} on either side.",
@@ -74,10 +74,8 @@ void add_cuts(Report& report, const PileReport& in) {
     }
     if (frames.empty()) continue;
     Picture picture =
-        curves(title, fmt::format("x / h ({} at 0)", c.scale.x_from),
-               c.scale.stress == "rho g h" ? fmt::format("{}  (ρ g h)", label)
-                                           : fmt::format("{}  ({})", label, c.scale.stress),
-               frames);
+        curves(title, c.scale.stress == "N/m" ? "x / h" : "x / h (apex at 0)",
+               fmt::format("{}  ({})", label, c.scale.stress == "N/m" ? "N/m" : "ρ g h"), frames);
     picture.caption = "Averaged by " + in.averaged + ". " + scale_note(c);
     report.sections.emplace_back(std::move(picture));
   }
