@@ -179,10 +179,7 @@ FitOutcome fit_files(const FitRequest& request) {
     drawn = [heaps] { return heaps.read(0); };
   }
   value.name = fs::path(request.inputs.front()).stem().string();
-  value.title = "Fit of " + out.packings.front();
-  if (out.packings.size() > 1) {
-    value.title += fmt::format(" and {} more", out.packings.size() - 1);
-  }
+  value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
   out.verdict = result.comparison.verdict.sentence;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));
