@@ -127,25 +127,27 @@ ModelInfo fe_orthotropic_layer_info() {
       "layer with vertical and horizontal elastic axes on a rigid base under a line load, finite "
       "elements",
       2,
-      joined(
-          {{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
-            number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
-                   -kUnbounded, kUnbounded),
-            number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
-            optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
-                            kAboveZero, kUnbounded),
-            optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
-            optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
-            optional_number("nu_xy", "-",
-                            "-eps_yy/eps_xx under sigma_xx; between max(-r, -sqrt(t)) and sqrt(t). "
-                            "Needed with moduli and on a rough base; a smooth one does not feel it",
-                            source, -kUnbounded, kUnbounded),
-            text("map",
-                 "instead of constants: CSV file of a regular grid, columns x,y and young,poisson "
-                 "(elastic_map.csv) or E_x,E_y,nu_xy,G; beyond the grid as on its border",
-                 "elastic constants")},
-           layer_parameters(),
-           numerical_parameters("over F/h; 0: 2e-4", 8)}),
+      joined({{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+               number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
+                      -kUnbounded, kUnbounded),
+               number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+               optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
+                               kAboveZero, kUnbounded),
+               optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+               optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+               optional_number(
+                   "nu_xy", "-",
+                   "-eps_yy/eps_xx under sigma_xx; between max(-r, -sqrt(t)) and sqrt(t). "
+                   "Needed with moduli, with base = rough and with sides = smooth; free sides on a "
+                   "smooth base do not feel it",
+                   source, -kUnbounded, kUnbounded),
+               text("map",
+                    "instead of constants (r and t are not used): CSV file of a regular grid, "
+                    "columns x,y and young,poisson "
+                    "(elastic_map.csv) or E_x,E_y,nu_xy,G; beyond the grid as on its border",
+                    "elastic constants")},
+              layer_parameters(),
+              numerical_parameters("over F/h; 0: 2e-4", 8)}),
       make_in_plugin<orthotropic_name>};
 }
 
@@ -190,7 +192,7 @@ ModelInfo fe_cantelaube_core_info() {
                        source, kAboveZero, 90),
        choice("axis",
               "branch: the condition of the branch; continuous: no displacement across; yields: "
-              "sigma_xx in the ratio of the friction angle to sigma_yy",
+              "sigma_xx in the ratio of the friction angle to sigma_yy, with base = closed only",
               source, {"branch", "continuous", "yields"}),
        choice("base",
               "closed: the displacement of the closed form; rough: rigid, no displacement; smooth: "
@@ -203,8 +205,10 @@ ModelInfo fe_cantelaube_core_info() {
        whole_number("refinement", "halvings of the three cells of the half core", "numerics", 4, 0,
                     10),
        whole_number("adaptive", "further cycles of adaptive refinement", "numerics", 0, 0, 20),
-       whole_number("iterations", "most solves for a yielding axis on a mesh", "numerics", 100, 1,
-                    10000)},
+       whole_number("iterations", "most iterations of conjugate gradients in a solve", "numerics",
+                    2000, 1, 100000),
+       whole_number("axis_iterations", "most solves for a yielding axis on a mesh", "numerics", 100,
+                    1, 10000)},
       make_in_plugin<core_name>};
 }
 

@@ -7,7 +7,9 @@
 // phi)/(1 - sin phi) where sigma_xx is the largest compression, or its inverse where sigma_yy is.
 // This second condition is met by iteration on the axis' traction, accelerated (Anderson 1965),
 // because both sides of it are linear. On the base either the closed form's displacement, or rigid
-// and rough, or rigid and smooth, or springs.
+// and rough, or rigid and smooth, or springs. A yielding axis holds nothing, and its corner with
+// another base than the closed form's is singular (rough) or must be pinned by a force (smooth): it
+// is solved on the closed form's base only.
 //
 // The closed form's stress is linear in the half core, its displacement a polynomial of degree two,
 // which elements of degree two hold exactly: they return it to the accuracy of the linear solver,
@@ -87,7 +89,8 @@ class CantelaubeCore : public Model {
         degree_(static_cast<int>(number_of(s, "degree"))),
         cells_(static_cast<int>(number_of(s, "refinement"))),
         cycles_(static_cast<int>(number_of(s, "adaptive"))),
-        iterations_(static_cast<int>(number_of(s, "iterations"))) {
+        iterations_(static_cast<int>(number_of(s, "iterations"))),
+        axis_iterations_(static_cast<int>(number_of(s, "axis_iterations"))) {
     const std::string& branch = s.at("branch");
     beta_hat_ = core_angle(phi_, branch == "zero"   ? CoreBranch::zero
                                  : branch == "plus" ? CoreBranch::plus
@@ -108,6 +111,11 @@ class CantelaubeCore : public Model {
       throw BadParameter(fmt::format(
           "model {}: beta_hat_deg is set with axis = branch; allowed: axis = continuous or yields",
           kName));
+    if (yields_ && base_ != "closed")
+      throw BadParameter(
+          fmt::format("model {}: base = {} is not solved with a yielding axis (axis = {}, branch = "
+                      "{}); allowed: base = closed, or axis = continuous",
+                      kName, base_, condition, branch));
     const double active = (1 - std::sin(phi_)) / (1 + std::sin(phi_));
     ratio_ = branch == "plus" ? active : 1 / active;
     const SectorField field = cantelaube_field(phi_, beta_hat_, rho_g_);
@@ -219,8 +227,6 @@ class CantelaubeCore : public Model {
     if (base_ == "closed")
       ground.displacement = [this](const Point& p) { return closed_displacement(p); };
     if (base_ == "elastic") ground.spring[0] = ground.spring[1] = springs_ * young_ / h_;
-    // Where the axis does not hold the half core and the base is smooth nothing but the foot does.
-    if (yields_ && base_ == "smooth") out.pins = {{Point(0, -h_), {true, false}}};
     return out;
   }
 
@@ -242,21 +248,21 @@ class CantelaubeCore : public Model {
           solver_->solve(problem(stress));
           return ratio_ * solver_->stress_at(nodes).col(1);
         },
-        axis_stress_, iterations_, kAxisTolerance* rho_g_* h_, misfit);
+        axis_stress_, axis_iterations_, kAxisTolerance* rho_g_* h_, misfit);
     figures_["axis_misfit"] = misfit / (rho_g_ * h_);
     if (!(misfit <= kAxisTolerance * rho_g_ * h_)) {
       solver_.reset();
       throw ComputationFailed(fmt::format(
           "{}: the axis misses its yield condition by {:.1e} rho_g h after {} solves, {:.0e} is "
-          "asked; raise iterations, or take axis = continuous",
-          kName, misfit / (rho_g_ * h_), iterations_, kAxisTolerance));
+          "asked; raise axis_iterations, or take axis = continuous",
+          kName, misfit / (rho_g_ * h_), axis_iterations_, kAxisTolerance));
     }
   }
 
   void solve() {
     if (solver_) return;
-    solver_ =
-        std::make_unique<fe::ElasticSolver<2>>(fe::communicator(ranks_), degree_, 2000, kName);
+    solver_ = std::make_unique<fe::ElasticSolver<2>>(fe::communicator(ranks_), degree_, iterations_,
+                                                     kName);
     try {
       build_mesh();
       solve_axis();
@@ -318,7 +324,7 @@ class CantelaubeCore : public Model {
   double h_, rho_g_, nu_, phi_, beta_hat_ = 0, t_ = 0, ratio_ = 1, young_ = 1;
   std::string base_;
   double springs_;
-  int degree_, cells_, cycles_, iterations_;
+  int degree_, cells_, cycles_, iterations_, axis_iterations_;
   bool yields_ = false;
   LinearStress core_, flank_;
   Ranks ranks_ = fe::chosen_ranks();

@@ -31,14 +31,15 @@ Stress<2> stored(const Eigen::Vector3d& stress) {
   return s;
 }
 
-/// The constants of the settings, one of three ways.
+/// The constants of the settings: r and t, or moduli. nu_xy is nan where it is neither set nor
+/// felt.
 PlaneModuli moduli_of(const Settings& s) {
   PlaneModuli m{number_of(s, "E_x"), number_of(s, "E_y"), number_of(s, "nu_xy"), number_of(s, "G")};
   const int set = !std::isnan(m.E_x) + !std::isnan(m.E_y) + !std::isnan(m.G);
   if (set != 0 && (set != 3 || std::isnan(m.nu_xy)))
     throw BadParameter(
         fmt::format("model {}: found {} of E_x, E_y, G, nu_xy; allowed: all four, or r and t "
-                    "(with nu_xy on a rough base)",
+                    "(with nu_xy where it is felt)",
                     kName, set + !std::isnan(m.nu_xy)));
   if (set == 3) {
     if (!is_stable(m))
@@ -54,15 +55,12 @@ PlaneModuli moduli_of(const Settings& s) {
         "model {}: r = {:.6g} is not elastic; allowed: above -sqrt(t) = {:.6g} at t = {:.6g}",
         kName, r, -root, t));
   const double least = std::max(-r, -root);
-  if (std::isnan(m.nu_xy)) {
-    if (s.at("base") == "rough")
-      throw BadParameter(
-          fmt::format("model {}: nu_xy is not set; a rough base needs it, allowed: between {:.6g} "
-                      "and {:.6g}",
-                      kName, least, root));
-    m.nu_xy = 0.5 * (std::max(least, 0.) + root);
-  }
-  if (!(m.nu_xy > least && m.nu_xy < root))
+  const bool rough = s.at("base") == "rough";
+  if (std::isnan(m.nu_xy) && (rough || s.at("sides") == "smooth"))
+    throw BadParameter(
+        fmt::format("model {}: nu_xy is not set; {} needs it, allowed: between {:.6g} and {:.6g}",
+                    kName, rough ? "base = rough" : "sides = smooth", least, root));
+  if (m.nu_xy <= least || m.nu_xy >= root)
     throw BadParameter(
         fmt::format("model {}: nu_xy = {:.6g} is not elastic with r = {:.6g}, t = {:.6g}; allowed: "
                     "between max(-r, -sqrt(t)) = {:.6g} and sqrt(t) = {:.6g}",
@@ -71,6 +69,24 @@ PlaneModuli moduli_of(const Settings& s) {
   m.E_y = 1 / t;
   m.G = 1 / (2 * (r + m.nu_xy));
   return m;
+}
+
+/// The same, with the middle of the admitted nu_xy where the stress does not depend on it.
+PlaneModuli solvable(PlaneModuli m, double r, double t) {
+  if (!std::isnan(m.nu_xy)) return m;
+  const double root = std::sqrt(t);
+  m.nu_xy = 0.5 * (std::max({-r, -root, 0.}) + root);
+  m.G = 1 / (2 * (r + m.nu_xy));
+  return m;
+}
+
+/// A map replaces the constants; r and t have defaults and do not show whether they were set.
+void check_map_alone(const Settings& s) {
+  for (const char* key : {"E_x", "E_y", "G", "nu_xy"})
+    if (!std::isnan(number_of(s, key)))
+      throw BadParameter(fmt::format(
+          "model {}: {} is set beside map, which replaces it; allowed: map or constants", kName,
+          key));
 }
 
 class OrthotropicLayer : public fe::BoxModel<2> {
@@ -84,9 +100,13 @@ class OrthotropicLayer : public fe::BoxModel<2> {
         free_sides_(s.at("sides") == "free") {
     if (s.at("map").empty()) {
       at_load_ = moduli_of(s);
+      if (!std::isnan(at_load_.nu_xy)) figures_["nu_xy"] = at_load_.nu_xy;
+      at_load_ = solvable(at_load_, number_of(s, "r"), number_of(s, "t"));
     } else {
+      check_map_alone(s);
       field_ = read_elastic_field(s.at("map"));
       at_load_ = field_->moduli(0, 0);
+      figures_["nu_xy"] = at_load_.nu_xy;
       mirrored_ = false;
     }
     ratios_ = orthotropy(at_load_);
@@ -94,7 +114,6 @@ class OrthotropicLayer : public fe::BoxModel<2> {
     compliance_ = compliance(at_load_);
     figures_["r"] = ratios_.r;
     figures_["t"] = ratios_.t;
-    figures_["nu_xy"] = at_load_.nu_xy;
   }
 
  protected:

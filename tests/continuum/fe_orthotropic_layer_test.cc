@@ -7,10 +7,12 @@
 
 #include "continuum/closed/orthotropic.h"
 #include "continuum/model.h"
+#include "orthotropic_layer_oracle.h"
 #include "orthotropic_layer_scene.h"
 
 using namespace grainfield::continuum;
 using grainfield::continuum::testing::along;
+using grainfield::continuum::testing::exact_base;
 using grainfield::continuum::testing::Map;
 using grainfield::continuum::testing::text_of;
 using ::testing::HasSubstr;
@@ -99,10 +101,45 @@ TEST(FeOrthotropicLayer, MapOfOneMaterialIsThatMaterial) {
   }
 }
 
+// One peak on the base becomes two where the curvature of the pressure below the load changes sign:
+// not at r = 0 as in the half plane, and not at the same r on both bases.
+TEST(FeOrthotropicLayer, PassageFromOnePeakToTwoDependsOnTheBase) {
+  const auto curvature = [](double r, bool rough) {
+    return exact_base({r, 1}, 0.95, rough, 0).curvature;
+  };
+  for (const auto& [rough, one, two] : {std::tuple{false, 0.04, 0.02}, {true, 0.14, 0.12}}) {
+    EXPECT_LT(curvature(one, rough), -0.01) << rough;
+    EXPECT_GT(curvature(two, rough), 0.01) << rough;
+  }
+  EXPECT_LT(curvature(0.1, false), -0.2);
+  EXPECT_GT(curvature(0.1, true), 0.09);
+  // The curvature is that of the pressure.
+  for (const bool rough : {false, true}) {
+    const double step = 0.05;
+    const auto pressure = [&](double x) { return exact_base({0.1, 1}, 0.95, rough, x).pressure; };
+    EXPECT_NEAR(2 * (pressure(step) - pressure(0)) / (step * step), curvature(0.1, rough), 0.02);
+  }
+}
+
+TEST(FeOrthotropicLayer, NuIsReportedOnlyWhereItIsKnown) {
+  // A figure needs no solve: it is known from the settings.
+  const auto figures = [](const Settings& settings) {
+    return make_model("fe_orthotropic_layer", settings)->figures();
+  };
+  EXPECT_EQ(figures({{"r", "0.4"}}).count("nu_xy"), 0u);
+  EXPECT_EQ(figures({{"r", "0.4"}, {"nu_xy", "0.3"}}).at("nu_xy"), 0.3);
+  EXPECT_EQ(figures({{"sides", "smooth"}, {"nu_xy", "0.3"}}).at("nu_xy"), 0.3);
+}
+
 TEST(FeOrthotropicLayer, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal({{"r", "-1"}}), HasSubstr("r = -1 is not elastic; allowed: above -sqrt(t)"));
-  EXPECT_THAT(refusal({{"base", "rough"}}), HasSubstr("nu_xy is not set; a rough base needs it, "
-                                                      "allowed: between -1 and 1"));
+  EXPECT_THAT(refusal({{"base", "rough"}}),
+              HasSubstr("nu_xy is not set; base = rough needs it, allowed: between -1 and 1"));
+  EXPECT_THAT(refusal({{"sides", "smooth"}, {"r", "-0.5"}}),
+              HasSubstr("nu_xy is not set; sides = smooth needs it, allowed: between 0.5 and 1"));
+  for (const char* key : {"E_x", "E_y", "G", "nu_xy"})
+    EXPECT_THAT(refusal({{"map", "/nowhere.csv"}, {key, "0.5"}}),
+                HasSubstr(std::string(key) + " is set beside map, which replaces it"));
   EXPECT_THAT(refusal({{"r", "-0.5"}, {"nu_xy", "0.3"}}),
               HasSubstr("nu_xy = 0.3 is not elastic with r = -0.5, t = 1; allowed: between "
                         "max(-r, -sqrt(t)) = 0.5 and sqrt(t) = 1"));

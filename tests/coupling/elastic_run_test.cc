@@ -4,6 +4,7 @@
 
 #include "coupling/run/elastic.h"
 #include "coupling/run/summary_keys.h"
+#include "tests/paths.h"
 
 using namespace grainfield::coupling;
 
