@@ -85,7 +85,7 @@ TEST(CantelaubeCore, OtherBasesBearTheSameWeight) {
   for (const auto& settings :
        {Settings{{"base", "rough"}}, {{"base", "smooth"}}, {{"base", "elastic"}}}) {
     Settings all = settings;
-    all["adaptive"] = "2";
+    all.insert({"adaptive", "2"});
     const auto model = make_model("fe_cantelaube_core", all);
     EXPECT_NEAR(force(model), closed, 5e-3 * closed) << settings.at("base");
     EXPECT_GT(figure(model, "closed_form_error"), 1e-2) << settings.at("base");

@@ -13,6 +13,7 @@ using grainfield::continuum::testing::figure;
 using grainfield::continuum::testing::kExact;
 using grainfield::continuum::testing::kExactYielding;
 using grainfield::continuum::testing::over_the_heap;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 namespace {
@@ -59,10 +60,11 @@ TEST(CantelaubeCore, OutsideIsNanAndSettingsAreChecked) {
                         "phi_deg = 62 deg"));
   EXPECT_THAT(refusal({{"beta_hat_deg", "30"}}), HasSubstr("allowed: axis = continuous or yields"));
   for (const char* base : {"rough", "smooth", "elastic"}) {
-    EXPECT_THAT(refusal({{"branch", "minus"}, {"base", base}}),
-                HasSubstr("base = " + std::string(base) +
-                          " is not solved with a yielding axis (axis = branch, branch = minus); "
-                          "allowed: base = closed, or axis = continuous"));
+    EXPECT_THAT(
+        refusal({{"branch", "minus"}, {"base", base}}),
+        AllOf(HasSubstr("is not solved with a yielding axis (axis = branch, branch = minus); "
+                        "allowed: base = closed, or axis = continuous"),
+              HasSubstr(base)));
     EXPECT_THAT(refusal({{"axis", "yields"}, {"base", base}}), HasSubstr("allowed: base = closed"));
     EXPECT_EQ(refusal({{"branch", "minus"}, {"base", base}, {"axis", "continuous"}}), "accepted");
   }
