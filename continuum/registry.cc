@@ -25,6 +25,7 @@ const std::vector<ModelInfo>& registry() {
                                                 ife_info(),
                                                 osl_layer_info(),
                                                 orthotropic_half_plane_info(),
+                                                orthotropic_layer_info(),
                                                 fe_elastic_layer_info(),
                                                 fe_orthotropic_layer_info(),
                                                 fe_elastic_half_space_info(),

@@ -17,6 +17,7 @@ ModelInfo bcc_info();
 ModelInfo ife_info();
 ModelInfo osl_layer_info();
 ModelInfo orthotropic_half_plane_info();
+ModelInfo orthotropic_layer_info();
 
 /// Parameters that all heaps share: phi_deg (friction angle and, unless the model has slopes of its
 /// own, slope) and rho_g.

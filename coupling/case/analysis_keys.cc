@@ -118,8 +118,10 @@ void output(Section s) {
 }
 
 void sweep(Section s) {
-  s.word("key", +IN(string, sweep.key), {},
-         "the case is run once for every value of this key; empty: no sweep");
+  s.word(
+      "key", +IN(string, sweep.key), {},
+      "the case is run once for every value of this key; empty: no sweep; variant: once for every "
+      "named set of keys of tables [variant.NAME.SECTION]");
   s.word("values", +IN(Words, sweep.values), {}, "values of that key");
 }
 

@@ -92,7 +92,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
 [[noreturn]] void unknown(const Assignment& a) {
   const std::string section = a.path.substr(0, a.path.find('.'));
   auto names = sections();
-  names.insert(names.end(), {"model", "quick"});
+  names.insert(names.end(), {"model", "variant", "quick"});
   const bool sectioned = a.table || section.size() < a.path.size();
   if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
     reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
@@ -110,7 +110,77 @@ void set(const Key& key, const Assignment& a, Case& value) {
   reject(a, a.path, "unknown key; nearest: " + near);
 }
 
+// A value as TOML.
+std::string value_of(const Assignment& a) {
+  std::string out;
+  for (const Scalar& item : a.items) {
+    out += (out.empty() ? "" : ", ");
+    const auto* word = std::get_if<std::string>(&item);
+    out += word != nullptr ? toml_text(*word) : scalar_text(item);
+  }
+  return a.list ? "[" + out + "]" : out;
+}
+
+// [variant.NAME.SECTION]: kept until a sweep takes it, but checked at once.
+void keep_for_variant(Draft& draft, const Assignment& a) {
+  const std::string rest = a.path.substr(std::string_view("variant.").size());
+  const std::size_t dot = rest.find('.');
+  if (a.table) return;
+  if (dot == std::string::npos) {
+    reject(a, a.path, "found a value, expected a table [variant.NAME] of keys");
+  }
+  Assignment inner = a;
+  inner.path = rest.substr(dot + 1);
+  if (inner.path.compare(0, 8, "variant.") == 0 || inner.path.compare(0, 6, "sweep.") == 0 ||
+      inner.path == "study") {
+    reject(a, a.path, "cannot be part of a variant");
+  }
+  Draft scratch = draft;
+  apply(scratch, inner);
+  const std::string name = rest.substr(0, dot);
+  auto& variants = draft.value.variants;
+  auto at = std::find_if(variants.begin(), variants.end(),
+                         [&](const Variant& v) { return v.name == name; });
+  if (at == variants.end()) at = variants.insert(variants.end(), {name, {}});
+  const std::string start = inner.path + "=";
+  at->keys.erase(std::remove_if(at->keys.begin(), at->keys.end(),
+                                [&](const std::string& k) { return k.rfind(start, 0) == 0; }),
+                 at->keys.end());
+  at->keys.push_back(start + value_of(inner));
+}
+
+// A sweep's member: the keys of the named variant.
+void take_variant(Draft& draft, const Assignment& a) {
+  const std::string name = a.items.size() == 1 ? scalar_text(a.items.front()) : a.text;
+  const std::vector<Variant> variants = draft.value.variants;
+  std::vector<std::string> names;
+  for (const Variant& v : variants) {
+    names.push_back(v.name);
+    if (v.name != name) continue;
+    for (const std::string& key : v.keys) apply(draft, parse_override(key));
+    draft.value.variants.clear();
+    return;
+  }
+  reject(a, "variant",
+         names.empty()
+             ? "no [variant.NAME] in this case"
+             : fmt::format("found \"{}\", nearest: {}", name, continuum::nearest(name, names)));
+}
+
 }  // namespace
+
+std::string toml_text(const std::string& text) {
+  std::string out = "\"";
+  for (const char ch : text) {
+    if (ch == '"' || ch == '\\') out += '\\';
+    if (ch == '\n') {
+      out += "\\n";
+    } else {
+      out += ch;
+    }
+  }
+  return out + "\"";
+}
 
 void reject(const Assignment& a, const std::string& key, const std::string& what) {
   throw std::invalid_argument(fmt::format("{}: {}: {}", a.origin, key, what));
@@ -133,6 +203,8 @@ void apply(Draft& draft, const Assignment& a) {
     draft.models[rest.substr(0, dot)].insert_or_assign(parameter, a);
     return;
   }
+  if (a.path.compare(0, 8, "variant.") == 0) return keep_for_variant(draft, a);
+  if (a.path == "variant" && !a.table) return take_variant(draft, a);
   const Key* key = find_key(a.path);
   if (key == nullptr) {
     const auto names = sections();

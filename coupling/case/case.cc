@@ -44,7 +44,7 @@ std::string model_value(const continuum::Parameter& parameter, const std::string
 
 // A suffix that is a folder's name and part of a key: "friction_0.3".
 std::string suffix_of(const std::string& key, const std::string& value) {
-  std::string out = key.substr(key.rfind('.') + 1) + "_";
+  std::string out = key == "variant" ? "" : key.substr(key.rfind('.') + 1) + "_";
   for (const char ch : value) {
     const auto c = static_cast<unsigned char>(ch);
     out += std::isalnum(c) != 0 || ch == '.' || ch == '-' || ch == '+' ? ch : '_';
@@ -149,11 +149,16 @@ std::string write_case(const Case& value) {
       }
     }
   }
+  for (const Variant& variant : value.variants) {
+    out += fmt::format("\n[variant.{}]\n",
+                       plain_name(variant.name) ? variant.name : toml_text(variant.name));
+    for (const std::string& key : variant.keys) out += key + "\n";
+  }
   return out;
 }
 
 std::string grain_keys_text(const Case& value) {
-  static const std::vector<std::string> others{"average", "heap",  "fields",  "fit",
+  static const std::vector<std::string> others{"average", "heap",  "fields",  "fit",   "verdict",
                                                "elastic", "wedge", "compare", "output"};
   std::string out;
   for (const Key& key : keys()) {
@@ -163,6 +168,13 @@ std::string grain_keys_text(const Case& value) {
       continue;
     }
     out += fmt::format("{} = {}\n", key.path(), value_text(key, value));
+  }
+  for (const Variant& variant : value.variants) {
+    for (const std::string& key : variant.keys) {
+      if (std::find(others.begin(), others.end(), key.substr(0, key.find('.'))) == others.end()) {
+        out += fmt::format("variant {}: {}\n", variant.name, key);
+      }
+    }
   }
   return out;
 }

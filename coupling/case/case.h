@@ -78,6 +78,23 @@ struct FitSetup {
   std::int64_t bootstrap = 200;
 };
 
+/// What is fitted to loaded layers (coupling/fit/layer_*).
+struct VerdictSetup {
+  std::vector<std::string> models = {"flamant",
+                                     "layer_smooth",
+                                     "layer_rough",
+                                     "orthotropic_half_plane",
+                                     "orthotropic_layer_smooth",
+                                     "orthotropic_layer_rough",
+                                     "osl_layer_absorbing",
+                                     "osl_layer_reflecting"};
+  std::vector<std::string> finite_elements = {"fe_elastic_layer"};
+  std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
+  bool base = true;
+  std::string covariance = "auto";
+  std::int64_t bootstrap = 100;
+};
+
 /// Points and load of the studies without grains.
 struct ElasticSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
@@ -114,6 +131,12 @@ struct SweepSetup {
   std::vector<std::string> values;  ///< as TOML text
 };
 
+/// A named set of keys that differ from the rest of the case: [variant.NAME.SECTION].
+struct Variant {
+  std::string name;
+  std::vector<std::string> keys;  ///< "packing.kind=\"layered\"", as on the command line
+};
+
 /// A model of the comparison: its label in tables and keys, the registry's name, and the settings
 /// the user gave (F, h and dim are added from the run where the model has them).
 struct ModelChoice {
@@ -141,11 +164,13 @@ struct Case {
   GrainFiles grains;
   FieldsSetup fields;
   FitSetup fit;
+  VerdictSetup verdict;
   ElasticSetup elastic;
   WedgeSetup wedge;
   CompareSetup compare;
   OutputSetup output;
   SweepSetup sweep;
+  std::vector<Variant> variants;    ///< members of a sweep whose key is "variant"
   std::vector<ModelChoice> models;  ///< in the order of compare.models
 };
 

@@ -64,6 +64,7 @@ void declare_heap_keys(std::vector<Key>& keys);
 void declare_grain_files_keys(std::vector<Key>& keys);
 void declare_fields_keys(std::vector<Key>& keys);
 void declare_fit_keys(std::vector<Key>& keys);
+void declare_verdict_keys(std::vector<Key>& keys);
 void declare_analysis_keys(std::vector<Key>& keys);
 
 }  // namespace grainfield::coupling

@@ -156,6 +156,21 @@ void check_list(const Draft& draft, const std::string& key, std::vector<T> list)
   }
 }
 
+void check_verdict(const Draft& draft) {
+  if (!section_applies("verdict", draft.value.study)) return;
+  const VerdictSetup& v = draft.value.verdict;
+  check_list(draft, "verdict.models", v.models);
+  check_list(draft, "verdict.components", v.components);
+  if (!v.finite_elements.empty()) check_list(draft, "verdict.finite_elements", v.finite_elements);
+  for (const std::string& name : v.finite_elements) {
+    try {
+      continuum::find_model(name);
+    } catch (const continuum::BadParameter& e) {
+      reject(written(draft, "verdict.finite_elements"), "verdict.finite_elements", e.what());
+    }
+  }
+}
+
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
@@ -224,6 +239,7 @@ void finish(Draft& draft) {
   check_elastic(draft);
   check_heap(draft);
   check_fit(draft);
+  check_verdict(draft);
   check_grains(draft);
   check_sweep(draft);
 }

@@ -118,6 +118,7 @@ const std::vector<Key>& keys() {
     declare_heap_keys(heap);
     declare_fields_keys(heap);
     declare_fit_keys(heap);
+    declare_verdict_keys(heap);
     list.insert(std::find_if(list.begin(), list.end(),
                              [](const Key& key) { return key.section == "elastic"; }),
                 heap.begin(), heap.end());

@@ -147,7 +147,7 @@ std::string family_of(const std::string& model_name) {
       model_name == "orthotropic_half_plane")
     return "half plane";
   if (model_name == "layer" || model_name == "fe_elastic_layer" ||
-      model_name == "fe_orthotropic_layer")
+      model_name == "orthotropic_layer" || model_name == "fe_orthotropic_layer")
     return "finite layer";
   return model_name;
 }

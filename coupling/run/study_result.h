@@ -32,6 +32,8 @@ struct StudyResult {
   /// that all members share.
   std::vector<Frame> sweep_frames;
   std::string sweep_x, sweep_y;  ///< labels of these frames' axes
+  /// This member's own pictures and tables in a sweep's report, given its name; may be empty.
+  std::function<std::vector<Section>(const std::string&)> sweep_sections, sweep_tables;
 };
 
 using ReportRows = std::vector<std::pair<std::string, std::string>>;

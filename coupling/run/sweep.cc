@@ -51,10 +51,13 @@ Table overview(const Case& value, const std::vector<SweepCase>& members,
 }
 
 // Every member's own frames, grains beside models.
-Picture side_by_side(const std::vector<StudyResult>& results) {
+Picture side_by_side(const Case& value, const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
-  for (const StudyResult& result : results) {
-    frames.insert(frames.end(), result.sweep_frames.begin(), result.sweep_frames.end());
+  for (std::size_t m = 0; m < results.size(); ++m) {
+    for (Frame frame : results[m].sweep_frames) {
+      if (value.sweep.key == "variant") frame.title = value.sweep.values[m] + ", " + frame.title;
+      frames.push_back(std::move(frame));
+    }
   }
   Picture picture =
       curves("Grains beside the models", results.front().sweep_x, results.front().sweep_y, frames);
@@ -115,8 +118,18 @@ void write_sweep(const std::string& folder, const Case& value,
   }
   report.sections.emplace_back(results.front().sweep_frames.empty()
                                    ? profiles(value, members, results)
-                                   : side_by_side(results));
+                                   : side_by_side(value, results));
+  const auto own = [&](auto part) {
+    for (std::size_t m = 0; m < results.size(); ++m) {
+      if (!(results[m].*part)) continue;
+      for (Section& s : (results[m].*part)(value.sweep.values[m])) {
+        report.sections.push_back(std::move(s));
+      }
+    }
+  };
+  own(&StudyResult::sweep_sections);
   report.sections.emplace_back(overview(value, members, results));
+  own(&StudyResult::sweep_tables);
   if (value.output.report) write_report(folder + "/report.html", report);
   write_text_file(folder + "/case.toml", write_case(value));
   write_summary(folder + "/summary.json", all);

@@ -1,0 +1,212 @@
+#include "continuum/closed/orthotropic_layer.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "continuum/closed/models.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+using Gauss = boost::math::quadrature::gauss<double, 30>;
+
+/// Values that differ from the base's height by less than this part of h are on the base.
+constexpr double kOnBase = 1e-9;
+/// As in layer.cc: the tail that is left out, and what 30 Gauss points carry.
+constexpr double kDecay = 44, kPanelPhase = 6, kPanelWidth = 2;
+/// Nearer to the hyperbolic limit r = -sqrt(t) the integrand decays too slowly to be summed.
+constexpr double kLeastRatio = -0.99;
+
+class OrthotropicLayer : public Model {
+ public:
+  OrthotropicLayer(double load, double depth, const Orthotropy& o, double nu, bool rough)
+      : load_(load), h_(depth), o_(o), waves_(o, nu, rough) {}
+
+  Stresses stress(const Points& points) override {
+    Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const double x = points(i, 0), y = points(i, 1);
+      if (!(y < 0) || !(y >= -h_ * (1 + kOnBase)) || !std::isfinite(x)) continue;
+      out.row(i) = orthotropic_layer_stress(waves_, o_, load_, h_, x, std::max(y, -h_)).transpose();
+    }
+    return out;
+  }
+  std::map<std::string, double> figures() const override { return {{"r", o_.r}, {"t", o_.t}}; }
+
+ private:
+  double load_, h_;
+  Orthotropy o_;
+  OrthotropicWaves waves_;
+};
+
+std::unique_ptr<Model> make(const Settings& s) {
+  Orthotropy o{number_of(s, "r"), number_of(s, "t")};
+  const double E_x = number_of(s, "E_x"), E_y = number_of(s, "E_y"), G = number_of(s, "G");
+  const int set = !std::isnan(E_x) + !std::isnan(E_y) + !std::isnan(G);
+  if (set != 0 && set != 3)
+    throw BadParameter(fmt::format(
+        "model orthotropic_layer: found {} of E_x, E_y, G; allowed: all three, with nu_xy, or "
+        "none, with r, t and nu_xy",
+        set));
+  if (set == 3) o = orthotropy(E_x, E_y, number_of(s, "nu_xy"), G);
+  const double least = kLeastRatio * std::sqrt(o.t);
+  if (!(o.r > least) || !std::isfinite(o.r + o.t))
+    throw BadParameter(
+        fmt::format("model orthotropic_layer: r = {:.6g} is too near to the hyperbolic limit; "
+                    "allowed: above {:g} sqrt(t) = {:.6g} at t = {:.6g}",
+                    o.r, kLeastRatio, least, o.t));
+  const double nu = number_of(s, "nu_xy");
+  const bool rough = s.at("base") == "rough";
+  if (rough && !(o.r + nu > 0 && nu * nu <= o.t))
+    throw BadParameter(
+        fmt::format("model orthotropic_layer: nu_xy = {:.6g} is of no solid at r = {:.6g}, t = "
+                    "{:.6g}; allowed: "
+                    "above -r and from -sqrt(t) to sqrt(t)",
+                    nu, o.r, o.t));
+  return std::make_unique<OrthotropicLayer>(number_of(s, "F"), number_of(s, "h"), o, nu, rough);
+}
+
+}  // namespace
+
+OrthotropicWaves::OrthotropicWaves(const Orthotropy& medium, double nu, bool rough)
+    : medium_(medium),
+      nu_(nu),
+      rough_(rough),
+      m_(std::sqrt(0.5 * (medium.r + std::sqrt(medium.t)))),
+      square_(0.5 * (medium.r - std::sqrt(medium.t))) {}
+
+double OrthotropicWaves::decay() const {
+  return square_ > 0 ? std::sqrt(medium_.t) / (m_ + std::sqrt(square_)) : m_;
+}
+
+double OrthotropicWaves::oscillation() const { return square_ < 0 ? std::sqrt(-square_) : 0; }
+
+OrthotropicWaves::Values OrthotropicWaves::pair(double a, double b, double z) const {
+  double c = 0, s = 0;
+  const double size = std::sqrt(std::fabs(square_)), phase = size * z;
+  if (phase < 1e-4) {
+    const double e = std::exp(-m_ * z), p2 = square_ * z * z;
+    c = e * (1 + p2 / 2);
+    s = e * z * (1 + p2 / 6);
+  } else if (square_ > 0) {
+    const double slow = std::exp((size - m_) * z), fast = std::exp(-(size + m_) * z);
+    c = 0.5 * (slow + fast);
+    s = 0.5 * (slow - fast) / size;
+  } else {
+    const double e = std::exp(-m_ * z);
+    c = e * std::cos(phase);
+    s = e * std::sin(phase) / size;
+  }
+  // A derivative takes (a, b) to (b - m a, D a - m b).
+  Values out{a * c + b * s, 0, 0, 0};
+  for (double* v : {&out.g1, &out.g2, &out.g3}) {
+    const double next = b - m_ * a;
+    b = square_ * a - m_ * b;
+    a = next;
+    *v = a * c + b * s;
+  }
+  return out;
+}
+
+Eigen::Vector2d OrthotropicWaves::base_conditions(const Values& v) const {
+  if (!rough_) return {v.g1, v.g3};
+  return {v.g2 + nu_ * v.g, v.g3 - (2 * medium_.r + nu_) * v.g1};
+}
+
+OrthotropicWaves::Values OrthotropicWaves::reflected(const Eigen::Vector4d& c, double s,
+                                                     double u) const {
+  const Values down = pair(c[0], c[1], s), up = pair(c[2], c[3], u - s);
+  return {down.g + up.g, down.g1 - up.g1, down.g2 + up.g2, down.g3 - up.g3};
+}
+
+Eigen::Vector4d OrthotropicWaves::coefficients(double u) const {
+  Eigen::Matrix4d matrix;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector4d unit = Eigen::Vector4d::Unit(k);
+    const Values top = reflected(unit, 0, u);
+    matrix.col(k) << top.g, top.g1, base_conditions(reflected(unit, u, u));
+  }
+  Eigen::Vector4d right;
+  right << 0, 0, -base_conditions(half_plane(u));
+  return matrix.partialPivLu().solve(right);
+}
+
+Eigen::MatrixX3d OrthotropicWaves::of_base(double u, const Eigen::VectorXd& share) const {
+  const Eigen::Vector4d c = coefficients(u);
+  Eigen::MatrixX3d out(share.size(), 3);
+  for (Eigen::Index k = 0; k < share.size(); ++k) {
+    const Values v = reflected(c, u * share[k], u);
+    out.row(k) << v.g2, v.g, v.g1;
+  }
+  return out;
+}
+
+Eigen::MatrixX3d OrthotropicWaves::total(double u, const Eigen::VectorXd& share) const {
+  Eigen::MatrixX3d out = of_base(u, share);
+  for (Eigen::Index k = 0; k < share.size(); ++k) {
+    const Values v = half_plane(u * share[k]);
+    out.row(k) += Eigen::RowVector3d(v.g2, v.g, v.g1);
+  }
+  return out;
+}
+
+Eigen::Vector3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
+                                         double F, double h, double x, double y) {
+  const double share = -y / h, phase = std::fabs(x) / h;
+  const double end = kDecay / (waves.decay() * (2 - share));
+  // Towards the hyperbolic limit the integrand's poles approach the real axis like the decay.
+  const double width =
+      std::min({kPanelWidth, kPanelPhase / std::max(phase + 2 * waves.oscillation(), 1e-3),
+                kPanelWidth * waves.decay()});
+  const int panels = static_cast<int>(std::ceil(end / width));
+  const double half = 0.5 * end / panels;
+  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, share);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const auto add = [&](double u, double weight) {
+    const Eigen::RowVector3d g = waves.of_base(u, at).row(0);
+    const double c = weight * std::cos(u * x / h), s = weight * std::sin(u * x / h);
+    sum += Eigen::Vector3d(c * g[0], c * g[1], s * g[2]);
+  };
+  for (int panel = 0; panel < panels; ++panel) {
+    const double middle = (2 * panel + 1) * half;
+    for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+      add(middle + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+      add(middle - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+    }
+  }
+  sum *= F / (std::numbers::pi * h);
+  const auto half_plane = orthotropic_stress(F, medium, x, y);
+  // sigma_xd changes sign with the axis that points up.
+  return {half_plane[0] + sum[0], half_plane[1] - sum[1], half_plane[2] - sum[2]};
+}
+
+ModelInfo orthotropic_layer_info() {
+  const char* source = "Otto et al. 2003";
+  return {
+      "orthotropic_layer",
+      "layer with vertical and horizontal elastic axes on a rigid base under a line load",
+      2,
+      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+       number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+       number("r", "-", "(E_x/G - 2 nu_xy)/2, above -0.99 sqrt(t); isotropic: 1", source, 1,
+              -kUnbounded, kUnbounded),
+       number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+       optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source, kAboveZero,
+                       kUnbounded),
+       optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+       optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+       number("nu_xy", "-",
+              "-eps_yy/eps_xx under sigma_xx in the plane; without E_x, E_y, G it counts on a "
+              "rough base only",
+              source, 0.3, -kUnbounded, kUnbounded),
+       choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
+      make};
+}
+
+}  // namespace grainfield::continuum

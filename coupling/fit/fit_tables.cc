@@ -1,0 +1,123 @@
+#include "coupling/fit/fit_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainfield::coupling {
+namespace {
+
+std::string tex_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '_' || c == '%') out += '\\';
+    out += c;
+  }
+  const std::size_t at = out.find("+-");
+  return at == std::string::npos ? out : out.replace(at, 2, "$\\pm$");
+}
+
+}  // namespace
+
+std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "nan"; }
+
+std::string with_error(const FittedParameter& p) {
+  if (!std::isfinite(p.error)) return fmt::format("{:.3g} (no error)", p.value);
+  const int digits =
+      std::clamp(1 - static_cast<int>(std::floor(std::log10(std::max(p.error, 1e-12)))), 0, 8);
+  return fmt::format("{:.{}f} +- {:.{}f}", p.value, digits, p.error, digits);
+}
+
+const std::vector<std::string>& parameter_header() {
+  static const std::vector<std::string> header{
+      "model", "parameter", "value", "bootstrap error", "unit", "strongest correlation", "note"};
+  return header;
+}
+
+std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fits) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Fit& f : fits) {
+    for (std::size_t k = 0; k < f.parameters.size(); ++k) {
+      const FittedParameter& p = f.parameters[k];
+      // Its strongest correlation with another.
+      std::string with = "-";
+      double strongest = 0;
+      for (std::size_t j = 0; j < f.parameters.size(); ++j) {
+        const double r = f.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
+        if (j == k || !(std::fabs(r) > std::fabs(strongest))) continue;
+        strongest = r;
+        with = fmt::format("{:.2f} with {}", r, f.parameters[j].parameter.name);
+      }
+      rows.push_back(
+          {f.name, p.parameter.name, with_error(p),
+           std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
+           p.parameter.unit, with, p.at_bound ? "at its bound" : ""});
+    }
+  }
+  return rows;
+}
+
+std::string markdown_table(const std::vector<std::string>& header,
+                           const std::vector<std::vector<std::string>>& rows) {
+  std::string out = fmt::format("| {} |\n|{}\n", fmt::join(header, " | "), [&] {
+    std::string rule;
+    for (std::size_t k = 0; k < header.size(); ++k) rule += "---|";
+    return rule;
+  }());
+  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
+  return out;
+}
+
+std::string tex_table(const std::vector<std::string>& header,
+                      const std::vector<std::vector<std::string>>& rows) {
+  const auto line = [](const std::vector<std::string>& cells) {
+    std::vector<std::string> out;
+    for (const std::string& cell : cells) out.push_back(tex_escaped(cell));
+    return fmt::format("{} \\\\\n", fmt::join(out, " & "));
+  };
+  std::string out = fmt::format("\\begin{{tabular}}{{{}}}\n\\hline\n{}\\hline\n",
+                                std::string(header.size(), 'l'), line(header));
+  for (const auto& row : rows) out += line(row);
+  return out + "\\hline\n\\end{tabular}\n";
+}
+
+std::string parameters_csv(const std::vector<Fit>& fits) {
+  std::string out = "model,parameter,unit,value,error,bootstrap_error,low,high,at_bound\n";
+  for (const Fit& f : fits) {
+    for (const FittedParameter& p : f.parameters) {
+      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", f.name, p.parameter.name, p.parameter.unit,
+                         number(p.value), number(p.error), number(p.bootstrap_error), number(p.low),
+                         number(p.high), p.at_bound ? 1 : 0);
+    }
+  }
+  return out;
+}
+
+void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
+  for (const Fit& f : fits) {
+    const std::string prefix = "fit." + f.name + ".";
+    for (const FittedParameter& p : f.parameters) {
+      summary[prefix + p.parameter.name] = p.value;
+      summary[prefix + p.parameter.name + ".error"] = p.error;
+      summary[prefix + p.parameter.name + ".bootstrap_error"] = p.bootstrap_error;
+    }
+    summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
+    summary[prefix + "rel_l2"] = f.rel_l2;
+    summary[prefix + "note"] = f.note;
+  }
+}
+
+void add_ranking(Summary& summary, const Selection& selection) {
+  for (const Score& s : selection.ranking) {
+    const std::string prefix = "fit." + s.name + ".";
+    summary[prefix + "aicc_difference"] = s.aicc_difference;
+    summary[prefix + "cv_behind"] = s.behind;
+    summary[prefix + "cv_behind_error"] = s.behind_error;
+    summary[prefix + "cv_heights"] = s.level_score;
+    summary[prefix + "supported"] = s.supported ? "yes" : "no";
+  }
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,33 @@
+// Tables and summary keys that all fits share.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/fit/fit.h"
+#include "coupling/fit/selection.h"
+#include "coupling/output/tables.h"
+
+namespace grainfield::coupling {
+
+/// Six digits, or "nan".
+std::string number(double value);
+/// "0.35 +- 0.02", to two digits of the error; "0.35 (no error)".
+std::string with_error(const FittedParameter& parameter);
+
+const std::vector<std::string>& parameter_header();
+/// One row per parameter of every fit, with its strongest correlation.
+std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fits);
+
+std::string markdown_table(const std::vector<std::string>& header,
+                           const std::vector<std::vector<std::string>>& rows);
+std::string tex_table(const std::vector<std::string>& header,
+                      const std::vector<std::vector<std::string>>& rows);
+/// model,parameter,unit,value,error,bootstrap_error,low,high,at_bound
+std::string parameters_csv(const std::vector<Fit>& fits);
+
+/// fit.MODEL.PARAMETER, .error, .bootstrap_error; fit.MODEL.{chi2_per_dof,rel_l2,note}.
+void add_parameters(Summary& summary, const std::vector<Fit>& fits);
+/// fit.MODEL.{aicc_difference,cv_behind,cv_behind_error,cv_heights,supported}.
+void add_ranking(Summary& summary, const Selection& selection);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,216 @@
+#include "coupling/fit/layer_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/fit/fit_tables.h"
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/posteriors.h"
+
+namespace grainfield::coupling {
+namespace {
+
+const std::vector<std::string> kRankingHeader{"model",           "equations",   "free numbers",
+                                              "chi2/dof",        "AICc behind", "CV behind",
+                                              "CV over heights", "relative L2", "supported"};
+
+std::vector<std::vector<std::string>> ranking_rows(const LayerFits& fits) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Score& s : fits.selection.ranking) {
+    const Fit& f = fits.fit_of(s.name);
+    rows.push_back({s.name, type_of_equations(s.name), fmt::format("{}", f.parameters.size()),
+                    number(f.chi2_per_dof), fmt::format("{:.1f}", s.aicc_difference),
+                    std::isfinite(s.behind_error)
+                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
+                        : "-",
+                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
+                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
+  }
+  return rows;
+}
+
+const std::vector<std::string> kElementsHeader{"finite elements", "constants of",
+                                               "constants",       "chi2/dof",
+                                               "relative L2",     "from the closed form"};
+
+std::vector<std::vector<std::string>> element_rows(const LayerFits& fits) {
+  std::vector<std::vector<std::string>> rows;
+  for (const FiniteElementFit& e : fits.elements) {
+    if (!e.why.empty()) {
+      rows.push_back({e.name, e.of, e.why, "-", "-", "-"});
+      continue;
+    }
+    rows.push_back({e.name, e.of, e.constants, number(e.chi2_per_dof),
+                    fmt::format("{:.1f} %", 100 * e.rel_l2),
+                    fmt::format("{:.2g} %", 100 * e.from_closed)});
+  }
+  return rows;
+}
+
+std::string weights_note(const LayerFits& fits) {
+  const Covariance& c = fits.covariance;
+  std::string out =
+      fmt::format("{} values of {} layers on {} levels; {} covariance", fits.layers.data.values(),
+                  fits.layers.data.realizations(), fits.layers.data.levels.size(), c.kind);
+  if (c.correlation_length > 0) {
+    out += fmt::format(", correlation length {:.3g} h, {:.0f} effective values",
+                       c.correlation_length, c.effective_values);
+  }
+  return c.note.empty() ? out : out + "; " + c.note;
+}
+
+std::string level_title(const std::string& level) {
+  return level == "base" ? "on the base" : "at the depth " + level + " h";
+}
+
+}  // namespace
+
+const Fit& LayerFits::fit_of(const std::string& name) const {
+  const auto at =
+      std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
+  if (at == fits.end()) throw std::logic_error("no fit of " + name);
+  return *at;
+}
+
+void add_layer_fits(Summary& summary, const LayerFits& fits) {
+  summary["fit.values"] = static_cast<double>(fits.layers.data.values());
+  summary["fit.covariance"] = fits.covariance.kind;
+  summary["fit.correlation_length"] = fits.covariance.correlation_length;
+  summary["fit.effective_values"] = fits.covariance.effective_values;
+  add_parameters(summary, fits.fits);
+  add_ranking(summary, fits.selection);
+  for (const Fit& f : fits.fits) {
+    const Ratio rho = rho_of(f);
+    if (f.name.rfind("orthotropic_layer_rough", 0) == 0) {
+      summary["fit." + f.name + ".rho"] = rho.value;
+      summary["fit." + f.name + ".rho.error"] = rho.error;
+    }
+  }
+  for (const FiniteElementFit& e : fits.elements) {
+    const std::string prefix = "fe." + e.name + ".";
+    summary[prefix + "constants_of"] = e.of;
+    summary[prefix + "note"] = e.why;
+    if (!e.why.empty()) continue;
+    summary[prefix + "chi2_per_dof"] = e.chi2_per_dof;
+    summary[prefix + "rel_l2"] = e.rel_l2;
+    summary[prefix + "from_closed_form"] = e.from_closed;
+  }
+  summary["verdict.best_model"] = fits.verdict.model;
+  summary["verdict.distinguishable"] = fits.verdict.alone ? "yes" : "no";
+  summary["verdict.equations"] = fits.verdict.equations;
+  summary["verdict.agrees"] = fits.verdict.agrees ? "yes" : "no";
+  summary["verdict.sentence"] = fits.verdict.sentence;
+}
+
+std::string layer_fits_csv(const LayerFits& fits) { return parameters_csv(fits.fits); }
+
+std::string layer_fits_markdown(const LayerFits& fits) {
+  return fmt::format("{}\n\n{}.\n\n{}\n{}\n{}", fits.verdict.sentence, weights_note(fits),
+                     markdown_table(kRankingHeader, ranking_rows(fits)),
+                     markdown_table(parameter_header(), parameter_rows(fits.fits)),
+                     markdown_table(kElementsHeader, element_rows(fits)));
+}
+
+std::string layer_fits_tex(const LayerFits& fits) {
+  return fmt::format("% {}\n{}\n{}\n{}", weights_note(fits),
+                     tex_table(kRankingHeader, ranking_rows(fits)),
+                     tex_table(parameter_header(), parameter_rows(fits.fits)),
+                     tex_table(kElementsHeader, element_rows(fits)));
+}
+
+std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& component,
+                                const std::vector<std::string>& only) {
+  const FitData& data = fits.layers.data;
+  const double sign = component == "sigma_xy" ? 1 : -1;
+  const Eigen::VectorXd mean = data.mean();
+  std::vector<Frame> out;
+  for (std::size_t level = 0; level < data.levels.size(); ++level) {
+    if (!only.empty() && std::find(only.begin(), only.end(), data.levels[level]) == only.end()) {
+      continue;
+    }
+    std::vector<Eigen::Index> rows;
+    for (int k = 0; k < data.values(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (data.components[static_cast<std::size_t>(data.component[at])] == component &&
+          data.level[at] == static_cast<int>(level)) {
+        rows.push_back(k);
+      }
+    }
+    if (rows.size() < 3) continue;
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    Series grains{"grains", Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), true};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Eigen::Index row = rows[static_cast<std::size_t>(k)];
+      grains.x[k] = data.points(row, 0);
+      grains.y[k] = sign * mean[row];
+      grains.error[k] = std::sqrt(fits.covariance.of_mean(row, row));
+    }
+    if (fits.covariance.kind == "unknown") grains.error.resize(0);
+    Frame frame{level_title(data.levels[level]), {grains}};
+    for (const Fit& f : fits.fits) {
+      Series s{f.name, grains.x, Eigen::VectorXd(n), {}, false};
+      for (Eigen::Index k = 0; k < n; ++k) {
+        s.y[k] = sign * f.model[rows[static_cast<std::size_t>(k)]];
+      }
+      frame.series.push_back(std::move(s));
+    }
+    out.push_back(std::move(frame));
+  }
+  return out;
+}
+
+std::vector<Section> layer_pictures(const LayerFits& fits) {
+  std::vector<Section> out;
+  for (const std::string& component : fits.layers.data.components) {
+    std::vector<Frame> frames = layer_frames(fits, component);
+    if (frames.empty()) continue;
+    const bool shear = component == "sigma_xy";
+    Picture picture = curves(
+        fmt::format("Response of {} to the load, and all models", component), "x / h (load at 0)",
+        fmt::format("{}σ_{{{}}}  (F/h)", shear ? "" : "-", component.substr(6)), frames);
+    picture.caption = fmt::format(
+        "Loaded less unloaded, h = {:.4g} m, F = {:.4g} N. The models have their fitted constants "
+        "and are smoothed with the kernel of the averaging; finite elements lie on their closed "
+        "forms (table below). The grey band is one standard error on either side. {}.",
+        fits.layers.depth, fits.layers.force, weights_note(fits));
+    out.emplace_back(std::move(picture));
+  }
+  const std::string& best = fits.verdict.model;
+  for (Section& s :
+       map_sections(fits.maps, model_on_maps(fits.maps, fits.layers, fits.fit_of(best)), best)) {
+    out.push_back(std::move(s));
+  }
+  std::vector<const Fit*> ranked;
+  for (const Score& s : fits.selection.ranking) ranked.push_back(&fits.fit_of(s.name));
+  for (Section& s : posterior_sections(ranked, fits.layers.data.realizations())) {
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of) {
+  std::vector<Section> out;
+  out.emplace_back(
+      Table{of + "ranking",
+            "AICc behind: from the best. CV behind: cross-validation, squared difference per "
+            "effective value on realizations left out, from the best. CV over heights: the same on "
+            "the level left out. Supported: not behind in both. " +
+                weights_note(fits) + ".",
+            kRankingHeader, ranking_rows(fits)});
+  out.emplace_back(Table{of + "fitted constants",
+                         "Errors from the covariance; beside them those of bootstrap draws of the "
+                         "realizations.",
+                         parameter_header(), parameter_rows(fits.fits)});
+  if (!fits.elements.empty()) {
+    out.emplace_back(Table{of + "finite elements with the fitted constants",
+                           "Solved by deal.II with the constants of the fit, on the same points.",
+                           kElementsHeader, element_rows(fits)});
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

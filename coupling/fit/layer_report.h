@@ -1,0 +1,56 @@
+// What fits of layers leave: summary keys, tables and pictures.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/fit/layer_data.h"
+#include "coupling/fit/layer_maps.h"
+#include "coupling/fit/layer_verdict.h"
+#include "coupling/output/tables.h"
+#include "coupling/report/report.h"
+
+namespace grainfield::coupling {
+
+/// A finite-element solve with fitted constants, on the fit's points.
+struct FiniteElementFit {
+  std::string name, of;     ///< registry's name, fitted model whose constants it has
+  std::string constants;    ///< "nu=0.21, base=rough"
+  std::string why;          ///< not empty: was not solved, for this reason
+  Eigen::VectorXd model;    ///< at the data's rows
+  double chi2_per_dof = 0;  ///< with the fitted model's degrees of freedom
+  double rel_l2 = 0;        ///< |grains - it| / |grains|
+  double from_closed = 0;   ///< |it - fitted model| / |fitted model|
+};
+
+/// Everything that was fitted to one ensemble of layers.
+struct LayerFits {
+  LayerData layers;
+  Covariance covariance;
+  std::vector<FitModel> models;
+  std::vector<Fit> fits;  ///< in the order of models
+  Selection selection;
+  LayerVerdict verdict;
+  std::vector<FiniteElementFit> elements;
+  LayerMaps maps;
+
+  const Fit& fit_of(const std::string& name) const;
+};
+
+/// fit.*, fe.* and verdict.*: see summary_keys.cc.
+void add_layer_fits(Summary& summary, const LayerFits& fits);
+
+/// One row per parameter, and the tables as Markdown and LaTeX.
+std::string layer_fits_csv(const LayerFits& fits);
+std::string layer_fits_markdown(const LayerFits& fits);
+std::string layer_fits_tex(const LayerFits& fits);
+
+/// Frames of one component along every level, grains beside all models in their order. `only`: the
+/// levels of these names; empty: all.
+std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& component,
+                                const std::vector<std::string>& only = {});
+/// Profiles of every component, maps, posteriors.
+std::vector<Section> layer_pictures(const LayerFits& fits);
+/// Ranking, constants, finite elements. `of` stands before the titles: "mono: ".
+std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of = "");
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,194 @@
+#include "coupling/fit/layer_study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "coupling/fit/finished_layers.h"
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/models.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/run/models.h"
+#include "coupling/run/point_load.h"
+#include "coupling/run/study_result.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+  if (!value.grains.files.empty()) return make_finished_layer_run(value, number);
+  return dem::make_point_load_run(value.layer,
+                                  realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
+                                                   static_cast<std::uint64_t>(number)),
+                                  threads);
+}
+
+// The registry's model with F = 1, h = 1 at the fit's points, through the same kernel.
+FiniteElementFit solve(const std::string& name, const LayerFits& fits, const LayerSight& sight) {
+  FiniteElementFit out;
+  out.name = name;
+  const auto choice = finite_element_choice(name, fits.fits, 1, out.of, out.why);
+  if (choice == nullptr) return out;
+  std::vector<std::string> constants;
+  for (const auto& [key, value] : choice->settings) {
+    const bool word = value.find_first_not_of("0123456789.+-e") != std::string::npos;
+    constants.push_back(key + "=" + (word ? value : fmt::format("{:.4g}", std::stod(value))));
+  }
+  out.constants = fmt::format("{}", fmt::join(constants, ", "));
+  RunFacts facts;
+  facts.force = facts.height = 1;
+  // The half plane's finite elements need the least depth one looks at.
+  facts.depth = 0.1;
+  const auto model = continuum::make_model(choice->name, filled_settings(*choice, facts));
+  const bool half_plane = family_of(name) == "half plane";
+  const Eigen::MatrixXd seen =
+      sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
+  const FitData& data = fits.layers.data;
+  const Fit& fitted = fits.fit_of(out.of);
+  const FitModel given{name,
+                       name,
+                       {},
+                       {Eigen::VectorXd(0)},
+                       [&](const Eigen::MatrixXd& points, const Eigen::VectorXd&) {
+                         return sight.pick(seen, points);
+                       }};
+  out.model = predict(data, given, Eigen::VectorXd(0));
+  const Eigen::VectorXd off = data.mean() - out.model;
+  out.chi2_per_dof = (fits.covariance.whitener * off).squaredNorm() / fitted.dof;
+  out.rel_l2 = off.norm() / data.mean().norm();
+  out.from_closed = (out.model - fitted.model).norm() / fitted.model.norm();
+  return out;
+}
+
+// The models with their constants, for the tables and maps of every loaded layer.
+std::vector<ModelChoice> choices(const LayerFits& fits) {
+  std::vector<ModelChoice> out;
+  const double h = fits.layers.depth;
+  for (const Fit& f : fits.fits) out.push_back(fitted_choice(f, h));
+  for (const FiniteElementFit& e : fits.elements) {
+    std::string of, why;
+    if (const auto c = finite_element_choice(e.name, fits.fits, h, of, why)) out.push_back(*c);
+  }
+  return out;
+}
+
+Report page_of(const StudyResult& result, const Realization* first, const LayerFits& fits) {
+  Report out;
+  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}",
+                             fits.layers.force, fits.layers.depth, fits.layers.data.realizations(),
+                             fits.layers.data.realizations() == 1 ? "" : "s");
+  out.sections.emplace_back(Text{"", fits.verdict.sentence, true});
+  for (Section& s : layer_pictures(fits)) out.sections.push_back(std::move(s));
+  if (first != nullptr) {
+    const dem::Snapshot &unloaded = (*first)["unloaded"], &loaded = (*first)["loaded"];
+    out.sections.emplace_back(packing("The loaded packing", loaded));
+    out.sections.emplace_back(packing("What the load changes", loaded, &unloaded));
+    out.sections.emplace_back(contact_angles("Directions of the contacts", loaded));
+  }
+  for (Section& s : layer_tables(fits)) out.sections.push_back(std::move(s));
+  Table figures{"Figures", "", {}, {}};
+  for (const auto& [key, value] : figure_rows(
+           result.summary,
+           {"dem.grains", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+            "load.contacts_gained", "load.contacts_lost", "load.newly_sliding",
+            "load.no_rearrangement", "response.total_over_load", "response.peak_over_F_per_h",
+            "response.width", "response.peaks", "average.coarse_graining.balance_rms"})) {
+    figures.rows.push_back({key, value});
+  }
+  out.sections.emplace_back(std::move(figures));
+  Table made{"How it was made", "", {}, {}};
+  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
+  out.sections.emplace_back(std::move(made));
+  return out;
+}
+
+StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto fits = std::make_shared<LayerFits>(fit_layers(value, files, threads));
+  Case with_constants = value;
+  with_constants.models = choices(*fits);
+  StudyResult out = analyse_point_load(with_constants, files, threads);
+  add_layer_fits(out.summary, *fits);
+  out.comparison.verdict.best_model = fits->verdict.model;
+  out.comparison.verdict.sentence = fits->verdict.sentence;
+  out.texts = {{"fits.csv", layer_fits_csv(*fits)},
+               {"fits.md", layer_fits_markdown(*fits)},
+               {"fits.tex", layer_fits_tex(*fits)}};
+  out.overview = {
+      {"best model", "verdict.best_model"},    {"alone", "verdict.distinguishable"},
+      {"equations", "verdict.equations"},      {"within the errors", "verdict.agrees"},
+      {"peaks on the base", "response.peaks"}, {"peak / (F/h)", "response.peak_over_F_per_h"},
+      {"contacts lost", "load.contacts_lost"}};
+  for (Frame& frame : layer_frames(*fits, "sigma_yy", {"0.5", "base"})) {
+    out.sweep_frames.push_back(std::move(frame));
+  }
+  out.sweep_x = "x / h (load at 0)";
+  out.sweep_y = "response of -σ_{yy}  (F/h)";
+  out.sweep_sections = [fits](const std::string& name) {
+    const std::string& best = fits->verdict.model;
+    return map_sections(fits->maps, model_on_maps(fits->maps, fits->layers, fits->fit_of(best)),
+                        best, name);
+  };
+  out.sweep_tables = [fits](const std::string& name) { return layer_tables(*fits, name + ": "); };
+  out.page = [fits](const StudyResult& result, const Realization* first) {
+    return page_of(result, first, *fits);
+  };
+  out.summary["time.analysis_s"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace
+
+LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, int threads) {
+  LayerFits out;
+  out.layers = layer_data(value, files, threads);
+  const FitData& data = out.layers.data;
+  out.covariance = covariance_of(data, value.verdict.covariance);
+  // Components share their points: the sight needs each once.
+  std::vector<int> once;
+  std::map<std::pair<double, double>, int> seen;
+  for (int k = 0; k < data.values(); ++k) {
+    if (seen.emplace(std::pair(data.points(k, 0), data.points(k, 1)), k).second) once.push_back(k);
+  }
+  const auto sight =
+      std::make_shared<const LayerSight>(rows_of(data, once).points, *out.layers.kernel);
+  const std::vector<FitModel> known = layer_models(sight);
+  FitOptions options;
+  options.bootstrap = static_cast<int>(value.verdict.bootstrap);
+  options.threads = threads;
+  for (const std::string& name : value.verdict.models) {
+    out.models.push_back(find_fit_model(known, name));
+    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+  }
+  out.selection = select(data, out.covariance, out.models, out.fits);
+  out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
+  for (const std::string& name : value.verdict.finite_elements) {
+    out.elements.push_back(solve(name, out, *sight));
+  }
+  out.maps = layer_maps(value, files, out.layers, threads);
+  return out;
+}
+
+Study point_load_verdict_study() {
+  Study out = point_load_study();
+  out.name = "point-load-verdict";
+  out.meaning =
+      "stress models fitted to layers under a point load and ranked: half plane, layer, "
+      "orthotropic, OSL";
+  out.sections.insert(out.sections.end(), {"grains", "verdict"});
+  out.without = {"compare.models"};
+  out.models_optional = true;
+  out.make_run = [](const Case& value, std::uint64_t, int threads) {
+    return make_run(value, 0, threads);
+  };
+  out.make_numbered_run = make_run;
+  out.analyse = analyse;
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,131 @@
+#include "coupling/fit/layer_verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "coupling/compare/significance.h"
+#include "coupling/fit/layer_models.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// A model agrees when its chi2/dof is within so many standard deviations sqrt(2/dof) of 1; the
+// covariance is estimated, so that chi2 scatters more than that of a known one.
+constexpr double kChance = 3;
+
+const Fit& fit_of(const std::vector<Fit>& fits, const std::string& name) {
+  const auto at =
+      std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
+  if (at == fits.end()) throw std::invalid_argument("verdict: no fit of " + name);
+  return *at;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) out += k + 1 == names.size() ? " and " : ", ";
+    out += names[k];
+  }
+  return out;
+}
+
+LayerVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
+  std::vector<const Fit*> order;
+  for (const Fit& f : fits) order.push_back(&f);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Fit* a, const Fit* b) { return a->rel_l2 < b->rel_l2; });
+  LayerVerdict out;
+  out.model = order.front()->name;
+  out.equations = "not distinguishable";
+  out.sentence = fmt::format(
+      "{} realization{}: without a spread nothing is distinguishable. Nearest is {} (relative L2 "
+      "{:.1f} %)",
+      realizations, realizations == 1 ? "" : "s", out.model, 100 * order.front()->rel_l2);
+  if (order.size() > 1) {
+    out.sentence += fmt::format(", then {} ({:.1f} %)", order[1]->name, 100 * order[1]->rel_l2);
+  }
+  for (const Fit* f : order) {
+    if (type_of_equations(f->name) == type_of_equations(out.model)) continue;
+    out.sentence += fmt::format("; the nearest {} one is {} ({:.1f} %)", type_of_equations(f->name),
+                                f->name, 100 * f->rel_l2);
+    break;
+  }
+  out.sentence += ".";
+  return out;
+}
+
+}  // namespace
+
+bool contains(const std::string& general, const std::string& special) {
+  if (general == special) return true;
+  // The smooth base is no special case of the rough one.
+  return (general == "orthotropic_half_plane" && special == "flamant") ||
+         (general == "orthotropic_layer_smooth" && special == "layer_smooth") ||
+         (general == "orthotropic_layer_rough" && special == "layer_rough");
+}
+
+LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
+                           int realizations) {
+  if (fits.empty() || selection.ranking.empty()) {
+    throw std::invalid_argument("verdict: no fitted model");
+  }
+  if (realizations < least_for_significance) return without_spread(fits, realizations);
+  LayerVerdict out;
+  std::vector<std::string> supported;
+  std::set<std::string> types;
+  const Fit* simplest = nullptr;
+  for (const Score& s : selection.ranking) {  // by AICc: the first of equals stays
+    if (!s.supported) continue;
+    const Fit& f = fit_of(fits, s.name);
+    supported.push_back(s.name);
+    types.insert(type_of_equations(s.name));
+    if (simplest == nullptr || f.parameters.size() < simplest->parameters.size()) simplest = &f;
+  }
+  out.model = simplest->name;
+  out.equations = types.size() == 1 ? *types.begin() : "not distinguishable";
+  out.alone = std::all_of(supported.begin(), supported.end(),
+                          [&](const std::string& name) { return contains(name, out.model); });
+  const double most = 1 + kChance * std::sqrt(2 / std::max(simplest->dof, 1.0));
+  out.agrees = simplest->chi2_per_dof <= most;
+  const std::string evidence = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
+                                           simplest->chi2_per_dof, 100 * simplest->rel_l2);
+  if (out.alone) {
+    out.sentence = fmt::format("Supported: {} ({})", out.model, evidence);
+    for (const Score& s : selection.ranking) {
+      if (s.supported || contains(s.name, out.model)) continue;
+      out.sentence += fmt::format(
+          "; {}, the next, is behind by {:.1f} in AICc and by {:.3g} +- {:.2g} in "
+          "cross-validation over {} realizations",
+          s.name, s.aicc_difference, s.behind, s.behind_error, realizations);
+      break;
+    }
+    out.sentence += ".";
+  } else {
+    out.sentence = fmt::format("Not distinguishable: {}; the simplest is {} ({}).",
+                               joined(supported), out.model, evidence);
+  }
+  if (out.equations == "not distinguishable") {
+    out.sentence += " Elliptic or hyperbolic: not distinguishable.";
+  } else {
+    out.sentence += fmt::format(" The response is {}", out.equations);
+    for (const Score& s : selection.ranking) {
+      if (type_of_equations(s.name) == out.equations) continue;
+      out.sentence += fmt::format(": the best {} model, {}, is behind by {:.1f} in AICc",
+                                  type_of_equations(s.name), s.name, s.aicc_difference);
+      break;
+    }
+    out.sentence += ".";
+  }
+  if (!out.agrees) {
+    out.sentence += fmt::format(
+        " No agreement within the errors: chi2/dof {:.3g}, where up to {:.2g} would be chance.",
+        simplest->chi2_per_dof, most);
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

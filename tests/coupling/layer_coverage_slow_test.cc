@@ -1,0 +1,85 @@
+// Synthetic truth: 100 ensembles of layers per model; coverage of the intervals, and the verdict.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "layer_fit_scene.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr int kTrials = 100, kRealizations = 10;
+
+const LayerScene& scene() {
+  static const LayerScene one = layer_scene(9);
+  return one;
+}
+
+TEST(LayerFit, IntervalsCoverTheTruth) {
+  FitOptions options;
+  options.bootstrap = 0;
+  for (const LayerTruth& truth : layer_truths()) {
+    if (truth.parameters.size() == 0) continue;
+    const FitModel& model = find_fit_model(scene().models, truth.model);
+    FitModel near = model;
+    near.starts = {truth.parameters};  // the search is not what is tested here
+    std::vector<int> inside(model.parameters.size(), 0);
+    dem::Random random(1);
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const FitData data =
+          with_noise(scene(), truth.model, truth.parameters, kRealizations, 0.1, random);
+      const Fit f = fit(data, covariance_of(data), near, options);
+      for (std::size_t k = 0; k < inside.size(); ++k) {
+        const double v = truth.parameters[static_cast<Eigen::Index>(k)];
+        inside[k] += f.parameters[k].low <= v && v <= f.parameters[k].high ? 1 : 0;
+      }
+    }
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      EXPECT_GE(inside[k], 90) << truth.model << " " << model.parameters[k].name;
+    }
+  }
+}
+
+struct Count {
+  int named = 0, type = 0, undecided = 0;
+};
+
+Count verdicts(const LayerTruth& truth, double noise, int trials) {
+  dem::Random random(7);
+  FitOptions options;
+  options.bootstrap = 0;
+  Count out;
+  for (int trial = 0; trial < trials; ++trial) {
+    const FitData data =
+        with_noise(scene(), truth.model, truth.parameters, kRealizations, noise, random);
+    const Covariance covariance = covariance_of(data);
+    std::vector<Fit> fits;
+    for (const FitModel& m : scene().models) fits.push_back(fit(data, covariance, m, options));
+    SelectionOptions selection;
+    selection.by_level = false;
+    const LayerVerdict v = layer_verdict(
+        fits, select(data, covariance, scene().models, fits, selection), kRealizations);
+    out.named += v.alone && v.model == truth.model ? 1 : 0;
+    out.type += v.equations == type_of_equations(truth.model) ? 1 : 0;
+    out.undecided += v.equations == "not distinguishable" && !v.alone ? 1 : 0;
+  }
+  return out;
+}
+
+TEST(LayerFit, VerdictNamesTheModelThatMadeTheResponse) {
+  for (const LayerTruth& truth : layer_truths()) {
+    const Count c = verdicts(truth, 0.05, kTrials);
+    EXPECT_GE(c.named, 95) << truth.model;
+    EXPECT_GE(c.type, 95) << truth.model;
+  }
+}
+
+TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) {
+  const std::vector<LayerTruth> truths = layer_truths();
+  for (const std::size_t k : {std::size_t{1}, std::size_t{6}}) {
+    EXPECT_GE(verdicts(truths[k], 20, kTrials).undecided, 95) << truths[k].model;
+  }
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
