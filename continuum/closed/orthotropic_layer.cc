@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "continuum/closed/models.h"
 #include "continuum/settings.h"
@@ -18,8 +19,8 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 
 /// Values that differ from the base's height by less than this part of h are on the base.
 constexpr double kOnBase = 1e-9;
-/// As in layer.cc: the tail that is left out, and what 30 Gauss points carry.
-constexpr double kDecay = 44, kPanelPhase = 6, kPanelWidth = 2;
+/// As in layer.cc, the tail that is left out (1e-15 of the peak) and what 30 Gauss points carry.
+constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
 /// Nearer to the hyperbolic limit r = -sqrt(t) the integrand decays too slowly to be summed.
 constexpr double kLeastRatio = -0.99;
 
@@ -30,10 +31,19 @@ class OrthotropicLayer : public Model {
 
   Stresses stress(const Points& points) override {
     Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    std::vector<Eigen::Index> inside;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       const double x = points(i, 0), y = points(i, 1);
-      if (!(y < 0) || !(y >= -h_ * (1 + kOnBase)) || !std::isfinite(x)) continue;
-      out.row(i) = orthotropic_layer_stress(waves_, o_, load_, h_, x, std::max(y, -h_)).transpose();
+      if (y < 0 && y >= -h_ * (1 + kOnBase) && std::isfinite(x)) inside.push_back(i);
+    }
+    Points there(inside.size(), 2);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      there.row(static_cast<Eigen::Index>(k)) << points(inside[k], 0),
+          std::max(points(inside[k], 1), -h_);
+    }
+    const Stresses found = orthotropic_layer_stress(waves_, o_, load_, h_, there);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      out.row(inside[k]) = found.row(static_cast<Eigen::Index>(k));
     }
     return out;
   }
@@ -137,41 +147,48 @@ Eigen::Vector4d OrthotropicWaves::coefficients(double u) const {
   return matrix.partialPivLu().solve(right);
 }
 
-Eigen::MatrixX3d OrthotropicWaves::of_base(double u, const Eigen::VectorXd& share) const {
+void OrthotropicWaves::add_of_base(
+    double u, const Eigen::ArrayXd& share,
+    const std::function<void(Eigen::Index, double, double, double)>& take) const {
   const Eigen::Vector4d c = coefficients(u);
-  Eigen::MatrixX3d out(share.size(), 3);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
+    if (u * decay() * (2 - share[k]) > kDecay) continue;
     const Values v = reflected(c, u * share[k], u);
-    out.row(k) << v.g2, v.g, v.g1;
+    take(k, v.g2, v.g, v.g1);
   }
-  return out;
 }
 
 Eigen::MatrixX3d OrthotropicWaves::total(double u, const Eigen::VectorXd& share) const {
-  Eigen::MatrixX3d out = of_base(u, share);
+  Eigen::MatrixX3d out(share.size(), 3);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
     const Values v = half_plane(u * share[k]);
-    out.row(k) += Eigen::RowVector3d(v.g2, v.g, v.g1);
+    out.row(k) << v.g2, v.g, v.g1;
   }
+  add_of_base(u, share, [&](Eigen::Index k, double g2, double g, double g1) {
+    out.row(k) += Eigen::RowVector3d(g2, g, g1);
+  });
   return out;
 }
 
-Eigen::Vector3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
-                                         double F, double h, double x, double y) {
-  const double share = -y / h, phase = std::fabs(x) / h;
-  const double end = kDecay / (waves.decay() * (2 - share));
+Eigen::MatrixX3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
+                                          double F, double h, const Eigen::MatrixXd& points) {
+  const auto n = points.rows();
+  if (n == 0) return Eigen::MatrixX3d(0, 3);
+  const Eigen::ArrayXd x = points.col(0).array() / h, share = -points.col(1).array() / h;
+  const double phase = x.abs().maxCoeff();
+  const double end = kDecay / (waves.decay() * (2 - share.maxCoeff()));
   // Towards the hyperbolic limit the integrand's poles approach the real axis like the decay.
   const double width =
       std::min({kPanelWidth, kPanelPhase / std::max(phase + 2 * waves.oscillation(), 1e-3),
                 kPanelWidth * waves.decay()});
   const int panels = static_cast<int>(std::ceil(end / width));
   const double half = 0.5 * end / panels;
-  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, share);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::MatrixX3d sum = Eigen::MatrixX3d::Zero(n, 3);
   const auto add = [&](double u, double weight) {
-    const Eigen::RowVector3d g = waves.of_base(u, at).row(0);
-    const double c = weight * std::cos(u * x / h), s = weight * std::sin(u * x / h);
-    sum += Eigen::Vector3d(c * g[0], c * g[1], s * g[2]);
+    waves.add_of_base(u, share, [&](Eigen::Index k, double g2, double g, double g1) {
+      const double c = weight * std::cos(u * x[k]), s = weight * std::sin(u * x[k]);
+      sum.row(k) += Eigen::RowVector3d(c * g2, c * g, s * g1);
+    });
   };
   for (int panel = 0; panel < panels; ++panel) {
     const double middle = (2 * panel + 1) * half;
@@ -181,9 +198,13 @@ Eigen::Vector3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Or
     }
   }
   sum *= F / (std::numbers::pi * h);
-  const auto half_plane = orthotropic_stress(F, medium, x, y);
-  // sigma_xd changes sign with the axis that points up.
-  return {half_plane[0] + sum[0], half_plane[1] - sum[1], half_plane[2] - sum[2]};
+  Eigen::MatrixX3d out(n, 3);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto plane = orthotropic_stress(F, medium, points(k, 0), points(k, 1));
+    // sigma_xd changes sign with the axis that points up.
+    out.row(k) << plane[0] + sum(k, 0), plane[1] - sum(k, 1), plane[2] - sum(k, 2);
+  }
+  return out;
 }
 
 ModelInfo orthotropic_layer_info() {

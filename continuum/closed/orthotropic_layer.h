@@ -14,6 +14,7 @@
 // real for either sign of D, and not degenerate at D = 0 (r = t = 1: the isotropic layer).
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 
 #include "continuum/closed/orthotropic.h"
 
@@ -24,12 +25,14 @@ class OrthotropicWaves {
   /// Needs t > 0 and r > -sqrt(t). nu counts on a rough base only, where the material must be a
   /// solid: r + nu > 0 (G > 0) and nu^2 <= t. Otherwise there are poles on the way of integration.
   OrthotropicWaves(const Orthotropy& medium, double nu, bool rough);
-  /// g'', g, g' at the wave number u = k h > 0 and the depths `share` (d/h in [0, 1]), less those
-  /// of the half plane; shares x 3. The half plane's part is orthotropic_stress.
-  Eigen::MatrixX3d of_base(double u, const Eigen::VectorXd& share) const;
-  /// The same of layer and half plane together.
+  /// Hands over index, g'', g, g' at the wave number u = k h > 0 and the depths `share` (d/h in
+  /// [0, 1]), less those of the half plane (its part is orthotropic_stress); where they are below
+  /// rounding they are left out.
+  void add_of_base(double u, const Eigen::ArrayXd& share,
+                   const std::function<void(Eigen::Index, double, double, double)>& take) const;
+  /// g'', g, g' of layer and half plane together; shares x 3.
   Eigen::MatrixX3d total(double u, const Eigen::VectorXd& share) const;
-  /// of_base falls like exp(-decay u (2 - share)).
+  /// What the base adds falls like exp(-decay u (2 - share)).
   double decay() const;
   /// Waves of the integrand over u: sqrt(-D) for D < 0, else 0.
   double oscillation() const;
@@ -52,8 +55,8 @@ class OrthotropicWaves {
   double m_, square_;  // m and D
 };
 
-/// Stress xx, yy, xy at x, y (y up, -h <= y < 0), N/m, tension positive.
-Eigen::Vector3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
-                                         double F, double h, double x, double y);
+/// Stress xx, yy, xy at points (n x 2: x, y up, -h <= y < 0), N/m, tension positive; n x 3.
+Eigen::MatrixX3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
+                                          double F, double h, const Eigen::MatrixXd& points);
 
 }  // namespace grainfield::continuum

@@ -52,11 +52,7 @@ LayerMaps layer_maps(const Case& value, const std::vector<std::string>& files,
 
 Eigen::MatrixXd model_on_maps(const LayerMaps& maps, const LayerData& data, const Fit& fit) {
   const auto sight = std::make_shared<const LayerSight>(maps.points, *data.kernel);
-  Eigen::VectorXd parameters(static_cast<Eigen::Index>(fit.parameters.size()));
-  for (Eigen::Index k = 0; k < parameters.size(); ++k) {
-    parameters[k] = fit.parameters[static_cast<std::size_t>(k)].value;
-  }
-  return find_fit_model(layer_models(sight), fit.name).stress(maps.points, parameters);
+  return find_fit_model(layer_models(sight), fit.name).stress(maps.points, parameters_of(fit));
 }
 
 std::vector<Section> map_sections(const LayerMaps& m, const Eigen::MatrixXd& model,

@@ -122,8 +122,8 @@ std::vector<FitModel> layer_models(std::shared_ptr<const LayerSight> sight) {
   list.add("orthotropic_layer_rough", "orthotropic layer on a rough base", {shear, t, nu_ratio},
            {numbers({1.3, 1, 0.3}), numbers({0.2, 0.3, 0.6}), numbers({0.7, 3, 0.2})},
            [at](const VectorXd& p) {
-             const double rho = std::max(p[0] - p[2], kLeastRho);
-             return at->seen(OrthotropicWaves(medium(rho, p[1]), p[2] * std::sqrt(p[1]), true));
+             const double ratio = std::max(p[0] - p[2], kLeastRho);
+             return at->seen(OrthotropicWaves(medium(ratio, p[1]), p[2] * std::sqrt(p[1]), true));
            });
   std::vector<VectorXd> starts;
   for (const double e : {0.1, 0.35, 1.0, 2.5}) {
@@ -163,6 +163,14 @@ const std::vector<std::string>& layer_model_names() {
 
 std::string type_of_equations(const std::string& model) {
   return model.find("osl") != std::string::npos ? "hyperbolic" : "elliptic";
+}
+
+Eigen::VectorXd parameters_of(const Fit& fit) {
+  VectorXd out(static_cast<Eigen::Index>(fit.parameters.size()));
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    out[k] = fit.parameters[static_cast<std::size_t>(k)].value;
+  }
+  return out;
 }
 
 Ratio rho_of(const Fit& fit) {

@@ -28,6 +28,9 @@ const std::vector<std::string>& layer_model_names();
 /// "elliptic" or "hyperbolic", by the name of the model or of its finite elements.
 std::string type_of_equations(const std::string& model);
 
+/// The fitted values in the model's order.
+Eigen::VectorXd parameters_of(const Fit& fit);
+
 /// rho of a fit of an orthotropic_* model, with its error; nan of other models.
 struct Ratio {
   double value = 0, error = 0;

@@ -33,24 +33,6 @@ std::vector<std::vector<std::string>> ranking_rows(const LayerFits& fits) {
   return rows;
 }
 
-const std::vector<std::string> kElementsHeader{"finite elements", "constants of",
-                                               "constants",       "chi2/dof",
-                                               "relative L2",     "from the closed form"};
-
-std::vector<std::vector<std::string>> element_rows(const LayerFits& fits) {
-  std::vector<std::vector<std::string>> rows;
-  for (const FiniteElementFit& e : fits.elements) {
-    if (!e.why.empty()) {
-      rows.push_back({e.name, e.of, e.why, "-", "-", "-"});
-      continue;
-    }
-    rows.push_back({e.name, e.of, e.constants, number(e.chi2_per_dof),
-                    fmt::format("{:.1f} %", 100 * e.rel_l2),
-                    fmt::format("{:.2g} %", 100 * e.from_closed)});
-  }
-  return rows;
-}
-
 std::string weights_note(const LayerFits& fits) {
   const Covariance& c = fits.covariance;
   std::string out =
@@ -90,15 +72,7 @@ void add_layer_fits(Summary& summary, const LayerFits& fits) {
       summary["fit." + f.name + ".rho.error"] = rho.error;
     }
   }
-  for (const FiniteElementFit& e : fits.elements) {
-    const std::string prefix = "fe." + e.name + ".";
-    summary[prefix + "constants_of"] = e.of;
-    summary[prefix + "note"] = e.why;
-    if (!e.why.empty()) continue;
-    summary[prefix + "chi2_per_dof"] = e.chi2_per_dof;
-    summary[prefix + "rel_l2"] = e.rel_l2;
-    summary[prefix + "from_closed_form"] = e.from_closed;
-  }
+  add_elements(summary, fits.elements);
   summary["verdict.best_model"] = fits.verdict.model;
   summary["verdict.distinguishable"] = fits.verdict.alone ? "yes" : "no";
   summary["verdict.equations"] = fits.verdict.equations;
@@ -112,14 +86,14 @@ std::string layer_fits_markdown(const LayerFits& fits) {
   return fmt::format("{}\n\n{}.\n\n{}\n{}\n{}", fits.verdict.sentence, weights_note(fits),
                      markdown_table(kRankingHeader, ranking_rows(fits)),
                      markdown_table(parameter_header(), parameter_rows(fits.fits)),
-                     markdown_table(kElementsHeader, element_rows(fits)));
+                     markdown_table(elements_header(), element_rows(fits.elements)));
 }
 
 std::string layer_fits_tex(const LayerFits& fits) {
   return fmt::format("% {}\n{}\n{}\n{}", weights_note(fits),
                      tex_table(kRankingHeader, ranking_rows(fits)),
                      tex_table(parameter_header(), parameter_rows(fits.fits)),
-                     tex_table(kElementsHeader, element_rows(fits)));
+                     tex_table(elements_header(), element_rows(fits.elements)));
 }
 
 std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& component,
@@ -208,7 +182,7 @@ std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of) 
   if (!fits.elements.empty()) {
     out.emplace_back(Table{of + "finite elements with the fitted constants",
                            "Solved by deal.II with the constants of the fit, on the same points.",
-                           kElementsHeader, element_rows(fits)});
+                           elements_header(), element_rows(fits.elements)});
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/fit/finite_elements.h"
 #include "coupling/fit/layer_data.h"
 #include "coupling/fit/layer_maps.h"
 #include "coupling/fit/layer_verdict.h"
@@ -10,17 +11,6 @@
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
-
-/// A finite-element solve with fitted constants, on the fit's points.
-struct FiniteElementFit {
-  std::string name, of;     ///< registry's name, fitted model whose constants it has
-  std::string constants;    ///< "nu=0.21, base=rough"
-  std::string why;          ///< not empty: was not solved, for this reason
-  Eigen::VectorXd model;    ///< at the data's rows
-  double chi2_per_dof = 0;  ///< with the fitted model's degrees of freedom
-  double rel_l2 = 0;        ///< |grains - it| / |grains|
-  double from_closed = 0;   ///< |it - fitted model| / |fitted model|
-};
 
 /// Everything that was fitted to one ensemble of layers.
 struct LayerFits {

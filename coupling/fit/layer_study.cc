@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -32,12 +33,7 @@ FiniteElementFit solve(const std::string& name, const LayerFits& fits, const Lay
   out.name = name;
   const auto choice = finite_element_choice(name, fits.fits, 1, out.of, out.why);
   if (choice == nullptr) return out;
-  std::vector<std::string> constants;
-  for (const auto& [key, value] : choice->settings) {
-    const bool word = value.find_first_not_of("0123456789.+-e") != std::string::npos;
-    constants.push_back(key + "=" + (word ? value : fmt::format("{:.4g}", std::stod(value))));
-  }
-  out.constants = fmt::format("{}", fmt::join(constants, ", "));
+  out.constants = constants_text(choice->settings);
   RunFacts facts;
   facts.force = facts.height = 1;
   // The half plane's finite elements need the least depth one looks at.
@@ -47,19 +43,7 @@ FiniteElementFit solve(const std::string& name, const LayerFits& fits, const Lay
   const Eigen::MatrixXd seen =
       sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
   const FitData& data = fits.layers.data;
-  const Fit& fitted = fits.fit_of(out.of);
-  const FitModel given{name,
-                       name,
-                       {},
-                       {Eigen::VectorXd(0)},
-                       [&](const Eigen::MatrixXd& points, const Eigen::VectorXd&) {
-                         return sight.pick(seen, points);
-                       }};
-  out.model = predict(data, given, Eigen::VectorXd(0));
-  const Eigen::VectorXd off = data.mean() - out.model;
-  out.chi2_per_dof = (fits.covariance.whitener * off).squaredNorm() / fitted.dof;
-  out.rel_l2 = off.norm() / data.mean().norm();
-  out.from_closed = (out.model - fitted.model).norm() / fitted.model.norm();
+  judge_elements(out, data, fits.covariance, fits.fit_of(out.of), sight.pick(seen, data.points));
   return out;
 }
 
@@ -73,6 +57,49 @@ std::vector<ModelChoice> choices(const LayerFits& fits) {
     if (const auto c = finite_element_choice(e.name, fits.fits, h, of, why)) out.push_back(*c);
   }
   return out;
+}
+
+// Fitted models through a sight of all profiles (a layer node by node takes minutes), others and
+// the map as the registry gives them.
+ModelEvaluator evaluator_of(const std::shared_ptr<const LayerFits>& fits) {
+  const auto known = std::make_shared<std::vector<FitModel>>();
+  const auto places = std::make_shared<Eigen::MatrixXd>();
+  return [=](const ModelChoice& choice, const RunFacts& facts,
+             const std::vector<PointSet>& sets) -> Evaluation {
+    const auto fitted = std::find_if(fits->fits.begin(), fits->fits.end(),
+                                     [&](const Fit& f) { return f.name == choice.label; });
+    if (fitted == fits->fits.end()) return evaluate_model(choice, facts, sets);
+    const auto start = std::chrono::steady_clock::now();
+    if (known->empty()) {
+      Eigen::Index rows = 0;
+      for (const PointSet& s : sets) rows += s.seen == Seen::exactly ? 0 : s.points.rows();
+      places->resize(rows, 2);
+      rows = 0;
+      for (const PointSet& s : sets) {
+        if (s.seen == Seen::exactly) continue;
+        places->middleRows(rows, s.points.rows()) = s.points / facts.height;
+        rows += s.points.rows();
+      }
+      *known = layer_models(std::make_shared<const LayerSight>(*places, *fits->layers.kernel));
+    }
+    const Eigen::MatrixXd all =
+        find_fit_model(*known, choice.label).stress(*places, parameters_of(*fitted)) *
+        (facts.force / facts.height);
+    const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
+    Evaluation out;
+    Eigen::Index row = 0;
+    for (const PointSet& s : sets) {
+      if (s.seen == Seen::exactly) {
+        out.stresses.push_back(model->stress(s.points));
+        continue;
+      }
+      out.stresses.emplace_back(all.middleRows(row, s.points.rows()));
+      row += s.points.rows();
+    }
+    out.figures = model->figures();
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return out;
+  };
 }
 
 Report page_of(const StudyResult& result, const Realization* first, const LayerFits& fits) {
@@ -111,7 +138,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   const auto fits = std::make_shared<LayerFits>(fit_layers(value, files, threads));
   Case with_constants = value;
   with_constants.models = choices(*fits);
-  StudyResult out = analyse_point_load(with_constants, files, threads);
+  StudyResult out = analyse_point_load(with_constants, files, threads, evaluator_of(fits));
   add_layer_fits(out.summary, *fits);
   out.comparison.verdict.best_model = fits->verdict.model;
   out.comparison.verdict.sentence = fits->verdict.sentence;

@@ -72,8 +72,13 @@ Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny
 
 class Analysis {
  public:
-  Analysis(const Case& value, const std::vector<std::string>& files, int threads)
-      : value_(value), files_(files), setup_(value.average), layer_(measure(files)) {
+  Analysis(const Case& value, const std::vector<std::string>& files, int threads,
+           const ModelEvaluator& evaluate)
+      : value_(value),
+        files_(files),
+        evaluate_(evaluate),
+        setup_(value.average),
+        layer_(measure(files)) {
     const double half =
         setup_.half_width > 0 ? std::min(setup_.half_width, layer_.half_width) : layer_.half_width;
     x_ = Eigen::VectorXd::LinSpaced(setup_.points, -half, half);
@@ -223,7 +228,7 @@ class Analysis {
     std::vector<ModelProfiles> models;
     double seconds = 0;
     for (const auto& choice : value_.models) {
-      const Evaluation e = evaluate_model(choice, facts, sets);
+      const Evaluation e = evaluate_(choice, facts, sets);
       seconds += e.seconds;
       ModelProfiles m;
       m.key = choice.label;
@@ -268,6 +273,7 @@ class Analysis {
 
   const Case& value_;
   const std::vector<std::string>& files_;
+  const ModelEvaluator& evaluate_;
   const AverageSetup& setup_;
   Layer layer_;
   Eigen::VectorXd x_;
@@ -281,9 +287,9 @@ class Analysis {
 }  // namespace
 
 StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
-                               int threads) {
+                               int threads, const ModelEvaluator& evaluate) {
   const auto start = std::chrono::steady_clock::now();
-  StudyResult out = Analysis(value, realizations, threads).run();
+  StudyResult out = Analysis(value, realizations, threads, evaluate).run();
   out.summary["time.analysis_s"] =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
@@ -298,7 +304,9 @@ Study point_load_study() {
   out.make_run = [](const Case& value, std::uint64_t seed, int threads) {
     return dem::make_point_load_run(value.layer, seed, threads);
   };
-  out.analyse = analyse_point_load;
+  out.analyse = [](const Case& value, const std::vector<std::string>& files, int threads) {
+    return analyse_point_load(value, files, threads);
+  };
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "continuum/model.h"
+#include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
 #include "coupling/fit/posteriors.h"
 #include "layer_fit_scene.h"
