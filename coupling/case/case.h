@@ -88,7 +88,7 @@ struct VerdictSetup {
                                      "orthotropic_layer_rough",
                                      "osl_layer_absorbing",
                                      "osl_layer_reflecting"};
-  std::vector<std::string> finite_elements = {"fe_elastic_layer"};
+  std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   bool base = true;
   std::string covariance = "auto";

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "coupling/averaging/average.h"
@@ -17,7 +18,7 @@ namespace {
 // Nearer to the surface one grain carries everything; nearer to the base the kernel is cut.
 constexpr double kTop = -0.12, kBottom = -0.97;
 const char* const kColumns[] = {"sigma_xx", "sigma_yy", "sigma_xy"};
-const char* const kLabels[] = {"-σ_{xx}", "-σ_{yy}", "σ_{xy}"};
+const char* const kLabels[] = {"-sigma_xx", "-sigma_yy", "sigma_xy"};
 constexpr double kSigns[] = {-1, -1, 1};
 
 }  // namespace
@@ -60,9 +61,11 @@ std::vector<Section> map_sections(const LayerMaps& m, const Eigen::MatrixXd& mod
   const auto map = [&](const std::string& title, const Eigen::VectorXd& values) {
     return Map{title, m.columns, m.rows, m.points, values};
   };
-  const std::string whose = of.empty() ? "" : of + ": ";
+  const auto titled = [&](const std::string& text, const std::string& start) {
+    return of.empty() ? start + text : of + ": " + static_cast<char>(std::tolower(start[0])) + text;
+  };
   std::vector<Section> out;
-  Picture side = maps(whose + "grains, model and residual", "x / h", "y / h", "-σ_{yy}  (F/h)",
+  Picture side = maps(titled("rains, model and residual", "G"), "x / h", "y / h", "-σ_{yy}  (F/h)",
                       {map("grains", -m.mean.col(1)), map(name, -model.col(1)),
                        map("grains - " + name, model.col(1) - m.mean.col(1))});
   side.caption =
@@ -77,7 +80,7 @@ std::vector<Section> map_sections(const LayerMaps& m, const Eigen::MatrixXd& mod
     residuals.push_back(map(
         kLabels[c], off.unaryExpr([](double v) { return std::isfinite(v) ? v : std::nan(""); })));
   }
-  Picture where = maps(fmt::format("{}where {} fails", whose, name), "x / h", "y / h",
+  Picture where = maps(titled(fmt::format("here {} fails", name), "W"), "x / h", "y / h",
                        "(grains - model) / standard error", residuals);
   where.caption =
       "Residuals in standard errors of the ensemble's mean. Chance alone gives patches of 2 in "

@@ -238,21 +238,8 @@ std::unique_ptr<ModelChoice> finite_element_choice(const std::string& name,
   of = best->name;
   const ModelChoice fitted = fitted_choice(*best, h);
   auto out = std::make_unique<ModelChoice>(ModelChoice{name, name, {}});
-  if (name == "fe_orthotropic_layer") {
-    // Any E_y: the stress depends on ratios alone. On a smooth base nu_xy is free.
-    const double t = value_of(*best, "t"), root = std::sqrt(t), r = rho_of(*best).value * root;
-    const bool rough = fitted.settings.at("base") == "rough";
-    const double nu = rough ? value_of(*best, "nu_ratio") * root : r > 0 ? 0 : 0.5 * (root - r);
-    constexpr double E_y = 1e7;
-    out->settings = {{"E_x", text(t * E_y)},
-                     {"E_y", text(E_y)},
-                     {"G", text(t * E_y / (2 * (r + nu)))},
-                     {"nu_xy", text(nu)},
-                     {"base", fitted.settings.at("base")}};
-  } else {
-    out->settings = fitted.settings;
-    if (name == "fe_osl_layer") out->settings.erase("base");
-  }
+  out->settings = fitted.settings;
+  if (name == "fe_osl_layer") out->settings.erase("base");
   return out;
 }
 

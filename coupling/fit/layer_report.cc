@@ -169,18 +169,19 @@ std::vector<Section> layer_pictures(const LayerFits& fits) {
 std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of) {
   std::vector<Section> out;
   out.emplace_back(
-      Table{of + "ranking",
+      Table{of.empty() ? "Ranking" : of + "ranking",
             "AICc behind: from the best. CV behind: cross-validation, squared difference per "
             "effective value on realizations left out, from the best. CV over heights: the same on "
             "the level left out. Supported: not behind in both. " +
                 weights_note(fits) + ".",
             kRankingHeader, ranking_rows(fits)});
-  out.emplace_back(Table{of + "fitted constants",
+  out.emplace_back(Table{of.empty() ? "Fitted constants" : of + "fitted constants",
                          "Errors from the covariance; beside them those of bootstrap draws of the "
                          "realizations.",
                          parameter_header(), parameter_rows(fits.fits)});
   if (!fits.elements.empty()) {
-    out.emplace_back(Table{of + "finite elements with the fitted constants",
+    out.emplace_back(Table{of.empty() ? "Finite elements with the fitted constants"
+                                      : of + "finite elements with the fitted constants",
                            "Solved by deal.II with the constants of the fit, on the same points.",
                            elements_header(), element_rows(fits.elements)});
   }

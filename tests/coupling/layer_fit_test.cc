@@ -106,12 +106,10 @@ TEST(LayerFit, FiniteElementsTakeTheBestFitsConstants) {
   EXPECT_NEAR(std::stod(choice->settings.at("width")), 0.12, 1e-12);
   choice = finite_element_choice("fe_orthotropic_layer", fits, 0.2, of, why);
   ASSERT_NE(choice, nullptr);
-  const double Ex = std::stod(choice->settings.at("E_x")),
-               Ey = std::stod(choice->settings.at("E_y"));
-  const double G = std::stod(choice->settings.at("G")),
-               nu = std::stod(choice->settings.at("nu_xy"));
-  EXPECT_NEAR(Ex / Ey, 0.6, 1e-12);
-  EXPECT_NEAR((Ex / G - 2 * nu) / 2 / std::sqrt(0.6), 0.2, 1e-9);  // rho = shear - nu_ratio
+  const double t = std::stod(choice->settings.at("t"));
+  EXPECT_NEAR(t, 0.6, 1e-12);
+  EXPECT_NEAR(std::stod(choice->settings.at("r")) / std::sqrt(t), 0.2, 1e-9);  // shear - nu_ratio
+  EXPECT_NEAR(std::stod(choice->settings.at("nu_xy")) / std::sqrt(t), 0.4, 1e-9);
   EXPECT_EQ(finite_element_choice("fe_elastic_half_space", fits, 0.2, of, why), nullptr);
   EXPECT_THAT(why, HasSubstr("no fitted model"));
 }
