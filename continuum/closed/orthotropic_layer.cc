@@ -159,14 +159,21 @@ void OrthotropicWaves::add_of_base(
 }
 
 Eigen::MatrixX3d OrthotropicWaves::total(double u, const Eigen::VectorXd& share) const {
+  const Eigen::Vector4d c = coefficients(u);
   Eigen::MatrixX3d out(share.size(), 3);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
-    const Values v = half_plane(u * share[k]);
+    if (u * decay() * share[k] > kDecay) {
+      out.row(k).setZero();
+      continue;
+    }
+    // The half plane's pair is (1, m).
+    Values v = pair(1 + c[0], m_ + c[1], u * share[k]);
+    if (u * decay() * (2 - share[k]) < kDecay) {
+      const Values up = pair(c[2], c[3], u * (1 - share[k]));
+      v = {v.g + up.g, v.g1 - up.g1, v.g2 + up.g2, 0};
+    }
     out.row(k) << v.g2, v.g, v.g1;
   }
-  add_of_base(u, share, [&](Eigen::Index k, double g2, double g, double g1) {
-    out.row(k) += Eigen::RowVector3d(g2, g, g1);
-  });
   return out;
 }
 

@@ -74,7 +74,8 @@ void add_heap_elements(StudyResult& result, const std::vector<FiniteElementFit>&
   add_elements(result.summary, elements);
   for (auto& [name, content] : result.texts) {
     if (name == "fits.md") {
-      content += "\n" + markdown_table(elements_header(), element_rows(elements));
+      content += '\n';
+      content += markdown_table(elements_header(), element_rows(elements));
     }
     if (name == "fits.tex") content += tex_table(elements_header(), element_rows(elements));
   }

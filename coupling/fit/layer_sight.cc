@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kMostWave = 100;    // u: what is beyond is smoothed away
 constexpr double kLeastWave = 1e-3;  // instead of u = 0, where the base's conditions degenerate
-constexpr double kFarther = 40;      // distance of the periodic images from the points, in h
+constexpr double kFarther = 24;      // distance of the periodic images from the points, in h
 constexpr double kOnBase = 1e-9;
 
 using Across = boost::math::quadrature::gauss<double, 48>;
-using Down = boost::math::quadrature::gauss<double, 14>;
+using Down = boost::math::quadrature::gauss<double, 10>;
 
 // Nodes and weights of Gauss-Legendre on [from, to].
 template <class Rule>

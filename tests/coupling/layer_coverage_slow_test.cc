@@ -8,7 +8,7 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr int kTrials = 100, kRealizations = 10;
+constexpr int kTrials = 100, kRealizations = 8;
 
 const LayerScene& scene() {
   static const LayerScene one = layer_scene(9);
@@ -48,17 +48,22 @@ Count verdicts(const LayerTruth& truth, double noise, int trials) {
   dem::Random random(7);
   FitOptions options;
   options.bootstrap = 0;
+  // The slowest competitor only where its special case or itself made the data.
+  std::vector<FitModel> models;
+  for (const FitModel& m : scene().models) {
+    if (m.name != "orthotropic_layer_rough" || contains(m.name, truth.model)) models.push_back(m);
+  }
   Count out;
   for (int trial = 0; trial < trials; ++trial) {
     const FitData data =
         with_noise(scene(), truth.model, truth.parameters, kRealizations, noise, random);
     const Covariance covariance = covariance_of(data);
     std::vector<Fit> fits;
-    for (const FitModel& m : scene().models) fits.push_back(fit(data, covariance, m, options));
+    for (const FitModel& m : models) fits.push_back(fit(data, covariance, m, options));
     SelectionOptions selection;
     selection.by_level = false;
-    const LayerVerdict v = layer_verdict(
-        fits, select(data, covariance, scene().models, fits, selection), kRealizations);
+    const LayerVerdict v =
+        layer_verdict(fits, select(data, covariance, models, fits, selection), kRealizations);
     out.named += v.alone && v.model == truth.model ? 1 : 0;
     out.type += v.equations == type_of_equations(truth.model) ? 1 : 0;
     out.undecided += v.equations == "not distinguishable" && !v.alone ? 1 : 0;
