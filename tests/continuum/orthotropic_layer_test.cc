@@ -66,7 +66,7 @@ TEST(OrthotropicLayer, IsTheIsotropicLayerForEqualConstants) {
 
 TEST(OrthotropicLayer, IsInEquilibrium) {
   Random random(1);
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 16; ++k) {
     const Medium m = random_medium(random);
     const bool rough = k % 2 == 0;
     const double x = random.uniform(-2, 2), y = -random.uniform(0.2, 0.95), h = 1e-3;
@@ -88,7 +88,7 @@ TEST(OrthotropicLayer, IsInEquilibrium) {
 
 TEST(OrthotropicLayer, BaseConditionsAndLoadHold) {
   Random random(2);
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 41; ++k) {
     const Medium m = random_medium(random);
     const double x = random.uniform(0.1, 2);
     EXPECT_NEAR(stress(m, false, x, -1)[2], 0, 1e-11);

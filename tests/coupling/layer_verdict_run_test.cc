@@ -49,9 +49,9 @@ TEST(LayerVerdictRun, FromCaseToReport) {
   EXPECT_EQ(write_case(again), read_text(folder / "out/case.toml"));
 
   // The same layers from files: the same fits.
-  const std::string from = folder.write(
-      "from.toml",
-      tiny_verdict("grains.files = [\"" + (folder / "out/uneven/snapshots.h5") + "\"]\n"));
+  const std::string from =
+      folder.write("from.toml", tiny_verdict("[variant.uneven.grains]\nfiles = [\"" +
+                                             (folder / "out/uneven/snapshots.h5") + "\"]\n"));
   const Output second =
       program("run " + from + " -o " + (folder / "from") + " --set sweep.values=[\\\"uneven\\\"]");
   ASSERT_EQ(second.code, 0) << second.err;
