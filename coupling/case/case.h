@@ -68,6 +68,7 @@ struct FitSetup {
                                      "osl",
                                      "fpa",
                                      "bcc"};
+  std::vector<std::string> finite_elements;  ///< solved with the constants, beside the fits
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   std::vector<double> heights = {0.1, 0.25, 0.4};
   double width_diameters = 2;

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "coupling/fit/heap_elements.h"
 #include "coupling/fit/heap_report.h"
 #include "coupling/report/report.h"
 
@@ -58,6 +59,7 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
     return page_of(result, first, *fits, drawn);
   };
+  add_heap_elements(out, heap_elements(*fits, value.fit.finite_elements));
   return out;
 }
 
