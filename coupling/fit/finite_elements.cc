@@ -23,7 +23,8 @@ void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance
                        out.name,
                        {},
                        {Eigen::VectorXd(0)},
-                       [&](const Eigen::MatrixXd&, const Eigen::VectorXd&) { return stresses; }};
+                       [&](const Eigen::MatrixXd&, const Eigen::VectorXd&) { return stresses; },
+                       ""};
   out.model = predict(data, given, Eigen::VectorXd(0));
   const Eigen::VectorXd mean = data.mean(), off = mean - out.model;
   out.chi2_per_dof = (covariance.whitener * off).squaredNorm() / fitted.dof;

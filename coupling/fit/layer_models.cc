@@ -49,7 +49,8 @@ class List {
     models.push_back({name, label, std::move(parameters), std::move(starts),
                       [sight = sight_, seen](const MatrixXd& points, const VectorXd& p) {
                         return sight->pick(seen(p), points);
-                      }});
+                      },
+                      ""});
   }
   // A model without parameters is evaluated once.
   void add_fixed(const std::string& name, const std::string& label, const Seen& seen) {
