@@ -79,6 +79,20 @@ double level_score(const FitData& data, const Covariance& c, const FitModel& mod
   return parts >= 2 ? sum / parts : kNan;
 }
 
+// What the best fit's chi squared says against every model; empty: nothing.
+std::string doubt(const Fit& best) {
+  if (!(best.dof > 0)) {
+    return fmt::format(" {} has as many free numbers as there are effective values: no test.",
+                       best.name);
+  }
+  const double chance = 1 + 3 * std::sqrt(2 / best.dof);
+  if (!(best.chi2_per_dof > chance)) return "";
+  return fmt::format(
+      " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
+      "would be chance.",
+      best.chi2_per_dof, chance);
+}
+
 }  // namespace
 
 void mark_supported(std::vector<Score>& ranking, double least_aicc) {
@@ -155,6 +169,7 @@ Selection select(const FitData& data, const Covariance& covariance,
   } else {
     out.sentence = fmt::format("Not distinguishable: {}.", fmt::join(names, ", "));
   }
+  out.sentence += doubt(fits[best]);
   return out;
 }
 

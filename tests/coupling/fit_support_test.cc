@@ -39,6 +39,29 @@ TEST(Support, WhatIsAheadInOneJudgeStays) {
   EXPECT_TRUE(ranking[1].supported);
 }
 
+// The best of wrong models is not passed off as right.
+TEST(Support, SaysWhenNoModelAgrees) {
+  const auto all = heap_models({kSlope, kRhoG, kHeight});
+  const std::vector<FitModel> minus{find_fit_model(all, "cantelaube_minus")},
+      wrong{find_fit_model(all, "hydrostatic")};
+  dem::Random random(5);
+  FitData data = places(9);
+  fill(data, predict(data, minus[0], Eigen::VectorXd(0)), 8, 0.03, 0.03, random);
+  const Covariance c = covariance_of(data);
+  FitOptions options;
+  options.bootstrap = 0;
+  const auto sentence = [&](const std::vector<FitModel>& models) {
+    std::vector<Fit> fits;
+    for (const FitModel& m : models) fits.push_back(fit(data, c, m, options));
+    return select(data, c, models, fits).sentence;
+  };
+  EXPECT_EQ(sentence(minus), "cantelaube_minus is the only model.");
+  EXPECT_EQ(sentence(wrong).find("hydrostatic is the only model. No model agrees within the "
+                                 "errors: the nearest has chi2/dof "),
+            0U)
+      << sentence(wrong);
+}
+
 TEST(Support, NoSupportedModelIsFurtherBehindInBothThanOneThatIsNot) {
   dem::Random random(3);
   int refused = 0, kept = 0;
