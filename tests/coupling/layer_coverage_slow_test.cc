@@ -76,21 +76,31 @@ Count verdicts(const LayerTruth& truth, double noise, int trials) {
   return out;
 }
 
-TEST(LayerFit, VerdictNamesTheModelThatMadeTheResponse) {
-  const std::vector<LayerTruth> truths = layer_truths();
-  for (const std::size_t k : {std::size_t{1}, std::size_t{3}, std::size_t{6}}) {
-    const LayerTruth& truth = truths[k];
-    const Count c = verdicts(truth, 0.05, kTrials);
-    EXPECT_GE(c.named, 95) << truth.model;
-    EXPECT_GE(c.type, 95) << truth.model;
-  }
+void expect_named(std::size_t k, int trials) {
+  const LayerTruth truth = layer_truths()[k];
+  const Count c = verdicts(truth, 0.05, trials);
+  EXPECT_GE(c.named, trials * 95 / 100) << truth.model;
+  EXPECT_GE(c.type, trials * 95 / 100) << truth.model;
 }
 
-TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) {
-  const std::vector<LayerTruth> truths = layer_truths();
-  for (const std::size_t k : {std::size_t{1}, std::size_t{6}}) {
-    EXPECT_GE(verdicts(truths[k], 20, kTrials).undecided, 95) << truths[k].model;
+void expect_undecided(std::size_t k, int trials) {
+  EXPECT_GE(verdicts(layer_truths()[k], 20, trials).undecided, trials * 95 / 100);
+}
+
+// An elliptic and a hyperbolic model, a fifth of the trials: a trial takes more than a second.
+TEST(LayerFit, VerdictNamesTheModelThatMadeTheResponse) {
+  expect_named(1, kTrials / 5);
+  expect_named(6, kTrials / 5);
+}
+
+TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) { expect_undecided(1, kTrials / 5); }
+
+// By hand: --gtest_also_run_disabled_tests
+TEST(LayerFit, DISABLED_VerdictsOfAllTrials) {
+  for (const std::size_t k : {std::size_t{1}, std::size_t{3}, std::size_t{6}}) {
+    expect_named(k, kTrials);
   }
+  for (const std::size_t k : {std::size_t{1}, std::size_t{6}}) expect_undecided(k, kTrials);
 }
 
 }  // namespace
