@@ -93,7 +93,8 @@ TEST(LayerFit, VerdictNamesTheModelThatMadeTheResponse) {
   expect_named(6, kTrials / 5);
 }
 
-TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) { expect_undecided(1, kTrials / 5); }
+// A trial in such noise takes ten seconds and more: the searches wander.
+TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) { expect_undecided(1, 3); }
 
 // By hand: --gtest_also_run_disabled_tests
 TEST(LayerFit, DISABLED_VerdictsOfAllTrials) {
