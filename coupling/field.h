@@ -10,16 +10,16 @@ namespace grainfield::coupling {
 /// One scalar quantity on the points of a Field, e.g. "sigma_yy".
 struct Column {
   std::string name;
-  std::string unit;             ///< "N/m", "1", ...
-  Eigen::VectorXd value;        ///< mean over realizations; nan where there is none
-  Eigen::VectorXd error;        ///< standard error of the mean; nan with one realization; may be empty
-  Eigen::MatrixXd samples;      ///< points x realizations: the single values; empty: not kept
+  std::string unit;         ///< "N/m", "1", ...
+  Eigen::VectorXd value;    ///< mean over realizations; nan where there is none
+  Eigen::VectorXd error;    ///< standard error of the mean; nan with one realization; may be empty
+  Eigen::MatrixXd samples;  ///< points x realizations: the single values; empty: not kept
 };
 
 /// Points with columns. A regular grid also knows its shape, so that it can be drawn as a map.
 struct Field {
-  Eigen::MatrixXd points;        ///< n x dim, m
-  int nx = 0, ny = 0;            ///< grid: points[ix + nx * iy]; 0 = scattered points
+  Eigen::MatrixXd points;  ///< n x dim, m
+  int nx = 0, ny = 0;      ///< grid: points[ix + nx * iy]; 0 = scattered points
   int realizations = 1;
   std::vector<Column> columns;
   std::map<std::string, std::string> attributes;  ///< what, kernel, width, units, versions

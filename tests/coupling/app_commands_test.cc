@@ -19,6 +19,9 @@ using testing::program;
 using testing::tiny_case;
 
 TEST(Commands, QuickOnesNeedLittleTime) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a sanitized program is slower";
+#endif
   const Folder folder;
   const std::string file = folder.write("x.toml", tiny_case());
   for (const std::string command : {"keys", "cases", "model", "check "}) {
