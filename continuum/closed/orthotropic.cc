@@ -41,15 +41,7 @@ class OrthotropicHalfPlane : public Model {
 };
 
 std::unique_ptr<Model> make(const Settings& s) {
-  Orthotropy o{number_of(s, "r"), number_of(s, "t")};
-  const double E_x = number_of(s, "E_x"), E_y = number_of(s, "E_y"), G = number_of(s, "G");
-  const int set = !std::isnan(E_x) + !std::isnan(E_y) + !std::isnan(G);
-  if (set != 0 && set != 3)
-    throw BadParameter(fmt::format(
-        "model orthotropic_half_plane: found {} of E_x, E_y, G; allowed: all three, with nu_xy, or "
-        "none, with r and t",
-        set));
-  if (set == 3) o = orthotropy(E_x, E_y, number_of(s, "nu_xy"), G);
+  const Orthotropy o = orthotropy("orthotropic_half_plane", s);
   const double least = -std::sqrt(o.t);
   if (!(o.r > least) || !std::isfinite(o.r + o.t))
     throw BadParameter(
@@ -60,6 +52,16 @@ std::unique_ptr<Model> make(const Settings& s) {
 }
 
 }  // namespace
+
+Orthotropy orthotropy(const std::string& model, const Settings& s) {
+  const double E_x = number_of(s, "E_x"), E_y = number_of(s, "E_y"), G = number_of(s, "G");
+  const int set = !std::isnan(E_x) + !std::isnan(E_y) + !std::isnan(G);
+  if (set == 3) return orthotropy(E_x, E_y, number_of(s, "nu_xy"), G);
+  if (set == 0) return {number_of(s, "r"), number_of(s, "t")};
+  throw BadParameter(fmt::format(
+      "model {}: found {} of E_x, E_y, G; allowed: all three, with nu_xy, or none, with r and t",
+      model, set));
+}
 
 PlaneModuli plane_strain_moduli(double E, double nu) {
   return {E / (1 - nu * nu), E / (1 - nu * nu), nu / (1 - nu), E / (2 * (1 + nu))};

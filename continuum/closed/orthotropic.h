@@ -15,6 +15,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <string>
+
+#include "continuum/model.h"
 
 namespace grainfield::continuum {
 
@@ -43,6 +46,10 @@ inline Orthotropy orthotropy(double E_x, double E_y, double nu_xy, double G) {
 inline Orthotropy orthotropy(const PlaneModuli& m) {
   return orthotropy(m.E_x, m.E_y, m.nu_xy, m.G);
 }
+
+/// That of a model's settings: r and t, or E_x, E_y, G (all three) with nu_xy. Throws BadParameter
+/// naming the model when there are some of the three only.
+Orthotropy orthotropy(const std::string& model, const Settings& settings);
 
 /// Displacement x, y at x, y (y <= 0, not both 0) of the half plane under the line load F, for
 /// stable moduli. Like Flamant's it grows with the logarithm of distance; the point at unit

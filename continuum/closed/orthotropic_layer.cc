@@ -56,15 +56,7 @@ class OrthotropicLayer : public Model {
 };
 
 std::unique_ptr<Model> make(const Settings& s) {
-  Orthotropy o{number_of(s, "r"), number_of(s, "t")};
-  const double E_x = number_of(s, "E_x"), E_y = number_of(s, "E_y"), G = number_of(s, "G");
-  const int set = !std::isnan(E_x) + !std::isnan(E_y) + !std::isnan(G);
-  if (set != 0 && set != 3)
-    throw BadParameter(fmt::format(
-        "model orthotropic_layer: found {} of E_x, E_y, G; allowed: all three, with nu_xy, or "
-        "none, with r, t and nu_xy",
-        set));
-  if (set == 3) o = orthotropy(E_x, E_y, number_of(s, "nu_xy"), G);
+  const Orthotropy o = orthotropy("orthotropic_layer", s);
   const double least = kLeastRatio * std::sqrt(o.t);
   if (!(o.r > least) || !std::isfinite(o.r + o.t))
     throw BadParameter(

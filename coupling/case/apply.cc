@@ -169,19 +169,6 @@ void take_variant(Draft& draft, const Assignment& a) {
 
 }  // namespace
 
-std::string toml_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char ch : text) {
-    if (ch == '"' || ch == '\\') out += '\\';
-    if (ch == '\n') {
-      out += "\\n";
-    } else {
-      out += ch;
-    }
-  }
-  return out + "\"";
-}
-
 void reject(const Assignment& a, const std::string& key, const std::string& what) {
   throw std::invalid_argument(fmt::format("{}: {}: {}", a.origin, key, what));
 }

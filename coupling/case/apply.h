@@ -30,9 +30,6 @@ void finish(Draft& draft);
 /// Those of finish() that concern [fit] alone.
 void check_fit(const Draft& draft);
 
-/// The text in double quotes, as TOML.
-std::string toml_text(const std::string& text);
-
 /// Where compare.models of the case's study lives.
 std::vector<std::string>& model_names(Case& value);
 

@@ -177,7 +177,7 @@ void check_grains(const Draft& draft) {
   if (!study.has_grains()) return;
   if (section_applies("packing", study.name)) check_sizes(draft);
   try {
-    study.make_run(draft.value, 1, 1);
+    study.make_run(draft.value, 0, 1);
   } catch (const std::invalid_argument& e) {
     const std::string what = e.what();
     const std::string path = what.substr(0, what.find(':'));

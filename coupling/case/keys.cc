@@ -19,19 +19,6 @@ template <class T>
 constexpr bool is_list =
     std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::vector<std::string>>;
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char ch : text) {
-    if (ch == '"' || ch == '\\') out += '\\';
-    if (ch == '\n') {
-      out += "\\n";
-    } else {
-      out += ch;
-    }
-  }
-  return out + "\"";
-}
-
 // The shortest text that reads back to the same number, and is a TOML float.
 std::string number_text(double value) {
   std::string text = fmt::format("{}", value);
@@ -40,7 +27,7 @@ std::string number_text(double value) {
 }
 
 std::string item_text(double value) { return number_text(value); }
-std::string item_text(const std::string& value) { return quoted(value); }
+std::string item_text(const std::string& value) { return toml_text(value); }
 std::string item_text(bool value) { return value ? "true" : "false"; }
 std::string item_text(std::int64_t value) { return std::to_string(value); }
 std::string item_text(int value) { return std::to_string(value); }
@@ -101,6 +88,19 @@ Defaults defaults_of(const Key& key) {
 }
 
 }  // namespace
+
+std::string toml_text(const std::string& text) {
+  std::string out = "\"";
+  for (const char ch : text) {
+    if (ch == '"' || ch == '\\') out += '\\';
+    if (ch == '\n') {
+      out += "\\n";
+    } else {
+      out += ch;
+    }
+  }
+  return out + "\"";
+}
 
 const std::vector<Key>& keys() {
   static const std::vector<Key> all = [] {

@@ -45,6 +45,9 @@ std::string allowed(const Key& key);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);
 
+/// The text in double quotes, as TOML.
+std::string toml_text(const std::string& text);
+
 /// What `grainfield keys` prints: all or one section. Throws std::invalid_argument with the nearest
 /// name for an unknown section.
 std::string keys_text(const std::string& section);

@@ -8,11 +8,11 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/fields/drawing.h"
-#include "coupling/fields/finished_piles.h"
 #include "coupling/fields/pile_set.h"
 #include "coupling/fields/topic.h"
 #include "coupling/fields/topic_result.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
@@ -25,12 +25,9 @@ std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int t
   dem::PileSetup setup = value.pile;
   if (setup.change.gravity.empty()) setup.change.gravity = {kLowered * setup.material.gravity};
   if (value.grains.files.empty()) {
-    return dem::make_pile_run(setup,
-                              realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
-                                               static_cast<std::uint64_t>(number)),
-                              threads);
+    return dem::make_pile_run(setup, realization_seed(value, number), threads);
   }
-  const FinishedPile pile = finished_pile(value, number);
+  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
   return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
 }
 
@@ -205,10 +202,7 @@ Study pile_fields_study() {
                   "rest",   "sleep", "change", "ensemble", "fields"};
   out.without = {"compare.models"};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::uint64_t, int threads) {
-    return make_run(value, 0, threads);
-  };
-  out.make_numbered_run = make_run;
+  out.make_run = make_run;
   out.analyse = analyse;
   return out;
 }

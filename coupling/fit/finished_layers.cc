@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string_view>
 
+#include "coupling/run/finished_runs.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/study/contact_changes.h"
 
@@ -15,42 +15,9 @@ namespace {
 
 constexpr double kSameForce = 1e-9;  // relative: numbers that went through a file
 
-struct Place {
-  std::string file, group;
-};
-
-std::vector<Place> places(const std::vector<std::string>& files) {
-  constexpr std::string_view name = "/loaded";
-  std::vector<Place> out;
-  for (const std::string& file : files) {
-    const std::size_t before = out.size();
-    std::vector<std::string> groups;
-    try {
-      groups = dem::list_snapshots(file);
-    } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(std::string("grains.files: ") + e.what());
-    }
-    for (const std::string& group : groups) {
-      if (group.size() < name.size()) continue;
-      const std::string above = group.substr(0, group.size() - name.size());
-      if (group.substr(above.size()) == name &&
-          std::find(groups.begin(), groups.end(), above + "/unloaded") != groups.end()) {
-        out.push_back({file, above});
-      }
-    }
-    if (out.size() == before) {
-      throw std::invalid_argument(fmt::format(
-          "grains.files: {} holds no snapshots named unloaded and loaded, expected snapshots.h5 of "
-          "a run of study point-load",
-          file));
-    }
-  }
-  return out;
-}
-
 class FinishedLayer final : public dem::Run {
  public:
-  FinishedLayer(const Place& place, double force)
+  FinishedLayer(const FinishedRun& place, double force)
       : unloaded_(dem::read_snapshot(place.file, place.group + "/unloaded")),
         loaded_(dem::read_snapshot(place.file, place.group + "/loaded")) {
     const double found = -loaded_.applied_force.y();
@@ -96,15 +63,8 @@ class FinishedLayer final : public dem::Run {
 }  // namespace
 
 std::unique_ptr<dem::Run> make_finished_layer_run(const Case& value, std::int64_t number) {
-  const std::vector<Place> there = places(value.grains.files);
-  const auto count = static_cast<std::int64_t>(there.size());
-  if (value.ensemble.realizations > count) {
-    throw std::invalid_argument(fmt::format(
-        "ensemble.realizations: found {}, allowed: up to {}, the layers in grains.files",
-        value.ensemble.realizations, count));
-  }
-  return std::make_unique<FinishedLayer>(there[static_cast<std::size_t>(number)],
-                                         value.layer.load.force);
+  return std::make_unique<FinishedLayer>(
+      finished_run(value, number, {"unloaded", "loaded"}, "point-load"), value.layer.load.force);
 }
 
 }  // namespace grainfield::coupling

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace grainfield::coupling {
 namespace {
@@ -20,6 +21,13 @@ std::string tex_escaped(const std::string& text) {
 }
 
 }  // namespace
+
+const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name) {
+  const auto at =
+      std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
+  if (at == fits.end()) throw std::logic_error("no fit of " + name);
+  return *at;
+}
 
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "nan"; }
 
@@ -55,6 +63,29 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
            std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
            p.parameter.unit, with, p.at_bound ? "at its bound" : ""});
     }
+  }
+  return rows;
+}
+
+const std::vector<std::string>& ranking_header() {
+  static const std::vector<std::string> header{"model",       "free numbers", "chi2/dof",
+                                               "AICc behind", "CV behind",    "CV over heights",
+                                               "relative L2", "supported"};
+  return header;
+}
+
+std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
+                                                   const Selection& selection) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Score& s : selection.ranking) {
+    const Fit& f = fit_named(fits, s.name);
+    rows.push_back({s.name, fmt::format("{}", f.parameters.size()), number(f.chi2_per_dof),
+                    fmt::format("{:.1f}", s.aicc_difference),
+                    std::isfinite(s.behind_error)
+                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
+                        : "-",
+                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
+                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
   }
   return rows;
 }

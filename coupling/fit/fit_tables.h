@@ -9,6 +9,9 @@
 
 namespace grainfield::coupling {
 
+/// The fit of that name; throws std::logic_error when there is none.
+const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name);
+
 /// Six digits, or "nan".
 std::string number(double value);
 /// "0.35 +- 0.02", to two digits of the error; "0.35 (no error)".
@@ -17,6 +20,11 @@ std::string with_error(const FittedParameter& parameter);
 const std::vector<std::string>& parameter_header();
 /// One row per parameter of every fit, with its strongest correlation.
 std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fits);
+
+const std::vector<std::string>& ranking_header();
+/// One row per model of the ranking, best first.
+std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
+                                                   const Selection& selection);
 
 std::string markdown_table(const std::vector<std::string>& header,
                            const std::vector<std::vector<std::string>>& rows);

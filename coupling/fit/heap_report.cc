@@ -9,17 +9,13 @@
 
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/osl.h"
+#include "coupling/fit/fit_tables.h"
 
 namespace grainfield::coupling {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kDrawn = 4;  // models in a picture
-
-const Fit& fit_of(const HeapFits& fits, const std::string& name) {
-  return *std::find_if(fits.fits.begin(), fits.fits.end(),
-                       [&](const Fit& f) { return f.name == name; });
-}
 
 const FittedParameter* parameter_of(const Fit& fit, const std::string& name) {
   for (const FittedParameter& p : fit.parameters) {
@@ -55,95 +51,6 @@ void add_derived(Summary& summary, const std::string& key, const Fit& fit,
   summary[key] = of(at);
   summary[key + ".error"] = known ? spread(error) : std::nan("");
   summary[key + ".bootstrap_error"] = known && drawn.allFinite() ? spread(drawn) : std::nan("");
-}
-
-std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "nan"; }
-
-std::string with_error(const FittedParameter& p) {
-  if (!std::isfinite(p.error)) return fmt::format("{:.3g} (no error)", p.value);
-  const int digits =
-      std::clamp(1 - static_cast<int>(std::floor(std::log10(std::max(p.error, 1e-12)))), 0, 8);
-  return fmt::format("{:.{}f} +- {:.{}f}", p.value, digits, p.error, digits);
-}
-
-// Rows of the ranking: model, free numbers, chi2/dof, ...
-std::vector<std::vector<std::string>> ranking_rows(const HeapFits& fits) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Score& s : fits.selection.ranking) {
-    const Fit& f = fit_of(fits, s.name);
-    rows.push_back({s.name, fmt::format("{}", f.parameters.size()), number(f.chi2_per_dof),
-                    fmt::format("{:.1f}", s.aicc_difference),
-                    std::isfinite(s.behind_error)
-                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
-                        : "-",
-                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
-                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
-  }
-  return rows;
-}
-
-const std::vector<std::string> kRankingHeader{"model",       "free numbers", "chi2/dof",
-                                              "AICc behind", "CV behind",    "CV over heights",
-                                              "relative L2", "supported"};
-
-std::vector<std::vector<std::string>> parameter_rows(const HeapFits& fits) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Fit& f : fits.fits) {
-    for (std::size_t k = 0; k < f.parameters.size(); ++k) {
-      const FittedParameter& p = f.parameters[k];
-      // Its strongest correlation with another.
-      std::string with = "-";
-      double strongest = 0;
-      for (std::size_t j = 0; j < f.parameters.size(); ++j) {
-        const double r = f.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
-        if (j == k || !(std::fabs(r) > std::fabs(strongest))) continue;
-        strongest = r;
-        with = fmt::format("{:.2f} with {}", r, f.parameters[j].parameter.name);
-      }
-      rows.push_back(
-          {f.name, p.parameter.name, with_error(p),
-           std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
-           p.parameter.unit, with, p.at_bound ? "at its bound" : ""});
-    }
-  }
-  return rows;
-}
-
-const std::vector<std::string> kParameterHeader{
-    "model", "parameter", "value", "bootstrap error", "unit", "strongest correlation", "note"};
-
-std::string markdown_table(const std::vector<std::string>& header,
-                           const std::vector<std::vector<std::string>>& rows) {
-  std::string out = fmt::format("| {} |\n|{}\n", fmt::join(header, " | "), [&] {
-    std::string rule;
-    for (std::size_t k = 0; k < header.size(); ++k) rule += "---|";
-    return rule;
-  }());
-  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
-  return out;
-}
-
-std::string tex_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '_' || c == '%') out += '\\';
-    out += c;
-  }
-  const std::size_t at = out.find("+-");
-  return at == std::string::npos ? out : out.replace(at, 2, "$\\pm$");
-}
-
-std::string tex_table(const std::vector<std::string>& header,
-                      const std::vector<std::vector<std::string>>& rows) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    std::vector<std::string> out;
-    for (const std::string& cell : cells) out.push_back(tex_escaped(cell));
-    return fmt::format("{} \\\\\n", fmt::join(out, " & "));
-  };
-  std::string out = fmt::format("\\begin{{tabular}}{{{}}}\n\\hline\n{}\\hline\n",
-                                std::string(header.size(), 'l'), line(header));
-  for (const auto& row : rows) out += line(row);
-  return out + "\\hline\n\\end{tabular}\n";
 }
 
 std::string weights_note(const HeapFits& fits) {
@@ -190,7 +97,7 @@ Frame frame_of(const HeapFits& fits, int component, int level,
   for (const std::string& model : models) {
     Series s{model, grains.x, Eigen::VectorXd(n), {}, false};
     for (Eigen::Index k = 0; k < n; ++k) {
-      s.y[k] = sign * fit_of(fits, model).model[rows[static_cast<std::size_t>(k)]];
+      s.y[k] = sign * fit_named(fits.fits, model).model[rows[static_cast<std::size_t>(k)]];
     }
     frame.series.push_back(std::move(s));
   }
@@ -210,7 +117,7 @@ Frame residual_frame(const HeapFits& fits, const std::string& model, int compone
         continue;
       }
       x.push_back(data.points(k, 0));
-      y.push_back(fit_of(fits, model).residual[k]);
+      y.push_back(fit_named(fits.fits, model).residual[k]);
     }
     Series s{
         fmt::format("at {} h", data.levels[static_cast<std::size_t>(level)]), {}, {}, {}, false};
@@ -254,13 +161,9 @@ void add_fits(Summary& summary, const HeapFits& fits) {
   summary["fit.covariance"] = fits.covariance.kind;
   summary["fit.correlation_length"] = fits.covariance.correlation_length;
   summary["fit.effective_values"] = fits.covariance.effective_values;
+  add_parameters(summary, fits.fits);
   for (const Fit& f : fits.fits) {
     const std::string prefix = "fit." + f.name + ".";
-    for (const FittedParameter& p : f.parameters) {
-      summary[prefix + p.parameter.name] = p.value;
-      summary[prefix + p.parameter.name + ".error"] = p.error;
-      summary[prefix + p.parameter.name + ".bootstrap_error"] = p.bootstrap_error;
-    }
     if (const FittedParameter* angle = parameter_of(f, "beta_hat_deg")) {
       summary[prefix + "branch"] = nearest_branch(slope, angle->value);
     }
@@ -281,44 +184,22 @@ void add_fits(Summary& summary, const HeapFits& fits) {
                     [=](const Eigen::VectorXd& p) { return closure(p).eta; });
       }
     }
-    summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
-    summary[prefix + "rel_l2"] = f.rel_l2;
-    summary[prefix + "note"] = f.note;
   }
-  for (const Score& s : fits.selection.ranking) {
-    const std::string prefix = "fit." + s.name + ".";
-    summary[prefix + "aicc_difference"] = s.aicc_difference;
-    summary[prefix + "cv_behind"] = s.behind;
-    summary[prefix + "cv_behind_error"] = s.behind_error;
-    summary[prefix + "cv_heights"] = s.level_score;
-    summary[prefix + "supported"] = s.supported ? "yes" : "no";
-  }
+  add_ranking(summary, fits.selection);
   summary["verdict.best_model"] = fits.selection.ranking.front().name;
   summary["verdict.distinguishable"] = fits.selection.distinguishable ? "yes" : "no";
 }
 
-std::string fits_csv(const HeapFits& fits) {
-  std::string out = "model,parameter,unit,value,error,bootstrap_error,low,high,at_bound\n";
-  for (const Fit& f : fits.fits) {
-    for (const FittedParameter& p : f.parameters) {
-      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", f.name, p.parameter.name, p.parameter.unit,
-                         number(p.value), number(p.error), number(p.bootstrap_error), number(p.low),
-                         number(p.high), p.at_bound ? 1 : 0);
-    }
-  }
-  return out;
-}
-
 std::string fits_markdown(const HeapFits& fits) {
   return fmt::format("{}\n\n{}.\n\n{}\n{}", fits.selection.sentence, weights_note(fits),
-                     markdown_table(kRankingHeader, ranking_rows(fits)),
-                     markdown_table(kParameterHeader, parameter_rows(fits)));
+                     markdown_table(ranking_header(), ranking_rows(fits.fits, fits.selection)),
+                     markdown_table(parameter_header(), parameter_rows(fits.fits)));
 }
 
 std::string fits_tex(const HeapFits& fits) {
   return fmt::format("% {}\n{}\n{}", weights_note(fits),
-                     tex_table(kRankingHeader, ranking_rows(fits)),
-                     tex_table(kParameterHeader, parameter_rows(fits)));
+                     tex_table(ranking_header(), ranking_rows(fits.fits, fits.selection)),
+                     tex_table(parameter_header(), parameter_rows(fits.fits)));
 }
 
 std::vector<Section> fit_sections(const HeapFits& fits) {
@@ -361,11 +242,11 @@ std::vector<Section> fit_sections(const HeapFits& fits) {
                          "AICc behind: from the best. CV behind: cross-validation, squared "
                          "difference per effective value on realizations left out, from the best. "
                          "Supported: not behind in both.",
-                         kRankingHeader, ranking_rows(fits)});
+                         ranking_header(), ranking_rows(fits.fits, fits.selection)});
   out.emplace_back(Table{"Fitted constants",
                          "Errors from the covariance; beside them those of bootstrap draws of the "
                          "piles.",
-                         kParameterHeader, parameter_rows(fits)});
+                         parameter_header(), parameter_rows(fits.fits)});
   return out;
 }
 

@@ -15,9 +15,7 @@ void add_fits(Summary& summary, const HeapFits& fits);
 /// The branch of Cantelaube's theory whose core angle is nearest: "minus", "zero" or "plus".
 std::string nearest_branch(double slope_deg, double beta_hat_deg);
 
-/// One row per parameter: model,parameter,unit,value,error,bootstrap_error,low,high,note.
-std::string fits_csv(const HeapFits& fits);
-/// The same and the ranking, as a Markdown document and as LaTeX tables.
+/// Parameters and ranking, as a Markdown document and as LaTeX tables.
 std::string fits_markdown(const HeapFits& fits);
 std::string fits_tex(const HeapFits& fits);
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_elements.h"
 #include "coupling/fit/heap_report.h"
 #include "coupling/report/report.h"
@@ -48,7 +49,7 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   out.comparison.verdict.best_model = fits->selection.ranking.front().name;
   out.comparison.verdict.sentence = fits->selection.sentence;
   out.summary["verdict.sentence"] = fits->selection.sentence;
-  out.texts = {{"fits.csv", fits_csv(*fits)},
+  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", fits_markdown(*fits)},
                {"fits.tex", fits_tex(*fits)}};
   out.overview = {{"best model", "verdict.best_model"},

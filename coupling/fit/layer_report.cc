@@ -14,22 +14,16 @@
 namespace grainfield::coupling {
 namespace {
 
-const std::vector<std::string> kRankingHeader{"model",           "equations",   "free numbers",
-                                              "chi2/dof",        "AICc behind", "CV behind",
-                                              "CV over heights", "relative L2", "supported"};
+// The shared ranking with the type of the equations beside the name.
+std::vector<std::string> layer_ranking_header() {
+  std::vector<std::string> header = ranking_header();
+  header.insert(header.begin() + 1, "equations");
+  return header;
+}
 
-std::vector<std::vector<std::string>> ranking_rows(const LayerFits& fits) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Score& s : fits.selection.ranking) {
-    const Fit& f = fits.fit_of(s.name);
-    rows.push_back({s.name, type_of_equations(s.name), fmt::format("{}", f.parameters.size()),
-                    number(f.chi2_per_dof), fmt::format("{:.1f}", s.aicc_difference),
-                    std::isfinite(s.behind_error)
-                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
-                        : "-",
-                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
-                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
-  }
+std::vector<std::vector<std::string>> layer_ranking_rows(const LayerFits& fits) {
+  auto rows = ranking_rows(fits.fits, fits.selection);
+  for (auto& row : rows) row.insert(row.begin() + 1, type_of_equations(row.front()));
   return rows;
 }
 
@@ -50,13 +44,6 @@ std::string level_title(const std::string& level) {
 }
 
 }  // namespace
-
-const Fit& LayerFits::fit_of(const std::string& name) const {
-  const auto at =
-      std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
-  if (at == fits.end()) throw std::logic_error("no fit of " + name);
-  return *at;
-}
 
 void add_layer_fits(Summary& summary, const LayerFits& fits) {
   summary["fit.values"] = static_cast<double>(fits.layers.data.values());
@@ -80,18 +67,16 @@ void add_layer_fits(Summary& summary, const LayerFits& fits) {
   summary["verdict.sentence"] = fits.verdict.sentence;
 }
 
-std::string layer_fits_csv(const LayerFits& fits) { return parameters_csv(fits.fits); }
-
 std::string layer_fits_markdown(const LayerFits& fits) {
   return fmt::format("{}\n\n{}.\n\n{}\n{}\n{}", fits.verdict.sentence, weights_note(fits),
-                     markdown_table(kRankingHeader, ranking_rows(fits)),
+                     markdown_table(layer_ranking_header(), layer_ranking_rows(fits)),
                      markdown_table(parameter_header(), parameter_rows(fits.fits)),
                      markdown_table(elements_header(), element_rows(fits.elements)));
 }
 
 std::string layer_fits_tex(const LayerFits& fits) {
   return fmt::format("% {}\n{}\n{}\n{}", weights_note(fits),
-                     tex_table(kRankingHeader, ranking_rows(fits)),
+                     tex_table(layer_ranking_header(), layer_ranking_rows(fits)),
                      tex_table(parameter_header(), parameter_rows(fits.fits)),
                      tex_table(elements_header(), element_rows(fits.elements)));
 }
@@ -154,12 +139,12 @@ std::vector<Section> layer_pictures(const LayerFits& fits) {
     out.emplace_back(std::move(picture));
   }
   const std::string& best = fits.verdict.model;
-  for (Section& s :
-       map_sections(fits.maps, model_on_maps(fits.maps, fits.layers, fits.fit_of(best)), best)) {
+  for (Section& s : map_sections(
+           fits.maps, model_on_maps(fits.maps, fits.layers, fit_named(fits.fits, best)), best)) {
     out.push_back(std::move(s));
   }
   std::vector<const Fit*> ranked;
-  for (const Score& s : fits.selection.ranking) ranked.push_back(&fits.fit_of(s.name));
+  for (const Score& s : fits.selection.ranking) ranked.push_back(&fit_named(fits.fits, s.name));
   for (Section& s : posterior_sections(ranked, fits.layers.data.realizations())) {
     out.push_back(std::move(s));
   }
@@ -174,7 +159,7 @@ std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of) 
             "effective value on realizations left out, from the best. CV over heights: the same on "
             "the level left out. Supported: not behind in both. " +
                 weights_note(fits) + ".",
-            kRankingHeader, ranking_rows(fits)});
+            layer_ranking_header(), layer_ranking_rows(fits)});
   out.emplace_back(Table{of.empty() ? "Fitted constants" : of + "fitted constants",
                          "Errors from the covariance; beside them those of bootstrap draws of the "
                          "realizations.",

@@ -22,15 +22,12 @@ struct LayerFits {
   LayerVerdict verdict;
   std::vector<FiniteElementFit> elements;
   LayerMaps maps;
-
-  const Fit& fit_of(const std::string& name) const;
 };
 
 /// fit.*, fe.* and verdict.*: see summary_keys.cc.
 void add_layer_fits(Summary& summary, const LayerFits& fits);
 
-/// One row per parameter, and the tables as Markdown and LaTeX.
-std::string layer_fits_csv(const LayerFits& fits);
+/// Parameters and ranking, as a Markdown document and as LaTeX tables.
 std::string layer_fits_markdown(const LayerFits& fits);
 std::string layer_fits_tex(const LayerFits& fits);
 

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "coupling/fit/finished_layers.h"
+#include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
 #include "coupling/run/ensemble.h"
@@ -21,10 +22,7 @@ namespace {
 
 std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
   if (!value.grains.files.empty()) return make_finished_layer_run(value, number);
-  return dem::make_point_load_run(value.layer,
-                                  realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
-                                                   static_cast<std::uint64_t>(number)),
-                                  threads);
+  return dem::make_point_load_run(value.layer, realization_seed(value, number), threads);
 }
 
 // The registry's model with F = 1, h = 1 at the fit's points, through the same kernel.
@@ -43,7 +41,8 @@ FiniteElementFit solve(const std::string& name, const LayerFits& fits, const Lay
   const Eigen::MatrixXd seen =
       sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
   const FitData& data = fits.layers.data;
-  judge_elements(out, data, fits.covariance, fits.fit_of(out.of), sight.pick(seen, data.points));
+  judge_elements(out, data, fits.covariance, fit_named(fits.fits, out.of),
+                 sight.pick(seen, data.points));
   return out;
 }
 
@@ -142,7 +141,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   add_layer_fits(out.summary, *fits);
   out.comparison.verdict.best_model = fits->verdict.model;
   out.comparison.verdict.sentence = fits->verdict.sentence;
-  out.texts = {{"fits.csv", layer_fits_csv(*fits)},
+  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", layer_fits_markdown(*fits)},
                {"fits.tex", layer_fits_tex(*fits)}};
   out.overview = {
@@ -157,8 +156,9 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.sweep_y = "response of -σ_{yy}  (F/h)";
   out.sweep_sections = [fits](const std::string& name) {
     const std::string& best = fits->verdict.model;
-    return map_sections(fits->maps, model_on_maps(fits->maps, fits->layers, fits->fit_of(best)),
-                        best, name);
+    return map_sections(fits->maps,
+                        model_on_maps(fits->maps, fits->layers, fit_named(fits->fits, best)), best,
+                        name);
   };
   out.sweep_tables = [fits](const std::string& name) { return layer_tables(*fits, name + ": "); };
   out.page = [fits](const StudyResult& result, const Realization* first) {
@@ -210,10 +210,7 @@ Study point_load_verdict_study() {
   out.sections.insert(out.sections.end(), {"grains", "verdict"});
   out.without = {"compare.models"};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::uint64_t, int threads) {
-    return make_run(value, 0, threads);
-  };
-  out.make_numbered_run = make_run;
+  out.make_run = make_run;
   out.analyse = analyse;
   return out;
 }

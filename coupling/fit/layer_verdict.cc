@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "coupling/compare/significance.h"
+#include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
 
 namespace grainfield::coupling {
@@ -16,13 +17,6 @@ namespace {
 // A model agrees when its chi2/dof is within so many standard deviations sqrt(2/dof) of 1; the
 // covariance is estimated, so that chi2 scatters more than that of a known one.
 constexpr double kChance = 3;
-
-const Fit& fit_of(const std::vector<Fit>& fits, const std::string& name) {
-  const auto at =
-      std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
-  if (at == fits.end()) throw std::invalid_argument("verdict: no fit of " + name);
-  return *at;
-}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
@@ -80,7 +74,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   const Fit* simplest = nullptr;
   for (const Score& s : selection.ranking) {  // by AICc: the first of equals stays
     if (!s.supported) continue;
-    const Fit& f = fit_of(fits, s.name);
+    const Fit& f = fit_named(fits, s.name);
     supported.push_back(s.name);
     types.insert(type_of_equations(s.name));
     if (simplest == nullptr || f.parameters.size() < simplest->parameters.size()) simplest = &f;

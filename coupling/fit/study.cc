@@ -3,9 +3,9 @@
 #include <chrono>
 #include <memory>
 
-#include "coupling/fields/finished_piles.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -14,12 +14,9 @@ std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int t
   dem::PileSetup setup = value.pile;
   setup.change.gravity.clear();
   if (value.grains.files.empty()) {
-    return dem::make_pile_run(setup,
-                              realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
-                                               static_cast<std::uint64_t>(number)),
-                              threads);
+    return dem::make_pile_run(setup, realization_seed(value, number), threads);
   }
-  const FinishedPile pile = finished_pile(value, number);
+  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
   return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
 }
 
@@ -44,10 +41,7 @@ Study pile_fit_study() {
                   "motion", "rest",  "sleep",  "ensemble", "fit"};
   out.without = {"compare.models"};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::uint64_t, int threads) {
-    return make_run(value, 0, threads);
-  };
-  out.make_numbered_run = make_run;
+  out.make_run = make_run;
   out.analyse = analyse;
   return out;
 }

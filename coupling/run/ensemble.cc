@@ -222,6 +222,11 @@ std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index) {
   return z ^ (z >> 31);
 }
 
+std::uint64_t realization_seed(const Case& value, std::int64_t number) {
+  return realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
+                          static_cast<std::uint64_t>(number));
+}
+
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options) {
   std::vector<std::size_t> mine;
   for (std::size_t t = 0; t < tasks.size(); ++t) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/case/case.h"
 #include "coupling/run/ranks.h"
 #include "dem/study/run.h"
 
@@ -14,6 +15,8 @@ namespace grainfield::coupling {
 /// The seed of realization `index` of an ensemble: SplitMix64's output function of
 /// seed + (index + 1) * 0x9E3779B97F4A7C15. Neighbouring seeds and indices give unrelated streams.
 std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index);
+/// That of the case's realization `number`, from its ensemble.seed.
+std::uint64_t realization_seed(const Case& value, std::int64_t number);
 
 /// One realization to be done.
 struct Task {

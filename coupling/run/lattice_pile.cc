@@ -9,6 +9,7 @@
 
 #include "continuum/closed/liffman.h"
 #include "coupling/report/lattice_pile.h"
+#include "coupling/run/ensemble.h"
 #include "coupling/run/models.h"
 #include "dem/packing/lattice_pile.h"
 
@@ -293,8 +294,8 @@ Study lattice_pile_study() {
   out.fills = {"alpha_deg", "phi_deg", "left_deg", "right_deg", "chi_g", "width",
                "spacing",   "rho_g",   "h",        "dim",       "depth"};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::uint64_t seed, int threads) {
-    return dem::make_lattice_pile_run(value.lattice_pile, seed, threads);
+  out.make_run = [](const Case& value, std::int64_t number, int threads) {
+    return dem::make_lattice_pile_run(value.lattice_pile, realization_seed(value, number), threads);
   };
   out.analyse = analyse_lattice_pile;
   return out;

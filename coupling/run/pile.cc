@@ -9,6 +9,7 @@
 #include "coupling/compare/significance.h"
 #include "coupling/report/pile.h"
 #include "coupling/run/averaging_setup.h"
+#include "coupling/run/ensemble.h"
 #include "coupling/run/models.h"
 #include "coupling/run/pile_ensemble.h"
 #include "coupling/run/summary_keys.h"
@@ -334,8 +335,8 @@ Study pile_study() {
   out.without = {"average.depths", "average.half_width"};
   out.fills = {"rho_g", "phi_deg", "left_deg", "right_deg", "h", "dim", "depth"};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::uint64_t seed, int threads) {
-    return dem::make_pile_run(value.pile, seed, threads);
+  out.make_run = [](const Case& value, std::int64_t number, int threads) {
+    return dem::make_pile_run(value.pile, realization_seed(value, number), threads);
   };
   out.analyse = analyse_pile;
   return out;

@@ -301,8 +301,8 @@ Study point_load_study() {
   out.meaning = "grains under a load on one of them against continuum models";
   out.sections = {"packing", "material", "motion", "rest", "load", "ensemble", "average"};
   out.fills = {"F", "h", "dim", "depth"};
-  out.make_run = [](const Case& value, std::uint64_t seed, int threads) {
-    return dem::make_point_load_run(value.layer, seed, threads);
+  out.make_run = [](const Case& value, std::int64_t number, int threads) {
+    return dem::make_point_load_run(value.layer, realization_seed(value, number), threads);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int threads) {
     return analyse_point_load(value, files, threads);

@@ -181,14 +181,9 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
     const Study& study = study_of(value);
     if (!study.has_grains()) continue;
     for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
-      const std::uint64_t seed = realization_seed(static_cast<std::uint64_t>(value.ensemble.seed),
-                                                  static_cast<std::uint64_t>(r));
-      tasks.push_back({[&study, &value, seed, r](int threads) {
-                         return study.make_numbered_run != nullptr
-                                    ? study.make_numbered_run(value, r, threads)
-                                    : study.make_run(value, seed, threads);
-                       },
-                       member_file(place, member.suffix, r)});
+      tasks.push_back(
+          {[&study, &value, r](int threads) { return study.make_run(value, r, threads); },
+           member_file(place, member.suffix, r)});
     }
   }
   const auto start = Clock::now();

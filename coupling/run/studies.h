@@ -24,13 +24,9 @@ struct Study {
   std::vector<std::string> fills;
   /// Whether compare.models may be empty.
   bool models_optional = false;
-  /// One realization of grains; null: a study without grains. Throws std::invalid_argument
-  /// beginning with the key that does not hold.
-  std::unique_ptr<dem::Run> (*make_run)(const Case&, std::uint64_t seed, int threads) = nullptr;
-  /// The realization of this number, for studies in which more than its seed makes it; null:
-  /// make_run with the seed of that number.
-  std::unique_ptr<dem::Run> (*make_numbered_run)(const Case&, std::int64_t number,
-                                                 int threads) = nullptr;
+  /// The realization of grains of this number, from 0; null: a study without grains. Throws
+  /// std::invalid_argument beginning with the key that does not hold.
+  std::unique_ptr<dem::Run> (*make_run)(const Case&, std::int64_t number, int threads) = nullptr;
   /// Everything the study leaves, from the files of its realizations in order (none without
   /// grains). The bits do not depend on threads.
   StudyResult (*analyse)(const Case&, const std::vector<std::string>& realizations,

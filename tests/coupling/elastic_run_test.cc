@@ -2,26 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/run/elastic.h"
-#include "coupling/run/summary_keys.h"
-#include "tests/paths.h"
+#include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;
-
-namespace {
-
-double number(const StudyResult& result, const std::string& key) {
-  return std::get<double>(result.summary.at(key));
-}
-
-StudyResult shipped(const std::string& name, const Overrides& overrides = {}) {
-  const StudyResult result =
-      analyse_elastic(read_case(std::string(GRAINFIELD_CASES) + "/" + name, true, overrides));
-  EXPECT_NO_THROW(require_documented(result.summary));
-  return result;
-}
-
-}  // namespace
+using grainfield::coupling::testing::number;
+using grainfield::coupling::testing::shipped;
 
 TEST(ElasticRun, OrthotropicLayerGoesFromOnePeakToTwo) {
   for (const auto& [r, peaks] : {std::pair{"1", 1}, {"-0.6", 2}}) {

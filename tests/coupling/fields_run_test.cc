@@ -96,7 +96,7 @@ TEST(FieldsRun, FinishedPilesGiveWhatPouredOnesGive) {
   EXPECT_THAT(refusal("change.method=damped"),
               HasSubstr("change.method: found \"damped\", allowed for piles from files: newton"));
   EXPECT_THAT(refusal("ensemble.realizations=3"),
-              HasSubstr("ensemble.realizations: found 3, allowed: up to 2, the piles in "));
+              HasSubstr("ensemble.realizations: found 3, allowed: up to 2, the realizations in "));
   EXPECT_THAT(refusal("'fields.topics=[\"fabrik\"]'"), HasSubstr("nearest: fabric"));
   EXPECT_THAT(refusal("'compare.models=[\"osl\"]'"), HasSubstr("compare.models: has no meaning"));
 }

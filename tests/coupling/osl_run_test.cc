@@ -2,26 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/run/osl.h"
-#include "coupling/run/summary_keys.h"
-#include "tests/paths.h"
+#include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;
-
-namespace {
-
-double number(const StudyResult& result, const std::string& key) {
-  return std::get<double>(result.summary.at(key));
-}
-
-StudyResult shipped(const std::string& name, const Overrides& overrides = {}) {
-  const StudyResult result =
-      analyse_osl(read_case(std::string(GRAINFIELD_CASES) + "/" + name, true, overrides));
-  EXPECT_NO_THROW(require_documented(result.summary));
-  return result;
-}
-
-}  // namespace
+using grainfield::coupling::testing::number;
+using grainfield::coupling::testing::shipped;
 
 TEST(OslRun, HeapMeetsTheClosedFormWhereTheMeshIsAligned) {
   const StudyResult result = shipped("osl-wedge.toml");
@@ -46,7 +31,8 @@ TEST(OslRun, RefusesWhatDoesNotFit) {
     shipped("osl-wedge.toml", {"elastic.depths=[2.0]"});
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("elastic.depths: found 2, allowed: up to elastic.h"));
+    EXPECT_THAT(e.what(),
+                ::testing::HasSubstr("elastic.depths: found 2, allowed: up to elastic.h"));
   }
   EXPECT_THROW(shipped("osl-layer.toml", {"compare.models=[\"dg\"]"}), std::invalid_argument);
   EXPECT_THROW(shipped("osl-layer.toml", {"elastic.dim=3"}), std::invalid_argument);

@@ -8,21 +8,15 @@
 #include "continuum/model.h"
 #include "coupling/output/triangles_vtu.h"
 #include "coupling/run/slip_lines.h"
-#include "coupling/run/summary_keys.h"
 #include "coupling/run/wedge.h"
-#include "tests/paths.h"
+#include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;
-using testing::HasSubstr;
+using grainfield::coupling::testing::shipped;
+using grainfield::coupling::testing::word;
+using ::testing::HasSubstr;
 
 namespace {
-
-StudyResult shipped(const std::string& name, const Overrides& overrides) {
-  const StudyResult result =
-      analyse_wedge(read_case(std::string(GRAINFIELD_CASES) + "/" + name, true, overrides));
-  EXPECT_NO_THROW(require_documented(result.summary));
-  return result;
-}
 
 std::string refusal(const std::string& name, const Overrides& overrides) {
   try {
@@ -31,10 +25,6 @@ std::string refusal(const std::string& name, const Overrides& overrides) {
     return e.what();
   }
   return "accepted";
-}
-
-std::string word(const StudyResult& result, const std::string& key) {
-  return std::get<std::string>(result.summary.at(key));
 }
 
 /// Pressure of a closed wedge on a base of half width cot(28 deg).

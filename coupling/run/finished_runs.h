@@ -1,0 +1,24 @@
+// What earlier runs left, as a new run finds it in grains.files.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coupling/case/case.h"
+
+namespace grainfield::coupling {
+
+/// The snapshots of one realization: a group of a file.
+struct FinishedRun {
+  std::string file;
+  std::string group;  ///< "/realization_003", or "" where the snapshots stand at the top
+};
+
+/// Realization `number` of grains.files: every group of these files that holds snapshots of all the
+/// names, in the order of files and groups. `study` is the one that leaves such files. Throws
+/// std::invalid_argument "grains.files: ..." naming a file without such a group, or what reading it
+/// says; "ensemble.realizations: ..." when there are fewer.
+FinishedRun finished_run(const Case& value, std::int64_t number,
+                         const std::vector<std::string>& snapshots, const std::string& study);
+
+}  // namespace grainfield::coupling
