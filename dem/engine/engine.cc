@@ -72,4 +72,31 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
       settings.law);
 }
 
+std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start) {
+  if (start.dim != 2) throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
+  EngineSettings same = settings;
+  same.gravity_x = start.gravity.x();
+  same.gravity_y = start.gravity.y();
+  std::unique_ptr<Engine> engine = make_engine(same);
+  for (const Wall& wall : start.walls) engine->add_wall(wall);
+  for (const Grain& g : start.grains) {
+    NewGrain grain;
+    grain.x = g.position.x();
+    grain.y = g.position.y();
+    grain.vx = g.velocity.x();
+    grain.vy = g.velocity.y();
+    grain.angle = g.angle;
+    grain.spin = g.spin;
+    grain.radius = g.radius;
+    grain.density = g.mass / g.volume;
+    grain.fixed = g.fixed;
+    grain.outline = g.outline;
+    if (engine->add(grain) != g.id) {
+      throw std::invalid_argument("the snapshot's grains are not numbered 0, 1, 2, ...");
+    }
+  }
+  engine->remember(start.contacts);
+  return engine;
+}
+
 }  // namespace grainfield::dem

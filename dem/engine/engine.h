@@ -118,6 +118,10 @@ class Engine {
   virtual Motion motion() const = 0;
   virtual Snapshot snapshot() const = 0;
 
+  /// Gives the contacts that the next step finds between these grains (by id; j = -1 - w: wall w)
+  /// these springs, where they have none yet.
+  virtual void remember(const std::vector<Contact>& contacts) = 0;
+
   /// The whole state, in bits, and back. restore() expects an engine made with the same settings
   /// and without grains; throws std::invalid_argument when the image does not fit.
   virtual std::string image() const = 0;
@@ -155,5 +159,9 @@ inline constexpr double kMostOfLimit = 2.5;
 
 /// Throws std::invalid_argument for settings out of range.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
+/// The same, to go on from a 2D snapshot whose grains are numbered 0, 1, 2, ...: its walls, grains
+/// with their velocities, and springs. Time begins at 0; the settings' gravity is replaced by the
+/// snapshot's. Throws std::invalid_argument when the snapshot is 3D or numbered otherwise.
+std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start);
 
 }  // namespace grainfield::dem

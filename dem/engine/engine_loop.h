@@ -121,6 +121,7 @@ class EngineLoop final : public Engine {
   Diagnostics measure() const override;
   Motion motion() const override;
   Snapshot snapshot() const override;
+  void remember(const std::vector<Contact>& contacts) override;
   std::string image() const override;
   void restore(const std::string& image) override;
 

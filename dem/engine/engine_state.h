@@ -182,6 +182,19 @@ Snapshot EngineLoop<Shape, Law, Integrator>::snapshot() const {
   return s;
 }
 
+/// As frozen contacts without force: the next search hands their springs on.
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::remember(const std::vector<Contact>& contacts) {
+  for (const Contact& c : contacts) {
+    const Key key = c.j < 0 ? wall_key(c.i, static_cast<int>(-1 - c.j)) : pair_key(c.i, c.j);
+    Frozen frozen;
+    frozen.key = key;
+    frozen.spring = c.spring;
+    frozen_[key] = frozen;
+  }
+  search_needed_ = true;
+}
+
 template <class Shape, class Law, class Integrator>
 std::string EngineLoop<Shape, Law, Integrator>::image() const {
   ImageWriter w;

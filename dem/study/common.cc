@@ -76,6 +76,11 @@ void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string
       rest.max_time, when, d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy, remedy));
 }
 
+std::string smaller_step(const MotionSetup& m) {
+  if (m.time_step > 0 || m.time_step_fraction <= 1) return "";
+  return fmt::format(", or lower motion.time_step_fraction, now {:g}", m.time_step_fraction);
+}
+
 std::string describe(const MaterialSetup& m) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", m.law, m.density, m.young, m.damping,
                      m.normal_stiffness, m.tangential_stiffness, m.normal_damping,

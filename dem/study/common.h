@@ -26,6 +26,9 @@ double rest_progress(const Diagnostics& state, const RestSetup& rest);
 [[noreturn]] void fail_to_rest(const Diagnostics& state, const RestSetup& rest,
                                const std::string& when, const std::string& remedy);
 
+/// Behind that remedy: above the stable limit the step itself may be what keeps grains moving.
+std::string smaller_step(const MotionSetup& motion);
+
 /// All settings as text, to tell checkpoints of different setups apart.
 std::string describe(const MaterialSetup& material);
 std::string describe(const MotionSetup& motion, double time_step);

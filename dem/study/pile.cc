@@ -1,5 +1,5 @@
-// A sand pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" -> for
-// each changed gravity: ramp and hold (damped) or quasi-static solver (newton) -> "gravity_G".
+// A sand pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" ->
+// changes of gravity -> "gravity_G".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "dem/heap/source.h"
-#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/common.h"
+#include "dem/study/gravity_changes.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/pile_figures.h"
 #include "dem/study/run.h"
@@ -23,8 +23,6 @@ constexpr double kEndOfRest = 0.85;
 constexpr long kCheckEvery = 200;
 // While grains are poured the number awake is read this often: it looks at every contact.
 constexpr long kSampleEvery = 3000;
-// Steps between two values of a gravity on its way; 20 of them are short beside any ramp.
-constexpr long kRampEvery = 20;
 // A grain out of the funnel joins the simulation this many mean diameters above the pile, ...
 constexpr double kEntryMargin = 10;
 // ... or this many steps later when a grain that has bounced up there is in its place.
@@ -37,9 +35,7 @@ constexpr double kMaxSettleTime = 2;
 // shorter than kPoint diameters is the pile's point.
 constexpr double kPlateauDrop = 1.5, kPoint = 3;
 
-enum class Phase : int { pour, settle, rest, ramp, hold, solve, done };
-
-double smooth(double s) { return s * s * (3 - 2 * s); }
+enum class Phase : int { pour, settle, rest, change, done };
 
 class PileRun final : public Run {
  public:
@@ -75,17 +71,10 @@ class PileRun final : public Run {
   void end_pour();
   void settle();
   void rest();
-  void ramp();
-  void hold();
-  void solve();
-  void begin_change();
-  void end_change(Snapshot state, double unbalanced_force_ratio);
+  void change(long steps);
   bool settled(int grains) const;
-  double change_share() const;
   double in_phase() const { return static_cast<double>(phase_steps_) * engine_->time_step(); }
   Snapshot named(Snapshot snapshot, const std::string& state) const;
-  std::string change_name(std::size_t k) const;
-  std::string smaller_step() const;
   std::string fingerprint() const;
 
   PileSetup setup_;
@@ -110,9 +99,7 @@ class PileRun final : public Run {
   double pour_time_ = 0;
   Diagnostics at_pile_;  // when the pile was at rest
   std::optional<Snapshot> pile_;
-  std::string pile_image_;  // of the engine; damped changes start from it
-  std::vector<Snapshot> changed_;
-  std::vector<double> changed_ratio_;
+  std::optional<GravityChanges> changes_;
 };
 
 PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
@@ -132,6 +119,7 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   add_floor_grains();
   point_.emplace(setup_.source, setup_.material.gravity, settings_.time_step);
   line_ = {-0.5 * setup_.source.length, 0.5 * setup_.source.length};
+  changes_.emplace(setup_.change, setup_.rest, settings_, smaller_step(setup_.motion));
 }
 
 void PileRun::draw() {
@@ -185,8 +173,8 @@ void PileRun::enter(Phase phase) {
 
 void PileRun::advance(long steps) {
   while (phase_ != Phase::done) {
-    if (phase_ == Phase::solve) {
-      solve();
+    if (phase_ == Phase::change) {
+      change(steps);
       return;
     }
     const long next = next_event();
@@ -204,7 +192,6 @@ void PileRun::advance(long steps) {
 // The step, within the phase, at which something is decided. act() moves it on.
 long PileRun::next_event() const {
   const auto after = [this](long every) { return (phase_steps_ / every + 1) * every; };
-  if (phase_ == Phase::ramp) return after(kRampEvery);
   if (phase_ != Phase::pour || setup_.source.kind == "line") {
     return phase_ == Phase::pour && poured_ == 0 ? phase_steps_ : after(kCheckEvery);
   }
@@ -222,11 +209,7 @@ void PileRun::act() {
       return settle();
     case Phase::rest:
       return rest();
-    case Phase::ramp:
-      return ramp();
-    case Phase::hold:
-      return hold();
-    case Phase::solve:
+    case Phase::change:
     case Phase::done:
       return;
   }
@@ -360,86 +343,24 @@ void PileRun::rest() {
     at_pile_ = d;
     pile_ = named(engine_->snapshot(), "pile");
     check_not_leaning(setup_, *pile_);
-    if (setup_.change.method == "damped") pile_image_ = engine_->image();
-    begin_change();
+    changes_->start_from(*pile_);
+    enter(changes_->done() ? Phase::done : Phase::change);
   } else if (in_phase() > setup_.rest.max_time) {
-    fail_to_rest(d, setup_.rest, "after the pour", smaller_step());
+    fail_to_rest(d, setup_.rest, "after the pour", smaller_step(setup_.motion));
   }
 }
 
-void PileRun::begin_change() {
-  const bool newton = setup_.change.method == "newton";
-  if (changed_.size() == setup_.change.gravity.size()) {
-    enter(Phase::done);
-  } else if (newton) {
-    enter(Phase::solve);
-  } else {
-    if (!changed_.empty()) {
-      engine_ = empty_engine();
-      engine_->restore(pile_image_);
-    }
-    enter(Phase::ramp);
-  }
-}
-
-void PileRun::ramp() {
-  const double share = std::min(1.0, in_phase() / setup_.change.ramp_time);
-  const double from = setup_.material.gravity, to = setup_.change.gravity[changed_.size()];
-  engine_->set_gravity(0, -(from + (to - from) * smooth(share)));
-  if (share >= 1) enter(Phase::hold);
-}
-
-void PileRun::hold() {
-  const Diagnostics d = engine_->measure();
-  if (at_rest(d, setup_.rest)) {
-    end_change(engine_->snapshot(), d.unbalanced_force_ratio);
-  } else if (in_phase() > setup_.rest.max_time) {
-    fail_to_rest(
-        d, setup_.rest,
-        fmt::format("under a gravity of {:g} m/s2", setup_.change.gravity[changed_.size()]),
-        smaller_step());
-  }
-}
-
-void PileRun::solve() {
-  const double gravity = setup_.change.gravity[changed_.size()];
-  QuasistaticSettings settings;
-  settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
+void PileRun::change(long steps) {
+  std::function<bool(double)> watch;
   if (watch_) {
-    const Progress before = progress();
-    settings.go_on = [this, before](double share) {
-      Progress now = before;
-      now.fraction += share * change_share();
+    watch = [this](double share) {
+      Progress now = progress();
+      now.fraction = kEndOfRest + (1 - kEndOfRest) * share;
       return watch_(now);
     };
   }
-  QuasistaticResult r;
-  try {
-    r = relax(*pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
-  } catch (const RelaxationStopped&) {
-    return;
-  } catch (const ComputationFailed& failure) {
-    throw ComputationFailed(fmt::format("change.gravity = {:g}: {}; or set change.method = damped",
-                                        gravity, failure.what()));
-  }
-  end_change(std::move(r.state), r.unbalanced_force_ratio);
-}
-
-void PileRun::end_change(Snapshot state, double unbalanced_force_ratio) {
-  changed_.push_back(named(std::move(state), change_name(changed_.size())));
-  changed_ratio_.push_back(unbalanced_force_ratio);
-  begin_change();
-}
-
-// Above the limit the step itself may be what keeps grains moving.
-std::string PileRun::smaller_step() const {
-  if (setup_.motion.time_step > 0 || setup_.motion.time_step_fraction <= 1) return "";
-  return fmt::format(", or lower motion.time_step_fraction, now {:g}",
-                     setup_.motion.time_step_fraction);
-}
-
-std::string PileRun::change_name(std::size_t k) const {
-  return fmt::format("gravity_{:g}", setup_.change.gravity[k]);
+  changes_->advance(steps, watch);
+  if (changes_->done()) enter(Phase::done);
 }
 
 Snapshot PileRun::named(Snapshot s, const std::string& state) const {
@@ -451,24 +372,17 @@ Snapshot PileRun::named(Snapshot s, const std::string& state) const {
   return s;
 }
 
-// Of the whole run.
-double PileRun::change_share() const {
-  const auto changes = static_cast<double>(setup_.change.gravity.size());
-  return changes > 0 ? (1 - kEndOfRest) / changes : 0;
-}
-
 Progress PileRun::progress() const {
-  const Diagnostics d = engine_->measure();
+  const Engine& at_work = changes_->engine() != nullptr ? *changes_->engine() : *engine_;
+  const Diagnostics d = at_work.measure();
   Progress p;
-  p.simulated_time = engine_->time();
-  p.steps = engine_->steps();
+  p.simulated_time = at_work.time();
+  p.steps = at_work.steps();
   p.grains = engine_->grains();
   p.awake = d.awake;
   p.kinetic_energy = d.kinetic_energy;
   p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   const double end_of_rest = setup_.change.gravity.empty() ? 1 : kEndOfRest;
-  const double one = change_share();
-  const double changed = end_of_rest + one * static_cast<double>(changed_.size());
   switch (phase_) {
     case Phase::pour:
       p.phase = fmt::format("pour {}/{}", poured_, setup_.source.grains);
@@ -482,14 +396,9 @@ Progress PileRun::progress() const {
       p.phase = "rest";
       p.fraction = 0.7 + (end_of_rest - 0.7) * rest_progress(d, setup_.rest);
       break;
-    case Phase::ramp:
-    case Phase::solve:
-      p.phase = change_name(changed_.size());
-      p.fraction = changed;
-      break;
-    case Phase::hold:
-      p.phase = change_name(changed_.size());
-      p.fraction = changed + one * rest_progress(d, setup_.rest);
+    case Phase::change:
+      p.phase = changes_->phase();
+      p.fraction = kEndOfRest + (1 - kEndOfRest) * changes_->fraction();
       break;
     case Phase::done:
       p.phase = "done";
@@ -503,17 +412,16 @@ std::string PileRun::fingerprint() const {
   const ShapeSetup& h = setup_.shape;
   const SourceSetup& o = setup_.source;
   const SleepSetup& s = setup_.sleep;
-  const ChangeSetup& c = setup_.change;
   return fmt::format(
       "pile {} {} {} {} {} {} {} [{}] | {} {} {} {} {} {} {} {} {} {} | {} {} | {} {} {} {} {} {} "
       "| "
-      "[{}] {} {} {} | {} | {} | {} | {}",
+      "{} | {} | {} | {} | {}",
       h.kind, h.radius, h.polydispersity, h.corners_min, h.corners_max, h.axis_ratio, h.side,
       fmt::join(h.outline, " "), o.kind, o.grains, o.speed, o.height, o.interval, o.spread, o.move,
       o.clearance, o.length, o.shift, setup_.floor.kind, setup_.floor.length, s.on, s.quiet_time,
-      s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, fmt::join(c.gravity, " "), c.method,
-      c.unbalanced_force_ratio, c.ramp_time, describe(setup_.material),
-      describe(setup_.motion, settings_.time_step), describe(setup_.rest), seed_);
+      s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, changes_->describe(),
+      describe(setup_.material), describe(setup_.motion, settings_.time_step),
+      describe(setup_.rest), seed_);
 }
 
 void PileRun::save(const std::string& file) const {
@@ -530,15 +438,11 @@ void PileRun::save(const std::string& file) const {
   w.put(awake_samples_);
   w.put(pour_time_);
   w.put(at_pile_);
-  w.put(changed_ratio_);
   w.put(random_.state());
-  w.put(pile_image_);
   w.put(engine_->image());
   NamedSnapshots snapshots;
   if (pile_) snapshots.emplace_back("pile", *pile_);
-  for (std::size_t k = 0; k < changed_.size(); ++k) {
-    snapshots.emplace_back(change_name(k), changed_[k]);
-  }
+  changes_->save(w, snapshots);
   write_checkpoint(file, fingerprint(), w, snapshots);
 }
 
@@ -560,23 +464,20 @@ void PileRun::restore(const std::string& file) {
   r.get(awake_samples_);
   r.get(pour_time_);
   r.get(at_pile_);
-  r.get(changed_ratio_);
   r.get(random_state);
-  r.get(pile_image_);
   r.get(image);
-  r.finish();
-  r.require(poured_ <= setup_.source.grains &&
-            changed_ratio_.size() <= setup_.change.gravity.size());
+  r.require(poured_ <= setup_.source.grains);
   in_flight_.assign(flights.begin(), flights.end());
   random_.set_state(random_state);
   engine_ = empty_engine();
   engine_->restore(image);
   pile_.reset();
-  changed_.clear();
-  if (phase_ > Phase::rest) pile_ = read_snapshot(file, "/pile");
-  for (std::size_t k = 0; k < changed_ratio_.size(); ++k) {
-    changed_.push_back(read_snapshot(file, "/" + change_name(k)));
+  if (phase_ > Phase::rest) {
+    pile_ = read_snapshot(file, "/pile");
+    changes_->start_from(*pile_);
   }
+  changes_->restore(r, file);
+  r.finish();
 }
 
 RunResult PileRun::result() const {
@@ -599,12 +500,7 @@ RunResult PileRun::result() const {
   f["pile.grains_not_poured"] = setup_.source.grains - poured_;
   f["pile.mean_diameter"] = mean_diameter_;
   add_heap_figures(*pile_, mean_diameter_, f);
-  for (std::size_t k = 0; k < changed_.size(); ++k) {
-    const std::string name = change_name(k);
-    out.snapshots.emplace_back(name, changed_[k]);
-    add_change_figures(*pile_, changed_[k], name, f);
-    f["change." + name + ".unbalanced_force_ratio"] = changed_ratio_[k];
-  }
+  changes_->add_to(out);
   return out;
 }
 

@@ -1,14 +1,14 @@
 // A pile that stands already, brought to rest under each changed gravity.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "dem/heap/grain_family.h"
 #include "dem/quasistatic/contact_network.h"
-#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/common.h"
+#include "dem/study/gravity_changes.h"
 #include "dem/study/pile_figures.h"
 #include "dem/study/run.h"
 
@@ -30,68 +30,60 @@ class PileChangeRun final : public Run {
     const std::vector<std::string> groups = list_snapshots(file);
     pile_ = read_snapshot(file, fmt::format("{}/pile", group));
     check();
-    settings_.law = law();
-    settings_.friction = setup_.material.friction;
-    settings_.threads = threads;
-    for (const double g : setup_.change.gravity) {
-      const std::string name = change_name(g), path = fmt::format("{}/{}", group, name);
-      if (std::find(groups.begin(), groups.end(), path) == groups.end()) {
-        changed_.emplace_back();
-      } else {
-        changed_.emplace_back(read_snapshot(file, path));
+    settings_ = settings(threads);
+    changes_.emplace(setup_.change, setup_.rest, settings_, smaller_step(setup_.motion),
+                     fmt::format(" of {}", where_));
+    changes_->start_from(pile_);
+    for (std::size_t k = 0; k < setup_.change.gravity.size(); ++k) {
+      const std::string path = fmt::format("{}/gravity_{:g}", group, setup_.change.gravity[k]);
+      if (std::find(groups.begin(), groups.end(), path) != groups.end()) {
+        changes_->set_known(k, read_snapshot(file, path));
       }
-      ratio_.push_back(std::nan(""));
     }
     if (!done()) check_balance();
   }
 
-  void advance(long) override {
-    for (std::size_t k = 0; k < changed_.size(); ++k) {
-      if (changed_[k]) continue;
-      solve(k);
-      return;
+  void advance(long steps) override {
+    std::function<bool(double)> watch;
+    if (watch_) {
+      watch = [this](double share) {
+        Progress now = progress();
+        now.fraction = share;
+        return watch_(now);
+      };
     }
+    changes_->advance(steps, watch);
   }
 
-  bool done() const override { return solved() == changed_.size(); }
+  bool done() const override { return changes_->done(); }
 
   Progress progress() const override {
     Progress p;
-    const std::size_t at = solved();
-    p.phase = done() ? "done" : change_name(setup_.change.gravity[at]);
-    p.fraction =
-        changed_.empty() ? 1 : static_cast<double>(at) / static_cast<double>(changed_.size());
+    p.phase = changes_->phase();
+    p.fraction = changes_->fraction();
     p.grains = p.awake = free_grains();
+    if (const Engine* engine = changes_->engine()) {
+      const Diagnostics d = engine->measure();
+      p.simulated_time = engine->time();
+      p.steps = engine->steps();
+      p.kinetic_energy = d.kinetic_energy;
+      p.unbalanced_force_ratio = d.unbalanced_force_ratio;
+    }
     return p;
   }
 
   void save(const std::string& file) const override {
     ImageWriter w;
     NamedSnapshots snapshots;
-    std::vector<int> there;
-    for (std::size_t k = 0; k < changed_.size(); ++k) {
-      there.push_back(changed_[k] ? 1 : 0);
-      if (changed_[k]) snapshots.emplace_back(change_name(setup_.change.gravity[k]), *changed_[k]);
-    }
-    w.put(there);
-    w.put(ratio_);
+    changes_->save(w, snapshots);
     write_checkpoint(file, fingerprint(), w, snapshots);
   }
 
   void restore(const std::string& file) override {
     const std::string bytes = read_checkpoint(file, fingerprint());
     ImageReader r(bytes);
-    std::vector<int> there;
-    r.get(there);
-    r.get(ratio_);
+    changes_->restore(r, file);
     r.finish();
-    r.require(there.size() == changed_.size() && ratio_.size() == changed_.size());
-    for (std::size_t k = 0; k < changed_.size(); ++k) {
-      if (there[k] != 0) {
-        changed_[k] =
-            read_snapshot(file, fmt::format("/{}", change_name(setup_.change.gravity[k])));
-      }
-    }
   }
 
   RunResult result() const override {
@@ -103,37 +95,32 @@ class PileChangeRun final : public Run {
     double diameters = 0;
     for (const Grain& g : pile_.grains) diameters += g.fixed ? 0 : 2 * g.radius;
     add_heap_figures(pile_, diameters / free_grains(), out.figures);
-    for (std::size_t k = 0; k < changed_.size(); ++k) {
-      const std::string name = change_name(setup_.change.gravity[k]);
-      out.snapshots.emplace_back(name, *changed_[k]);
-      add_change_figures(pile_, *changed_[k], name, out.figures);
-      if (!std::isnan(ratio_[k])) {
-        out.figures[fmt::format("change.{}.unbalanced_force_ratio", name)] = ratio_[k];
-      }
-    }
+    changes_->add_to(out);
     return out;
   }
 
  private:
-  static std::string change_name(double gravity) { return fmt::format("gravity_{:g}", gravity); }
-
-  std::size_t solved() const {
-    return static_cast<std::size_t>(
-        std::count_if(changed_.begin(), changed_.end(), [](const auto& s) { return !!s; }));
-  }
-
   int free_grains() const {
     return static_cast<int>(std::count_if(pile_.grains.begin(), pile_.grains.end(),
                                           [](const Grain& g) { return !g.fixed; }));
   }
 
-  decltype(EngineSettings::law) law() const {
-    const MaterialSetup& m = setup_.material;
-    if (m.law == "linear") {
-      return LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
-                       m.tangential_damping};
+  // Of the material, with the time step that these grains bear.
+  EngineSettings settings(int threads) const {
+    std::vector<ShapedGrain> grains;
+    bool polygons = false;
+    for (const Grain& g : pile_.grains) {
+      grains.push_back({g.outline, g.radius, g.volume, g.angle});
+      polygons |= !g.outline.empty();
     }
-    return OverlapAreaLaw{m.young, m.damping};
+    const auto shape = pile_.attributes.find("shape");
+    const bool irregular = shape != pile_.attributes.end() &&
+                           (shape->second == "rand1" || shape->second == "irregular");
+    EngineSettings out =
+        engine_settings(setup_.material, setup_.motion,
+                        extremes_of(grains, setup_.material.density), threads, irregular);
+    out.polygons = polygons;
+    return out;
   }
 
   void require(const char* key, double asked, double found) const {
@@ -167,11 +154,6 @@ class PileChangeRun final : public Run {
       throw std::invalid_argument(fmt::format("material.law: found \"{}\", the pile {} has \"{}\"",
                                               m.law, where_, law->second));
     }
-    if (setup_.change.method != "newton" && !setup_.change.gravity.empty()) {
-      throw std::invalid_argument(
-          fmt::format("change.method: found \"{}\", allowed for piles from files: newton",
-                      setup_.change.method));
-    }
   }
 
   // The forces that the law gives at these places carry the weight, or the law is another one.
@@ -188,45 +170,17 @@ class PileChangeRun final : public Run {
     }
   }
 
-  void solve(std::size_t k) {
-    const double gravity = setup_.change.gravity[k];
-    QuasistaticSettings settings;
-    settings.unbalanced_force_ratio = setup_.change.unbalanced_force_ratio;
-    if (watch_) {
-      const Progress before = progress();
-      settings.go_on = [this, before](double share) {
-        Progress now = before;
-        now.fraction += share / static_cast<double>(changed_.size());
-        return watch_(now);
-      };
-    }
-    try {
-      QuasistaticResult r = relax(pile_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
-      r.state.attributes = pile_.attributes;
-      r.state.attributes["state"] = change_name(gravity);
-      ratio_[k] = r.unbalanced_force_ratio;
-      changed_[k] = std::move(r.state);
-    } catch (const RelaxationStopped&) {
-      return;
-    } catch (const ComputationFailed& failure) {
-      throw ComputationFailed(
-          fmt::format("change.gravity = {:g} of {}: {}; or leave this gravity out", gravity, where_,
-                      failure.what()));
-    }
-  }
-
   std::string fingerprint() const {
-    return fmt::format("pile change {} | {} | {} {} | {}", where_,
-                       fmt::join(setup_.change.gravity, " "), setup_.change.method,
-                       setup_.change.unbalanced_force_ratio, describe(setup_.material));
+    return fmt::format("pile change {} | {} | {} | {} | {}", where_, changes_->describe(),
+                       describe(setup_.material), describe(setup_.motion, settings_.time_step),
+                       describe(setup_.rest));
   }
 
   PileSetup setup_;
   std::string where_;
   EngineSettings settings_;
   Snapshot pile_;
-  std::vector<std::optional<Snapshot>> changed_;  // one per change.gravity, in its order
-  std::vector<double> ratio_;                     // nan: taken from the file
+  std::optional<GravityChanges> changes_;
 };
 
 }  // namespace

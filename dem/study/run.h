@@ -65,8 +65,8 @@ std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint6
 std::unique_ptr<Run> make_pile_run(const PileSetup& setup, std::uint64_t seed, int threads);
 
 /// A pile that stands already: snapshot GROUP/pile of `file`, brought to rest under each of
-/// setup.change.gravity by the quasi-static solver; a GROUP/gravity_G that the file holds is taken
-/// as it is. Of `setup` only material, rest and change are used. Throws std::invalid_argument when
+/// setup.change.gravity; a GROUP/gravity_G that the file holds is taken as it is. Of `setup` only
+/// material, motion, rest and change are used. Throws std::invalid_argument when
 /// the file is broken, or the pile is another one than the material's (gravity, density, friction,
 /// law, or it is out of balance with the stiffness).
 std::unique_ptr<Run> make_pile_change_run(const PileSetup& setup, const std::string& file,

@@ -93,8 +93,6 @@ TEST(FieldsRun, FinishedPilesGiveWhatPouredOnesGive) {
   EXPECT_THAT(refusal("material.young=2e6"), HasSubstr("does not rest with this stiffness"));
   EXPECT_THAT(refusal("material.gravity=5"), HasSubstr("material.gravity: found 5, the pile "));
   EXPECT_THAT(refusal("material.density=100"), HasSubstr("material.density: found 100, the pile"));
-  EXPECT_THAT(refusal("change.method=damped"),
-              HasSubstr("change.method: found \"damped\", allowed for piles from files: newton"));
   EXPECT_THAT(refusal("ensemble.realizations=3"),
               HasSubstr("ensemble.realizations: found 3, allowed: up to 2, the realizations in "));
   EXPECT_THAT(refusal("'fields.topics=[\"fabrik\"]'"), HasSubstr("nearest: fabric"));
