@@ -11,7 +11,6 @@
 #include "coupling/fields/pile_set.h"
 #include "coupling/fields/topic.h"
 #include "coupling/fields/topic_result.h"
-#include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 
@@ -24,11 +23,7 @@ constexpr double kLowered = 0.9;
 std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
   dem::PileSetup setup = value.pile;
   if (setup.change.gravity.empty()) setup.change.gravity = {kLowered * setup.material.gravity};
-  if (value.grains.files.empty()) {
-    return dem::make_pile_run(setup, realization_seed(value, number), threads);
-  }
-  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
-  return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
+  return make_pile(value, setup, number, threads);
 }
 
 // Vertical pressure along rows of the grid: what profiles.csv holds.

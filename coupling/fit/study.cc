@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "coupling/fit/heap_result.h"
-#include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 
 namespace grainfield::coupling {
@@ -13,11 +12,7 @@ namespace {
 std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
   dem::PileSetup setup = value.pile;
   setup.change.gravity.clear();
-  if (value.grains.files.empty()) {
-    return dem::make_pile_run(setup, realization_seed(value, number), threads);
-  }
-  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
-  return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
+  return make_pile(value, setup, number, threads);
 }
 
 StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/run/ensemble.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -49,6 +50,15 @@ FinishedRun finished_run(const Case& value, std::int64_t number,
         value.ensemble.realizations, count));
   }
   return there[static_cast<std::size_t>(number)];
+}
+
+std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
+                                    std::int64_t number, int threads) {
+  if (value.grains.files.empty()) {
+    return dem::make_pile_run(setup, realization_seed(value, number), threads);
+  }
+  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
+  return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
 }
 
 }  // namespace grainfield::coupling

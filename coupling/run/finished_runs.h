@@ -1,10 +1,12 @@
 // What earlier runs left, as a new run finds it in grains.files.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 
@@ -20,5 +22,11 @@ struct FinishedRun {
 /// says; "ensemble.realizations: ..." when there are fewer.
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study);
+
+/// The pile of that number: poured as `setup` says, or, where the case names grains.files, the one
+/// found there ("pile") under the changes of `setup`. Throws as finished_run and dem's runs of
+/// piles.
+std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
+                                    std::int64_t number, int threads);
 
 }  // namespace grainfield::coupling

@@ -9,7 +9,7 @@
 #include "coupling/compare/significance.h"
 #include "coupling/report/pile.h"
 #include "coupling/run/averaging_setup.h"
-#include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/models.h"
 #include "coupling/run/pile_ensemble.h"
 #include "coupling/run/summary_keys.h"
@@ -330,13 +330,13 @@ Study pile_study() {
   Study out;
   out.name = "pile";
   out.meaning = "grains poured into a pile: base pressure and dip, repose, stress and density";
-  out.sections = {"shape", "source", "floor",    "material", "motion", "rest",
-                  "sleep", "change", "ensemble", "average",  "heap"};
+  out.sections = {"grains", "shape", "source", "floor",    "material", "motion",
+                  "rest",   "sleep", "change", "ensemble", "average",  "heap"};
   out.without = {"average.depths", "average.half_width"};
   out.fills = {"rho_g", "phi_deg", "left_deg", "right_deg", "h", "dim", "depth"};
   out.models_optional = true;
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
-    return dem::make_pile_run(value.pile, realization_seed(value, number), threads);
+    return make_pile(value, value.pile, number, threads);
   };
   out.analyse = analyse_pile;
   return out;
