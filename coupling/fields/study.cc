@@ -138,7 +138,8 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
   for (const auto& [key, value] : result.summary) {
     const bool aside = key.ends_with(".least") || key.ends_with(".most") ||
                        key.ends_with(".standard_error") || key.rfind("case.", 0) == 0 ||
-                       key.rfind("time.", 0) == 0 || key == "verdict.sentence";
+                       key.rfind("time.", 0) == 0 || key.rfind("memory.", 0) == 0 ||
+                       key == "verdict.sentence";
     if (!aside) keys.push_back(key);
   }
   for (const auto& [title, rows] : {std::pair{"Figures", figure_rows(result.summary, keys)},

@@ -1,6 +1,7 @@
 #include "coupling/run/run_case.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -256,6 +257,13 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
   }
 }
 
+// Of this process so far, MB; Linux counts in units of 1024 bytes.
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+}
+
 void compute(const Case& value, const Workplace& place, const Ranks& ranks,
              const RunOptions& options) {
   const auto start = Clock::now();
@@ -269,6 +277,7 @@ void compute(const Case& value, const Workplace& place, const Ranks& ranks,
       summary["time.dem_s"] = dem_seconds;
     }
     summary["time.total_s"] = seconds_since(start);
+    summary["memory.peak_MB"] = peak_memory();
   });
 }
 

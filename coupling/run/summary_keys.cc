@@ -319,6 +319,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"time.continuum_s", "s", "wall time of the models"},
       {"time.model.*_s", "s", "wall time of one model"},
       {"time.total_s", "s", "wall time of the run (this start)"},
+      {"memory.peak_MB", "MB", "most memory that the process had so far: simulation and analysis"},
       {"sweep.key", "text", "key that was swept"},
       {"sweep.members", "-",
        "its number of values; every other key carries .NAME_VALUE at its end"},

@@ -105,7 +105,8 @@ TEST(Commands, RunAverageCompareInfo) {
         "dem.kinetic_to_elastic_energy", "dem.volume_fraction", "base.weight_ratio",
         "response.total_over_load", "response.peak", "response.width", "response.peaks",
         "compare.flamant.rel_l2", "compare.rough.max", "compare.rough.chi2_per_dof",
-        "verdict.best_model", "time.dem_s", "time.continuum_s", "load.contacts_lost.most"}) {
+        "verdict.best_model", "time.dem_s", "memory.peak_MB", "time.continuum_s",
+        "load.contacts_lost.most"}) {
     EXPECT_EQ(summary.count(key), 1U) << key;
   }
   EXPECT_NEAR(std::get<double>(summary.at("base.weight_ratio")), 1, 1e-3);
