@@ -1,44 +1,28 @@
 // check, keys, cases: what needs no computation.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/shipped_cases.h"
 #include "coupling/case/case.h"
 #include "coupling/case/keys.h"
 #include "coupling/run/summary_keys.h"
 
 namespace grainfield::coupling {
-namespace {
-
-namespace fs = std::filesystem;
-
-// GRAINFIELD_CASES, or beside an installed program, or where the program was built from.
-fs::path cases_folder() {
-  if (const char* given = std::getenv("GRAINFIELD_CASES")) return given;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = program.parent_path().parent_path() / "share/grainfield/cases";
-  if (!error && fs::is_directory(installed, error)) return installed;
-  return GRAINFIELD_CASES_DIR;
-}
-
-}  // namespace
 
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "validate a case without running it");
   auto file = std::make_shared<std::string>();
   auto sets = std::make_shared<std::vector<std::string>>();
   auto quick = std::make_shared<bool>(false);
-  command->add_option("case", *file, "case file (TOML)")->required();
+  command->add_option("case", *file, "case file (TOML), or the name of a shipped case")->required();
   command->add_option("--set", *sets, "override: key.path=value")->allow_extra_args(false);
   command->add_flag("--quick", *quick, "with the case's quick setting");
   command->callback([=, &action] {
     action = [=] {
+      *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
       fmt::print("{}: ok ({}, {} model{})\n", *file, value.study, value.models.size(),
                  value.models.size() == 1 ? "" : "s");
@@ -71,21 +55,10 @@ void add_cases(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("cases", "the shipped studies, one line each");
   command->callback([&action] {
     action = [] {
-      std::vector<fs::path> files;
-      const fs::path folder = cases_folder();
-      std::error_code error;
-      for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (entry.path().extension() == ".toml") files.push_back(entry.path());
-      }
-      if (files.empty()) {
-        throw std::invalid_argument(fmt::format(
-            "{}: holds no case files; set GRAINFIELD_CASES to their folder", folder.string()));
-      }
-      std::sort(files.begin(), files.end());
-      for (const auto& file : files) {
+      for (const auto& file : shipped_cases()) {
         fmt::print("{:<28} {}\n", file.filename().string(), case_title(file.string()));
       }
-      fmt::print("in {}\n", folder.string());
+      fmt::print("in {}; grainfield run NAME\n", cases_folder().string());
       return 0;
     };
   });

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/shipped_cases.h"
 #include "coupling/fit/fit_files.h"
 
 namespace grainfield::coupling {
@@ -53,7 +54,7 @@ void add_fit(CLI::App& app, Action& action) {
                                     "fit.width_diameters: of the averaging (snapshots only)");
   command->add_option("--covariance", given->covariance,
                       "fit.covariance: auto | parametric | sample | diagonal");
-  command->add_option("--case", request.case_file, "TOML file: its [fit] counts");
+  command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
   command->add_option("-o,--output", request.folder, "folder; default results/fit-INPUT");
@@ -61,6 +62,7 @@ void add_fit(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       FitRequest wanted = given->request;
+      if (!wanted.case_file.empty()) wanted.case_file = find_case(wanted.case_file);
       Overrides& set = wanted.overrides;
       if (!given->models.empty()) set.push_back("fit.models=" + quoted_list(given->models));
       if (!given->heights.empty()) {
@@ -78,6 +80,9 @@ void add_fit(CLI::App& app, Action& action) {
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const FitOutcome outcome = fit_files(wanted);
+      for (const std::string& text : outcome.warnings) {
+        fmt::print(stderr, "grainfield: warning: {}\n", text);
+      }
       fmt::print("fitted to {}\n", shown(outcome.packings));
       fmt::print("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
       return 0;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "coupling/app/commands.h"
+#include "coupling/import/doubts.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
 #include "coupling/output/atomic_file.h"
@@ -127,10 +128,17 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   if (at_walls > 0)
     fmt::print("  stress x volume (N m, tension positive), walls:{}\n",
                tensor_text(check.walls, s.dim));
-  fmt::print("  unbalanced force ratio: {:.3g}{}\n", check.unbalanced_force_ratio,
-             check.unbalanced_force_ratio > 0.1
-                 ? " (large: not at rest, or contacts with walls or gravity are missing)"
-                 : "");
+  fmt::print("  unbalanced force ratio: {:.3g}\n", check.unbalanced_force_ratio);
+  if (std::isfinite(check.support_ratio))
+    fmt::print("  weight carried by walls and fixed grains: {:.3g}\n", check.support_ratio);
+  std::vector<std::string> warnings;
+  if (const std::string text = tension_in(check); !text.empty()) {
+    warnings = {text};  // all else follows from it
+  } else {
+    warnings = doubts_of(check);
+  }
+  for (const std::string& text : warnings)
+    fmt::print(stderr, "grainfield: warning: {}: {}\n", imported.group, text);
 }
 
 }  // namespace
@@ -165,6 +173,7 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--group", o.group, "of the snapshot; default /step_N or /packing");
   command->add_option("--load", given->load, "ID=FX,FY[,FZ]: the force applied to a grain, N");
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
+  command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
   command->add_flag("--leave-out-distant", o.leave_out_distant,
                     "leave out contacts across periodic boundaries");
   command->callback([=, &action] {

@@ -10,6 +10,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/progress_text.h"
+#include "coupling/app/shipped_cases.h"
 #include "coupling/case/case.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/interrupt.h"
@@ -77,7 +78,7 @@ int run(const Given& given) {
     throw std::invalid_argument(
         fmt::format("--threads: found {}, allowed: 1 or more", given.threads));
   }
-  const Case value = read_case(given.file, given.quick, given.sets);
+  const Case value = read_case(find_case(given.file), given.quick, given.sets);
   const Ranks ranks;
   ProgressLine line(!ranks.first());
   RunOptions options;
@@ -109,7 +110,8 @@ int run(const Given& given) {
 void add_run(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("run", "run a case: grains, averages, models, report");
   auto given = std::make_shared<Given>();
-  command->add_option("case", given->file, "case file (TOML)")->required();
+  command->add_option("case", given->file, "case file (TOML), or the name of a shipped case")
+      ->required();
   command->add_option("-o,--output", given->output, "folder; default results/CASE (CASE-quick)");
   command->add_flag("--quick", given->quick, "with the case's quick setting");
   command->add_option("--set", given->sets, "override: key.path=value")->allow_extra_args(false);

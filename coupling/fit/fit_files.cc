@@ -180,6 +180,7 @@ FitOutcome fit_files(const FitRequest& request) {
   }
   value.name = fs::path(request.inputs.front()).stem().string();
   value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
+  out.warnings = data.warnings;
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
   out.verdict = result.comparison.verdict.sentence;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));

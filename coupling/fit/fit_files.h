@@ -19,6 +19,7 @@ struct FitRequest {
 struct FitOutcome {
   std::vector<std::string> packings;  ///< names of the heaps, or of the field
   std::string note;                   ///< weights and what is missing for better ones
+  std::vector<std::string> warnings;  ///< what makes the constants doubtful
   std::string verdict;
 };
 

@@ -9,6 +9,7 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/fit/heap_rows.h"
+#include "coupling/import/doubts.h"
 #include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {
@@ -18,7 +19,7 @@ constexpr double kRange = 2;     // of the Lucy kernel, widths
 constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
-PileFrame frame_of(const HeapReader& heaps, std::size_t k) {
+PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
   try {
     const dem::Snapshot heap = heaps.read(k);
     if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
@@ -28,6 +29,11 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k) {
           fmt::format("found gravity ({:g}, {:g}), needed: downwards, along -y (import --gravity)",
                       g.x(), g.y()));
     }
+    const PackingCheck check = check_packing(heap);
+    if (const std::string text = tension_in(check); !text.empty()) {
+      throw std::invalid_argument(text);
+    }
+    doubts.add(heaps.name(k), check);
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
@@ -47,15 +53,18 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files) {
 
 HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) {
   HeapData out;
+  DoubtList doubts;
   double height = 0, diameter = 0;
   const auto count = static_cast<double>(heaps.count);
   for (std::size_t k = 0; k < heaps.count; ++k) {
-    out.frames.push_back(frame_of(heaps, k));
+    out.frames.push_back(frame_of(heaps, k, doubts));
     height += out.frames.back().height / count;
     diameter += out.frames.back().diameter / count;
   }
   const HeapSlopes slopes = slopes_of(setup, out.frames);
+  out.warnings = doubts.lines();
   out.width = setup.width_diameters * diameter;
+  warn_of_low_heights(setup.heights, height, out.width, out);
   AverageOptions options;
   options.method = "coarse_graining";
   options.kernel = "lucy";

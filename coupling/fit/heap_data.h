@@ -22,6 +22,7 @@ struct HeapData {
   double width = 0;               ///< of the averaging kernel, m
   int left_out = 0;               ///< values that some realization does not have
   std::string note;               ///< what the reader must know of the heaps; may be empty
+  std::vector<std::string> warnings;  ///< what makes the constants doubtful, a sentence each
 };
 
 /// Heaps one after the other, so that one at a time is in memory.
@@ -36,15 +37,17 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files);
 
 /// Coarse-grained stresses (Lucy kernel, width_diameters) of every heap at setup.heights, on points
 /// half an independent length apart, no nearer to the flanks than the kernel reaches. Slopes and
-/// friction angle are measured unless setup gives them. Throws std::invalid_argument naming the
-/// heap that has no slope, and when fewer than 10 values are left.
+/// friction angle are measured unless setup gives them. Warns of heaps that are unbalanced or not
+/// carried by their floor, and of heights below the averaging width. Throws std::invalid_argument
+/// naming the heap that has no slope or whose contacts pull, and when fewer than 10 values are
+/// left.
 HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads);
 
 /// The same from a field in the heaps' frame (lengths over h) with the values of single
 /// realizations, as `grainfield average --frame heap` leaves it: of its horizontal rows those
 /// nearest to setup.heights. Without single values the mean alone. `where` names the field in
 /// messages. Throws std::invalid_argument for another frame, missing components, heights that the
-/// field does not have, and as above.
+/// field does not have, tension throughout, and as above.
 HeapData heap_data(const FitSetup& setup, const Field& field, const std::string& where);
 
 /// Whether one of the models takes the two flanks apart (models.h).

@@ -61,6 +61,7 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
                               fmt::join(missing, ", ")));
   }
   const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
+  require_compression(field, where);
   HeapData out;
   const HeapFieldFacts facts = heap_field_facts(field, count, where);
   const std::vector<double>& pressures = facts.pressure;
@@ -120,6 +121,9 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
       if (column->error.size() > k) errors(c * n + p, 0) = column->error[k] / pressure;
     }
   }
+  std::vector<double> shares;
+  for (const double y : used) shares.push_back(1 + y);
+  warn_of_low_heights(shares, height, out.width, out);
   keep_rows(setup, places, level, all, out);
   if (!single && field.realizations > 1) {
     HeapData beside;

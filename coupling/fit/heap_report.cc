@@ -1,6 +1,7 @@
 #include "coupling/fit/heap_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,8 @@ std::string weights_note(const HeapFits& fits) {
   for (const FitModel& model : fits.absent) {
     out += fmt::format("; {} left out: {}", model.name, model.absent);
   }
-  return fits.heaps.note.empty() ? out : out + "; " + fits.heaps.note;
+  if (!fits.heaps.note.empty()) out += "; " + fits.heaps.note;
+  return out;
 }
 
 // The component along one height: the piles and some models.
@@ -158,6 +160,7 @@ void add_fits(Summary& summary, const HeapFits& fits) {
     summary["fit.friction_deg"] = fits.heaps.facts.friction();
   }
   summary["fit.weights"] = weights_note(fits);
+  summary["fit.warnings"] = fmt::format("{}", fmt::join(fits.heaps.warnings, "; "));
   summary["fit.covariance"] = fits.covariance.kind;
   summary["fit.correlation_length"] = fits.covariance.correlation_length;
   summary["fit.effective_values"] = fits.covariance.effective_values;
@@ -191,7 +194,9 @@ void add_fits(Summary& summary, const HeapFits& fits) {
 }
 
 std::string fits_markdown(const HeapFits& fits) {
-  return fmt::format("{}\n\n{}.\n\n{}\n{}", fits.selection.sentence, weights_note(fits),
+  std::string doubts;
+  for (const std::string& text : fits.heaps.warnings) doubts += "Warning: " + text + ".\n\n";
+  return fmt::format("{}\n\n{}.\n\n{}{}\n{}", fits.selection.sentence, weights_note(fits), doubts,
                      markdown_table(ranking_header(), ranking_rows(fits.fits, fits.selection)),
                      markdown_table(parameter_header(), parameter_rows(fits.fits)));
 }

@@ -1,6 +1,7 @@
 #include "coupling/fit/heap_result.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -24,6 +25,10 @@ Report page_of(const StudyResult& result, const Realization* first, const HeapFi
                                 facts.left_deg, facts.right_deg, facts.friction());
   }
   out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+  if (!fits.heaps.warnings.empty()) {
+    out.sections.emplace_back(
+        Text{"Doubts", fmt::format("{}", fmt::join(fits.heaps.warnings, "\n\n")), false});
+  }
   for (Section& section : fit_sections(fits)) out.sections.push_back(std::move(section));
   if (first != nullptr) {
     out.sections.emplace_back(packing("Network of forces", (*first)["pile"]));

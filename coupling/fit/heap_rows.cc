@@ -1,6 +1,7 @@
 #include "coupling/fit/heap_rows.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,21 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoot
     out.friction_deg = setup.friction_deg;
   }
   return out;
+}
+
+void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
+                         HeapData& out) {
+  std::vector<std::string> low;
+  for (const double share : heights) {
+    if (share * height < width) low.push_back(fmt::format("{:.3g}", share));
+  }
+  if (low.empty()) return;
+  out.warnings.push_back(fmt::format(
+      "height{} {} h nearer to the floor than the averaging width {:.3g} m ({:.3g} h): the average "
+      "mixes in what lies below the floor and biases the constants; choose heights from {:.2g}, "
+      "or a smaller fit.width_diameters",
+      low.size() == 1 ? "" : "s", fmt::join(low, ", "), width, width / height,
+      std::ceil(100 * width / height) / 100));
 }
 
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,

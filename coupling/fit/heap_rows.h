@@ -25,6 +25,12 @@ HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames
 /// friction angle below the slopes.
 HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing);
 
+/// Adds a warning for heights nearer to the floor than the averaging width `width`, m, of heaps
+/// that are `height` m high: there the average mixes in the stress continued below the floor, and
+/// constants are biased.
+void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
+                         HeapData& out);
+
 /// Chooses the components and drops rows that are not finite in every realization. `all`: values of
 /// sigma_xx on all points, then sigma_yy, sigma_xy; columns realizations. `level`: of each point.
 /// Throws std::invalid_argument when fewer than 10 values are left.

@@ -10,6 +10,7 @@
 
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/heap_field.h"
+#include "continuum/closed/hydrostatic.h"
 #include "continuum/closed/osl.h"
 #include "coupling/fit/two_sided_models.h"
 
@@ -48,17 +49,6 @@ FitParameter beta_hat(double phi) {
           90 - phi / kDegree - 0.1};
 }
 
-MatrixXd hydrostatic(const MatrixXd& points, double left, double right, double rho_g) {
-  MatrixXd out = nothing(points);
-  for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const double slope = points(k, 0) < 0 ? left : right;
-    const double depth = -points(k, 1) - std::fabs(points(k, 0)) * std::tan(slope);
-    if (depth < 0) continue;
-    out.row(k) << -rho_g * depth, -rho_g * depth, 0;
-  }
-  return out;
-}
-
 // Roul 4.6, 4.9 with seven free numbers: inside |x| < Y tan(beta_hat), Y = -y,
 //   (xx, yy, xy) = rho g ((a2 - 1) Y, (a1 - 1) Y + b1 |x|, a1 x)           y up: xy changes sign
 // outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over the width of the averaging:
@@ -88,11 +78,12 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
   using continuum::Closure;
   using continuum::CoreBranch;
   std::vector<FitModel> out;
-  out.push_back(fixed(
-      "hydrostatic", "weight above, isotropic",
-      [=, left = facts.left() * kDegree, right = facts.right() * kDegree](const MatrixXd& points) {
-        return hydrostatic(points, left, right, rho_g);
-      }));
+  out.push_back(
+      fixed("hydrostatic", "weight above, isotropic",
+            [setup = continuum::HydrostaticSetup{rho_g, 0, facts.left() * kDegree,
+                                                 facts.right() * kDegree}](const MatrixXd& points) {
+              return MatrixXd(continuum::hydrostatic_stress(setup, points));
+            }));
   const std::vector<std::pair<std::string, CoreBranch>> branches{
       {"minus", CoreBranch::minus}, {"zero", CoreBranch::zero}, {"plus", CoreBranch::plus}};
   for (const auto& [name, branch] : branches) {

@@ -200,7 +200,7 @@ void Assembly::settle() {
     ContactRow row{{}, force.source};
     row.contact.i = index_of(force.grain);
     row.contact.j = -1 - static_cast<std::int64_t>(tables + force.choice);
-    row.contact.force = force.force;
+    row.contact.force = (options_.flip_forces ? -1 : 1) * force.force;
     row.contact.point = force.point;
     row.contact.friction = options_.friction;
     add_contact(std::move(row), false, true, true);

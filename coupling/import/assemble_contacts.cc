@@ -91,7 +91,7 @@ void Assembly::add_contacts(const ForeignTable& table) {
     } else {
       c.j = grain_or_wall(j);
     }
-    c.force = format_.force_sign *
+    c.force = format_.force_sign * (options_.flip_forces ? -1 : 1) *
               (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
     if (s.dim == 2 && c.force.z() != 0)
       row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",

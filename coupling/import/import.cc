@@ -156,6 +156,10 @@ PackingCheck check_packing(const dem::Snapshot& s) {
   std::vector<dem::Vec3> resultant(s.grains.size(), dem::Vec3::Zero());
   std::vector<bool> touched(s.grains.size(), false);
   double force = 0;
+  dem::Vec3 support = dem::Vec3::Zero(), weight = dem::Vec3::Zero();
+  const auto free = [&](std::int64_t g) {
+    return g >= 0 && !s.grains[static_cast<std::size_t>(g)].fixed;
+  };
   const auto add = [&](Eigen::Matrix3d& sum, std::int64_t grain, const dem::Vec3& point,
                        const dem::Vec3& f) {
     const auto g = static_cast<std::size_t>(grain);
@@ -168,17 +172,29 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     add(sum, c.i, c.point, c.force);
     if (c.j >= 0) add(sum, c.j, c.point, -c.force);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
+    if (free(c.i) && !free(c.j)) support += c.force;
+    if (!free(c.i) && free(c.j)) support -= c.force;
   }
   double total = 0;
   int count = 0;
   for (std::size_t g = 0; g < s.grains.size(); ++g) {
-    if (s.grains[g].fixed || !touched[g]) continue;
-    dem::Vec3 f = resultant[g] + s.grains[g].mass * s.gravity;
-    if (s.grains[g].id == s.loaded_grain) f += s.applied_force;
+    if (s.grains[g].fixed) continue;
+    dem::Vec3 load = s.grains[g].mass * s.gravity;
+    if (s.grains[g].id == s.loaded_grain) load += s.applied_force;
+    weight += load;
+    if (!touched[g]) continue;
+    const dem::Vec3 f = resultant[g] + load;
     total += f.norm();
     ++count;
   }
   if (force > 0 && count > 0) check.unbalanced_force_ratio = total / count / force;
+  const double g = s.gravity.norm();
+  if (g > 0 && !s.contacts.empty()) {
+    const dem::Vec3 down = s.gravity / g;
+    check.pairs_along_gravity = down.dot(check.pairs * down);
+    check.walls_along_gravity = down.dot(check.walls * down);
+    if (weight.dot(down) > 0) check.support_ratio = -support.dot(down) / weight.dot(down);
+  }
   return check;
 }
 

@@ -43,6 +43,7 @@ struct ImportOptions {
   double time_step = 0;  ///< s; a dump's time = step times this, where it gives no time itself
   std::string group;     ///< of a single snapshot; default /step_N, or /packing without steps
   bool without_contacts = false;     ///< grains alone are enough
+  bool flip_forces = false;          ///< the files' forces act on j: all are turned
   bool leave_out_distant = false;    ///< pairs across periodic boundaries are left out, not refused
   std::int64_t loaded_grain = -1;    ///< id of the grain that carries the applied force, or -1
   dem::Vec3 applied_force{0, 0, 0};  ///< N
@@ -72,6 +73,12 @@ struct PackingCheck {
   /// Mean resultant of free grains with contacts (weight and applied force included) over the mean
   /// contact force; nan without contacts.
   double unbalanced_force_ratio = std::numeric_limits<double>::quiet_NaN();
+  /// Their components along gravity, N m: below 0 compression. nan without gravity or contacts.
+  double pairs_along_gravity = std::numeric_limits<double>::quiet_NaN();
+  double walls_along_gravity = std::numeric_limits<double>::quiet_NaN();
+  /// Force of walls and fixed grains on the free grains, against gravity, over their weight and the
+  /// applied force along gravity; nan without gravity or contacts.
+  double support_ratio = std::numeric_limits<double>::quiet_NaN();
 };
 PackingCheck check_packing(const dem::Snapshot& snapshot);
 

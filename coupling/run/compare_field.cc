@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
+#include "continuum/settings.h"
 #include "coupling/compare/compare.h"
+#include "coupling/fit/heap_data.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/report/pile.h"
@@ -94,6 +97,28 @@ void require_load(const ModelChoice& choice, const RunFacts& facts, const std::s
         "average --response`), or set it: --model {}:F=...",
         choice.label, file, choice.name));
   }
+}
+
+// What a heap tells this model. Theories of one slope see both flanks at the mean of the two, as
+// the fits do (fit/heap_rows.h), unless one of the models takes them apart. Of Liffman's lines only
+// chi_g / spacing counts: they carry the weight of the heap, rho_g per area, when it is
+// rho_g sqrt(3)/2 (lines at 60 degrees, a spacing d apart along the base).
+RunFacts facts_for(const ModelChoice& choice, const RunFacts& facts, bool flanks_apart) {
+  RunFacts out = facts;
+  const auto slope = out.numbers.find("phi_deg");
+  if (slope == out.numbers.end()) return out;
+  if (!flanks_apart) out.numbers["left_deg"] = out.numbers["right_deg"] = slope->second;
+  if (choice.name != "liffman") return out;
+  const auto settings = continuum::complete(continuum::find_model(choice.name), choice.settings);
+  const double alpha = choice.settings.count("alpha_deg") > 0
+                           ? continuum::number_of(settings, "alpha_deg")
+                           : slope->second;
+  const double spacing = continuum::number_of(settings, "spacing");
+  out.numbers["alpha_deg"] = alpha;
+  out.numbers["width"] = 2 * out.height / std::tan(alpha * std::numbers::pi / 180);
+  out.numbers["spacing"] = spacing;
+  out.numbers["chi_g"] = out.numbers.at("rho_g") * std::numbers::sqrt3 / 2 * spacing;
+  return out;
 }
 
 Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
@@ -208,9 +233,12 @@ CompareOutcome compare_field(const CompareRequest& request) {
   Summary summary;
   std::vector<ModelProfiles> models;
   std::vector<ModelMap> model_maps;
+  std::vector<std::string> names;
+  for (const auto& choice : request.models) names.push_back(choice.name);
+  const bool flanks_apart = takes_flanks_apart(names);
   for (const auto& choice : request.models) {
     require_load(choice, facts, request.file);
-    const Evaluation e = evaluate_model(choice, facts, sets);
+    const Evaluation e = evaluate_model(choice, facts_for(choice, facts, flanks_apart), sets);
     ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
     for (std::size_t l = 0; l < lines.size(); ++l) {
       const double sign = lines[l].component == 2 ? 1 : -1;

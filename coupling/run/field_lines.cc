@@ -93,6 +93,7 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
                          field_attribute(field, "kernel", where), width);
   if (is_heap_field(field)) {
     out.scene = Scene::heap;
+    require_compression(field, where);
     field = in_mean_heap(std::move(field), where);
     const double left = field.attributes.count("left_deg") > 0
                             ? field_number(field, "left_deg", where)

@@ -20,6 +20,18 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+// Of the realizations that have one; nan without any.
+double mean_known(const std::vector<double>& values) {
+  double sum = 0;
+  int count = 0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::nan("");
+}
+
 double number_in(const std::string& text, const std::string& name, const std::string& where) {
   try {
     std::size_t used = 0;
@@ -76,6 +88,17 @@ bool is_heap_field(const Field& field) {
   return at != field.attributes.end() && at->second.compare(0, 4, "heap") == 0;
 }
 
+void require_compression(const Field& field, const std::string& where) {
+  const Column* column = field.find("sigma_yy");
+  if (column == nullptr) return;
+  double sum = 0;
+  for (const double v : column->value) sum += std::isfinite(v) ? v : 0;
+  if (!(sum > 0)) return;
+  refuse(where,
+         "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "
+         "count on grain i, by j; turn their sign (import --flip-forces) and average anew");
+}
+
 HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std::string& where) {
   const std::string frame = field_attribute(field, "frame", where);
   if (!is_heap_field(field)) {
@@ -115,8 +138,8 @@ Field in_mean_heap(Field field, const std::string& where) {
   field.attributes["frame"] = std::string("heap: apex at (0, 0), ") + kMetres;
   field.attributes["h"] = fmt::format("{}", h);
   field.attributes["rho_g_h"] = fmt::format("{}", unit);
-  field.attributes["left_deg"] = fmt::format("{}", mean(facts.left_deg));
-  field.attributes["right_deg"] = fmt::format("{}", mean(facts.right_deg));
+  field.attributes["left_deg"] = fmt::format("{}", mean_known(facts.left_deg));
+  field.attributes["right_deg"] = fmt::format("{}", mean_known(facts.right_deg));
   field.attributes.erase("heap.h");
   return field;
 }

@@ -29,6 +29,11 @@ HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std
 /// there are single values of the stresses.
 Field in_mean_heap(Field field, const std::string& where);
 
+/// Throws std::invalid_argument beginning with `where` when the mean of sigma_yy over the field is
+/// tension (positive): the forces of the packings have the wrong sign. Without that column:
+/// nothing.
+void require_compression(const Field& field, const std::string& where);
+
 /// The attribute; throws std::invalid_argument beginning with `where` where it is missing.
 std::string field_attribute(const Field& field, const std::string& name, const std::string& where);
 /// The same as a number; throws likewise when it is none.

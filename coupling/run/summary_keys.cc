@@ -144,6 +144,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"fit.right_deg", "deg", "the same on the right"},
       {"fit.friction_deg", "deg", "friction angle of these models"},
       {"fit.weights", "text", "values, covariance and what is missing for a better one"},
+      {"fit.warnings", "text",
+       "what makes the constants doubtful: unbalanced heaps, heights below the averaging width"},
       {"fit.covariance", "text", "kind of covariance that weights the values"},
       {"fit.correlation_length", "h", "length of the values' correlation (Matern 3/2)"},
       {"fit.effective_values", "-", "independent values among them"},

@@ -125,3 +125,14 @@ TEST(Hydrostatic, PressureBelowTheSurface) {
   EXPECT_EQ(out.row(0), Eigen::RowVector3d(-30, -30, 0));
   EXPECT_TRUE(out.row(1).array().isNaN().all());
 }
+
+TEST(Hydrostatic, UnderTheFlanksOfAHeap) {
+  const auto model =
+      make_model("hydrostatic", {{"rho_g", "10"}, {"left_deg", "45"}, {"right_deg", "30"}});
+  const auto out = model->stress((Points(4, 2) << 0, -1, -0.5, -1, 0.5, -1, -1, -0.9).finished());
+  EXPECT_EQ(out.row(0), Eigen::RowVector3d(-10, -10, 0));
+  EXPECT_NEAR(out(1, 1), -5, 1e-12);
+  EXPECT_NEAR(out(2, 0), -10 * (1 - 0.5 / std::sqrt(3.0)), 1e-12);
+  EXPECT_TRUE(out.row(3).array().isNaN().all());
+  EXPECT_THROW(make_model("hydrostatic", {{"left_deg", "90"}}), std::invalid_argument);
+}

@@ -45,6 +45,46 @@ TEST(Commands, KeysAndCases) {
   EXPECT_THAT(cases.out, HasSubstr("elastic-half-space.toml"));
 }
 
+TEST(Commands, CasesAreFoundByTheirNames) {
+  const Folder folder;
+  const std::string there = "cd " + folder.path() + " &&";
+  for (const std::string name : {"fit-osl-point", "fit-osl-point.toml"}) {
+    const Output shipped = program("check " + name, there);
+    EXPECT_EQ(shipped.code, 0) << shipped.err;
+    EXPECT_THAT(shipped.out, HasSubstr("fit-osl-point.toml: ok (pile-fit"));
+  }
+  const Output unknown = program("run fit-ols-point", there);
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("fit-ols-point: no such file, and no shipped case; nearest: "
+                                     "fit-osl-point (grainfield cases)"));
+  // A path is meant as it stands.
+  EXPECT_EQ(program("check nowhere/fit-osl-point.toml", there).code, 2);
+  // A folder of results does not hide the case, a file does.
+  testing::fs::create_directory(folder / "fit-osl-point");
+  EXPECT_EQ(program("check fit-osl-point", there).code, 0);
+  folder.write("fit-osl-point.toml", tiny_case());
+  for (const std::string name : {"fit-osl-point", "fit-osl-point.toml"}) {
+    EXPECT_THAT(program("check " + name, there).out, HasSubstr("ok (point-load,"));
+  }
+}
+
+TEST(Commands, AnInstalledProgramKnowsItsCases) {
+  const Folder folder;
+  testing::fs::create_directories(folder / "bin");
+  testing::fs::create_directories(folder / "share/grainfield/cases");
+  testing::fs::copy(GRAINFIELD_PROGRAM, folder / "bin/grainfield");
+  folder.write("share/grainfield/cases/small-layer.toml", tiny_case());
+  const auto run = [&](const std::string& arguments) {
+    return std::system(
+        (folder / "bin/grainfield " + arguments + " > " + (folder / "out") + " 2>&1").c_str());
+  };
+  EXPECT_EQ(run("check small-layer"), 0) << testing::read_text(folder / "out");
+  EXPECT_THAT(testing::read_text(folder / "out"), HasSubstr("small-layer.toml: ok (point-load"));
+  EXPECT_EQ(run("cases"), 0);
+  EXPECT_THAT(testing::read_text(folder / "out"), HasSubstr("tiny"));
+  EXPECT_NE(run("check fit-osl-point"), 0);
+}
+
 TEST(Commands, ModelWritesAllDigits) {
   const Folder folder;
   const std::string points = folder.write("p.csv", "# remark\ny,x,more\n-1,0,7\n-2,0.5,7\n1,0,7\n");

@@ -27,7 +27,7 @@ TEST(FilledModels, HeapsGetWhatWasMeasured) {
     EXPECT_NO_THROW(continuum::make_model(name, s));
   }
   const auto s = filled_settings({"hydrostatic", "hydrostatic", {}}, heap_facts(27, 29));
-  EXPECT_EQ(s, (continuum::Settings{{"rho_g", "4000"}}));
+  EXPECT_EQ(s, (continuum::Settings{{"rho_g", "4000"}, {"left_deg", "27"}, {"right_deg", "29"}}));
 }
 
 TEST(FilledModels, TheUsersSettingsHold) {
@@ -62,7 +62,8 @@ TEST(FilledModels, NothingIsGuessedOnAHeapTooSmallToMeasure) {
     EXPECT_THAT(e.what(), HasSubstr("set it in [model.mine]"));
   }
   EXPECT_NO_THROW(filled_settings({"mine", "bcc", {{"phi_deg", "28"}}}, facts));
-  EXPECT_NO_THROW(filled_settings({"mine", "hydrostatic", {}}, facts));
+  const continuum::Settings level{{"left_deg", "0"}, {"right_deg", "0"}};
+  EXPECT_NO_THROW(filled_settings({"mine", "hydrostatic", level}, facts));
 }
 
 TEST(FilledModels, TheBaseOnlyWhereItsWordIsKnown) {

@@ -42,8 +42,6 @@ TEST(Guide, EveryCommandRuns) {
   const Folder folder;
   write_heaps(folder);
   folder.write("points.csv", "x,y\n0,-0.025\n0.01,-0.05\n");
-  testing::fs::copy(std::string(GRAINFIELD_CASES) + "/fit-cantelaube-point.toml",
-                    folder / "fit-cantelaube-point.toml");
   std::istringstream guide(testing::read_text(kDocs + "guide.md"));
   std::string line, block;
   bool toml = false;

@@ -1,0 +1,72 @@
+#include "coupling/app/shipped_cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "continuum/model.h"
+
+namespace grainfield::coupling {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<fs::path> there() {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(cases_folder(), error)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+fs::path cases_folder() {
+  if (const char* given = std::getenv("GRAINFIELD_CASES")) return given;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = program.parent_path().parent_path() / "share/grainfield/cases";
+  if (!error && fs::is_directory(installed, error)) return installed;
+  return GRAINFIELD_CASES_DIR;
+}
+
+std::vector<fs::path> shipped_cases() {
+  std::vector<fs::path> files = there();
+  if (files.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: holds no case files; set GRAINFIELD_CASES to their folder", cases_folder().string()));
+  }
+  return files;
+}
+
+std::string find_case(const std::string& name) {
+  std::error_code error;
+  const fs::path given(name);
+  // What is there and no folder: a file, a pipe.
+  const auto readable = [&](const fs::path& path) {
+    return fs::exists(path, error) && !fs::is_directory(path, error);
+  };
+  if (readable(given)) return name;
+  const bool plain = given.extension() != ".toml";
+  if (plain && readable(name + ".toml")) return name + ".toml";
+  const std::string wanted = plain ? given.filename().string() : given.stem().string();
+  std::vector<std::string> names;
+  for (const fs::path& file : there()) {
+    names.push_back(file.stem().string());
+    if (names.back() == wanted && !given.has_parent_path()) return file.string();
+  }
+  if (fs::is_directory(given, error)) {
+    throw std::invalid_argument(name + ": is a folder, expected a case file");
+  }
+  if (names.empty()) throw std::invalid_argument(name + ": no such file");
+  throw std::invalid_argument(
+      fmt::format("{}: no such file, and no shipped case; nearest: {} (grainfield cases)", name,
+                  continuum::nearest(wanted, names)));
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,81 @@
+#include "coupling/import/doubts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that is not at rest
+constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
+
+std::string unbalanced(const PackingCheck& check) {
+  if (!(check.unbalanced_force_ratio > kUnbalanced)) return "";
+  return fmt::format(
+      "unbalanced force ratio {:.3g}, above {:g}: not at rest, or contacts with walls or gravity "
+      "are missing",
+      check.unbalanced_force_ratio, kUnbalanced);
+}
+
+std::string unsupported(const PackingCheck& check) {
+  if (!(std::fabs(check.support_ratio - 1) > kSupport)) return "";
+  return fmt::format("walls and fixed grains carry {:.3g} of the weight: {}", check.support_ratio,
+                     check.support_ratio < 1
+                         ? "contacts with the floor are missing (a wall: --wall, a table of "
+                           "walls; grains of the floor: --fixed)"
+                         : "gravity or masses are too small, or contacts stand there twice");
+}
+
+}  // namespace
+
+std::string tension_in(const PackingCheck& check) {
+  const double all = check.pairs_along_gravity + check.walls_along_gravity;
+  if (!(all > 0)) return "";
+  const std::string remedy = "forces count on grain i, by j; turn their sign";
+  if (check.walls_along_gravity < 0) {
+    return fmt::format(
+        "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "
+        "walls push: {} in the table of the pairs",
+        check.pairs_along_gravity, remedy);
+  }
+  return fmt::format(
+      "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
+      "compression is negative); {} (import --flip-forces)",
+      all, remedy);
+}
+
+std::vector<std::string> doubts_of(const PackingCheck& check) {
+  std::vector<std::string> out;
+  for (std::string text : {unbalanced(check), unsupported(check)}) {
+    if (!text.empty()) out.push_back(std::move(text));
+  }
+  return out;
+}
+
+void DoubtList::add(const std::string& name, const PackingCheck& check) {
+  const std::string texts[] = {unbalanced(check), unsupported(check)};
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    if (texts[k].empty()) continue;
+    if (entries_[k].first.empty()) {
+      entries_[k].first = name + ": " + texts[k];
+    } else {
+      ++entries_[k].others;
+    }
+  }
+}
+
+std::vector<std::string> DoubtList::lines() const {
+  std::vector<std::string> out;
+  for (const Entry& entry : entries_) {
+    if (entry.first.empty()) continue;
+    out.push_back(entry.first);
+    if (entry.others > 0) {
+      out.back() +=
+          fmt::format(" (likewise {} other packing{})", entry.others, entry.others == 1 ? "" : "s");
+    }
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

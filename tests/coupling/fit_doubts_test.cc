@@ -1,0 +1,236 @@
+// Heaps whose forces cannot be right, heights too near to the floor, and the same model in `fit`
+// and in `compare`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "continuum/closed/osl.h"
+#include "coupling/averaging/kernel.h"
+#include "coupling/import/doubts.h"
+#include "coupling/output/tables.h"
+#include "import_scene.h"
+#include "program.h"
+#include "stressed_heap.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Output;
+using testing::program;
+
+constexpr double kSlope = 28;
+const std::string kModels = " --model osl --model hydrostatic --set fit.bootstrap=5 -o ";
+
+dem::Snapshot heap(std::uint64_t seed = 1, double noise = 0.05) {
+  const auto field =
+      continuum::osl_field(kSlope * std::numbers::pi / 180, {0.74, -0.31}, test::lattice_rho_g());
+  return test::stressed_heap({kSlope, kSlope, 0.01, 35, 0.3, 1.7, noise, seed},
+                             [&](double x, double y) { return field.stress(x, y); });
+}
+
+std::string csv_files(const Folder& folder, const dem::Snapshot& s) {
+  return folder.write("grains.csv", test::csv_grains(s)) + " " +
+         folder.write("contacts.csv", test::csv_contacts(s)) + " " +
+         folder.write("walls.csv", test::csv_walls(s));
+}
+
+void turn(dem::Snapshot& s, bool pairs, bool walls) {
+  for (dem::Contact& c : s.contacts) {
+    if (c.j < 0 ? walls : pairs) c.force = -c.force;
+  }
+}
+
+void expect_refusal(const Output& output, const std::string& words) {
+  EXPECT_EQ(output.code, 2) << output.err;
+  EXPECT_THAT(output.err, HasSubstr(words));
+  EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
+}
+
+TEST(FitDoubts, ForcesOfTheWrongSignAreRefused) {
+  const Folder folder;
+  dem::Snapshot turned = heap();
+  turn(turned, true, true);
+  const std::string files = csv_files(folder, turned), pulls = folder / "pulls.h5";
+  const Output import = program("import --from csv " + files + " --group pile -o " + pulls);
+  EXPECT_EQ(import.code, 0);
+  EXPECT_THAT(import.err, HasSubstr("warning: /pile: the contacts pull: stress along gravity is "
+                                    "tension"));
+  EXPECT_THAT(import.err, HasSubstr("--flip-forces"));
+  expect_refusal(program("fit " + pulls + kModels + (folder / "out")),
+                 "pulls.h5:/pile: the contacts pull");
+  EXPECT_FALSE(testing::fs::exists(folder / "out"));
+
+  // Their average shows it, too.
+  ASSERT_EQ(program("average " + pulls + " --frame heap --grid 41x21 -o " + (folder / "f.h5")).code,
+            0);
+  for (const std::string command : {"fit ", "compare "}) {
+    expect_refusal(
+        program(command + (folder / "f.h5") + " --model hydrostatic -o " + (folder / "out")),
+        "f.h5:average: sigma_yy is tension");
+  }
+
+  // The remedy of the message.
+  const std::string pushes = folder / "pushes.h5";
+  const Output again =
+      program("import --from csv " + files + " --flip-forces --group pile -o " + pushes);
+  EXPECT_EQ(again.code, 0);
+  EXPECT_EQ(again.err, "");
+  const dem::Snapshot read = dem::read_snapshot(pushes, "/pile"), original = heap();
+  ASSERT_EQ(read.contacts.size(), original.contacts.size());
+  double largest = 0;
+  std::map<std::pair<std::int64_t, std::int64_t>, dem::Vec3> force;
+  for (const dem::Contact& c : original.contacts) force[{c.i, c.j}] = c.force;
+  for (const dem::Contact& c : read.contacts) {
+    largest = std::max(largest, (c.force - force.at({c.i, c.j})).norm());
+  }
+  EXPECT_LT(largest, 1e-12);
+  EXPECT_EQ(program("fit " + pushes + kModels + (folder / "fit")).code, 0);
+}
+
+TEST(FitDoubts, OneTableOfTheWrongSignIsNamed) {
+  dem::Snapshot s = heap();
+  EXPECT_EQ(tension_in(check_packing(s)), "");
+  EXPECT_TRUE(doubts_of(check_packing(s)).empty());
+  turn(s, true, false);
+  EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("contacts between grains pull"));
+  EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("in the table of the pairs"));
+  // Nothing is said of what is not known.
+  s.gravity.setZero();
+  EXPECT_EQ(tension_in(check_packing(s)), "");
+  s.contacts.clear();
+  EXPECT_TRUE(doubts_of(check_packing(s)).empty());
+}
+
+TEST(FitDoubts, TheImportsWarningsAreRepeated) {
+  const Folder folder;
+  const std::string words = "walls and fixed grains carry 0 of the weight: contacts with the floor";
+  for (const std::string group : {"a", "b"}) {
+    dem::Snapshot loose = heap(group == "a" ? 1 : 2);
+    std::erase_if(loose.contacts, [](const dem::Contact& c) { return c.j < 0; });
+    const Output import = program("import --from csv " + csv_files(folder, loose) +
+                                  " --add --group " + group + " -o " + (folder / "loose.h5"));
+    EXPECT_EQ(import.code, 0);
+    EXPECT_THAT(import.err, HasSubstr("warning: /" + group + ": " + words));
+  }
+  const Output fit = program("fit " + (folder / "loose.h5") + kModels + (folder / "fit"));
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("loose.h5:/a: " + words));
+  EXPECT_THAT(fit.err, HasSubstr("(likewise 1 other packing)"));
+  const Summary s = read_summary(folder / "fit/summary.json");
+  EXPECT_THAT(std::get<std::string>(s.at("fit.warnings")), HasSubstr(words));
+  EXPECT_THAT(testing::read_text(folder / "fit/report.html"), HasSubstr(words));
+  EXPECT_THAT(testing::read_text(folder / "fit/fits.md"), HasSubstr("Warning: "));
+
+  dem::Snapshot noisy = heap(1, 0.9);
+  EXPECT_THAT(doubts_of(check_packing(noisy)),
+              ::testing::Contains(HasSubstr("unbalanced force ratio 0.")));
+}
+
+TEST(FitDoubts, HeightsBelowTheAveragingWidthAreNamed) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5";
+  dem::write_snapshot(file, "/a/pile", heap(1));
+  dem::write_snapshot(file, "/b/pile", heap(2));
+  // h = 0.304 m, width 2 x 0.01 m: 0.066 h.
+  const Output low =
+      program("fit " + file + " --heights 0.03,0.05,0.3" + kModels + (folder / "low"));
+  ASSERT_EQ(low.code, 0) << low.err;
+  EXPECT_THAT(low.err, HasSubstr("warning: heights 0.03, 0.05 h nearer to the floor than the "
+                                 "averaging width 0.02 m (0.065"));
+  EXPECT_THAT(low.err, HasSubstr("choose heights from 0.07"));
+  EXPECT_THAT(std::get<std::string>(read_summary(folder / "low/summary.json").at("fit.warnings")),
+              HasSubstr("heights 0.03, 0.05 h"));
+  EXPECT_THAT(testing::read_text(folder / "low/report.html"), HasSubstr("Doubts"));
+  const Output high = program("fit " + file + " --heights 0.07,0.3" + kModels + (folder / "high"));
+  EXPECT_EQ(high.code, 0);
+  EXPECT_EQ(high.err, "");
+  EXPECT_EQ(std::get<std::string>(read_summary(folder / "high/summary.json").at("fit.warnings")),
+            "");
+
+  ASSERT_EQ(program("average " + file + " --frame heap --width 0.02 --grid 61x101 -o " +
+                    (folder / "f.h5"))
+                .code,
+            0);
+  const Output field =
+      program("fit " + (folder / "f.h5") + " --heights 0.05,0.3" + kModels + (folder / "field"));
+  EXPECT_THAT(field.err, HasSubstr("height 0.05 h nearer to the floor"));
+}
+
+double value(const Summary& s, const std::string& key) { return std::get<double>(s.at(key)); }
+
+// Column `name` of profiles.csv by component, depth and x as they are written there.
+std::map<std::string, double> column(const std::string& file, const std::string& name) {
+  std::istringstream text(testing::read_text(file));
+  std::map<std::string, double> out;
+  std::size_t at = 0;
+  for (std::string line; std::getline(text, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (cells.front() == "profile") {
+      at = static_cast<std::size_t>(std::find(cells.begin(), cells.end(), name) - cells.begin());
+    } else if (at < cells.size()) {
+      const bool xx = cells[0].find("sigma_xx") != std::string::npos;
+      out[(xx ? "xx," : "yy,") + cells[1] + "," + cells[2]] = std::stod(cells[at]);
+    }
+  }
+  return out;
+}
+
+TEST(FitDoubts, FitAndCompareHaveOneHydrostaticModel) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5", field = folder / "f.h5";
+  for (int k = 1; k <= 4; ++k) {
+    dem::write_snapshot(file, "/" + std::to_string(k) + "/pile",
+                        heap(static_cast<std::uint64_t>(k)));
+  }
+  ASSERT_EQ(
+      program("average " + file + " --frame heap --width 0.01 --grid 101x21 -o " + field).code, 0);
+  const std::string common = " --heights 0.2,0.4 --components sigma_yy,sigma_xx ";
+  ASSERT_EQ(program("fit " + field + common + kModels + (folder / "fit")).code, 0);
+  ASSERT_EQ(program("compare " + field + common +
+                    "--model hydrostatic --model liffman --model lines=liffman:spacing=0.01 -o " +
+                    (folder / "compare"))
+                .code,
+            0);
+  const auto fitted = column(folder / "fit/profiles.csv", "hydrostatic_N/m");
+  const auto compared = column(folder / "compare/profiles.csv", "hydrostatic_N/m");
+  ASSERT_GT(fitted.size(), 20U);
+  // `compare` looks through the averaging's kernel, which changes the pressure under the ridge
+  // alone: by rho g tan(slope) times the kernel's mean |x|, 0.8 standard deviations.
+  const double kink = test::lattice_rho_g() * std::tan(kSlope * std::numbers::pi / 180) * 0.8 *
+                      make_kernel("lucy", 0.01)->standard_deviation();
+  std::size_t same = 0;
+  for (const auto& [place, pressure] : fitted) {
+    ASSERT_EQ(compared.count(place), 1U) << place;
+    EXPECT_NEAR(pressure, compared.at(place), kink) << place;
+    same += std::fabs(pressure - compared.at(place)) < 1e-3 * pressure ? 1 : 0;
+  }
+  EXPECT_GT(same, fitted.size() * 8 / 10);
+  const Summary fit = read_summary(folder / "fit/summary.json");
+  const Summary compare = read_summary(folder / "compare/summary.json");
+  EXPECT_NEAR(value(fit, "fit.hydrostatic.rel_l2"), value(compare, "compare.hydrostatic.rel_l2"),
+              0.03 * value(fit, "fit.hydrostatic.rel_l2"));
+
+  // Liffman's lines carry the heap's weight whatever the spacing that stands for them.
+  EXPECT_LT(value(compare, "compare.liffman.rel_l2"), 0.4);
+  const auto lines = column(folder / "compare/profiles.csv", "liffman_N/m");
+  double force = 0, weight = 0;
+  for (const auto& [place, pressure] : compared) {
+    if (place.compare(0, 2, "yy") != 0) continue;
+    weight += std::isfinite(pressure) ? pressure : 0;
+    force += std::isfinite(lines.at(place)) ? lines.at(place) : 0;
+  }
+  EXPECT_NEAR(force, weight, 0.02 * weight);
+  EXPECT_NEAR(value(compare, "compare.liffman.rel_l2"), value(compare, "compare.lines.rel_l2"),
+              1e-9);
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
