@@ -193,7 +193,8 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     const dem::Vec3 down = s.gravity / g;
     check.pairs_along_gravity = down.dot(check.pairs * down);
     check.walls_along_gravity = down.dot(check.walls * down);
-    if (weight.dot(down) > 0) check.support_ratio = -support.dot(down) / weight.dot(down);
+    // 0 - 0 is +0 where -0 would be printed.
+    if (weight.dot(down) > 0) check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
   }
   return check;
 }

@@ -128,7 +128,7 @@ TEST(FitDoubts, TheImportsWarningsAreRepeated) {
 
   dem::Snapshot noisy = heap(1, 0.9);
   EXPECT_THAT(doubts_of(check_packing(noisy)),
-              ::testing::Contains(HasSubstr("unbalanced force ratio 0.")));
+              ::testing::Contains(HasSubstr("unbalanced force ratio ")));
 }
 
 TEST(FitDoubts, HeightsBelowTheAveragingWidthAreNamed) {
@@ -190,8 +190,8 @@ TEST(FitDoubts, FitAndCompareHaveOneHydrostaticModel) {
     dem::write_snapshot(file, "/" + std::to_string(k) + "/pile",
                         heap(static_cast<std::uint64_t>(k)));
   }
-  ASSERT_EQ(
-      program("average " + file + " --frame heap --width 0.01 --grid 101x21 -o " + field).code, 0);
+  ASSERT_EQ(program("average " + file + " --frame heap --width 0.01 --grid 81x16 -o " + field).code,
+            0);
   const std::string common = " --heights 0.2,0.4 --components sigma_yy,sigma_xx ";
   ASSERT_EQ(program("fit " + field + common + kModels + (folder / "fit")).code, 0);
   ASSERT_EQ(program("compare " + field + common +
