@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include "coupling/averaging/average.h"
 #include "import_scene.h"
@@ -48,7 +49,11 @@ void expect_same_fields(const dem::Snapshot& ours, const dem::Snapshot& imported
 dem::Snapshot import_one(const Folder& folder, const std::string& arguments) {
   const Output output = program("import " + arguments + " -o " + (folder / "in.h5"));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_EQ(output.err, "");
+  // Made-up packings may be warned of, no more.
+  std::istringstream lines(output.err);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_THAT(line, StartsWith("grainfield: warning: "));
+  }
   const auto groups = dem::list_snapshots(folder / "in.h5");
   EXPECT_EQ(groups.size(), 1u);
   return dem::read_snapshot(folder / "in.h5", groups.at(0));

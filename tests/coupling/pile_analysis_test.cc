@@ -239,7 +239,8 @@ TEST(PileAnalysis, WithoutADipFewEnsemblesShowOne) {
 TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {
   const Folder folder;
   Case value = pile_case();
-  value.models = {{"hydrostatic", "hydrostatic", {}}, {"half", "hydrostatic", {{"rho_g", "1000"}}}};
+  value.models = {{"hydrostatic", "hydrostatic", {{"left_deg", "0"}, {"right_deg", "0"}}},
+                  {"half", "hydrostatic", {{"rho_g", "1000"}}}};
   std::vector<dem::Snapshot> heaps;
   for (const int rows : {30, 33, 36}) heaps.push_back(test::lattice_heap(rows));
   const StudyResult result = analyse_pile(value, files_of(folder, heaps), 1);
@@ -248,6 +249,10 @@ TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {
   // rho g from the ensemble: rho g h on the base, where the grains carry half of it.
   const double at_base = result.comparison.models[0].values[0][40] / result.comparison.unit();
   EXPECT_NEAR(at_base, 1, 1e-6);
+  // Under the flanks the kernel blunts the ridge.
+  const double ridge = result.comparison.models[1].values[0][40];
+  EXPECT_LT(ridge, 1000 * result.comparison.depth);
+  EXPECT_GT(ridge, 900 * result.comparison.depth);
   EXPECT_TRUE(result.summary.count("compare.hydrostatic.rel_l2"));
   EXPECT_TRUE(result.summary.count("verdict.best_model"));
   EXPECT_FALSE(result.summary.count("response.peak"));
