@@ -62,7 +62,8 @@ TEST(PileRun, LeavesEverything) {
   const std::string file = folder.write(
       "x.toml", tiny_pile("[change]\ngravity = [8.829]\nmethod = \"damped\"\nramp_time = 0.05\n"
                           "[compare]\nmodels = [\"hydrostatic\", \"cantelaube\", \"ife\"]\n"
-                          "[model.cantelaube]\nphi_deg = 20\n[model.ife]\nphi_deg = 20\n"));
+                          "[model.cantelaube]\nphi_deg = 20\n[model.ife]\nphi_deg = 20\n"
+                          "[model.hydrostatic]\nleft_deg = 20\nright_deg = 20\n"));
   const Output run = program("run " + file + " -o " + (folder / "out"));
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("whether that is a dip needs at least 3"));
