@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "continuum/model.h"
 
 namespace grainfield::continuum {
 namespace {
+
+/// Of the nodes' distance: a point this far beyond the grid is on its border.
+constexpr double kBorder = 1e-6;
 
 /// The moduli of a node; none where the map has no values.
 std::optional<PlaneModuli> node(const osl::FieldMap& map, bool isotropic, Eigen::Index k) {
@@ -72,6 +78,34 @@ PlaneModuli ElasticField::moduli(double x, double y) const {
   return {1 / s(0, 0), 1 / s(1, 1), -s(0, 1) / s(0, 0), 1 / s(2, 2)};
 }
 
+double ElasticField::require_cover(const std::string& model, const std::string& body,
+                                   const Points& points, const std::string& remedy) const {
+  const double right_end = map_.x0 + (map_.nx - 1) * map_.dx,
+               top = map_.y0 + (map_.ny - 1) * map_.dy;
+  const double slack_x = kBorder * map_.dx, slack_y = kBorder * map_.dy;
+  std::array<double, 2> covered{}, all{};  // left and right of x = 0
+  for (Eigen::Index n = 0; n < points.rows(); ++n) {
+    const double x = points(n, 0), y = points(n, 1);
+    const std::size_t side = x < 0 ? 0 : 1;
+    all[side] += 1;
+    if (x < map_.x0 - slack_x || x > right_end + slack_x || y < map_.y0 - slack_y ||
+        y > top + slack_y)
+      continue;
+    const auto column = std::clamp(std::lround((x - map_.x0) / map_.dx), 0L, map_.nx - 1L),
+               row = std::clamp(std::lround((y - map_.y0) / map_.dy), 0L, map_.ny - 1L);
+    covered[side] += known_[static_cast<std::size_t>(column + map_.nx * row)];
+  }
+  for (const std::size_t side : {0, 1}) {
+    if (covered[side] >= kLeastCover * all[side]) continue;
+    throw BadParameter(fmt::format(
+        "model {}: map = {} has constants for {:.3g} % of the {}'s {} half; allowed: {:g} % or "
+        "more; {}",
+        model, map_.file, 100 * covered[side] / all[side], body, side == 0 ? "left" : "right",
+        100 * kLeastCover, remedy));
+  }
+  return (covered[0] + covered[1]) / (all[0] + all[1]);
+}
+
 ElasticField read_elastic_field(const std::string& file) {
   osl::FieldMap read = osl::read_field_map(
       file, {"young", "poisson", "young_error", "poisson_error", "E_x", "E_y", "nu_xy", "G"}, true);
@@ -86,6 +120,7 @@ ElasticField read_elastic_field(const std::string& file) {
   std::vector<std::optional<PlaneModuli>> nodes;
   for (Eigen::Index k = 0; k < n; ++k) nodes.push_back(node(read, isotropic, k));
   ElasticField out;
+  for (const auto& known : nodes) out.known_.push_back(known.has_value());
   out.map_ = read;
   out.map_.values.clear();
   for (const char* name : {"c11", "c22", "c12", "c66"}) out.map_.values[name].resize(n);

@@ -127,27 +127,28 @@ ModelInfo fe_orthotropic_layer_info() {
       "layer with vertical and horizontal elastic axes on a rigid base under a line load, finite "
       "elements",
       2,
-      joined({{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
-               number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
-                      -kUnbounded, kUnbounded),
-               number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
-               optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
-                               kAboveZero, kUnbounded),
-               optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
-               optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
-               optional_number(
-                   "nu_xy", "-",
-                   "-eps_yy/eps_xx under sigma_xx; between max(-r, -sqrt(t)) and sqrt(t). "
-                   "Needed with moduli, with base = rough and with sides = smooth; free sides on a "
-                   "smooth base do not feel it",
-                   source, -kUnbounded, kUnbounded),
-               text("map",
-                    "instead of constants (r and t are not used): CSV file of a regular grid, "
-                    "columns x,y and young,poisson "
-                    "(elastic_map.csv) or E_x,E_y,nu_xy,G; beyond the grid as on its border",
-                    "elastic constants")},
-              layer_parameters(),
-              numerical_parameters("over F/h; 0: 2e-4", 8)}),
+      joined(
+          {{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+            number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
+                   -kUnbounded, kUnbounded),
+            number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+            optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
+                            kAboveZero, kUnbounded),
+            optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+            optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+            optional_number(
+                "nu_xy", "-",
+                "-eps_yy/eps_xx under sigma_xx; between max(-r, -sqrt(t)) and sqrt(t). "
+                "Needed with moduli, with base = rough and with sides = smooth; free sides on a "
+                "smooth base do not feel it",
+                source, -kUnbounded, kUnbounded),
+            text("map",
+                 "instead of constants: CSV file of a regular grid, columns x,y and young,poisson "
+                 "(elastic_map.csv) or E_x,E_y,nu_xy,G, for a quarter or more of either half of "
+                 "the layer; beyond the grid as on its border",
+                 "elastic constants")},
+           layer_parameters(),
+           numerical_parameters("over F/h; 0: 2e-4", 8)}),
       make_in_plugin<orthotropic_name>};
 }
 
@@ -185,7 +186,8 @@ ModelInfo fe_cantelaube_core_info() {
        number("h", "m", "height; the base is y = -h", source, 1, kAboveZero, kUnbounded),
        choice("branch",
               "half tip angle of the core: that of the closed form's branch, see cantelaube; plus "
-              "also chooses sigma_yy as the largest compression of a yielding axis",
+              "also chooses sigma_yy as the largest compression of a yielding axis, and only that "
+              "beside beta_hat_deg",
               source, {"zero", "minus", "plus"}),
        optional_number("beta_hat_deg", "deg",
                        "half tip angle of the core instead of a branch's; below 90 - phi_deg",
@@ -234,19 +236,19 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
        number("E", "rho_g h", "Young's modulus; strains, not stresses, go with 1/E", "elasticity",
               1000, kAboveZero, kUnbounded),
        number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49),
-       text(
-           "map",
-           "file of measured elastic constants in place of E and nu: elastic_map.csv of a study "
-           "of elastic constants (columns x,y,young,poisson; SI units, apex at the origin); empty: "
-           "none",
-           "measured"),
+       text("map",
+            "file of measured elastic constants in place of E and nu: elastic_map.csv of a study "
+            "of elastic constants (columns x,y,young,poisson; SI units, apex at the origin), for a "
+            "quarter or more of either half; empty: none",
+            "measured"),
        choice("base",
               "rough: no displacement; frictional: Coulomb friction on stiff springs; smooth: no "
               "shear, on which only cohesion holds a heap",
               source, {"rough", "frictional", "smooth"}),
        number("base_friction_deg", "deg", "friction angle of a frictional base", source, 28, 0, 80),
-       number("base_stiffness", "E/h", "springs of a frictional base, per length", "numerics", 100,
-              kAboveZero, kUnbounded),
+       number("base_stiffness", "E/h",
+              "springs of a frictional base, per length; with a map E is its mean over the heap",
+              "numerics", 100, kAboveZero, kUnbounded),
        choice("history",
               "at_once: gravity on the whole heap; rise: horizontal layers; grow: layers along the "
               "slopes, as from a source above",

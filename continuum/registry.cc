@@ -5,6 +5,7 @@
 
 #include "continuum/closed/models.h"
 #include "continuum/fe/elastic.h"
+#include "continuum/idle.h"
 #include "continuum/model.h"
 #include "continuum/osl/models.h"
 #include "continuum/settings.h"
@@ -52,6 +53,7 @@ int dimension(const ModelInfo& info, const Settings& settings) {
 
 std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings) {
   const ModelInfo& info = find_model(name);
+  if (const auto idle = find_idle(info, settings)) throw BadParameter(idle->refusal);
   return info.make(complete(info, settings));
 }
 

@@ -80,13 +80,15 @@ PlaneModuli solvable(PlaneModuli m, double r, double t) {
   return m;
 }
 
-/// A map replaces the constants; r and t have defaults and do not show whether they were set.
-void check_map_alone(const Settings& s) {
-  for (const char* key : {"E_x", "E_y", "G", "nu_xy"})
-    if (!std::isnan(number_of(s, key)))
-      throw BadParameter(fmt::format(
-          "model {}: {} is set beside map, which replaces it; allowed: map or constants", kName,
-          key));
+/// Points over |x| <= half width, -h <= y <= 0 that stand for equal parts of it.
+Points over_the_box(double half_width, double h) {
+  constexpr int kAcross = 320, kDeep = 40;
+  Points points(kAcross * kDeep, 2);
+  for (int j = 0; j < kDeep; ++j)
+    for (int i = 0; i < kAcross; ++i)
+      points.row(i + kAcross * j) << half_width * ((2 * i + 1.) / kAcross - 1),
+          -h * (j + 0.5) / kDeep;
+  return points;
 }
 
 class OrthotropicLayer : public fe::BoxModel<2> {
@@ -103,8 +105,10 @@ class OrthotropicLayer : public fe::BoxModel<2> {
       if (!std::isnan(at_load_.nu_xy)) figures_["nu_xy"] = at_load_.nu_xy;
       at_load_ = solvable(at_load_, number_of(s, "r"), number_of(s, "t"));
     } else {
-      check_map_alone(s);
       field_ = read_elastic_field(s.at("map"));
+      figures_["map_share"] = field_->require_cover(
+          kName, "layer", over_the_box(ratio_ * h_, h_),
+          "take half_width (in depths) to fit the map, whose load is at (0, 0)");
       at_load_ = field_->moduli(0, 0);
       figures_["nu_xy"] = at_load_.nu_xy;
       mirrored_ = false;

@@ -35,7 +35,7 @@ struct WedgeProblem {
   double cohesion = 1e-3;  ///< in units of rho g h
   WedgeBase base = WedgeBase::rough;
   double base_friction_deg = 28;  ///< of a frictional base
-  double base_stiffness = 100;    ///< of its springs, in units of E/h
+  double base_stiffness = 100;    ///< of its springs, in units of young/h
   WedgeHistory history = WedgeHistory::at_once;
   int steps = 1;   ///< at_once: equal steps of gravity; layers: steps for the weight of each
   int layers = 8;  ///< of rise and grow
@@ -45,7 +45,7 @@ struct WedgeProblem {
   int refinements = 0;
   double refine_share = 0.5;
   /// Measured Young's modulus (N/m^2; 2D N/m) and Poisson's ratio at a place in place of young and
-  /// poisson; empty: those.
+  /// poisson; empty: those. The springs of the ground go by young all the same.
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> elasticity;
   double viscous_step = 0.25;  ///< PlasticSettings::viscous_step
   double tolerance = 1e-9;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include "continuum/elastic_field.h"
@@ -33,9 +34,10 @@ CellMeans cell_means(const WedgeResult& r, int triangle) {
 }
 
 /// Young's modulus and Poisson's ratio of a map. Throws BadParameter where it is not isotropic.
-std::function<Eigen::Vector2d(const Eigen::Vector2d&)> measured(const std::string& file) {
+std::function<Eigen::Vector2d(const Eigen::Vector2d&)> measured(const ElasticField& map,
+                                                                const std::string& file) {
   constexpr double kIsotropic = 1e-6;
-  const auto field = std::make_shared<const ElasticField>(read_elastic_field(file));
+  const auto field = std::make_shared<const ElasticField>(map);
   return [field, file](const Eigen::Vector2d& at) -> Eigen::Vector2d {
     // Plane strain: lambda + 2 mu, lambda, mu.
     const Eigen::Matrix3d c = field->at(at[0], at[1]);
@@ -54,6 +56,23 @@ std::function<Eigen::Vector2d(const Eigen::Vector2d&)> measured(const std::strin
                       file, poisson, at[0], at[1]));
     return {2 * mu * (1 + poisson), poisson};
   };
+}
+
+/// Centres of congruent triangles that make up the heap.
+Points over_the_heap(const WedgeProblem& p) {
+  constexpr int kCells = 64;
+  const double left = p.height / std::tan(p.left_deg * std::numbers::pi / 180),
+               right = p.height / std::tan(p.right_deg * std::numbers::pi / 180);
+  const auto mesh =
+      fe::triangle_lattice({-left, -p.height}, {right, -p.height}, Eigen::Vector2d::Zero(), kCells);
+  Points out(static_cast<Eigen::Index>(mesh.triangles.size()), 2);
+  for (Eigen::Index t = 0; t < out.rows(); ++t) {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    for (const int corner : mesh.triangles[static_cast<std::size_t>(t)])
+      centre += mesh.vertices[static_cast<std::size_t>(corner)] / 3;
+    out.row(t) = centre.transpose();
+  }
+  return out;
 }
 
 class WedgeModel : public Model {
@@ -89,8 +108,8 @@ class WedgeModel : public Model {
     p.refinements = whole("refinements");
     p.viscous_step = number_of(s, "viscous_step");
     p.tolerance = number_of(s, "tolerance");
-    if (!s.at("map").empty()) p.elasticity = measured(s.at("map"));
     check_wedge(p);
+    if (!s.at("map").empty()) take_map(s.at("map"));
   }
 
   Stresses stress(const Points& points) override {
@@ -180,30 +199,48 @@ class WedgeModel : public Model {
     for (const auto& p : solved_->points)
       plastic += (p.regime != plasticity::Regime::elastic) * p.area;
     const double weight = solved_->weight;
-    return {{"unknowns", solved_->unknowns},
-            {"load_steps", static_cast<double>(solved_->steps.size())},
-            {"newton_iterations", iterations},
-            {"largest_residual", residual},
-            {"viscous_steps", viscous},
-            {"largest_overstress", overstress},
-            {"stress_error", solved_->relative_error},
-            {"weight_ratio", solved_->base_force[1] / weight},
-            {"thrust_ratio", solved_->base_force[0] / weight},
-            {"core_share", core.share},
-            {"axis_mobilized", core.axis_mobilized},
-            {"plastic_share", plastic * problem_.rho_g / weight},
-            {"beta_hat_left_deg", core.left_deg},
-            {"beta_hat_right_deg", core.right_deg},
-            {"beta_hat_left_misfit", core.left_misfit},
-            {"beta_hat_right_misfit", core.right_misfit}};
+    std::map<std::string, double> all{{"unknowns", solved_->unknowns},
+                                      {"load_steps", static_cast<double>(solved_->steps.size())},
+                                      {"newton_iterations", iterations},
+                                      {"largest_residual", residual},
+                                      {"viscous_steps", viscous},
+                                      {"largest_overstress", overstress},
+                                      {"stress_error", solved_->relative_error},
+                                      {"weight_ratio", solved_->base_force[1] / weight},
+                                      {"thrust_ratio", solved_->base_force[0] / weight},
+                                      {"core_share", core.share},
+                                      {"axis_mobilized", core.axis_mobilized},
+                                      {"plastic_share", plastic * problem_.rho_g / weight},
+                                      {"beta_hat_left_deg", core.left_deg},
+                                      {"beta_hat_right_deg", core.right_deg},
+                                      {"beta_hat_left_misfit", core.left_misfit},
+                                      {"beta_hat_right_misfit", core.right_misfit}};
+    all.insert(map_figures_.begin(), map_figures_.end());
+    return all;
   }
 
  private:
+  /// The ground is as stiff as the map's mean over the heap says.
+  void take_map(const std::string& file) {
+    WedgeProblem& p = problem_;
+    const ElasticField field = read_elastic_field(file);
+    const Points heap = over_the_heap(p);
+    map_figures_["map_share"] =
+        field.require_cover("fe_mohr_coulomb_wedge", "heap", heap,
+                            "a map in m whose heap has its apex at (0, 0), y up, and height h");
+    p.elasticity = measured(field, file);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < heap.rows(); ++i) sum += p.elasticity(heap.row(i).transpose())[0];
+    p.young = sum / static_cast<double>(heap.rows()) / (p.rho_g * p.height);
+    map_figures_["map_young"] = p.young;
+  }
+
   void solve() {
     if (!solved_) solved_ = std::make_unique<WedgeResult>(solve_wedge(problem_));
   }
 
   WedgeProblem problem_;
+  std::map<std::string, double> map_figures_;
   std::unique_ptr<WedgeResult> solved_;
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "continuum/idle.h"
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
 #include "coupling/run/studies.h"
@@ -71,6 +72,13 @@ std::map<std::string, ModelChoice> read_models(const Draft& draft) {
       }
       if (!is_default(*info, parameter, value) || filled_by_run(parameter, draft.value.study)) {
         choice.settings[parameter] = value;
+      }
+    }
+    // A study that varies the model's settings looks at every combination itself.
+    if (draft.value.study != "wedge") {
+      if (const auto idle = continuum::find_idle(*info, choice.settings)) {
+        const Assignment& a = table.at(idle->parameter);
+        reject(a, a.path, idle->refusal);
       }
     }
     out.emplace(label, choice);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "continuum/idle.h"
+#include "continuum/settings.h"
 #include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
 
@@ -51,6 +53,11 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
     if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
     const auto number = facts.numbers.find(parameter.name);
     if (number == facts.numbers.end() || out.count(parameter.name) != 0) continue;
+    // What the case sets may leave it without effect, as a map does r and t.
+    if (!continuum::idle_because(choice.name, parameter.name,
+                                 continuum::complete(continuum::find_model(choice.name), out))
+             .empty())
+      continue;
     if (std::isnan(number->second)) {
       throw continuum::BadParameter(fmt::format(
           "model {}: {} cannot be measured on this heap (too few grains on its flanks); "

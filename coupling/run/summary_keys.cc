@@ -22,7 +22,7 @@ bool matches(const char* pattern, const char* text) {
 }  // namespace
 
 const std::vector<SummaryKey>& summary_keys() {
-  static const std::vector<SummaryKey> all = {
+  static const std::vector<SummaryKey> before_models = {
       {"case.name", "text", "name of the case file"},
       {"case.study", "text", "kind of study"},
       {"case.hash", "text", "FNV-1a hash of the written-out case (case.toml)"},
@@ -311,8 +311,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"wedge.dips", "-", "of these, with a dip"},
       {"wedge.plateaus", "-", "with a plateau"},
       {"wedge.peaks", "-", "with a peak"},
-      {"model.*.name", "text", "registry name of a compared model"},
-      {"model.*.*", "-", "figure of a model's evaluation, e.g. unknowns"},
+  };
+  static const std::vector<SummaryKey> after_models = {
       {"time.dem_cpu_s", "s",
        "CPU time of the realizations, all starts together; of a sweep: of each member"},
       {"time.dem_s", "s",
@@ -329,6 +329,12 @@ const std::vector<SummaryKey>& summary_keys() {
       {"*.most", "-", "largest over realizations, in the unit of the figure"},
       {"*.standard_error", "-", "standard error over realizations, in the unit of the figure"},
   };
+  static const std::vector<SummaryKey> all = [] {
+    auto joined = before_models;
+    for (const auto& part : {model_figure_keys(), after_models})
+      joined.insert(joined.end(), part.begin(), part.end());
+    return joined;
+  }();
   return all;
 }
 

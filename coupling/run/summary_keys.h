@@ -13,7 +13,12 @@ struct SummaryKey {
   std::string meaning;
 };
 
+/// Pattern of a model's figure that has no entry of its own.
+inline constexpr char kOtherModelFigure[] = "model.*.*";
+
 const std::vector<SummaryKey>& summary_keys();
+/// Of these, the figures of a model (model_figure_keys.cc), kOtherModelFigure last.
+std::vector<SummaryKey> model_figure_keys();
 /// The declaration of a key, or null.
 const SummaryKey* find_summary_key(const std::string& key);
 /// Throws std::logic_error naming the first key that is not declared.

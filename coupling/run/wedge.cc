@@ -10,8 +10,10 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 
+#include "continuum/idle.h"
 #include "coupling/averaging/average.h"
 #include "coupling/output/triangles_vtu.h"
 #include "coupling/report/wedge.h"
@@ -162,6 +164,7 @@ class Analysis {
         members_.push_back(one);
         continue;
       }
+      const std::size_t begin = members_.size();
       for (const auto& history : or_one(setup_.histories)) {
         for (const auto& dilation : or_one(dilations)) {
           for (const auto& base : or_one(setup_.bases)) {
@@ -188,10 +191,29 @@ class Analysis {
           }
         }
       }
+      drop_idle(choice, begin);
     }
     if (!members_[first_heap()].heap)
       throw std::invalid_argument(
           fmt::format("compare.models: found no {}, expected one or more", kHeap));
+  }
+
+  /// Takes from the combinations of a heap what they leave without effect, as `layers` from one
+  /// that is laid at once. Throws BadParameter for a setting without effect in all of them.
+  void drop_idle(const ModelChoice& choice, std::size_t begin) {
+    const auto& info = continuum::find_model(choice.name);
+    std::map<std::string, std::string> refused;  // of the case's settings, by the first combination
+    std::set<std::string> used;
+    for (std::size_t m = begin; m < members_.size(); ++m) {
+      auto& settings = members_[m].choice.settings;
+      while (const auto idle = continuum::find_idle(info, settings)) {
+        refused.emplace(idle->parameter, idle->refusal);
+        settings.erase(idle->parameter);
+      }
+      for (const auto& [name, value] : settings) used.insert(name);
+    }
+    for (const auto& [name, refusal] : refused)
+      if (used.count(name) == 0) throw continuum::BadParameter(refusal);
   }
 
   void evaluate(Seen& member) const {
@@ -480,8 +502,10 @@ class Analysis {
     Map mobilized{m.choice.label, kColumns, kRows, points,
                   Eigen::VectorXd::Constant(points.rows(), kNan)};
     Map shear = mobilized;
-    const double young = std::stod(
-        continuum_setting(m, "E"));  // in rho g h, so that the product does not depend on it
+    // In rho g h, so that the product does not depend on it.
+    const auto mapped = m.figures.find("map_young");
+    const double young =
+        mapped != m.figures.end() ? mapped->second : std::stod(continuum_setting(m, "E"));
     for (const auto& quantity : m.quantities) {
       if (quantity.name == "mobilized") mobilized.value = quantity.values.cwiseMin(1.05);
       if (quantity.name == "plastic_shear")

@@ -53,10 +53,10 @@ TEST(CantelaubeCore, DegreeOneConvergesToIt) {
 // continuous does, and on the closed form's own base chooses the branch of the axis' condition.
 TEST(CantelaubeCore, ContinuityAtTheFlankChoosesTheBranch) {
   const auto jump = [](double beta_hat, const char* axis, const char* branch) {
-    const auto model = make_model("fe_cantelaube_core", {{"beta_hat_deg", std::to_string(beta_hat)},
-                                                         {"axis", axis},
-                                                         {"branch", branch},
-                                                         {"refinement", "2"}});
+    Settings settings{
+        {"beta_hat_deg", std::to_string(beta_hat)}, {"axis", axis}, {"refinement", "2"}};
+    if (axis == std::string("yields")) settings["branch"] = branch;
+    const auto model = make_model("fe_cantelaube_core", settings);
     model->stress(Points(0, 2));
     return figure(model, "flank_jump");
   };

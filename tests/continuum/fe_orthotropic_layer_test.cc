@@ -137,9 +137,6 @@ TEST(FeOrthotropicLayer, RefusesWhatCannotBe) {
               HasSubstr("nu_xy is not set; base = rough needs it, allowed: between -1 and 1"));
   EXPECT_THAT(refusal({{"sides", "smooth"}, {"r", "-0.5"}}),
               HasSubstr("nu_xy is not set; sides = smooth needs it, allowed: between 0.5 and 1"));
-  for (const char* key : {"E_x", "E_y", "G", "nu_xy"})
-    EXPECT_THAT(refusal({{"map", "/nowhere.csv"}, {key, "0.5"}}),
-                HasSubstr(std::string(key) + " is set beside map, which replaces it"));
   EXPECT_THAT(refusal({{"r", "-0.5"}, {"nu_xy", "0.3"}}),
               HasSubstr("nu_xy = 0.3 is not elastic with r = -0.5, t = 1; allowed: between "
                         "max(-r, -sqrt(t)) = 0.5 and sqrt(t) = 1"));
@@ -157,4 +154,40 @@ TEST(FeOrthotropicLayer, RefusesWhatCannotBe) {
   EXPECT_THAT(refused("young,eta", "1,1"), HasSubstr("the header is \"x,y,young,eta\"; allowed:"));
   EXPECT_THAT(refused("young", "1"), HasSubstr("neither or both of young,poisson and E_x"));
   EXPECT_THAT(refused("E_x,E_y,nu_xy,G", "1,1,1,1"), HasSubstr("nu_xy = 1, G = 1 at (-4, -1)"));
+}
+
+// The share of the layer that a map has constants for is a figure, and below a quarter on either
+// side of the load it is refused.
+TEST(FeOrthotropicLayer, MapMustCoverTheLayer) {
+  const auto share = [](const Map& map, const char* half_width) {
+    return make_model("fe_orthotropic_layer", {{"map", map.file()}, {"half_width", half_width}})
+        ->figures()
+        .at("map_share");
+  };
+  {
+    const Map all("young,poisson", [](double, double) { return "3,0.25"; });
+    EXPECT_EQ(share(all, "4"), 1);
+    EXPECT_NEAR(share(all, "8"), 0.5, 0.01);
+    EXPECT_THAT(
+        refusal({{"map", all.file()}, {"half_width", "20"}}),
+        HasSubstr("model fe_orthotropic_layer: map = " + all.file() +
+                  " has constants for 20 % of the layer's left half; allowed: 25 % or more; take "
+                  "half_width (in depths) to fit the map, whose load is at (0, 0)"));
+    // Below the load only.
+    EXPECT_THAT(refusal({{"map", all.file()}, {"h", "0.001"}, {"half_width", "1000"}}), "accepted");
+    EXPECT_THAT(refusal({{"map", all.file()}, {"h", "10"}, {"half_width", "1"}}),
+                HasSubstr("of the layer's left half"));
+  }
+  {
+    // Filled-in nodes do not count.
+    const Map left("young,poisson",
+                   [](double x, double) { return x > 0.5 ? "nan,nan" : "3,0.25"; });
+    EXPECT_THAT(refusal({{"map", left.file()}, {"half_width", "4"}}),
+                HasSubstr("has constants for 12.5 % of the layer's right half"));
+  }
+  {
+    const Map half("young,poisson",
+                   [](double, double y) { return y < -0.6 ? "nan,nan" : "3,0.25"; });
+    EXPECT_NEAR(share(half, "4"), 0.625, 0.02);
+  }
 }

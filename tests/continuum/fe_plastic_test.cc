@@ -15,6 +15,7 @@
 #include "continuum/model.h"
 
 using namespace grainfield::continuum;
+using testing::AllOf;
 using testing::HasSubstr;
 
 namespace {
@@ -256,6 +257,9 @@ TEST(FePlastic, ElasticConstantsFromAMap) {
   const Stresses stiff = model->stress(points);
   EXPECT_GT(std::abs(stiff(0, 1) - stiff(1, 1)), 1e-3);
   EXPECT_NEAR(model->figures().at("weight_ratio"), 1, 1e-8);
+  EXPECT_EQ(model->figures().at("map_share"), 1);
+  // The mean over the heap.
+  EXPECT_NEAR(model->figures().at("map_young"), 4500, 20);
   settings["map"] = write("bad.csv", 1000, -0.2);
   try {
     make_model("fe_mohr_coulomb_wedge", settings)->stress(points);
@@ -263,6 +267,49 @@ TEST(FePlastic, ElasticConstantsFromAMap) {
   } catch (const BadParameter& error) {
     EXPECT_THAT(error.what(), HasSubstr("poisson = -0.2"));
   }
+}
+
+// Springs of the ground in units of the map's mean: a heap ten times as stiff on a ground ten times
+// as stiff has the same stress.
+TEST(FePlastic, GroundIsAsStiffAsTheMap) {
+  Points points(2, 2);
+  points << 0.1, -0.95, 0.9, -0.95;
+  std::vector<Stresses> found;
+  for (const char* young : {"300", "3000"}) {
+    const std::string file = testing::TempDir() + "ground" + young + ".csv";
+    std::ofstream out(file);
+    out << "x,y,young,poisson\n";
+    for (const double y : {-1., 0.})
+      for (const double x : {-3., 3.}) out << x << "," << y << "," << young << ",0.3\n";
+    out.close();
+    found.push_back(make_model("fe_mohr_coulomb_wedge", {{"cells", "8"},
+                                                         {"left_deg", "22"},
+                                                         {"cohesion", "0.01"},
+                                                         {"base", "frictional"},
+                                                         {"base_stiffness", "1"},
+                                                         {"map", file}})
+                        ->stress(points));
+  }
+  EXPECT_LT((found[0] - found[1]).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(FePlastic, MapMustCoverTheHeap) {
+  const auto write = [](double from, double to) {
+    const std::string file = testing::TempDir() + "part.csv";
+    std::ofstream out(file);
+    out << "x,y,young,poisson\n";
+    for (const double y : {-1., -0.5, 0.})
+      for (int i = 0; i <= 8; ++i) out << from + (to - from) * i / 8 << "," << y << ",1000,0.3\n";
+    return file;
+  };
+  // In millimetres, or with the origin at the left foot.
+  EXPECT_THAT(refusal({{"map", write(-0.002, 0.002)}}),
+              AllOf(HasSubstr("model fe_mohr_coulomb_wedge: map = "),
+                    HasSubstr("of the heap's left half; allowed: 25 % or more; a map in m whose "
+                              "heap has its apex at (0, 0), y up, and height h")));
+  EXPECT_THAT(refusal({{"map", write(0, 4)}}),
+              HasSubstr("has constants for 0 % of the heap's left half"));
+  EXPECT_EQ(refusal({{"map", write(-1, 1)}}), "accepted");
 }
 
 TEST(FePlastic, ModelGivesStressQuantitiesAndFigures) {

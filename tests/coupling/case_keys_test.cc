@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
+#include "continuum/model.h"
 #include "coupling/case/keys.h"
 #include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
@@ -77,9 +79,33 @@ TEST(Keys, ThePagesInDocsAreThoseOfTheDeclarations) {
       << "regenerate: grainfield keys --summary --markdown > docs/summary-keys.md";
 }
 
+// Of models with finite elements the shipped cases say it (shipped.h).
+TEST(SummaryKeys, EveryFigureOfAClosedModelHasAnEntry) {
+  const std::map<std::string, continuum::Settings> needed{
+      {"osl", {{"mu", "-0.3"}}}, {"orthotropic_layer", {{"nu_xy", "0.3"}}}};
+  int figures = 0;
+  for (const auto& info : continuum::registry()) {
+    if (info.name.rfind("fe_", 0) == 0) continue;
+    const auto settings = needed.find(info.name);
+    const auto model = continuum::make_model(
+        info.name, settings == needed.end() ? continuum::Settings() : settings->second);
+    Eigen::MatrixXd points(1, info.dim == 3 ? 3 : 2);
+    points.setConstant(-0.1);
+    model->stress(points);
+    for (const auto& [name, value] : model->figures()) {
+      ++figures;
+      EXPECT_NE(find_summary_key("model.some_label." + name)->pattern, kOtherModelFigure)
+          << info.name << ": " << name << " in run/model_figure_keys.cc";
+    }
+  }
+  EXPECT_GT(figures, 30);
+}
+
 TEST(SummaryKeys, PatternsMatchWholeNames) {
   ASSERT_NE(find_summary_key("compare.layer_rough.base.rel_l2"), nullptr);
   EXPECT_EQ(find_summary_key("compare.layer.rel_l2")->pattern, "compare.*.rel_l2");
+  EXPECT_EQ(find_summary_key("model.fe_rough.flank_jump")->pattern, "model.*.flank_jump");
+  EXPECT_EQ(find_summary_key("model.fe.nobody_knows")->pattern, kOtherModelFigure);
   EXPECT_EQ(find_summary_key("dem.grainz"), nullptr);
   EXPECT_EQ(find_summary_key("compare..rel"), nullptr);
   EXPECT_THROW(require_documented({{"nobody.knows", 1.0}}), std::logic_error);

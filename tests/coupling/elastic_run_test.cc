@@ -34,3 +34,8 @@ TEST(ElasticRun, CantelaubesCoreIsTheClosedFormOnItsOwnBaseOnly) {
     EXPECT_GT(number(result, std::string("model.") + model + ".base_centre"), 0.75) << model;
   }
 }
+
+TEST(ElasticRun, ElementsReturnTheLayersAndTheHalfSpacesClosedForms) {
+  for (const char* name : {"elastic-layer.toml", "elastic-half-space.toml"})
+    EXPECT_FALSE(shipped(name).comparison.results.empty()) << name;
+}

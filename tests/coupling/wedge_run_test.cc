@@ -139,3 +139,18 @@ TEST(WedgeRun, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal("wedge-map.toml", {"compare.models=[\"heap\"]"}),
               HasSubstr("compare.models: found 1 model(s)"));
 }
+
+// A setting that no combination uses is refused; one that some use is left out of the others.
+TEST(WedgeRun, SettingsThatCombinationsLeaveWithoutEffect) {
+  const Overrides once{"wedge.histories=[\"at_once\"]", "wedge.dilations_deg=[28]",
+                       "model.heap.cells=8"};
+  Overrides layers = once;
+  layers.insert(layers.end(), {"wedge.bases=[\"rough\"]", "model.heap.layers=4"});
+  EXPECT_THAT(refusal("wedge-map.toml", layers),
+              HasSubstr("model fe_mohr_coulomb_wedge: layers = 4 has no effect with history = "
+                        "at_once"));
+  Overrides springs = once;
+  springs.insert(springs.end(), {"wedge.bases=[\"rough\",\"25\"]", "model.heap.base_stiffness=50",
+                                 "wedge.histories=[\"at_once\",\"rise\"]", "model.heap.layers=4"});
+  EXPECT_EQ(refusal("wedge-map.toml", springs), "accepted");
+}

@@ -1,0 +1,24 @@
+// Parameters that have no effect beside others: said to the user, not passed over.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "continuum/model.h"
+
+namespace grainfield::continuum {
+
+/// Why a parameter of the model has no effect with these settings (as complete() returns them) and
+/// what to do, e.g. "with base = rough; leave it out or set base = elastic"; empty: it has one.
+std::string idle_because(const std::string& model, const std::string& parameter,
+                         const Settings& complete);
+
+/// A given setting without effect.
+struct IdleSetting {
+  std::string parameter;
+  std::string refusal;  ///< "model NAME: PARAMETER = VALUE has no effect ..."
+};
+/// The first of the given settings that has no effect; none: all have one. Throws BadParameter as
+/// complete().
+std::optional<IdleSetting> find_idle(const ModelInfo& info, const Settings& given);
+
+}  // namespace grainfield::continuum
