@@ -299,10 +299,13 @@ const std::vector<SummaryKey>& summary_keys() {
       {"verdict.position", "-", "0: the losing family's best model, 1: the winning family's"},
       {"verdict.position_error", "-", "its standard error over realizations"},
       {"wedge.*.base_shape", "text", "pressure on the heap's base: dip, plateau, peak"},
-      {"wedge.*.base_axis", "-", "pressure on the base under the apex over rho g h"},
+      {"wedge.*.base_axis", "-",
+       "mean pressure on the base within 5 % of its half width from the axis, over rho g h; where "
+       "the pressure has a kink there, not its value at x = 0 (Cantelaube's minus branch at 28 "
+       "deg: 0.31, at x = 0 0.22)"},
       {"wedge.*.base_largest", "-", "largest pressure on the base over rho g h"},
       {"wedge.*.base_largest_at", "-", "its distance from the axis over h"},
-      {"wedge.*.dip_ratio", "-", "pressure on the base under the apex over the largest"},
+      {"wedge.*.dip_ratio", "-", "base_axis over base_largest"},
       {"wedge.*.nearest", "text", "label of the closed wedge nearest to the heap's base pressure"},
       {"wedge.*.nearest_rel_l2", "-", "its relative L2 distance from it"},
       {"wedge.*.failed", "text", "why there is no such heap"},
