@@ -271,8 +271,11 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
            "residual over a cell's weight at which Newton's method ends; where it stalls 1e-5 will "
            "do (figure largest_residual)",
            "numerics", 1e-9, 1e-13, 1e-3),
-       whole_number("iterations", "most Newton iterations in a load step", "numerics", 25, 1,
-                    1000)},
+       whole_number("iterations", "most Newton iterations in a load step", "numerics", 25, 1, 1000),
+       whole_number("work",
+                    "most Newton iterations for the heap's or a layer's weight, failed steps and "
+                    "viscoplastic time included: then there is no equilibrium to be found",
+                    "numerics", 1000, 1, 1000000)},
       make_in_plugin<wedge_name>};
 }
 

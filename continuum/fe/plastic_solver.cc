@@ -6,19 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "continuum/fe/newton.h"
+#include "continuum/fe/plastic_body.h"
 #include "continuum/model.h"
 
 namespace grainfield::continuum::fe {
 namespace {
 
 using Eigen::Vector2d;
-using plasticity::Matrix4;
-using plasticity::Regime;
-using plasticity::Returned;
-using plasticity::Vector4;
 
 /// A step that needs no more Newton iterations is followed by one twice as large.
 constexpr int kQuick = 8;
@@ -36,204 +32,13 @@ constexpr double kPatientTime = 5, kFading = 0.5;
 /// So many ever shorter steps without rest: the load that the body bears has been reached.
 constexpr int kRestless = 3;
 
-/// xx, yy, zz, xy of a strain in the plane.
-Vector4 in_space(const Eigen::Vector3d& e) { return {e[0], e[1], 0, e[2]}; }
-Eigen::Vector3d in_plane(const Vector4& s) { return {s[0], s[1], s[3]}; }
-Eigen::Matrix3d in_plane(const Matrix4& m) {
-  Eigen::Matrix3d out;
-  out << m(0, 0), m(0, 1), m(0, 3), m(1, 0), m(1, 1), m(1, 3), m(3, 0), m(3, 1), m(3, 3);
-  return out;
-}
-
-/// A node on the ground.
-struct ContactNode {
-  std::array<unsigned int, 2> unknowns;
-  double length = 0;  ///< of the base that it stands for
-  double gap = 0;     ///< vertical displacement of the ground's spring, below 0 under pressure
-  double shear = 0;   ///< horizontal displacement of the spring, without what has slipped
-  bool active = true;
-};
-
-/// Force of the ground on a node after a move, and minus its derivative.
-struct ContactForce {
-  Vector2d force = Vector2d::Zero();
-  Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
-  double shear = 0;  ///< of the spring afterwards
-};
-
-/// `relaxed`: how much of what is beyond the limit of friction slips in this step, of 1.
-ContactForce contact_force(const ContactNode& node, const Ground& ground, const Vector2d& move,
-                           double relaxed) {
-  ContactForce out;
-  const double k = ground.stiffness * node.length;
-  const double gap = node.gap + move[1], shear = node.shear + move[0];
-  if (gap > 0) return out;  // lifted off: the spring along the ground is forgotten
-  out.force[1] = -k * gap;
-  out.stiffness(1, 1) = k;
-  const double most = ground.friction * out.force[1];
-  if (std::abs(k * shear) <= most) {
-    out.force[0] = -k * shear;
-    out.stiffness(0, 0) = k;
-    out.shear = shear;
-  } else {
-    const double sign = shear > 0 ? 1 : -1;
-    out.shear = (1 - relaxed) * shear + relaxed * sign * most / k;
-    out.force[0] = -k * out.shear;
-    out.stiffness(0, 0) = (1 - relaxed) * k;
-    out.stiffness(0, 1) = -relaxed * sign * ground.friction * k;
-  }
-  return out;
-}
-
 }  // namespace
 
-struct PlasticSolver::Impl {
-  Impl(const TriangleMesh& mesh, const Material& material, const Supports& supports,
-       const Ground& ground_, PlasticSettings settings_)
-      : settings(std::move(settings_)), ground(ground_), grid(mesh) {
-    const auto& cells = grid.cells;
-    displacement = zeros();
-    for (const QuadraticCell& cell : cells) {
-      for (std::size_t q = 0; q < kPoints; ++q) {
-        PointState& state = points.emplace_back();
-        state.position = cell.points[q];
-        state.area = cell.areas[q];
-      }
-    }
-    for (const QuadraticCell& cell : cells)
-      laws.emplace_back(material((cell.points[0] + cell.points[1] + cell.points[2]) / 3));
-    body.assign(cells.size(), Vector2d::Zero());
-    surface = zeros();
-    active.assign(cells.size(), true);
-    find_supports(supports);
-    find_free();
-  }
-
-  Eigen::VectorXd zeros() const {
-    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.unknowns()));
-  }
-
-  /// Fixed unknowns, and nodes on the ground with Simpson's weights along it.
-  void find_supports(const Supports& supports) {
-    fixed.assign(grid.unknowns(), false);
-    std::map<unsigned int, std::size_t> contact_of;
-    for (const BoundaryEdge& edge : grid.edges) {
-      const bool grounded = supports(edge.middle).contact;
-      for (std::size_t node = 0; node < 3; ++node) {
-        const auto [x, y] = edge.unknowns[node];
-        const Support support = supports(grid.positions[x]);
-        if (support.fixed[0]) fixed[x] = true;
-        if (support.fixed[1]) fixed[y] = true;
-        if (!grounded) continue;
-        const auto [found, added] = contact_of.emplace(x, contacts.size());
-        if (added) contacts.push_back({{x, y}});
-        contacts[found->second].length += edge.length * (node < 2 ? 1. / 6 : 4. / 6);
-      }
-    }
-  }
-
-  /// Unknowns that are solved for: not prescribed, and of a node of an active cell.
-  void find_free() {
-    free.assign(grid.unknowns(), false);
-    for (std::size_t c = 0; c < grid.cells.size(); ++c)
-      if (active[c])
-        for (const unsigned int i : grid.cells[c].unknowns) free[i] = true;
-    for (ContactNode& node : contacts) node.active = free[node.unknowns[0]];
-    for (std::size_t i = 0; i < free.size(); ++i) free[i] = free[i] && !fixed[i];
-  }
-
-  /// Nodal forces of tractions on the boundary, with Simpson's weights.
-  Eigen::VectorXd forces_of(const Traction& traction) const {
-    Eigen::VectorXd out = zeros();
-    for (const BoundaryEdge& edge : grid.edges) {
-      const Vector2d force = edge.length * traction(edge.middle);
-      for (std::size_t node = 0; node < 3; ++node)
-        for (std::size_t d = 0; d < 2; ++d)
-          out[edge.unknowns[node][d]] +=
-              force[static_cast<Eigen::Index>(d)] * (node < 2 ? 1. / 6 : 4. / 6);
-    }
-    return out;
-  }
-
-  Eigen::VectorXd forces_of(const std::vector<Vector2d>& force) const {
-    Eigen::VectorXd out = zeros();
-    for (std::size_t c = 0; c < grid.cells.size(); ++c)
-      if (active[c]) grid.cells[c].scatter(grid.cells[c].weight * force[c], out);
-    return out;
-  }
-
-  Returned update(std::size_t c, std::size_t q, const CellVector& u) const {
-    const Vector4 trial =
-        points[c * kPoints + q].elastic_strain + in_space(grid.cells[c].strain[q] * u);
-    const plasticity::MohrCoulombLaw& law = laws[c];
-    Returned out = law(trial);
-    if (relaxed < 1 && out.regime != Regime::elastic) {
-      const double rest = 1 - relaxed;
-      out.stress = relaxed * out.stress + rest * (law.elasticity() * trial);
-      out.elastic_strain = relaxed * out.elastic_strain + rest * trial;
-      out.tangent = relaxed * out.tangent + rest * law.elasticity();
-    }
-    return out;
-  }
-
-  /// Internal forces less what the ground gives.
-  Eigen::VectorXd internal(const Eigen::VectorXd& u) const {
-    Eigen::VectorXd out = zeros();
-    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      if (!active[c]) continue;
-      const QuadraticCell& cell = grid.cells[c];
-      const CellVector local = cell.gather(u);
-      CellVector f = CellVector::Zero();
-      for (std::size_t q = 0; q < kPoints; ++q)
-        f += cell.areas[q] * cell.strain[q].transpose() * in_plane(update(c, q, local).stress);
-      cell.scatter(f, out);
-    }
-    for (const ContactNode& node : contacts) {
-      if (!node.active) continue;
-      const auto [x, y] = node.unknowns;
-      const Vector2d f = contact_force(node, ground, {u[x], u[y]}, relaxed).force;
-      out[x] -= f[0];
-      out[y] -= f[1];
-    }
-    return out;
-  }
-
-  /// Assembles and factorizes the tangent at u, or with elastic cells.
-  bool factorize(const Eigen::VectorXd& u, bool elastic = false) {
-    grid.clear_matrix();
-    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      if (!active[c]) continue;
-      const QuadraticCell& cell = grid.cells[c];
-      const CellVector local = cell.gather(u);
-      CellMatrix k = CellMatrix::Zero();
-      for (std::size_t q = 0; q < kPoints; ++q) {
-        Matrix4 tangent = laws[c].elasticity();
-        if (!elastic) tangent = update(c, q, local).tangent + settings.tangent_floor * tangent;
-        k += cell.areas[q] * cell.strain[q].transpose() * in_plane(tangent) * cell.strain[q];
-      }
-      grid.add(cell, k, free);
-    }
-    for (const ContactNode& node : contacts) {
-      if (!node.active) continue;
-      const auto [x, y] = node.unknowns;
-      const Eigen::Matrix2d k = contact_force(node, ground, {u[x], u[y]}, relaxed).stiffness;
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j) {
-          const unsigned int row = i == 0 ? x : y, column = j == 0 ? x : y;
-          if (free[row] && free[column]) grid.add(row, column, k(i, j));
-        }
-    }
-    for (unsigned int i = 0; i < free.size(); ++i)
-      if (!free[i]) grid.add(i, i, laws.front().constants().E);
-    return grid.factorize();
-  }
-
-  void clear_held(Eigen::VectorXd& x) const {
-    for (std::size_t i = 0; i < free.size(); ++i)
-      if (!free[i]) x[static_cast<Eigen::Index>(i)] = 0;
-  }
+struct PlasticSolver::Impl : PlasticBody {
+  using PlasticBody::PlasticBody;
 
   /// The increment to these external forces; u comes in as first guess with the prescribed values.
+  /// Not more than what is left of settings.work.
   NewtonReport solve(const Eigen::VectorXd& target, Eigen::VectorXd& u, int iterations) {
     NewtonProblem problem;
     problem.residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& r) {
@@ -246,79 +51,14 @@ struct PlasticSolver::Impl {
       grid.solve(x);
       clear_held(x);
     };
-    return newton(problem, {settings.tolerance, iterations}, u);
-  }
-
-  /// Spreads the prescribed values of u as elastic cells would: without that the cells at the
-  /// border take the whole increment, and Newton starts far off.
-  void elastic_guess(const Eigen::VectorXd& target, Eigen::VectorXd& u) {
-    if (!factorize(zeros(), true)) return;
-    Eigen::VectorXd r = target - internal(zeros());
-    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      if (!active[c]) continue;
-      const QuadraticCell& cell = grid.cells[c];
-      const CellVector local = cell.gather(u);
-      CellVector f = CellVector::Zero();
-      for (std::size_t q = 0; q < kPoints; ++q)
-        f -= cell.areas[q] * cell.strain[q].transpose() * in_plane(laws[c].elasticity()) *
-             cell.strain[q] * local;
-      cell.scatter(f, r);
-    }
-    clear_held(r);
-    grid.solve(r);
-    clear_held(r);
-    u += r;
-  }
-
-  void accept(const Eigen::VectorXd& u) {
-    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      if (!active[c]) continue;
-      const CellVector local = grid.cells[c].gather(u);
-      for (std::size_t q = 0; q < kPoints; ++q) {
-        const Returned r = update(c, q, local);
-        PointState& p = points[c * kPoints + q];
-        if (r.regime != Regime::elastic) {
-          Vector4 plastic =
-              p.elastic_strain + in_space(grid.cells[c].strain[q] * local) - r.elastic_strain;
-          p.plastic_strain += plastic;
-          plastic[3] /= 2;
-          const Eigen::Vector3d principal = plasticity::principal(plastic);
-          p.plastic_shear += principal[0] - principal[2];
-        }
-        p.stress = r.stress;
-        p.elastic_strain = r.elastic_strain;
-        p.regime = r.regime;
-      }
-    }
-    for (ContactNode& node : contacts) {
-      if (!node.active) continue;
-      const auto [x, y] = node.unknowns;
-      node.shear = contact_force(node, ground, {u[x], u[y]}, relaxed).shear;
-      node.gap += u[y];
-    }
-    displacement += u;
+    const NewtonReport report =
+        newton(problem, {settings.tolerance, std::clamp(settings.work - spent, 1, iterations)}, u);
+    spent += report.iterations;
+    return report;
   }
 
   bool settled(const NewtonReport& report) const {
     return report.converged || report.history.back() <= settings.stalled;
-  }
-
-  /// Largest difference of the stress from what the material bears, in the heap and in friction on
-  /// the ground, over the stress scale.
-  double overstress() const {
-    double most = 0;
-    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      if (!active[c]) continue;
-      for (std::size_t q = 0; q < kPoints; ++q) {
-        const PointState& p = points[c * kPoints + q];
-        most = std::max(most, (laws[c](p.elastic_strain).stress - p.stress).cwiseAbs().maxCoeff());
-      }
-    }
-    for (const ContactNode& node : contacts) {
-      if (!node.active || node.gap > 0) continue;
-      most = std::max(most, ground.stiffness * (std::abs(node.shear) + ground.friction * node.gap));
-    }
-    return most / settings.stress_scale;
   }
 
   /// How the same increment ends in viscoplastic time.
@@ -327,6 +67,7 @@ struct PlasticSolver::Impl {
     flow,       ///< the overstress does not fall: it slides
     no_steps,   ///< settings.viscous_steps are used up
     no_newton,  ///< Newton's method fails in the shortest step of time too
+    no_work,    ///< settings.work is used up
   };
 
   /// Nothing has changed unless it comes to rest.
@@ -339,7 +80,8 @@ struct PlasticSolver::Impl {
     const Eigen::VectorXd displacement_before = displacement;
     double time = kFirstTime;
     std::vector<double> left, clock{0};  // overstress after each step; time
-    while (static_cast<int>(left.size()) < settings.viscous_steps && time >= kLeastTime) {
+    while (static_cast<int>(left.size()) < settings.viscous_steps && time >= kLeastTime &&
+           spent < settings.work) {
       // A long step of time is as good as none: the material without viscosity.
       relaxed = time > kLongTime ? 1 : time / (1 + time);
       Eigen::VectorXd move = u;
@@ -370,6 +112,7 @@ struct PlasticSolver::Impl {
       time *= report.iterations <= kQuick / 2 ? 4 : report.iterations <= kQuick ? 2 : 1;
     }
     if (time < kLeastTime) end = Creep::no_newton;
+    if (spent >= settings.work) end = Creep::no_work;
     relaxed = 1;
     points = points_before;
     contacts = contacts_before;
@@ -387,6 +130,7 @@ struct PlasticSolver::Impl {
                            step.overstress, settings.viscous_steps);
       case Creep::no_newton:
         return ", nor was one found in viscoplastic time";
+      case Creep::no_work:
       case Creep::rest:
         break;
     }
@@ -404,6 +148,7 @@ struct PlasticSolver::Impl {
           move[static_cast<Eigen::Index>(i)] =
               moved(grid.positions[i])[static_cast<Eigen::Index>(grid.components[i])];
     double reached = 0, step = std::min(1., settings.first_step);
+    spent = 0;
     LoadStep record;
     int restless = 0;  // steps in a row that slid in viscoplastic time
     while (reached < 1) {
@@ -428,12 +173,15 @@ struct PlasticSolver::Impl {
         if (!crept || end != Creep::rest) {
           restless += end == Creep::flow;
           step = (target - reached) / (crept ? 4 : 2);
-          if (step < settings.least_step || (restless >= kRestless && reached > 0))
+          const bool tired = spent >= settings.work;
+          if (step < settings.least_step || (restless >= kRestless && reached > 0) || tired)
             throw ComputationFailed(fmt::format(
                 "{}: no equilibrium found beyond {:.4g} of the load{}; Newton's method stopped at "
-                "a residual of {:.1e} in iteration {} ({}){}",
+                "a residual of {:.1e} in iteration {} ({}){}{}",
                 settings.name, reached, stage > 0 ? fmt::format(" of stage {}", stage + 1) : "",
-                report.history.back(), report.iterations, report.why, what(end, record)));
+                report.history.back(), report.iterations, report.why, what(end, record),
+                tired ? fmt::format("; work = {} iterations are used up: raise work", settings.work)
+                      : ""));
           continue;
         }
       }
@@ -445,26 +193,22 @@ struct PlasticSolver::Impl {
       record.load = reached;
       steps.push_back(record);
       record = {};
+      if (reached < 1 && spent >= settings.work)
+        throw ComputationFailed(
+            fmt::format("{}: no equilibrium found beyond {:.4g} of the load{}; work = {} "
+                        "iterations of Newton's "
+                        "method are used up: raise work",
+                        settings.name, reached,
+                        stage > 0 ? fmt::format(" of stage {}", stage + 1) : "", settings.work));
     }
     body = body_force;
     surface = pressed;
     ++stage;
   }
 
-  PlasticSettings settings;
-  Ground ground;
-  QuadraticTriangles grid;
-  std::vector<plasticity::MohrCoulombLaw> laws;  ///< of the cells
-  std::vector<bool> active, fixed, free;         ///< cells; unknowns
-  std::vector<PointState> points;
-  std::vector<ContactNode> contacts;
-  Eigen::VectorXd displacement;
-  std::vector<Vector2d> body;  ///< force on each cell now
-  Eigen::VectorXd surface;     ///< of the tractions, now
   std::vector<LoadStep> steps;
   int stage = 0;
-  double relaxed =
-      1;  ///< t / (1 + t) of the present step of viscoplastic time; 1: rate-independent
+  int spent = 0;  ///< Newton iterations in this call of load()
 };
 
 PlasticSolver::PlasticSolver(const TriangleMesh& mesh, const Material& material,

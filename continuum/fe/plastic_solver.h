@@ -54,7 +54,10 @@ struct PlasticSettings {
   /// A step that fails is taken in viscoplastic time when it is not longer than this part of the
   /// stage's load; 0: never.
   double viscous_step = 0.25;
-  int viscous_steps = 150;   ///< most steps of viscoplastic time in a load step
+  int viscous_steps = 150;  ///< most steps of viscoplastic time in a load step
+  /// Most Newton iterations in a call of load(), failed steps and viscoplastic time included: a
+  /// body that neither rests nor clearly slides is given up.
+  int work = 1000;
   double overstress = 1e-7;  ///< over the stress scale, at which the material is at rest
 };
 

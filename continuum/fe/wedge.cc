@@ -106,6 +106,7 @@ void check_wedge(const WedgeProblem& p) {
          "above 0, at most 1");
   refuse(!(p.viscous_step >= 0 && p.viscous_step <= 1), "viscous_step", p.viscous_step, "0 to 1");
   refuse(p.steps < 1, "steps", p.steps, "at least 1");
+  refuse(p.work < 1, "work", p.work, "at least 1");
 }
 
 namespace {
@@ -219,6 +220,7 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   settings.iterations = p.iterations;
   settings.first_step = 1. / p.steps;
   settings.viscous_step = p.viscous_step;
+  settings.work = p.work;
   fe::Ground ground{p.base_stiffness * p.young * scale / p.height,
                     std::tan(p.base_friction_deg * kDegree)};
   const double slack = kOnBorder * p.height;

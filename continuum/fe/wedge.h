@@ -48,6 +48,7 @@ struct WedgeProblem {
   /// poisson; empty: those. The springs of the ground go by young all the same.
   std::function<Eigen::Vector2d(const Eigen::Vector2d&)> elasticity;
   double viscous_step = 0.25;  ///< PlasticSettings::viscous_step
+  int work = 1000;             ///< PlasticSettings::work, for the heap's or a layer's weight
   double tolerance = 1e-9;
   int iterations = 25;
 };

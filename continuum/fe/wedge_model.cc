@@ -107,6 +107,7 @@ class WedgeModel : public Model {
     p.iterations = whole("iterations");
     p.refinements = whole("refinements");
     p.viscous_step = number_of(s, "viscous_step");
+    p.work = whole("work");
     p.tolerance = number_of(s, "tolerance");
     check_wedge(p);
     if (!s.at("map").empty()) take_map(s.at("map"));

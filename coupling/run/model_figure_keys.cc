@@ -76,7 +76,7 @@ std::vector<SummaryKey> model_figure_keys() {
       {"model.*.weight", "N", "OSL: weight of the body"},
       {"model.*.load", "N", "OSL: vertical load on the surface"},
       {"model.*.force_balance", "-",
-       "OSL: |base_force + side_force - weight - load| over the largest of them"},
+       "OSL: what base_force + side_force differ from weight + load by, over the largest of them"},
       // Of the elastic-plastic heap.
       {"model.*.load_steps", "-", "plastic heap: steps of the load, all layers"},
       {"model.*.newton_iterations", "-",

@@ -224,6 +224,64 @@ TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
                 "above phi_deg, 28"));
 }
 
+// Flow that is not associated, on ground that gives way: Newton's method alone finds no way, and
+// viscoplastic time does. Where both do they end in the same heap.
+TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
+  WedgeProblem p = heap(8, 28);
+  p.history = WedgeHistory::grow;
+  p.layers = 4;
+  p.base = WedgeBase::frictional;
+  p.base_stiffness = 0.1;
+  const WedgeResult rest = solve_wedge(p);
+  p.viscous_step = 0;
+  EXPECT_THAT(failure(p), HasSubstr("no equilibrium found beyond"));
+  int crept = 0;
+  double overstress = 0;
+  for (const auto& step : rest.steps) {
+    crept += step.viscous_steps;
+    overstress = std::max(overstress, step.overstress);
+  }
+  EXPECT_GT(crept, 0);
+  EXPECT_LE(overstress, 1e-7);
+  const plasticity::MohrCoulombLaw law({p.young, p.poisson, 28, 0, p.cohesion});
+  for (const auto& point : rest.points) EXPECT_LE(law.yield(point.stress), 1e-6);
+  // What is left of Newton's residuals: 1e-5 of a cell's weight at each of a hundred nodes.
+  EXPECT_NEAR(rest.base_force[1] / rest.weight, 1, 1e-5);
+  EXPECT_NEAR(rest.base_force[0] / rest.weight, 0, 1e-5);
+
+  // Where Newton's method needs no help, in smaller steps of the load.
+  p.cells = 16;
+  p.base = WedgeBase::rough;
+  const WedgeResult newton = solve_wedge(p);
+  p.viscous_step = 0.25;
+  const WedgeResult relaxed = solve_wedge(p);
+  crept = 0;
+  for (const auto& step : newton.steps) EXPECT_EQ(step.viscous_steps, 0);
+  for (const auto& step : relaxed.steps) crept += step.viscous_steps;
+  EXPECT_GT(crept, 0);
+  for (const double x : {0., 0.376, 0.752, 1.411}) {
+    const double reference = newton.stress_at({x, -0.999})[1];
+    EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 2e-3 * std::abs(reference)) << x;
+  }
+}
+
+// Without rest the work is bounded, and the message says so.
+TEST(FePlastic, WorkIsBounded) {
+  WedgeProblem p = heap(12, 28);
+  p.base = WedgeBase::frictional;
+  p.base_friction_deg = 17;  // below the flanks' demand: it slides
+  p.work = 60;
+  EXPECT_THAT(failure(p),
+              AllOf(HasSubstr("no equilibrium found beyond 0"),
+                    HasSubstr("work = 60 iterations are used up: raise work; raise cohesion")));
+  p.work = 3;
+  p.base = WedgeBase::rough;
+  p.steps = 2;
+  EXPECT_THAT(failure(p), HasSubstr("work = 3 iterations"));
+  p.work = 1000;
+  EXPECT_EQ(failure(p), "solved");
+}
+
 TEST(FePlastic, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal({}), "accepted");
   EXPECT_THAT(refusal({{"dilation_deg", "30"}}),

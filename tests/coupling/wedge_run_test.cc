@@ -119,8 +119,9 @@ TEST(WedgeRun, HeapsBesideTheClosedWedges) {
 
 TEST(WedgeRun, MapCountsHeapsWithoutEquilibrium) {
   const StudyResult result =
-      shipped("wedge-map.toml", {"wedge.histories=[\"at_once\"]", "wedge.dilations_deg=[28]",
-                                 "wedge.bases=[\"rough\",\"smooth\"]", "model.heap.cells=8"});
+      shipped("wedge-map.toml",
+              {"wedge.histories=[\"at_once\"]", "wedge.dilations_deg=[28]",
+               "wedge.bases=[\"rough\",\"smooth\"]", "model.heap.cells=8", "model.heap.layers=8"});
   EXPECT_EQ(std::get<std::int64_t>(result.summary.at("wedge.heaps")), 2);
   EXPECT_EQ(std::get<std::int64_t>(result.summary.at("wedge.equilibria")), 1);
   EXPECT_THAT(word(result, "wedge.heap_at_once_dilation28_basesmooth.failed"),
