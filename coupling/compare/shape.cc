@@ -20,11 +20,13 @@ struct Sample {
   double x, value, error;
 };
 
-// Height of `at` above the higher of the lowest points that separate it from higher ground.
+// Height of `at` above the higher of the lowest points that separate it from higher ground. Of two
+// equal heights the left one is the higher: else a dent between them, however shallow, would make
+// two peaks of one.
 double prominence(const std::vector<Sample>& s, std::size_t at) {
   const double height = s[at].value;
   double left = height, right = height;
-  for (std::size_t k = at; k-- > 0 && s[k].value <= height;) left = std::min(left, s[k].value);
+  for (std::size_t k = at; k-- > 0 && s[k].value < height;) left = std::min(left, s[k].value);
   for (std::size_t k = at + 1; k < s.size() && s[k].value <= height; ++k)
     right = std::min(right, s[k].value);
   return height - std::max(left, right);

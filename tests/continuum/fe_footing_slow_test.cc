@@ -33,14 +33,17 @@ void converges(double phi, bool surcharge, const std::vector<int>& meshes, doubl
     error.push_back(found.capacity / exact - 1);
     EXPECT_GT(error.back(), 0) << phi << " " << surcharge << " " << cells;
     if (error.size() > 1) {
-      EXPECT_LT(error.back(), 0.65 * error[error.size() - 2]);
+      // The strip's border is a singular point: order 1.
+      const double order = std::log2(error[error.size() - 2] / error.back());
+      std::printf("phi %4.1f  N_%c  order %.3f\n", phi, surcharge ? 'q' : 'c', order);
+      EXPECT_NEAR(order, 1, 0.2) << phi << " " << surcharge << " " << cells;
     }
   }
   // Order 1 from the two finest meshes, each of twice the cells of the one before.
   const double extrapolated = 2 * error.back() - error[error.size() - 2];
   std::printf("phi %4.1f  N_%c  extrapolated %+.2f %%\n", phi, surcharge ? 'q' : 'c',
               100 * extrapolated);
-  EXPECT_LT(std::abs(extrapolated), 0.03) << phi << " " << surcharge;
+  EXPECT_LT(std::abs(extrapolated), 0.01) << phi << " " << surcharge;
 }
 
 }  // namespace

@@ -225,7 +225,8 @@ TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
 }
 
 // Flow that is not associated, on ground that gives way: Newton's method alone finds no way, and
-// viscoplastic time does. Where both do they end in the same heap.
+// viscoplastic time does. Where both do they end within a per cent of each other: with such flow
+// there is more than one state of rest.
 TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
   WedgeProblem p = heap(8, 28);
   p.history = WedgeHistory::grow;
@@ -261,7 +262,7 @@ TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
   EXPECT_GT(crept, 0);
   for (const double x : {0., 0.376, 0.752, 1.411}) {
     const double reference = newton.stress_at({x, -0.999})[1];
-    EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 2e-3 * std::abs(reference)) << x;
+    EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 1e-2 * std::abs(reference)) << x;
   }
 }
 

@@ -78,7 +78,7 @@ TEST(Shape, CountsOneAndTwoPeaksUnderNoise) {
 TEST(Shape, ProminenceDecidesWhatAPeakIs) {
   VectorXd x = axis(7, 3), v(7), error = VectorXd::Constant(7, 0.01);
   v << 0, 1, 0.96, 1, 0.5, 0.52, 0;                // dips of 4 % and of 2 %
-  EXPECT_EQ(profile_shape(x, v, error).peaks, 2);  // equal tops both stand above the ends
+  EXPECT_EQ(profile_shape(x, v, error).peaks, 1);  // equal tops count as others do
   v << 0, 1, 0.96, 0.999, 0.5, 0.52, 0;
   EXPECT_EQ(profile_shape(x, v, error).peaks, 1);
   v << 0, 1, 0.9, 0.999, 0.5, 0.52, 0;
@@ -86,6 +86,15 @@ TEST(Shape, ProminenceDecidesWhatAPeakIs) {
   EXPECT_EQ(profile_shape(x, v, VectorXd::Constant(7, 0.06)).peaks, 1);  // below 2 standard errors
   v << 0, 1, 1, 1, 0.5, 0.4, 0;                                          // a plateau is one peak
   EXPECT_EQ(profile_shape(x, v, error).peaks, 1);
+}
+
+// Mirrored profiles have equal tops to the last bit: the dent between them decides, not round-off.
+TEST(Shape, EqualTopsAreTwoPeaksOnlyWithADentBetween) {
+  VectorXd v(7);
+  for (const auto& [dent, peaks] : {std::pair{0.999, 1}, {0.96, 1}, {0.94, 2}, {0.5, 2}}) {
+    v << 0, 0.5, 1, dent, 1, 0.5, 0;
+    EXPECT_EQ(profile_shape(axis(7, 3), v, {}).peaks, peaks) << dent;
+  }
 }
 
 TEST(Shape, Refuses) {
