@@ -1,0 +1,141 @@
+// How the grains of a pile are poured: one by one through a funnel, or in layers on its plateau.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/heap/surface.h"
+#include "dem/study/pile_checks.h"
+#include "dem/study/pile_run.h"
+
+namespace grainfield::dem {
+namespace {
+
+// A grain out of the funnel joins the simulation this many mean diameters above the pile, ...
+constexpr double kEntryMargin = 10;
+// ... or this many steps later when a grain that has bounced up there is in its place.
+constexpr long kRetryEvery = 10;
+// ... but at most this, s, for a layer and for the whole pile.
+constexpr double kMaxSettleTime = 2;
+// Diameters: what is lower than this below the plateau's middle belongs to the flanks. A plateau
+// shorter than kPoint diameters is the pile's point.
+constexpr double kPlateauDrop = 1.5, kPoint = 3;
+
+}  // namespace
+
+void PileRun::pour_point() {
+  if (!in_flight_.empty() && in_flight_.front().step <= phase_steps_) {
+    if (join(in_flight_.front())) {
+      in_flight_.pop_front();
+    } else {
+      in_flight_.front().step = phase_steps_ + kRetryEvery;
+    }
+  }
+  if (poured_ < setup_.source.grains && point_->release_step(poured_) == phase_steps_) {
+    release_grain();
+  }
+  if (phase_steps_ == (awake_samples_ + 1) * kSampleEvery) {
+    awake_sum_ += engine_->motion().awake;
+    ++awake_samples_;
+  }
+  if (poured_ == setup_.source.grains && in_flight_.empty()) end_pour();
+}
+
+void PileRun::release_grain() {
+  check_mouth(setup_, top_, largest_diameter_);
+  Flight f;
+  f.grain = poured_;
+  f.x =
+      point_->axis(poured_) + setup_.source.spread * 0.5 * mean_diameter_ * random_.uniform(-1, 1);
+  const double entry = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
+  f.step = point_->arrival_step(poured_, entry);
+  // One after the other, and not before those that are to join at this very step.
+  if (!in_flight_.empty()) f.step = std::max(f.step, in_flight_.back().step + 1);
+  f.step = std::max(f.step, phase_steps_ + 1);
+  in_flight_.push_back(f);
+  ++poured_;
+}
+
+// False when another grain is there.
+bool PileRun::join(const Flight& f) {
+  const ShapedGrain& shaped = grains_[f.grain];
+  NewGrain g = shaped.at(f.x, 0, setup_.material.density);
+  point_->place(g, f.grain, phase_steps_);
+  const Snapshot now = engine_->snapshot();
+  for (const Grain& other : now.grains) {
+    if (std::hypot(other.position.x() - g.x, other.position.y() - g.y) < other.radius + g.radius) {
+      return false;
+    }
+  }
+  top_ = resting_top(now);
+  check_walls_free(setup_, now, largest_diameter_,
+                   static_cast<double>(f.grain + 1) / setup_.source.grains);
+  engine_->add(g);
+  return true;
+}
+
+void PileRun::pour_line() {
+  if (poured_ > 0) {
+    awake_sum_ += engine_->motion().awake;
+    ++awake_samples_;
+    const double fall =
+        std::sqrt(2 * (setup_.source.clearance + largest_diameter_) / setup_.material.gravity);
+    const double since = static_cast<double>(phase_steps_ - layer_start_) * engine_->time_step();
+    if (since < 1.5 * fall) return;
+    if (!settled(layer_grains_) && since < kMaxSettleTime) return;
+  }
+  if (poured_ == setup_.source.grains) {
+    end_pour();
+  } else {
+    drop_layer();
+  }
+}
+
+void PileRun::drop_layer() {
+  double bottom = setup_.source.clearance;
+  if (poured_ > 0) {
+    const Snapshot now = engine_->snapshot();
+    check_walls_free(setup_, now, largest_diameter_,
+                     static_cast<double>(poured_) / setup_.source.grains);
+    const Surface surface = free_surface(now, mean_diameter_);
+    const double plateau = plateau_of(surface, line_, kPlateauDrop * mean_diameter_).length();
+    const double middle = 0.5 * (line_.left + line_.right) + setup_.source.shift;
+    line_ = {middle - 0.5 * plateau, middle + 0.5 * plateau};
+    if (line_.length() < kPoint * largest_diameter_) {
+      check_line_long_enough(setup_, poured_);
+      end_pour();
+      return;
+    }
+    bottom += *std::max_element(surface.top.begin(), surface.top.end());
+  }
+  std::vector<ShapedGrain> layer;
+  double room = line_.length();
+  while (poured_ < setup_.source.grains && 2 * grains_[poured_].radius <= room) {
+    room -= 2 * grains_[poured_].radius;
+    layer.push_back(grains_[poured_++]);
+  }
+  for (NewGrain g :
+       side_by_side(layer, line_.left, line_.right, bottom, setup_.material.density, random_)) {
+    g.vy = -setup_.source.speed;
+    engine_->add(g);
+  }
+  layer_start_ = phase_steps_;
+  layer_grains_ = static_cast<int>(layer.size());
+}
+
+void PileRun::end_pour() {
+  pour_time_ = in_phase();
+  enter(PilePhase::settle);
+}
+
+void PileRun::settle() {
+  // The last grain is still in the air, and the pile sleeps: its energy counts as that of one.
+  const double fall = std::sqrt(2 * kEntryMargin * mean_diameter_ / setup_.material.gravity);
+  if (in_phase() < 2 * fall) return;
+  if (!settled(1) && in_phase() < kMaxSettleTime) return;
+  check_walls_free(setup_, engine_->snapshot(), largest_diameter_, 1);
+  engine_->set_sleep(false);
+  enter(PilePhase::rest);
+}
+
+}  // namespace grainfield::dem

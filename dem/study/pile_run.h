@@ -1,0 +1,91 @@
+// The run of a pile: its phases are in pile.cc, its sources in pile_pour.cc, progress, checkpoints
+// and results in pile_state.cc. Internal to this folder.
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/heap/grain_family.h"
+#include "dem/heap/source.h"
+#include "dem/random/random.h"
+#include "dem/study/common.h"
+#include "dem/study/gravity_changes.h"
+#include "dem/study/run.h"
+
+namespace grainfield::dem {
+
+/// Share of a run with changes of gravity at which the pile is at rest, for the progress.
+inline constexpr double kEndOfRest = 0.85;
+/// While grains are poured their motion is read every so many steps, to count those awake.
+inline constexpr long kSampleEvery = 3000;
+
+enum class PilePhase : int { pour, settle, rest, change, done };
+
+class PileRun final : public Run {
+ public:
+  PileRun(const PileSetup& setup, std::uint64_t seed, int threads);
+
+  void advance(long steps) override;
+  bool done() const override { return phase_ == PilePhase::done; }
+  Progress progress() const override;
+  void save(const std::string& file) const override;
+  void restore(const std::string& file) override;
+  RunResult result() const override;
+
+ private:
+  // A grain out of the funnel on its way down.
+  struct Flight {
+    long step = 0;  // at which it joins the simulation
+    int grain = 0;
+    int pad = 0;
+    double x = 0;
+  };
+
+  void draw();
+  std::unique_ptr<Engine> empty_engine() const;
+  void add_floor_grains();
+  void enter(PilePhase phase);
+  long next_event() const;
+  void act();
+  void pour_point();
+  void pour_line();
+  void release_grain();
+  bool join(const Flight& flight);
+  void drop_layer();
+  void end_pour();
+  void settle();
+  void rest();
+  void change(long steps);
+  bool settled(int grains) const;
+  double in_phase() const { return static_cast<double>(phase_steps_) * engine_->time_step(); }
+  Snapshot named(Snapshot snapshot, const std::string& state) const;
+  std::string fingerprint() const;
+
+  PileSetup setup_;
+  std::uint64_t seed_;
+  Random random_;
+  std::vector<ShapedGrain> grains_, floor_;  // drawn before anything moves
+  double largest_diameter_ = 0, mean_diameter_ = 0;
+  EngineSettings settings_;
+  std::optional<PointSource> point_;
+  std::unique_ptr<Engine> engine_;
+
+  PilePhase phase_ = PilePhase::pour;
+  long phase_steps_ = 0;
+  int poured_ = 0;  // released by the point source, dropped by the line source
+  double top_ = 0;  // of the grains at rest when the last one joined, m
+  std::deque<Flight> in_flight_;
+  Stretch line_;          // of the last layer
+  long layer_start_ = 0;  // step within the phase
+  int layer_grains_ = 0;
+  double awake_sum_ = 0;
+  long awake_samples_ = 0;
+  double pour_time_ = 0;
+  Diagnostics at_pile_;  // when the pile was at rest
+  std::optional<Snapshot> pile_;
+  std::optional<GravityChanges> changes_;
+};
+
+}  // namespace grainfield::dem
