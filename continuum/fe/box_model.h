@@ -8,16 +8,13 @@
 #include <limits>
 #include <optional>
 
-#include "continuum/fe/elastic_solver.h"
-#include "continuum/fe/parallel.h"
+#include "continuum/fe/solved_model.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum::fe {
 
 /// Values that differ from a border's coordinate by less than this part of the domain are on it.
 inline constexpr double kOnBorder = 1e-9;
-/// Share of the error indicator whose cells are refined in a cycle.
-inline constexpr double kRefinedShare = 0.8;
 
 /// The parameter's value; 0 stands for the dimension's own default.
 inline double number_or(const Settings& settings, const std::string& name, double fallback) {
@@ -29,28 +26,20 @@ inline double number_or(const Settings& settings, const std::string& name, doubl
 /// also y >= 0), bottom <= vertical <= 0, refinement until the stresses
 /// at probe points stand still, and the way from points of the full space into the meshed part.
 template <int dim>
-class BoxModel : public Model {
+class BoxModel : public SolvedModel<dim> {
  public:
   BoxModel(const std::string& name, const Settings& s, double tolerance, int degree)
-      : load_(number_of(s, "F")),
+      : SolvedModel<dim>(name, static_cast<int>(number_or(s, "degree", degree)),
+                         static_cast<int>(number_of(s, "iterations"))),
+        load_(number_of(s, "F")),
         tolerance_(number_or(s, "tolerance", tolerance)),
-        refinements_(static_cast<int>(number_of(s, "refinements"))),
-        degree_(static_cast<int>(number_or(s, "degree", degree))),
-        iterations_(static_cast<int>(number_of(s, "iterations"))),
-        name_(name) {}
+        refinements_(static_cast<int>(number_of(s, "refinements"))) {}
 
   Stresses stress(const Points& points) override {
-    if (!solver_) {
-      solver_ =
-          std::make_unique<ElasticSolver<dim>>(communicator(ranks_), degree_, iterations_, name_);
-      try {
-        build_mesh(solver_->mesh());
-        solve();
-      } catch (...) {
-        solver_.reset();
-        throw;
-      }
-    }
+    this->solve_once([this] {
+      build_mesh(solver_->mesh());
+      solve();
+    });
     std::vector<dealii::Point<dim>> inside;
     std::vector<Eigen::Index> rows;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -62,27 +51,13 @@ class BoxModel : public Model {
     Stresses out =
         Stresses::Constant(points.rows(), kStresses<dim>, std::numeric_limits<double>::quiet_NaN());
     const Eigen::MatrixXd found = stress_in_mesh(inside);
-    const auto components = stress_components<dim>();
     for (std::size_t n = 0; n < rows.size(); ++n) {
-      for (int c = 0; c < kStresses<dim>; ++c) {
-        // A mirrored point: each horizontal index of the component that was mirrored flips the
-        // sign.
-        double sign = 1;
-        const auto [a, b] = components[c];
-        if (a != b) {
-          if (mirrored_ && a < dim - 1 && points(rows[n], a) < 0) sign = -sign;
-          if (mirrored_ && b < dim - 1 && points(rows[n], b) < 0) sign = -sign;
-        }
-        out(rows[n], c) = sign * found(static_cast<Eigen::Index>(n), c);
-      }
+      const auto point = points.row(rows[n]);
+      for (int c = 0; c < kStresses<dim>; ++c)
+        out(rows[n], c) =
+            (mirrored_ ? mirror_sign<dim>(point, c) : 1) * found(static_cast<Eigen::Index>(n), c);
     }
     return out;
-  }
-
-  std::map<std::string, double> figures() const override {
-    auto all = solver_ ? solver_->figures() : std::map<std::string, double>();
-    all.insert(figures_.begin(), figures_.end());
-    return all;
   }
 
  protected:
@@ -110,7 +85,7 @@ class BoxModel : public Model {
   double load_;
   bool mirrored_ = true;                ///< only x >= 0 is meshed; false: in 2D the whole width
   double half_width_ = 0, bottom_ = 0;  ///< of the box; set by build_mesh
-  std::map<std::string, double> figures_;
+  using SolvedModel<dim>::figures_;
 
  private:
   void solve() {
@@ -165,11 +140,11 @@ class BoxModel : public Model {
     return p;
   }
 
+  using SolvedModel<dim>::solver_;
+  using SolvedModel<dim>::name_;
+
   double tolerance_;
-  int refinements_, degree_, iterations_;
-  std::string name_;
-  Ranks ranks_ = chosen_ranks();
-  std::unique_ptr<ElasticSolver<dim>> solver_;
+  int refinements_;
 };
 
 }  // namespace grainfield::continuum::fe

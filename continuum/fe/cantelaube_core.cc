@@ -24,9 +24,8 @@
 
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/orthotropic.h"
-#include "continuum/fe/elastic_solver.h"
-#include "continuum/fe/parallel.h"
 #include "continuum/fe/plugin.h"
+#include "continuum/fe/solved_model.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -44,8 +43,6 @@ constexpr int kAxisNodes = 33;
 constexpr double kAxisTolerance = 1e-9;
 /// Steps that Anderson's acceleration looks back.
 constexpr int kAxisMemory = 200;
-/// Share of the error indicator whose cells are refined in a cycle.
-constexpr double kRefinedShare = 0.8;
 /// Points of the core's figures along depth and base.
 constexpr int kSamples = 201;
 
@@ -77,19 +74,19 @@ int anderson(const F& f, Eigen::VectorXd& x, int most, double tolerance, double&
   }
 }
 
-class CantelaubeCore : public Model {
+class CantelaubeCore : public fe::SolvedModel<2> {
  public:
   explicit CantelaubeCore(const Settings& s)
-      : h_(number_of(s, "h")),
+      : fe::SolvedModel<2>(kName, static_cast<int>(number_of(s, "degree")),
+                           static_cast<int>(number_of(s, "iterations"))),
+        h_(number_of(s, "h")),
         rho_g_(number_of(s, "rho_g")),
         nu_(number_of(s, "nu")),
         phi_(number_of(s, "phi_deg") * kDegree),
         base_(s.at("base")),
         springs_(number_of(s, "base_stiffness")),
-        degree_(static_cast<int>(number_of(s, "degree"))),
         cells_(static_cast<int>(number_of(s, "refinement"))),
         cycles_(static_cast<int>(number_of(s, "adaptive"))),
-        iterations_(static_cast<int>(number_of(s, "iterations"))),
         axis_iterations_(static_cast<int>(number_of(s, "axis_iterations"))) {
     const std::string& branch = s.at("branch");
     beta_hat_ = core_angle(phi_, branch == "zero"   ? CoreBranch::zero
@@ -139,20 +136,14 @@ class CantelaubeCore : public Model {
       } else {
         out.row(i) = flank_ * Eigen::Vector2d(x, y);
       }
-      if (points(i, 0) < 0) out(i, 2) *= -1;
+      out(i, 2) *= fe::mirror_sign<2>(points.row(i), 2);
     }
     const Eigen::MatrixXd found = solver_->stress_at(inside);
     for (std::size_t n = 0; n < rows.size(); ++n) {
       out.row(rows[n]) = found.row(static_cast<Eigen::Index>(n));
-      if (points(rows[n], 0) < 0) out(rows[n], 2) *= -1;
+      out(rows[n], 2) *= fe::mirror_sign<2>(points.row(rows[n]), 2);
     }
     return out;
-  }
-
-  std::map<std::string, double> figures() const override {
-    auto all = solver_ ? solver_->figures() : std::map<std::string, double>();
-    all.insert(figures_.begin(), figures_.end());
-    return all;
   }
 
  private:
@@ -251,7 +242,6 @@ class CantelaubeCore : public Model {
         axis_stress_, axis_iterations_, kAxisTolerance* rho_g_* h_, misfit);
     figures_["axis_misfit"] = misfit / (rho_g_ * h_);
     if (!(misfit <= kAxisTolerance * rho_g_ * h_)) {
-      solver_.reset();
       throw ComputationFailed(fmt::format(
           "{}: the axis misses its yield condition by {:.1e} rho_g h after {} solves, {:.0e} is "
           "asked; raise axis_iterations, or take axis = continuous",
@@ -260,21 +250,15 @@ class CantelaubeCore : public Model {
   }
 
   void solve() {
-    if (solver_) return;
-    solver_ = std::make_unique<fe::ElasticSolver<2>>(fe::communicator(ranks_), degree_, iterations_,
-                                                     kName);
-    try {
+    solve_once([this] {
       build_mesh();
       solve_axis();
       for (int cycle = 0; cycle < cycles_; ++cycle) {
-        solver_->refine_worst(kRefinedShare);
+        solver_->refine_worst(fe::kRefinedShare);
         solve_axis();
       }
-    } catch (...) {
-      solver_.reset();
-      throw;
-    }
-    measure();
+      measure();
+    });
   }
 
   /// What tells the solution from the closed form.
@@ -290,7 +274,7 @@ class CantelaubeCore : public Model {
     const Eigen::MatrixXd on_ray = solver_->stress_at(ray), on_base = solver_->stress_at(bottom),
                           on_axis = solver_->stress_at(axis_points);
     // Of the stress along the core's boundary, the component that equilibrium leaves free.
-    double jump = 0, error = 0, mobilised = 0, closed_dip = 0;
+    double jump = 0, error = 0, mobilised = 0, largest = 0;
     const double s = std::sin(beta_hat_), c = std::cos(beta_hat_);
     const auto along = [&](const Eigen::Vector3d& v) {
       return v[0] * s * s + v[1] * c * c - 2 * v[2] * s * c;
@@ -309,28 +293,25 @@ class CantelaubeCore : public Model {
         if (-at[1] > 0.05 * h_)
           mobilised = std::max(mobilised, mobilised_sine(stress.transpose()) / std::sin(phi_));
       }
-      closed_dip = std::max(closed_dip, -on_base(k, 1));
+      largest = std::max(largest, -on_base(k, 1));
     }
     figures_["beta_hat_deg"] = beta_hat_ / kDegree;
     figures_["flank_jump"] = jump;
     figures_["closed_form_error"] = error;
     figures_["mobilised_sine_ratio"] = mobilised;
     figures_["base_centre"] = -on_base(0, 1) / unit;
-    figures_["base_largest"] = closed_dip / unit;
-    figures_["dip_ratio"] = -on_base(0, 1) / closed_dip;
+    figures_["base_largest"] = largest / unit;
+    figures_["dip_ratio"] = -on_base(0, 1) / largest;
     figures_["axis_ratio"] = on_axis(kSamples / 2, 0) / on_axis(kSamples / 2, 1);
   }
 
   double h_, rho_g_, nu_, phi_, beta_hat_ = 0, t_ = 0, ratio_ = 1, young_ = 1;
   std::string base_;
   double springs_;
-  int degree_, cells_, cycles_, iterations_, axis_iterations_;
+  int cells_, cycles_, axis_iterations_;
   bool yields_ = false;
   LinearStress core_, flank_;
-  Ranks ranks_ = fe::chosen_ranks();
   Eigen::VectorXd axis_stress_;
-  std::unique_ptr<fe::ElasticSolver<2>> solver_;
-  std::map<std::string, double> figures_;
 };
 
 }  // namespace
