@@ -29,7 +29,12 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
 [[noreturn]] void wrong_type(const Key& key, const Assignment& a) {
   const std::string type = type_name(key);
   const char* article = type == "integer" ? "an" : "a";
-  reject(a, key.path(), fmt::format("found {}, expected {} {}", describe(a), article, type));
+  const char* example = type == "list of numbers" ? " [0.2, 0.4]"
+                        : type == "list of words" ? " [\"one\", \"two\"]"
+                                                  : "";
+  reject(a, key.path(),
+         fmt::format("found {}, expected {} {}{}{}", describe(a), article, type,
+                     *example != 0 ? ", written" : "", example));
 }
 
 double number(const Key& key, const Assignment& a, const Scalar& scalar) {

@@ -208,14 +208,23 @@ std::string value_text(const Key& key, const Case& value) {
 
 std::string keys_text(const std::string& section) {
   const auto names = sections();
-  if (!section.empty() && std::find(names.begin(), names.end(), section) == names.end()) {
-    throw std::invalid_argument(fmt::format("keys: no section '{}'; nearest: {}; known: {}",
-                                            section, continuum::nearest(section, names),
+  const Key* one = find_key(section);
+  const bool known =
+      section.empty() || std::find(names.begin(), names.end(), section) != names.end();
+  if (one == nullptr && !known) {
+    // A key's path is nearest to keys, a word to sections.
+    std::vector<std::string> near = names;
+    if (section.find('.') != std::string::npos) {
+      near.clear();
+      for (const Key& key : keys()) near.push_back(key.path());
+    }
+    throw std::invalid_argument(fmt::format("keys: no {} '{}'; nearest: {}; known: {}",
+                                            section.find('.') == std::string::npos ? "section" : "key", section, continuum::nearest(section, near),
                                             fmt::join(names, ", ")));
   }
   std::string out, current = "-";
   for (const Key& key : keys()) {
-    if (!section.empty() && key.section != section) continue;
+    if (known ? !section.empty() && key.section != section : &key != one) continue;
     if (key.section != current) {
       current = key.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", heading(current));

@@ -48,8 +48,8 @@ std::string value_text(const Key& key, const Case& value);
 /// The text in double quotes, as TOML.
 std::string toml_text(const std::string& text);
 
-/// What `grainfield keys` prints: all or one section. Throws std::invalid_argument with the nearest
-/// name for an unknown section.
+/// What `grainfield keys` prints: all, one section ("fit") or one key ("fit.heights"). Throws
+/// std::invalid_argument with the nearest name for an unknown one.
 std::string keys_text(const std::string& section);
 /// docs/keys.md.
 std::string keys_markdown();

@@ -8,6 +8,7 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
+#include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
 #include "coupling/import/doubts.h"
 #include "coupling/run/realization_file.h"
@@ -20,8 +21,8 @@ constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
+  const dem::Snapshot heap = heaps.read(k);  // its messages name the file
   try {
-    const dem::Snapshot heap = heaps.read(k);
     if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
     const dem::Vec3& g = heap.gravity;
     if (heap.dim == 2 && !(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
@@ -72,6 +73,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) 
   options.threads = threads;
   options.quantities = {"sigma"};
   const auto kernel = make_kernel(options.kernel, out.width);
+  out.kernel = make_kernel(options.kernel, out.width / height);
   const double length = kernel->independent_length();
   out.facts = facts_of(setup, slopes, length / (2 * std::sqrt(std::numbers::pi)) / height);
 
@@ -89,21 +91,27 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) 
       level.push_back(static_cast<int>(out.data.levels.size()) - 1);
     }
   }
-  Eigen::MatrixXd points(places.size(), 2);
+  // Lines of the fit and the page's grid in one averaging.
+  out.maps = heap_map_grid(slopes);
+  const auto n = static_cast<Eigen::Index>(places.size()), cells = out.maps.points.rows();
+  Eigen::MatrixXd points(n, 2), both(n + cells, 2);
   for (std::size_t k = 0; k < places.size(); ++k) {
     points.row(static_cast<Eigen::Index>(k)) = places[k].transpose();
   }
-  const auto n = points.rows();
-  Eigen::MatrixXd all(n * static_cast<Eigen::Index>(kComponents.size()),
-                      static_cast<Eigen::Index>(heaps.count));
+  both << points, out.maps.points;
+  const auto count_of = static_cast<Eigen::Index>(heaps.count);
+  Eigen::MatrixXd all(3 * n, count_of), grid(3 * cells, count_of);
   for (std::size_t r = 0; r < heaps.count; ++r) {
     const PileFrame& frame = out.frames[r];
-    const Field field = average(heaps.read(r), frame.to_packing(points), options);
+    const Field field = average(heaps.read(r), frame.to_packing(both), options);
     for (std::size_t c = 0; c < kComponents.size(); ++c) {
-      all.block(static_cast<Eigen::Index>(c) * n, static_cast<Eigen::Index>(r), n, 1) =
-          field.find(kComponents[c])->value / frame.pressure();
+      const auto component = static_cast<Eigen::Index>(c), heap = static_cast<Eigen::Index>(r);
+      const Eigen::VectorXd values = field.find(kComponents[c])->value / frame.pressure();
+      all.block(component * n, heap, n, 1) = values.head(n);
+      grid.block(component * cells, heap, cells, 1) = values.tail(cells);
     }
   }
+  fill_heap_maps(grid, out.facts, out.maps);
   keep_rows(setup, points, level, all, out);
   return out;
 }

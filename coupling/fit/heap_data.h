@@ -3,13 +3,16 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "coupling/averaging/kernel.h"
 #include "coupling/case/case.h"
 #include "coupling/field.h"
 #include "coupling/fit/data.h"
 #include "coupling/fit/models.h"
+#include "coupling/fit/stress_maps.h"
 #include "coupling/run/pile_frame.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -22,7 +25,9 @@ struct HeapData {
   double width = 0;               ///< of the averaging kernel, m
   int left_out = 0;               ///< values that some realization does not have
   std::string note;               ///< what the reader must know of the heaps; may be empty
-  std::vector<std::string> warnings;  ///< what makes the constants doubtful, a sentence each
+  StressMaps maps;                ///< empty: of a field that is no grid
+  std::shared_ptr<const Kernel> kernel;  ///< of the averaging, lengths over h
+  std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each
 };
 
 /// Heaps one after the other, so that one at a time is in memory.

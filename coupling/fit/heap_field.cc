@@ -11,6 +11,7 @@
 
 #include "coupling/averaging/kernel.h"
 #include "coupling/fit/heap_data.h"
+#include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
 #include "coupling/run/field_rows.h"
 
@@ -79,6 +80,7 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
   const HeapSlopes slope = slopes_of(setup, out.frames);
   out.width = field_number(field, "width", where);
   const auto kernel = make_kernel(kernel_name(field, where), out.width);
+  out.kernel = make_kernel(kernel->name(), out.width / height);
   const double length = kernel->independent_length();
   out.facts = facts_of(setup, slope, length / (2 * std::sqrt(std::numbers::pi)) / height);
   const Eigen::MatrixXd points = field.points / (facts.in_metres ? height : 1.0);
@@ -120,6 +122,24 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
       }
       if (column->error.size() > k) errors(c * n + p, 0) = column->error[k] / pressure;
     }
+  }
+  if (field.nx > 1 && field.ny > 1) {
+    out.maps.columns = field.nx;
+    out.maps.rows = field.ny;
+    out.maps.points = points;
+    const Eigen::Index cells = points.rows();
+    Eigen::MatrixXd grid =
+        Eigen::MatrixXd::Constant(3 * cells, static_cast<Eigen::Index>(count), std::nan(""));
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const Column* column = columns[static_cast<std::size_t>(c)];
+      if (column == nullptr) continue;
+      for (std::size_t r = 0; r < count; ++r) {
+        const auto at = static_cast<Eigen::Index>(r);
+        const Eigen::VectorXd values = single ? column->samples.col(at) : column->value;
+        grid.block(c * cells, at, cells, 1) = values / pressures[r];
+      }
+    }
+    fill_heap_maps(grid, out.facts, out.maps);
   }
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);

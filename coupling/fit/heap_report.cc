@@ -11,12 +11,15 @@
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/osl.h"
 #include "coupling/fit/fit_tables.h"
+#include "coupling/fit/heap_maps.h"
+#include "coupling/fit/posteriors.h"
 
 namespace grainfield::coupling {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kDrawn = 4;  // models in a picture
+constexpr std::size_t kDrawn = 4;   // models in a picture
+constexpr double kSameLine = 1e-3;  // of the largest value: lines nearer than this are one
 
 const FittedParameter* parameter_of(const Fit& fit, const std::string& name) {
   for (const FittedParameter& p : fit.parameters) {
@@ -69,9 +72,32 @@ std::string weights_note(const HeapFits& fits) {
   return out;
 }
 
+// A line of the pictures: a model, and the names of all whose lines it would hide.
+struct Line {
+  std::string name, label;
+};
+
+// The best kDrawn lines. Models of one field (cantelaube_zero and bcc; cantelaube_continuous and
+// osl_yield, up to the search's tolerance) share one.
+std::vector<Line> lines_of(const HeapFits& fits) {
+  std::vector<Line> out;
+  for (const Score& s : fits.selection.ranking) {
+    const Eigen::VectorXd& values = fit_named(fits.fits, s.name).model;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const Line& line) {
+      const Eigen::VectorXd& other = fit_named(fits.fits, line.name).model;
+      return (values - other).cwiseAbs().maxCoeff() < kSameLine * other.cwiseAbs().maxCoeff();
+    });
+    if (same != out.end()) {
+      same->label += ", " + s.name;
+    } else if (out.size() < kDrawn) {
+      out.push_back({s.name, s.name});
+    }
+  }
+  return out;
+}
+
 // The component along one height: the piles and some models.
-Frame frame_of(const HeapFits& fits, int component, int level,
-               const std::vector<std::string>& models) {
+Frame frame_of(const HeapFits& fits, int component, int level, const std::vector<Line>& models) {
   const FitData& data = fits.heaps.data;
   std::vector<Eigen::Index> rows;
   for (int k = 0; k < data.values(); ++k) {
@@ -96,10 +122,10 @@ Frame frame_of(const HeapFits& fits, int component, int level,
   }
   if (fits.covariance.kind == "unknown") grains.error.resize(0);
   frame.series.push_back(grains);
-  for (const std::string& model : models) {
-    Series s{model, grains.x, Eigen::VectorXd(n), {}, false};
+  for (const Line& model : models) {
+    Series s{model.label, grains.x, Eigen::VectorXd(n), {}, false};
     for (Eigen::Index k = 0; k < n; ++k) {
-      s.y[k] = sign * fit_named(fits.fits, model).model[rows[static_cast<std::size_t>(k)]];
+      s.y[k] = sign * fit_named(fits.fits, model.name).model[rows[static_cast<std::size_t>(k)]];
     }
     frame.series.push_back(std::move(s));
   }
@@ -209,15 +235,13 @@ std::string fits_tex(const HeapFits& fits) {
 
 std::vector<Section> fit_sections(const HeapFits& fits) {
   std::vector<Section> out;
-  std::vector<std::string> best;
-  for (const Score& s : fits.selection.ranking) {
-    if (best.size() < kDrawn) best.push_back(s.name);
-  }
+  const std::vector<Line> lines = lines_of(fits);
+  const std::string& best = lines.front().name;
   const FitData& data = fits.heaps.data;
   for (int c = 0; c < static_cast<int>(data.components.size()); ++c) {
     std::vector<Frame> frames;
     for (int level = 0; level < static_cast<int>(data.levels.size()); ++level) {
-      Frame frame = frame_of(fits, c, level, best);
+      Frame frame = frame_of(fits, c, level, lines);
       if (frame.series.front().x.size() > 2) frames.push_back(std::move(frame));
     }
     if (frames.empty()) continue;
@@ -230,18 +254,26 @@ std::vector<Section> fit_sections(const HeapFits& fits) {
         weights_note(fits));
     out.emplace_back(std::move(picture));
   }
+  for (Section& section : heap_map_sections(fits, best)) {
+    out.push_back(std::move(section));
+  }
   if (fits.covariance.kind != "unknown") {
     std::vector<Frame> frames;
     for (int c = 0; c < static_cast<int>(data.components.size()); ++c) {
-      Frame frame = residual_frame(fits, best.front(), c);
+      Frame frame = residual_frame(fits, best, c);
       if (!frame.series.empty()) frames.push_back(std::move(frame));
     }
     if (!frames.empty()) {
-      Picture picture = curves("Where the best model fails: " + best.front(), "x / h (apex at 0)",
+      Picture picture = curves("Where the best model fails: " + best, "x / h (apex at 0)",
                                "(grains - model) / standard error", frames);
       picture.caption = "Beyond 2 or 3 in a row the model is wrong there.";
       out.emplace_back(std::move(picture));
     }
+  }
+  std::vector<const Fit*> ranked;
+  for (const Score& s : fits.selection.ranking) ranked.push_back(&fit_named(fits.fits, s.name));
+  for (Section& section : posterior_sections(ranked, data.realizations())) {
+    out.push_back(std::move(section));
   }
   out.emplace_back(Table{"Ranking",
                          "AICc behind: from the best. CV behind: cross-validation, squared "

@@ -122,6 +122,16 @@ std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& compon
   return out;
 }
 
+std::vector<Section> layer_map_sections(const LayerFits& fits, const std::string& model,
+                                        const std::string& of) {
+  return map_sections(
+      fits.maps, model_on_maps(fits.maps, fits.layers, fit_named(fits.fits, model)), model,
+      {"F/h",
+       "Response to the load, one colour scale for all three; it ends at the 99 % quantile. The "
+       "model is smoothed with the kernel of the averaging.",
+       of});
+}
+
 std::vector<Section> layer_pictures(const LayerFits& fits) {
   std::vector<Section> out;
   for (const std::string& component : fits.layers.data.components) {
@@ -139,8 +149,7 @@ std::vector<Section> layer_pictures(const LayerFits& fits) {
     out.emplace_back(std::move(picture));
   }
   const std::string& best = fits.verdict.model;
-  for (Section& s : map_sections(
-           fits.maps, model_on_maps(fits.maps, fits.layers, fit_named(fits.fits, best)), best)) {
+  for (Section& s : layer_map_sections(fits, best)) {
     out.push_back(std::move(s));
   }
   std::vector<const Fit*> ranked;

@@ -21,7 +21,7 @@ struct LayerFits {
   Selection selection;
   LayerVerdict verdict;
   std::vector<FiniteElementFit> elements;
-  LayerMaps maps;
+  StressMaps maps;
 };
 
 /// fit.*, fe.* and verdict.*: see summary_keys.cc.
@@ -35,6 +35,9 @@ std::string layer_fits_tex(const LayerFits& fits);
 /// levels of these names; empty: all.
 std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& component,
                                 const std::vector<std::string>& only = {});
+/// Grains, model and residuals on a grid (stress_maps.h). `of` stands before the titles.
+std::vector<Section> layer_map_sections(const LayerFits& fits, const std::string& model,
+                                        const std::string& of = "");
 /// Profiles of every component, maps, posteriors.
 std::vector<Section> layer_pictures(const LayerFits& fits);
 /// Ranking, constants, finite elements. `of` stands before the titles: "mono: ".

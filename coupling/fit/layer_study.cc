@@ -155,10 +155,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.sweep_x = "x / h (load at 0)";
   out.sweep_y = "response of -σ_{yy}  (F/h)";
   out.sweep_sections = [fits](const std::string& name) {
-    const std::string& best = fits->verdict.model;
-    return map_sections(fits->maps,
-                        model_on_maps(fits->maps, fits->layers, fit_named(fits->fits, best)), best,
-                        name);
+    return layer_map_sections(*fits, fits->verdict.model, name);
   };
   out.sweep_tables = [fits](const std::string& name) { return layer_tables(*fits, name + ": "); };
   out.page = [fits](const StudyResult& result, const Realization* first) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -19,6 +20,53 @@ std::optional<double> parse(std::string_view text) {
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+// What other programs call our columns; in lower case, without "_", "-", ".", " " and units in
+// brackets.
+const std::vector<std::pair<std::string, std::vector<std::string>>>& other_names() {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> names{
+      {"id", {"particle", "particleid", "grain", "grainid", "number", "no", "index", "label"}},
+      {"x", {"xpos", "posx", "positionx", "xc", "cx", "centrex", "centerx", "x1", "coordx"}},
+      {"y", {"ypos", "posy", "positiony", "yc", "cy", "centrey", "centery", "x2", "coordy"}},
+      {"z", {"zpos", "posz", "positionz", "zc", "cz", "centrez", "centerz", "x3", "coordz"}},
+      {"radius", {"r", "rad", "rp"}},
+      {"diameter", {"d", "diam", "dp"}},
+      {"mass", {"m"}},
+      {"density", {"rho", "rhop"}},
+      {"i", {"id1", "p1", "particle1", "grain1", "first", "ida", "idi", "from"}},
+      {"j", {"id2", "p2", "particle2", "grain2", "second", "idb", "idj", "to"}},
+      {"fx", {"forcex", "xforce", "f1", "ftotx"}},
+      {"fy", {"forcey", "yforce", "f2", "ftoty"}},
+      {"fz", {"forcez", "zforce", "f3", "ftotz"}},
+      {"px", {"contactx", "pointx", "cpx", "xcontact"}},
+      {"py", {"contacty", "pointy", "cpy", "ycontact"}},
+      {"nx", {"normalx", "xnormal"}},
+      {"ny", {"normaly", "ynormal"}}};
+  return names;
+}
+
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char ch : name.substr(0, name.find_first_of("([{"))) {
+    const auto c = static_cast<unsigned char>(ch);
+    if (std::isalnum(c) != 0) out += static_cast<char>(std::tolower(c));
+  }
+  return out;
+}
+
+// The column that other programs use for ours; empty: none.
+std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns) {
+  std::vector<std::string> wanted{ours};
+  for (const auto& [name, others] : other_names()) {
+    if (name == ours) wanted.insert(wanted.end(), others.begin(), others.end());
+  }
+  for (const std::string& word : wanted) {
+    for (const std::string& column : columns) {
+      if (plain(column) == word) return column;
+    }
+  }
+  return "";
 }
 
 // "a,c_id[1..3]" -> a, c_id[1], c_id[2], c_id[3]
@@ -181,7 +229,15 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
 
 void TableColumns::missing(const std::string& what) const {
   const auto& columns = *table_.columns;
-  const std::string nearest = continuum::nearest(what, columns);
+  std::string nearest = same_meaning(what, columns);
+  // What would do instead of ours, under its own name.
+  for (const auto& [ours, instead] :
+       {std::pair<std::string, std::string>{"radius", "diameter"}, {"mass", "density"}}) {
+    if (what != ours || !nearest.empty()) continue;
+    nearest = same_meaning(instead, columns);
+    if (!nearest.empty()) nearest += fmt::format(" (--column {}={})", instead, nearest);
+  }
+  if (nearest.empty()) nearest = continuum::nearest(what, columns);
   throw std::invalid_argument(
       fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS",
                   table_.file, table_.header_line, what,

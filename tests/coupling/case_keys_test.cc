@@ -62,6 +62,20 @@ TEST(Keys, TextNamesUnitRangeAndSource) {
   EXPECT_EQ(text.find("[packing]"), std::string::npos);
 }
 
+TEST(Keys, OneKeyAlone) {
+  const std::string text = keys_text("fit.heights");
+  EXPECT_THAT(text, HasSubstr("[fit]"));
+  EXPECT_THAT(text, HasSubstr("  heights = [0.1, 0.25, 0.4]"));
+  EXPECT_EQ(text.find("huber"), std::string::npos);
+  EXPECT_THAT(keys_text("study"), HasSubstr("study = "));
+  try {
+    keys_text("fit.hights");
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_THAT(e.what(), HasSubstr("no key 'fit.hights'; nearest: fit.heights"));
+  }
+}
+
 TEST(Keys, UnknownSectionNamesTheNearest) {
   try {
     keys_text("materiel");

@@ -144,6 +144,9 @@ TEST(FitCommand, RefusesWithOneLine) {
   dem::write_snapshot(heap, "/pile", osl_heap(1));
   expect_refusal(program("fit " + heap + " --model jansen" + out), "fit.models: found \"jansen\"");
   expect_refusal(program("fit " + heap + " --set material.friction=1" + out), "allowed: fit");
+  expect_refusal(
+      program("fit " + heap + " --set fit.heights=20,40" + out),
+      "fit.heights: found \"20,40\" (text), expected a list of numbers, written [0.2, 0.4]");
   expect_refusal(program("fit " + heap + " --heights 1.5" + out), "fit.heights: found 1.5");
   expect_refusal(program("fit " + heap + " --heights 0.98" + out), "fit.heights: found 0 values");
   expect_refusal(program("fit " + heap +
@@ -152,6 +155,8 @@ TEST(FitCommand, RefusesWithOneLine) {
                          out),
                  "fit.friction_deg: found 10");
   expect_refusal(program("fit " + (folder / "none.h5") + out), "none.h5");
+  expect_refusal(program("fit " + heap + ":/none" + out),
+                 "grainfield: " + heap + ":/none: no snapshot there");
 
   dem::Snapshot few = osl_heap(1);
   few.grains.resize(9);

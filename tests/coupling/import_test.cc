@@ -275,6 +275,12 @@ TEST(Import, MistakesInCsv) {
       {"id,x,y,radus,mass\n1,0,0,1,1\n", c, "",
        "g.txt:1: no column \"radius\"; found: id x y radus mass; nearest: radus; other names by "
        "--column radius=THEIRS"},
+      {"id,x,y,R [m],mass\n1,0,0,1,1\n", c, "", "nearest: R [m]; other names by --column"},
+      {"id,x,y,diam,mass\n1,0,0,1,1\n", c, "", "nearest: diam (--column diameter=diam); other"},
+      {"particle,x,y,radius,mass\n1,0,0,1,1\n", c, "",
+       "no column \"id\"; found: particle x y radius mass; nearest: particle"},
+      {"id,pos_x,pos_y,radius,mass\n1,0,0,1,1\n", c, "", "nearest: pos_x"},
+      {g, "i,j,force_x,force_y\n1,2,0,1\n", "", "nearest: force_x"},
       {"id,x,y,radius\n1,0,0,1\n", c, "", "or --density"},
       {g, "# c\ni,j,fx\n1,2,0\n", "", "c.txt:2: no column \"fy\"; found: i j fx; nearest: "},
       {g, "i,j,fnx,fny\n1,2,0,1\n", "", "without friction: --column ftx,fty,ftz=0,0,0"},

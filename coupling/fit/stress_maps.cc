@@ -1,0 +1,49 @@
+#include "coupling/fit/stress_maps.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+
+namespace grainfield::coupling {
+namespace {
+
+const char* const kLabels[] = {"-sigma_xx", "-sigma_yy", "sigma_xy"};
+constexpr double kSigns[] = {-1, -1, 1};
+
+}  // namespace
+
+std::vector<Section> map_sections(const StressMaps& m, const Eigen::MatrixXd& model,
+                                  const std::string& name, const MapWords& words) {
+  const auto map = [&](const std::string& title, const Eigen::VectorXd& values) {
+    return Map{title, m.columns, m.rows, m.points, values};
+  };
+  const auto titled = [&](const std::string& text, const std::string& start) {
+    return words.of.empty() ? start + text
+                            : words.of + ": " + static_cast<char>(std::tolower(start[0])) + text;
+  };
+  std::vector<Section> out;
+  Picture side = maps(titled("rains, model and residual", "G"), "x / h", "y / h",
+                      "-σ_{yy}  (" + words.unit + ")",
+                      {map("grains", -m.mean.col(1)), map(name, -model.col(1)),
+                       map("grains - " + name, model.col(1) - m.mean.col(1))});
+  side.caption = words.caption;
+  out.emplace_back(std::move(side));
+  if (m.error.array().isNaN().all()) return out;
+  std::vector<Map> residuals;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd off =
+        kSigns[c] * (m.mean.col(c) - model.col(c)).cwiseQuotient(m.error.col(c));
+    residuals.push_back(map(
+        kLabels[c], off.unaryExpr([](double v) { return std::isfinite(v) ? v : std::nan(""); })));
+  }
+  Picture where = maps(titled(fmt::format("here {} fails", name), "W"), "x / h", "y / h",
+                       "(grains - model) / standard error", residuals);
+  where.caption =
+      "Residuals in standard errors of the ensemble's mean. Chance alone gives patches of 2 in "
+      "places; a coherent region beyond 3 is where the model is wrong.";
+  out.emplace_back(std::move(where));
+  return out;
+}
+
+}  // namespace grainfield::coupling
