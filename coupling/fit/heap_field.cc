@@ -139,7 +139,7 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
         grid.block(c * cells, at, cells, 1) = values / pressures[r];
       }
     }
-    fill_heap_maps(grid, out.facts, out.maps);
+    fill_heap_maps(grid, out.facts, out.width / height, out.maps);
   }
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);

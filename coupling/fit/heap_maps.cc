@@ -50,12 +50,14 @@ StressMaps heap_map_grid(const HeapSlopes& slopes) {
   return out;
 }
 
-void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, StressMaps& maps) {
+void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
+                    StressMaps& maps) {
   const Eigen::Index n = maps.points.rows();
   const auto count = static_cast<double>(samples.cols());
   maps.mean = maps.error = Eigen::MatrixXd::Constant(n, 3, kNan);
   for (Eigen::Index p = 0; p < n; ++p) {
-    if (depth_of(facts, maps.points(p, 0), maps.points(p, 1)) < 0) continue;
+    const double x = maps.points(p, 0), y = maps.points(p, 1);
+    if (depth_of(facts, x, y) < 0 || 1 + y < margin) continue;
     for (Eigen::Index c = 0; c < 3; ++c) {
       const auto row = samples.row(c * n + p);
       maps.mean(p, c) = row.mean();
@@ -99,7 +101,7 @@ std::vector<Section> heap_map_sections(const HeapFits& fits, const std::string& 
       {"ρ g h",
        "Every pile scaled by its own h and rho g h; one colour scale for all three, which ends at "
        "the 99 % quantile. The model has its fitted constants and is smoothed with the kernel of "
-       "the averaging.",
+       "the averaging. Without values nearer to the floor than the averaging width.",
        ""});
   const double margin = fits.heaps.kernel->range() / 2;
   const HeapFacts& facts = fits.heaps.facts;
@@ -109,7 +111,7 @@ std::vector<Section> heap_map_sections(const HeapFits& fits, const std::string& 
   yield.caption = fmt::format(
       "((σxx - σyy)² + 4σxy²) / (σxx + σyy)² - sin²φ with φ = {:.1f} degrees (Roul 4.2), of the "
       "mean stress: 0 at the limit of friction, below 0 (blue) inside, above 0 (red) beyond it. "
-      "Without values nearer to the surface than the averaging width.",
+      "Without values nearer to surface or floor than the averaging width.",
       facts.friction());
   out.emplace_back(std::move(yield));
   return out;

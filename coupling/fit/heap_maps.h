@@ -12,8 +12,10 @@ namespace grainfield::coupling {
 StressMaps heap_map_grid(const HeapSlopes& slopes);
 
 /// Mean and standard error of sigma_xx, _yy, _xy on maps.points; `samples`: 3n x heaps, the
-/// components one after the other. nan above the mean flanks.
-void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, StressMaps& maps);
+/// components one after the other. nan above the mean flanks, and nearer to the floor than `margin`
+/// over h (the averaging width: there the average mixes in what lies below the floor).
+void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
+                    StressMaps& maps);
 
 /// A fitted model on the maps' points seen through the averaging's kernel; n x 3, nan outside.
 Eigen::MatrixXd model_on_maps(const HeapFits& fits, const std::string& name);
