@@ -218,9 +218,10 @@ std::string keys_text(const std::string& section) {
       near.clear();
       for (const Key& key : keys()) near.push_back(key.path());
     }
-    throw std::invalid_argument(fmt::format("keys: no {} '{}'; nearest: {}; known: {}",
-                                            section.find('.') == std::string::npos ? "section" : "key", section, continuum::nearest(section, near),
-                                            fmt::join(names, ", ")));
+    throw std::invalid_argument(
+        fmt::format("keys: no {} '{}'; nearest: {}; known: {}",
+                    section.find('.') == std::string::npos ? "section" : "key", section,
+                    continuum::nearest(section, near), fmt::join(names, ", ")));
   }
   std::string out, current = "-";
   for (const Key& key : keys()) {
