@@ -93,6 +93,9 @@ void sleep(Section s) {
            "wakes: resultant above this share of the forces on it; less wakes more");
   s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), kPositive,
            "wakes: touched at more than this times sqrt(g d)");
+  s.number("wake_reach", "-", +IN(double, pile.sleep.wake_reach), kNotNegative,
+           "wakes: within this times d v / sqrt(g d) of a grain that comes near at such a speed v; "
+           "0: only what it touches, and impacts hardly move the pile");
 }
 
 void change(Section s) {

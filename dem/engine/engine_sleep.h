@@ -2,9 +2,10 @@
 //
 // Every kReviewEvery steps:
 //   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours since
-//   the
-//          last review leave more than wake_force of the forces on it unbalanced, or that an awake
-//          neighbour touches at more than wake_speed sqrt(g d);
+//          the last review leave more than wake_force of the forces on it unbalanced; that an
+//          awake neighbour touches at more than wake_speed sqrt(g d); or that lies within
+//          wake_reach d v / sqrt(g d) of a grain that comes near sleepers at such a speed v: the
+//          grains on which it falls must give way, and what they pass on moves those behind;
 //   sleep  a grain that has moved and turned by less than quiet_move of its diameter during
 //          quiet_time, when its contacts' forces at zero velocity balance to quiet_force.
 // A contact between two sleepers, or of a sleeper with a wall, is frozen: it keeps its spring and
@@ -98,9 +99,20 @@ bool EngineLoop<Shape, Law, Integrator>::wake_sleepers() {
     quiet_[j] = {bodies_[j].x, bodies_[j].y, memory_[j].angle, steps_};
     any = true;
   };
+  std::vector<int> shaken;
   for (int i = 0; i < awake_; ++i) {
     const Body& b = bodies_[i];
     const double speed2 = b.vx * b.vx + b.vy * b.vy;
+    const double fast = sleep.wake_speed * sleep.wake_speed * g * 2 * b.radius;
+    const bool near_sleepers =
+        std::any_of(pairs_.begin() + pair_start_[i], pairs_.begin() + pair_start_[i + 1],
+                    [this](const Pair& pair) { return pair.j >= awake_; });
+    if (g > 0 && speed2 > fast && near_sleepers) {
+      const double reach = sleep.wake_reach * std::sqrt(speed2 * 2 * b.radius / g);
+      shaken.clear();
+      sleepers_grid_.near({b.x, b.y, b.radius + reach, false}, shaken);
+      for (const int j : shaken) wake(awake_ + j);
+    }
     for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
       const int j = pairs_[k].j;
       if (j < awake_ || felt_[k].torque_i == 0) continue;

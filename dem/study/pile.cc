@@ -28,7 +28,8 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   check_source(setup_, grains_);
   settings_.polygons = setup_.shape.kind != "disk";
   const SleepSetup& s = setup_.sleep;
-  settings_.sleep = {s.on, s.quiet_time, s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed};
+  settings_.sleep = {s.on,         s.quiet_time, s.quiet_move, s.quiet_force,
+                     s.wake_force, s.wake_speed, s.wake_reach};
   engine_ = empty_engine();
   add_floor_grains();
   point_.emplace(setup_.source, setup_.material.gravity, settings_.time_step);

@@ -58,12 +58,11 @@ std::string PileRun::fingerprint() const {
   const SleepSetup& s = setup_.sleep;
   return fmt::format(
       "pile {} {} {} {} {} {} {} [{}] | {} {} {} {} {} {} {} {} {} {} | {} {} | {} {} {} {} {} {} "
-      "| "
-      "{} | {} | {} | {} | {}",
+      "{} | {} | {} | {} | {} | {}",
       h.kind, h.radius, h.polydispersity, h.corners_min, h.corners_max, h.axis_ratio, h.side,
       fmt::join(h.outline, " "), o.kind, o.grains, o.speed, o.height, o.interval, o.spread, o.move,
       o.clearance, o.length, o.shift, setup_.floor.kind, setup_.floor.length, s.on, s.quiet_time,
-      s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, changes_->describe(),
+      s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach, changes_->describe(),
       describe(setup_.material), describe(setup_.motion, settings_.time_step),
       describe(setup_.rest), seed_);
 }

@@ -104,11 +104,12 @@ struct FloorSetup {
 /// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).
 struct SleepSetup {
   bool on = true;
-  double quiet_time = 2e-3;    ///< s
-  double quiet_move = 2.4e-3;  ///< diameters within quiet_time
-  double quiet_force = 0.1;    ///< resultant over the forces on the grain
-  double wake_force = 0.15;    ///< likewise
-  double wake_speed = 0.5;     ///< sqrt(g d)
+  double quiet_time = 1e-2;  ///< s
+  double quiet_move = 8e-4;  ///< diameters within quiet_time
+  double quiet_force = 0.1;  ///< resultant over the forces on the grain
+  double wake_force = 0.15;  ///< likewise
+  double wake_speed = 0.5;   ///< sqrt(g d)
+  double wake_reach = 2;     ///< d v / sqrt(g d), of a grain that comes at the speed v
 };
 
 /// After the rest: gravity is changed, slowly, and the pile comes to rest again. Every change

@@ -1,4 +1,5 @@
 // Sleeping grains: they stay where they are, wake when they must, and change nothing that counts.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/dem/polygon_engine_scene.h"
@@ -93,6 +94,53 @@ TEST(Sleep, ImpactAndLostSupportWake) {
   pushed->add(ram);
   pushed->step(3000);
   EXPECT_GT(pushed->snapshot().grains[1].position.x(), before + 0.001);
+}
+
+/// Mean way (m) of the grains of a settled box after a grain has fallen on it at 2 m/s and all have
+/// come to rest; mean over several places of the fall.
+double way_after_impact(const Snapshot& box, const SleepSettings& sleep) {
+  double sum = 0;
+  constexpr int kFalls = 3;
+  for (int fall = 0; fall < kFalls; ++fall) {
+    EngineSettings settings = polygon_settings(1, sleep.on);
+    settings.sleep = sleep;
+    const auto engine = make_engine(settings, box);
+    engine->step(1000);
+    Random random(fall);
+    NewGrain g = polygon_grain(random, 0.06 + 0.03 * fall, 0.16);
+    g.vy = -2;
+    engine->add(g);
+    engine->step(5000);
+    engine->set_sleep(false);
+    engine->set_background_damping(50);
+    engine->step(10000);
+    const Snapshot after = engine->snapshot();
+    for (std::size_t k = 0; k < box.grains.size(); ++k) {
+      sum += (after.grains[k].position - box.grains[k].position).norm();
+    }
+  }
+  return sum / (kFalls * static_cast<double>(box.grains.size()));
+}
+
+TEST(Sleep, AnImpactMovesSleepersAsItMovesTheAwake) {
+  const auto engine = polygon_box(polygon_settings(), 8, 5);
+  engine->set_background_damping(20);
+  engine->step(30000);
+  const Snapshot box = engine->snapshot();
+  SleepSettings sleep;
+  const double awake = way_after_impact(box, sleep);
+  sleep.on = true;
+  const double asleep = way_after_impact(box, sleep);
+  sleep.wake_reach = 0;
+  sleep.quiet_time = 2e-3;
+  sleep.quiet_move = 2.4e-3;
+  const double rigid = way_after_impact(box, sleep);
+  EXPECT_NEAR(asleep, awake, 0.4 * awake);
+  // What a pile of sleepers that gives way only where it is touched would make of it.
+  EXPECT_LT(rigid, 0.4 * awake);
+  RecordProperty("awake", fmt::format("{:.3g}", awake));
+  RecordProperty("asleep", fmt::format("{:.3g}", asleep));
+  RecordProperty("rigid", fmt::format("{:.3g}", rigid));
 }
 
 TEST(Sleep, GravityWakesAll) {
