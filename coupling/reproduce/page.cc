@@ -89,26 +89,30 @@ std::string reproduction_page(const Results& results) {
   out +=
       "\n## How they were run\n\n"
       "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step "
-      "2e-6 s.\n\n"
-      "| study | grains | realizations | interval (s) | time step (s) | steps | grain-steps | time "
-      "of the grains (s) | base force / weight | version | command |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "2e-6 s. Without a reach of waking, grains at rest gave way only where another touched them, "
+      "and "
+      "piles came out denser and steeper than with all grains awake ([what sleeping "
+      "changes](cases/pile-rest-detection.md)).\n\n"
+      "| study | grains | realizations | interval (s) | reach of waking | time step (s) | steps | "
+      "grain-steps | time of the grains (s) | base force / weight | version | command |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const std::string& study : studies) {
     if (!results.has(study)) {
-      out += fmt::format("| `{}` | {} | | | | | | | | | `grainfield run cases/{}.toml` |\n", study,
-                         kNotRun, study);
+      out += fmt::format("| `{}` | {} | | | | | | | | | | `grainfield run cases/{}.toml` |\n",
+                         study, kNotRun, study);
       continue;
     }
     const auto value = [&](const char* key, const char* format) {
       return optional_number(results, study, key, format);
     };
     out += fmt::format(
-        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | `grainfield run cases/{}.toml` |\n",
+        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | `grainfield run cases/{}.toml` "
+        "|\n",
         study, value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
-        value("source.interval", "{:g}"), value("dem.time_step", "{:.3g}"),
-        value("dem.steps", "{:.4g}"), value("dem.grain_steps", "{:.3g}"),
-        grain_seconds(results, study), value("base.weight_ratio", "{:.6f}"),
-        results.text(study, "version").value_or(""), study);
+        value("source.interval", "{:g}"), value("sleep.wake_reach", "{:g}"),
+        value("dem.time_step", "{:.3g}"), value("dem.steps", "{:.4g}"),
+        value("dem.grain_steps", "{:.3g}"), grain_seconds(results, study),
+        value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""), study);
   }
   out +=
       "\n## Misprints and inconsistencies of the sources\n\n"

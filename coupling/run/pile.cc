@@ -231,6 +231,9 @@ class Analysis {
     if (value_.pile.source.kind == "point") {
       summary["source.interval"] = value_.pile.source.interval;
     }
+    if (value_.pile.sleep.on && value_.grains.files.empty()) {
+      summary["sleep.wake_reach"] = value_.pile.sleep.wake_reach;
+    }
     add_grain_steps(summary);
     const Field base = piles_.base().mean();
     const Eigen::VectorXd pressure = -base.find("sigma_yy")->value;

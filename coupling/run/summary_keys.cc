@@ -76,6 +76,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"pile.grains_not_poured", "-", "line source: left over when the pile came to a point"},
       {"source.kind", "text", "point | line"},
       {"source.interval", "s", "point source: from one grain to the next"},
+      {"sleep.wake_reach", "-", "as in the case, when grains sleep while the pile is poured"},
       {"dem.grain_steps", "-", "grains times steps, all realizations"},
       {"pile.volume_fraction_centre", "-", "in a window about the apex (dem/heap)"},
       {"pile.volume_fraction_surface", "-", "in windows along the flanks"},
