@@ -104,10 +104,11 @@ bool EngineLoop<Shape, Law, Integrator>::wake_sleepers() {
     const Body& b = bodies_[i];
     const double speed2 = b.vx * b.vx + b.vy * b.vy;
     const double fast = sleep.wake_speed * sleep.wake_speed * g * 2 * b.radius;
-    const bool near_sleepers =
-        std::any_of(pairs_.begin() + pair_start_[i], pairs_.begin() + pair_start_[i + 1],
-                    [this](const Pair& pair) { return pair.j >= awake_; });
-    if (g > 0 && speed2 > fast && near_sleepers) {
+    const auto near_sleepers = [&] {
+      return std::any_of(pairs_.begin() + pair_start_[i], pairs_.begin() + pair_start_[i + 1],
+                         [this](const Pair& pair) { return pair.j >= awake_; });
+    };
+    if (g > 0 && speed2 > fast && near_sleepers()) {
       const double reach = sleep.wake_reach * std::sqrt(speed2 * 2 * b.radius / g);
       shaken.clear();
       sleepers_grid_.near({b.x, b.y, b.radius + reach, false}, shaken);

@@ -28,7 +28,7 @@ radius = 0.0275
 polydispersity = 0.1
 [source]
 grains = 40
-height = 1.0
+height = 0.5
 interval = 0.12
 [floor]
 length = 4.0
@@ -95,6 +95,7 @@ TEST(PileRun, LeavesEverything) {
                           "model.cantelaube.beta_hat_deg",
                           "change.gravity_8.829.coordination_ratio",
                           "source.interval",
+                          "sleep.wake_reach",
                           "dem.grain_steps",
                           "time.dem_cpu_s",
                           "time.dem_s"}) {
