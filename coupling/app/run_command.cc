@@ -96,7 +96,7 @@ int run(const Given& given) {
     run_case(value, ranks, options);
   } catch (...) {
     line.end();
-    finish_ranks();
+    finish_ranks_after_failure();
     throw;
   }
   line.end();

@@ -152,11 +152,12 @@ void write_fields(const std::string& file, const NamedFields& fields) {
   check(fields);
   AtomicFile target(file);
   {
-    const h5::Handle out = h5::open_for_adding(target.temporary());
+    h5::Handle out = h5::open_for_adding(target.temporary());
     h5::write_attribute(out, "program", "grainfield");
     h5::write_attribute(out, "version", GRAINFIELD_VERSION);
     h5::write_attribute(out, "field_format", format_version);
     for (const auto& [name, field] : fields) write_one(out, name, field, file);
+    h5::finish(std::move(out), file);
   }
   const std::filesystem::path path(file);
   std::filesystem::path description = path;

@@ -2,7 +2,9 @@
 
 #include <mpi.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 namespace grainfield::coupling {
 namespace {
@@ -15,6 +17,8 @@ bool under_mpirun() {
 }
 
 bool started_here = false;
+MPI_Comm at_the_end = MPI_COMM_NULL;  // of its own: the others may wait in a collective call
+constexpr std::chrono::seconds kPatience{10};
 
 }  // namespace
 
@@ -27,6 +31,7 @@ Ranks::Ranks() {
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     started_here = true;
+    MPI_Comm_dup(MPI_COMM_WORLD, &at_the_end);
   }
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
@@ -63,6 +68,19 @@ void finish_ranks() {
   int ended = 0;
   MPI_Finalized(&ended);
   if (ended == 0) MPI_Finalize();
+}
+
+void finish_ranks_after_failure() {
+  if (!started_here) return;
+  MPI_Request all_here = MPI_REQUEST_NULL;
+  MPI_Ibarrier(at_the_end, &all_here);
+  const auto start = std::chrono::steady_clock::now();
+  int arrived = 0;
+  while (MPI_Test(&all_here, &arrived, MPI_STATUS_IGNORE), arrived == 0) {
+    if (std::chrono::steady_clock::now() - start > kPatience) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  finish_ranks();
 }
 
 }  // namespace grainfield::coupling

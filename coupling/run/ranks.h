@@ -25,5 +25,8 @@ class Ranks {
 
 /// Ends MPI if Ranks started it; the program calls it once, at its end.
 void finish_ranks();
+/// The same after a failure of this rank. When the others have not failed within 10 s, MPI is left
+/// unfinished: mpirun then ends them as soon as this rank exits, instead of all waiting for ever.
+void finish_ranks_after_failure();
 
 }  // namespace grainfield::coupling

@@ -90,6 +90,14 @@ Handle open_for_adding(const std::string& file) {
   return handle;
 }
 
+void finish(Handle file, const std::string& name) {
+  const bool flushed = H5Fflush(file, H5F_SCOPE_LOCAL) >= 0;
+  if (!file.close_now() || !flushed) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written to its end; is the disk full?", name));
+  }
+}
+
 void write(hid_t group, const std::string& name, const std::vector<double>& values, int columns,
            const std::string& unit) {
   write_any(group, name, values, columns, unit, H5T_NATIVE_DOUBLE);

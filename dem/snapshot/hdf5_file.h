@@ -20,6 +20,12 @@ class Handle {
   Handle& operator=(Handle&&) = delete;
   operator hid_t() const { return id_; }
   bool valid() const { return id_ >= 0; }
+  /// Closes now; false when HDF5 could not.
+  bool close_now() {
+    const hid_t id = id_;
+    id_ = -1;
+    return close_(id) >= 0;
+  }
 
  private:
   hid_t id_;
@@ -30,6 +36,9 @@ class Handle {
 Handle open_for_reading(const std::string& file);
 /// Opens to add to it, creating it when it is not there. Throws std::runtime_error naming the file.
 Handle open_for_adding(const std::string& file);
+/// Writes what HDF5 still holds back and closes: a full disk often shows only here. Throws
+/// std::runtime_error naming the file.
+void finish(Handle file, const std::string& name);
 
 /// rows x columns doubles (row-major); columns = 1 gives a one-dimensional dataset. With a "unit"
 /// attribute. Throws std::runtime_error.

@@ -65,11 +65,8 @@ void collect(hid_t object, const std::string& path, std::vector<std::string>& fo
   }
 }
 
-}  // namespace
-
-void write_snapshot(const std::string& file, const std::string& group_name, const Snapshot& s) {
-  const hdf5::Handle handle = hdf5::open_for_adding(file);
-  const hdf5::Handle group = create_group(handle, group_name);
+void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) {
+  const hdf5::Handle group = create_group(file, group_name);
   hdf5::write_attribute(group, "format", kFormat);
   hdf5::write_attribute(group, "dim", static_cast<double>(s.dim));
   hdf5::write_attribute(group, "time", s.time);
@@ -139,6 +136,14 @@ void write_snapshot(const std::string& file, const std::string& group_name, cons
   std::string names;
   for (const Wall& wall : s.walls) names += (names.empty() ? "" : ",") + wall.name;
   hdf5::write_attribute(w, "names", names);
+}
+
+}  // namespace
+
+void write_snapshot(const std::string& file, const std::string& group_name, const Snapshot& s) {
+  hdf5::Handle handle = hdf5::open_for_adding(file);
+  add_snapshot(handle, group_name, s);
+  hdf5::finish(std::move(handle), file);
 }
 
 Snapshot read_snapshot(const std::string& file, const std::string& group_name) {

@@ -105,8 +105,9 @@ void write_checkpoint(const std::string& file, const std::string& fingerprint,
     ImageWriter w;
     w.put(fingerprint);
     w.put(state.bytes());
-    const hdf5::Handle handle = hdf5::open_for_adding(beside);
+    hdf5::Handle handle = hdf5::open_for_adding(beside);
     hdf5::write_bytes(handle, "checkpoint", w.bytes());
+    hdf5::finish(std::move(handle), beside);
   }
   for (const auto& [name, snapshot] : snapshots) write_snapshot(beside, "/" + name, snapshot);
   std::filesystem::rename(beside, file);

@@ -17,6 +17,11 @@ using testing::Output;
 using testing::program;
 using testing::tiny_case;
 
+// MPI keeps memory of its own until the end: the leak check of sanitized builds is for one process.
+const std::string kMpirun =
+    "ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+    "timeout 120 mpirun --oversubscribe ";
+
 std::map<std::string, std::string> results_of(const Folder& folder, const std::string& name,
                                               const std::string& options,
                                               const std::string& prefix = "") {
@@ -44,12 +49,21 @@ TEST(Determinism, ThreadsAndRanks) {
                 results_of(folder, std::string("t") + threads, std::string("--threads ") + threads),
                 std::string(threads) + " threads");
   }
-  // MPI keeps memory of its own until the end: the leak check of sanitized builds is for one
-  // process.
-  const std::string mpirun =
-      "ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-      "mpirun --oversubscribe -np 2";
-  expect_same(one, results_of(folder, "ranks", "", mpirun), "2 ranks");
+  expect_same(one, results_of(folder, "ranks", "", kMpirun + "-np 2"), "2 ranks");
+}
+
+// The second rank counts on a realization that the first does not make, and fails alone, in the
+// analysis: the first must not wait for it for ever.
+TEST(Ranks, OneThatFailsAloneEndsAll) {
+  const Folder folder;
+  const std::string run = "run " + folder.write("x.toml", tiny_case()) + " -o " + (folder / "out");
+  const Output output =
+      program(run + " : -np 1 " + GRAINFIELD_PROGRAM + " " + run + " --set ensemble.realizations=5",
+              kMpirun + "-np 1");
+  EXPECT_NE(output.code, 0);
+  EXPECT_NE(output.code, 124) << "still waiting";
+  EXPECT_THAT(output.err, HasSubstr("realization_004.h5: no such file"));
+  EXPECT_FALSE(testing::fs::exists(folder / "out/summary.json"));
 }
 
 TEST(Determinism, AnotherSeedGivesOtherBits) {

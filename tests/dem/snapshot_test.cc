@@ -2,8 +2,10 @@
 #include "dem/snapshot/snapshot.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -106,6 +108,36 @@ TEST_F(SnapshotFile, SaysWhatIsWrong) {
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
   EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),
               testing::HasSubstr("truncated or broken"));
+}
+
+// HDF5 holds back what it writes until the file is closed. A limit on the size of files stands for
+// a disk that is full at any point of it.
+TEST_F(SnapshotFile, AFullDiskIsSaid) {
+  write_snapshot(file_, "/end", sample());
+  const auto size = std::filesystem::file_size(file_);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  for (int part = 0; part <= 10; ++part) {
+    const std::string cut = directory_ / ("cut" + std::to_string(part) + ".h5");
+    rlimit limit = old;
+    limit.rlim_cur = part == 10 ? size : part * size / 10 + 1;
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::string said = "nothing";
+    try {
+      write_snapshot(cut, "/end", sample());
+    } catch (const std::runtime_error& e) {
+      said = e.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &old);
+    if (part == 10) {
+      EXPECT_EQ(said, "nothing");
+      EXPECT_EQ(read_snapshot(cut, "/end").grains.size(), sample().grains.size());
+    } else {
+      EXPECT_THAT(said, testing::HasSubstr("cannot")) << part;
+    }
+  }
+  std::signal(SIGXFSZ, old_handler);
 }
 
 TEST_F(SnapshotFile, RefusesContactsOfUnknownGrains) {
