@@ -6,12 +6,11 @@
 #include <numbers>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 CoreBranch branch_of(const std::string& word) {
   if (word == "zero") return CoreBranch::zero;

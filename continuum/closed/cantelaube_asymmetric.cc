@@ -10,12 +10,13 @@
 #include <optional>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
 
-constexpr double kHalfPi = std::numbers::pi / 2, kDegree = std::numbers::pi / 180;
+constexpr double kHalfPi = std::numbers::pi / 2;
 // The kink on the yield ray is looked for from 0 outwards in growing steps up to this size (rho g):
 // there one half of the core is about 5 degrees wide, and the ends of the yield rays' window are
 // not far.

@@ -1,12 +1,11 @@
 #include "continuum/closed/half_space.h"
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class Flamant : public Model {
  public:

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "continuum/constants.h"
 
 namespace grainfield::continuum {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Points this share of their distance from the apex outside a slope still belong to the heap: they
 // are typed or computed on it.
 constexpr double kOnSlope = 1e-9;

@@ -2,15 +2,14 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSteepest = 89;  // degrees
 
 class Hydrostatic : public Model {

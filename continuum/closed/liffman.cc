@@ -9,15 +9,14 @@
 #include <stdexcept>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
 
 constexpr double kRoot3 = std::numbers::sqrt3;
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Points this share of the height outside still belong to the heap: the base and the slopes are
 // typed in decimal numbers.
 constexpr double kOutlineTolerance = 1e-5;

@@ -7,12 +7,11 @@
 #include <numbers>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // eta and mu as the user chose them, whichever way.
 Closure chosen(const Settings& s, double phi) {

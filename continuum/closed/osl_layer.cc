@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Points this share of the depth outside are on the surface or the base.
 constexpr double kOnBoundary = 1e-9;
 // Width of the load where none is chosen, as a share of the depth.

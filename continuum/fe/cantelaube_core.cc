@@ -24,6 +24,7 @@
 
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/orthotropic.h"
+#include "continuum/constants.h"
 #include "continuum/fe/plugin.h"
 #include "continuum/fe/solved_model.h"
 #include "continuum/settings.h"
@@ -35,7 +36,6 @@ using Vector = fe::Vector<2>;
 using Point = dealii::Point<2>;
 
 constexpr char kName[] = "fe_cantelaube_core";
-constexpr double kDegree = std::numbers::pi / 180;
 enum Side : unsigned int { axis, flank, base };
 /// Nodes of the axis' traction, linear in between, when the axis yields.
 constexpr int kAxisNodes = 33;

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "continuum/constants.h"
+
 namespace grainfield::continuum {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// From 0 to `end` in steps of 1/m, longer by `growth` per length beyond `even`.
 std::vector<double> lines(double end, double even, double growth, int m) {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
+#include "continuum/constants.h"
 #include "continuum/fe/triangle_refinement.h"
 #include "continuum/model.h"
 
@@ -18,8 +18,6 @@ namespace {
 using Eigen::Vector2d;
 using plasticity::Vector4;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Heights and barycentric coordinates that differ by less than this part are equal.
 constexpr double kOnBorder = 1e-9;
 /// Depths, in heights, between which the core's boundary is fitted: the apex has too few cells, the

@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "continuum/constants.h"
 #include "continuum/model.h"
 
 namespace grainfield::continuum::plasticity {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 /// Below this friction angle the apex lies too far off to be computed: a prism (Tresca).
 constexpr double kLeastSine = 1e-9;
 /// Trial stresses in the plane that differ by less than this part of the stress: their directions

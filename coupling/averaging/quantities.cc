@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/nearest.h"
 
 namespace grainfield::coupling {
@@ -15,8 +15,7 @@ namespace {
 using F = GrainFacts;
 using S = PointSums;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-double ratio(double a, double b) { return b > 0 ? a / b : nan; }
+double ratio(double a, double b) { return b > 0 ? a / b : kNan; }
 double own(const S& s, int, int, int k) { return s.own[k]; }
 
 // Kinetic stress of the velocities about their local mean: density V V - sum m v v phi.

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "coupling/compare/verdict.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // With fewer realizations a point's own variance is too uncertain to divide by: the variances of
 // the points within this many independent lengths on either side are pooled.
 constexpr int least_for_own_variance = 4;
@@ -45,7 +44,7 @@ void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles
 // Variance of the mean to divide by at every point; nan where there is none.
 Eigen::VectorXd variances(const Profile& p, int realizations, double& correction) {
   correction = 1;
-  Eigen::VectorXd own = Eigen::VectorXd::Constant(p.x.size(), nan);
+  Eigen::VectorXd own = Eigen::VectorXd::Constant(p.x.size(), kNan);
   if (p.error.size() == 0) return own;
   own = p.error.cwiseAbs2();
   if (realizations < 2) return own;
@@ -61,7 +60,7 @@ Eigen::VectorXd variances(const Profile& p, int realizations, double& correction
           sum += own[j];
           ++count;
         }
-      pooled[k] = count > 0 ? sum / count : nan;
+      pooled[k] = count > 0 ? sum / count : kNan;
     }
     own = pooled;
     freedom *= 2 * pooled_lengths;
@@ -69,7 +68,7 @@ Eigen::VectorXd variances(const Profile& p, int realizations, double& correction
   // The mean of (difference / estimated error)^2 of a true model is f/(f - 2), not 1, because the
   // error is estimated too (Student's t with f degrees of freedom; Hartlap et al. 2007 for one
   // point).
-  correction = freedom > 2 ? (freedom - 2) / freedom : nan;
+  correction = freedom > 2 ? (freedom - 2) / freedom : kNan;
   return own;
 }
 
@@ -84,7 +83,7 @@ Measures measure(const Profile& p, const Eigen::VectorXd& model, int realization
   m.largest_in = p.name;
   double difference = 0, simulation = 0, squares = 0;
   int points = 0, weighted = 0;
-  double first = nan, last = nan;
+  double first = kNan, last = kNan;
   for (Eigen::Index k = 0; k < p.x.size(); ++k) {
     const double d = p.mean[k] - model[k];
     if (!std::isfinite(d)) continue;
@@ -103,14 +102,14 @@ Measures measure(const Profile& p, const Eigen::VectorXd& model, int realization
     }
   }
   if (points == 0) {
-    m.rel_l2 = m.largest = m.largest_at = m.chi2_per_dof = nan;
+    m.rel_l2 = m.largest = m.largest_at = m.chi2_per_dof = kNan;
     return m;
   }
   m.rel_l2 = std::sqrt(difference / simulation);
   m.dof = p.independent_length > 0
               ? std::clamp((last - first) / p.independent_length, 1.0, static_cast<double>(points))
               : points;
-  m.chi2_per_dof = weighted > 0 ? correction * squares / weighted : nan;
+  m.chi2_per_dof = weighted > 0 ? correction * squares / weighted : kNan;
   totals.difference += difference;
   totals.simulation += simulation;
   totals.chi2 += m.dof * m.chi2_per_dof;
@@ -138,7 +137,7 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
   check(profiles, {});
   Comparison c = described(profiles, load, depth, realizations);
   c.profiles = std::move(profiles);
-  c.verdict.position = c.verdict.position_error = nan;
+  c.verdict.position = c.verdict.position_error = kNan;
   return c;
 }
 
@@ -172,7 +171,7 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
       }
       const bool drawable = (model.values[k].array().isFinite()).count() >= 3;
       result.shapes.push_back(drawable ? profile_shape(profiles[k].x, model.values[k], {})
-                                       : ProfileShape{nan, nan, nan, nan, 0, nan});
+                                       : ProfileShape{kNan, kNan, kNan, kNan, 0, kNan});
     }
     result.overall.rel_l2 = std::sqrt(totals.difference / totals.simulation);
     result.overall.dof = totals.dof;

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_relative_prominence =
     0.05;                           // of the largest value: what an eye calls a peak
 constexpr double least_errors = 2;  // prominence in standard errors: about 95 %
@@ -53,7 +53,7 @@ double half_width(const std::vector<Sample>& s, double level) {
   std::size_t first = 0, last = s.size() - 1;
   while (s[first].value < level) ++first;
   while (s[last].value < level) --last;
-  if (first == 0 || last + 1 == s.size()) return nan;
+  if (first == 0 || last + 1 == s.size()) return kNan;
   return crossing(s[last + 1], s[last], level) - crossing(s[first - 1], s[first], level);
 }
 
@@ -69,7 +69,7 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
     if (k > 0 && !(x[k] > x[k - 1]))
       throw std::invalid_argument(
           fmt::format("a profile's positions must ascend; {} m follows {} m", x[k], x[k - 1]));
-    if (std::isfinite(value[k])) s.push_back({x[k], value[k], error.size() ? error[k] : nan});
+    if (std::isfinite(value[k])) s.push_back({x[k], value[k], error.size() ? error[k] : kNan});
   }
   if (s.size() < 3)
     throw std::invalid_argument(
@@ -80,7 +80,7 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
       s.begin(), s.end(), [](const Sample& a, const Sample& b) { return a.value < b.value; });
   shape.peak = top->value;
   shape.peak_at = top->x;
-  shape.fwhm = shape.peak > 0 ? half_width(s, shape.peak / 2) : nan;
+  shape.fwhm = shape.peak > 0 ? half_width(s, shape.peak / 2) : kNan;
   shape.peaks = shape.peak > 0 ? count_peaks(s, shape.peak) : 0;
   double first = 0, second = 0;
   for (std::size_t k = 1; k < s.size(); ++k) {
@@ -94,7 +94,7 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
   }
   const double mean = first / shape.integral;
   const double variance = second / shape.integral - mean * mean;
-  shape.rms_width = shape.integral > 0 && variance >= 0 ? std::sqrt(variance) : nan;
+  shape.rms_width = shape.integral > 0 && variance >= 0 ? std::sqrt(variance) : kNan;
   return shape;
 }
 

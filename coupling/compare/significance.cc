@@ -2,13 +2,13 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 
 Spread spread_of(const std::vector<double>& values) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Spread out{nan, nan, nan, static_cast<int>(values.size())};
+  Spread out{kNan, kNan, kNan, static_cast<int>(values.size())};
   if (values.empty()) return out;
   const auto n = static_cast<double>(values.size());
   double sum = 0, square = 0;

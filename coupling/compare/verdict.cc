@@ -13,10 +13,11 @@
 #include <limits>
 #include <numeric>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double confidence = 0.95;
 // With fewer realizations the errors are too uncertain to weigh points by: rank by relative L2.
 constexpr int least_for_chi2 = 4;
@@ -28,7 +29,7 @@ constexpr double chi2_sigmas = 3;
 constexpr double most_rel_l2 = 0.5;
 
 struct Projection {
-  double position = nan, error = nan;
+  double position = kNan, error = kNan;
 };
 
 Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfiles& b) {
@@ -50,7 +51,7 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
     }
   }
   if (!(norm > 0)) return {};
-  Projection result{sum / norm, nan};
+  Projection result{sum / norm, kNan};
   if (sampled) {
     each /= norm;
     const double n = static_cast<double>(realizations);
@@ -110,7 +111,7 @@ Verdict judge(const Comparison& c) {
   for (std::size_t k : order) v.ranking.push_back(c.results[k].key);
   const ModelComparison& best = c.results[order.front()];
   v.best_model = best.key;
-  v.position = v.position_error = nan;
+  v.position = v.position_error = kNan;
 
   const auto other = std::find_if(order.begin(), order.end(), [&](std::size_t k) {
     return c.results[k].family != best.family;
@@ -130,7 +131,7 @@ Verdict judge(const Comparison& c) {
     return v;
   }
   Projection p = project(c, c.models[*other], c.models[order.front()]);
-  if (!spread) p.error = nan;
+  if (!spread) p.error = kNan;
   v.position = p.position;
   v.position_error = p.error;
   v.distinguishable = beyond_spread(p, c.realizations);

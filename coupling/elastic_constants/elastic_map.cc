@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "coupling/statistics/parallel.h"
 
 namespace grainfield::coupling {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void check(const ElasticMapOptions& o) {
   if (o.nx < 2 || o.ny < 2)
@@ -49,7 +47,7 @@ int points_with_data(const Increments& increments, const Eigen::VectorXd& weight
 
 ElasticMap::Values ElasticMap::at(double x, double y) const {
   const double u = (x - x0) / dx, v = (y - y0) / dy;
-  if (!(u >= 0 && u <= nx - 1 && v >= 0 && v <= ny - 1)) return {nan, nan};
+  if (!(u >= 0 && u <= nx - 1 && v >= 0 && v <= ny - 1)) return {kNan, kNan};
   const int ix = std::min(static_cast<int>(u), nx - 2), iy = std::min(static_cast<int>(v), ny - 2);
   Values sum;
   for (int jy = 0; jy < 2; ++jy)
@@ -81,7 +79,7 @@ ElasticMap ElasticMap::filled() const {
         [&](Eigen::Index a, Eigen::Index b) { return distance(a) < distance(b); });
     map.young[k] = young[nearest];
     map.poisson[k] = poisson[nearest];
-    map.young_error[k] = map.poisson_error[k] = nan;
+    map.young_error[k] = map.poisson_error[k] = kNan;
   }
   return map;
 }
@@ -98,7 +96,7 @@ ElasticMap elastic_map(const Increments& increments, const ElasticMapOptions& op
   map.dy = (options.y1 - options.y0) / (options.ny - 1);
   const Eigen::Index nodes = static_cast<Eigen::Index>(options.nx) * options.ny;
   map.young = map.poisson = map.young_error = map.poisson_error =
-      Eigen::VectorXd::Constant(nodes, nan);
+      Eigen::VectorXd::Constant(nodes, kNan);
   ElasticOptions fit = options.fit;
   fit.bootstrap.threads = 1;  // the nodes are shared among the threads instead
   in_parts(nodes, options.fit.bootstrap.threads, [&](Eigen::Index first, Eigen::Index last) {

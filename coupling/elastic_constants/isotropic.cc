@@ -7,10 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Squared strain of one kind below this share of the whole is rounding (1e-9 in amplitude).
 constexpr double least_share = 1e-18;
@@ -27,21 +27,21 @@ Eigen::VectorXd solve(const StiffnessSums& sums, int degree) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(least_pivot);
   qr.compute(sums.matrix.topLeftCorner(n, n));
-  if (!(sums.matrix(0, 0) > 0) || qr.rank() < n) return Eigen::VectorXd::Constant(n, nan);
+  if (!(sums.matrix(0, 0) > 0) || qr.rank() < n) return Eigen::VectorXd::Constant(n, kNan);
   return qr.solve(sums.right.head(n));
 }
 
 }  // namespace
 
 double StiffnessSums::stiffness(int degree) const {
-  if (degree == 0) return matrix(0, 0) > 0 ? right[0] / matrix(0, 0) : nan;
+  if (degree == 0) return matrix(0, 0) > 0 ? right[0] / matrix(0, 0) : kNan;
   return solve(*this, degree)[0];
 }
 
 double StiffnessSums::share(int degree) const {
   const Eigen::VectorXd k = solve(*this, degree);
   // The residual of least squares is sum y^2 - right . k.
-  return stress > 0 ? std::clamp(right.head(k.size()).dot(k) / stress, 0.0, 1.0) : nan;
+  return stress > 0 ? std::clamp(right.head(k.size()).dot(k) / stress, 0.0, 1.0) : kNan;
 }
 
 void IsotropicSums::add(const Sample& sample, double scale) {
@@ -66,8 +66,8 @@ bool IsotropicSums::has_shear() const {
 }
 
 Eigen::Vector4d IsotropicSums::constants(int degree) const {
-  const double k = has_volume_change() ? trace.stiffness(degree) : nan,
-               g = has_shear() ? deviator.stiffness(degree) : nan;
+  const double k = has_volume_change() ? trace.stiffness(degree) : kNan,
+               g = has_shear() ? deviator.stiffness(degree) : kNan;
   return {k, g, 3 * g - g * g / k, (1 - g / k) / 2};
 }
 

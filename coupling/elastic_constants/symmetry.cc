@@ -10,13 +10,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "coupling/elastic_constants/samples.h"
 #include "coupling/statistics/least_squares.h"
 
 namespace grainfield::coupling {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Equations closer to singular than this do not tell the constants apart.
 constexpr double largest_condition = 1e6;
@@ -90,10 +89,10 @@ Eigen::VectorXd figures_of(const Eigen::Vector4d& c, const Eigen::Vector2d& isot
 Eigen::VectorXd solve(const NormalSums& sums) {
   const Eigen::Matrix<double, 4, 2> to = isotropic_columns();
   const Eigen::Matrix2d small = to.transpose() * sums.matrix * to;
-  Eigen::Vector2d isotropic = Eigen::Vector2d::Constant(nan);
+  Eigen::Vector2d isotropic = Eigen::Vector2d::Constant(kNan);
   if (small.determinant() > 0) isotropic = small.inverse() * (to.transpose() * sums.right);
   const Eigen::LDLT<Eigen::Matrix4d> factors(sums.matrix);
-  Eigen::Vector4d c = Eigen::Vector4d::Constant(nan);
+  Eigen::Vector4d c = Eigen::Vector4d::Constant(kNan);
   if (factors.info() == Eigen::Success && factors.rcond() > std::pow(largest_condition, -2))
     c = factors.solve(sums.right);
   return figures_of(c, isotropic);
@@ -102,13 +101,13 @@ Eigen::VectorXd solve(const NormalSums& sums) {
 // Chance of constraints this far from zero, given their draws over n realizations.
 double hotelling(const Eigen::Vector2d& constraints, const Eigen::MatrixXd& draws, int n,
                  double scale) {
-  if (n < 4) return nan;
+  if (n < 4) return kNan;
   if (constraints.cwiseAbs().maxCoeff() < rounding_of_constraint * scale) return 1;
   Eigen::MatrixXd centred(draws.rows(), 2);
   Eigen::Index rows = 0;
   for (Eigen::Index b = 0; b < draws.rows(); ++b)
     if (draws.row(b).allFinite()) centred.row(rows++) = draws.row(b);
-  if (rows < draws.rows() / 2) return nan;
+  if (rows < draws.rows() / 2) return kNan;
   centred.conservativeResize(rows, 2);
   centred.rowwise() -= Eigen::RowVector2d(centred.colwise().mean());
   // The spread over draws has divisor n, that of a sample n - 1.
@@ -176,10 +175,11 @@ SymmetryFit fit_symmetry(const Increments& increments, const Locality& where,
   std::vector<NormalSums> sums(all.size());
   for (std::size_t r = 0; r < all.size(); ++r)
     for (const Sample& sample : all[r].list) sums[r].add(sample);
-  const Eigen::VectorXd value = figures_of(
-      four_known ? Eigen::Vector4d(four.solution) : Eigen::Vector4d(Eigen::Vector4d::Constant(nan)),
-      two_known ? Eigen::Vector2d(isotropic.solution)
-                : Eigen::Vector2d(Eigen::Vector2d::Constant(nan)));
+  const Eigen::VectorXd value =
+      figures_of(four_known ? Eigen::Vector4d(four.solution)
+                            : Eigen::Vector4d(Eigen::Vector4d::Constant(kNan)),
+                 two_known ? Eigen::Vector2d(isotropic.solution)
+                           : Eigen::Vector2d(Eigen::Vector2d::Constant(kNan)));
   const auto statistic = [&](const std::vector<int>& chosen) {
     if (chosen == everyone) return value;
     NormalSums drawn;

@@ -10,12 +10,12 @@
 #include <stdexcept>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "continuum/constants.h"
 #include "coupling/statistics/bootstrap.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMostEvaluations = 4000;
 constexpr int kHuberRounds = 8;
 constexpr double kNearBound = 1e-4;  // of the allowed interval

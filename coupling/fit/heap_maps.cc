@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/points.h"
 #include "coupling/compare/smooth.h"
 #include "coupling/fit/fit_tables.h"
@@ -16,8 +15,6 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr int kColumns = 101, kRows = 33;
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Depth below the mean flank, over h.
 double depth_of(const HeapFacts& facts, double x, double y) {

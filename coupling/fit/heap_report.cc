@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "continuum/closed/cantelaube.h"
 #include "continuum/closed/osl.h"
+#include "continuum/constants.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_maps.h"
 #include "coupling/fit/posteriors.h"
@@ -17,7 +17,6 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kDrawn = 4;   // models in a picture
 constexpr double kSameLine = 1e-3;  // of the largest value: lines nearer than this are one
 

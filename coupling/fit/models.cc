@@ -12,13 +12,13 @@
 #include "continuum/closed/heap_field.h"
 #include "continuum/closed/hydrostatic.h"
 #include "continuum/closed/osl.h"
+#include "continuum/constants.h"
 #include "coupling/fit/two_sided_models.h"
 
 namespace grainfield::coupling {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kDegree = std::numbers::pi / 180;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

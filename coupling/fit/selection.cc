@@ -5,14 +5,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLeastRealizations = 3;
 
 std::vector<Eigen::VectorXd> starts_of(const FitModel& model, const Fit& fit) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "continuum/closed/cantelaube_asymmetric.h"
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -17,7 +17,6 @@ using continuum::CoreBranch;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMostFriction = 75;  // deg
 constexpr double kLeastWindow = 0.5;  // deg: of yield rays worth a search
 constexpr double kLeastCoefficient = 0.02, kMostCoefficient = 5;  // of a flank; active: below 1

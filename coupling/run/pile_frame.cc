@@ -1,9 +1,9 @@
 #include "coupling/run/pile_frame.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/layer.h"
 #include "dem/heap/surface.h"
 #include "dem/heap/volume_fraction.h"
@@ -11,13 +11,12 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // The highest part of a small heap, in the middle of which its apex is taken to lie.
 constexpr double kHighest = 0.9;
 
 // Apex and feet from the columns themselves.
 void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
-  double sum = 0, left = nan, right = nan;
+  double sum = 0, left = kNan, right = kNan;
   int count = 0;
   for (std::size_t k = 0; k < surface.top.size(); ++k) {
     const double x = surface.middle(k);
@@ -49,7 +48,7 @@ dem::Snapshot on_floor_zero(dem::Snapshot pile, double floor) {
 }
 
 double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
-  return window.empty() ? nan : dem::volume_fraction(pile, window);
+  return window.empty() ? kNan : dem::volume_fraction(pile, window);
 }
 
 }  // namespace

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Most steps of a line in one direction.
 constexpr int kMostSteps = 2000;
 /// A line ends where it comes nearer to another of its family than this part of their distance.

@@ -5,18 +5,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "continuum/idle.h"
 #include "coupling/run/wedge_analysis.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr char kHeap[] = "fe_mohr_coulomb_wedge";
 // Distance of slip lines, and of the seeds from which they are begun, over the height.
 constexpr double kLinesApart = 0.07, kSeedsApart = 0.05, kLineStep = 0.01;

@@ -3,18 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "continuum/constants.h"
 #include "coupling/run/wedge_analysis.h"
 
 namespace grainfield::coupling {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 Table WedgeAnalysis::table() const {
   Table out;
   out.title = "The heaps";

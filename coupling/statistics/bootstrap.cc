@@ -6,18 +6,16 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/nearest.h"
 #include "coupling/statistics/parallel.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // More draws without a value than this share: no interval.
 constexpr double most_undefined = 0.1;
@@ -95,7 +93,7 @@ BootstrapInterval interval_of(double value, const Eigen::VectorXd& draws, double
   std::vector<double> sorted;
   for (const double draw : draws)
     if (!std::isnan(draw)) sorted.push_back(draw);
-  BootstrapInterval result{value, nan, nan, nan,
+  BootstrapInterval result{value, kNan, kNan, kNan,
                            static_cast<int>(draws.size()) - static_cast<int>(sorted.size())};
   if (std::isnan(value) || result.undefined > most_undefined * static_cast<double>(draws.size()))
     return result;
@@ -154,7 +152,7 @@ std::vector<BootstrapInterval> bootstrap_intervals(int realizations, const Stati
   const Eigen::VectorXd value = statistic(everyone(realizations));
   std::vector<BootstrapInterval> result;
   if (realizations == 1) {
-    for (const double v : value) result.push_back({v, nan, nan, nan, 0});
+    for (const double v : value) result.push_back({v, kNan, kNan, kNan, 0});
     return result;
   }
   const Eigen::VectorXd acceleration =

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A spread below this share of the largest number is rounding.
 constexpr double least_spread = 1e-14;
@@ -24,7 +23,7 @@ struct PairSums {
 };
 
 struct Line {
-  double r = nan, slope = nan, intercept = nan;
+  double r = kNan, slope = kNan, intercept = kNan;
 };
 
 // `scale_x`, `scale_y`: size of the numbers, below whose rounding nothing varies.
@@ -75,7 +74,7 @@ Correlation correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y,
   result.r = line.r;
   result.slope = line.slope;
   result.intercept = line.intercept + mean_y - line.slope * mean_x;
-  result.interval = {result.r, nan, nan, nan, 0};
+  result.interval = {result.r, kNan, kNan, kNan, 0};
   if (std::isnan(result.r)) return result;
   const auto statistic = [&](const std::vector<int>& chosen) {
     PairSums drawn;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling {
@@ -45,8 +45,7 @@ ExponentialTail exponential_tail(const Eigen::VectorXd& numbers, double threshol
   if (options.simulations < 1)
     throw std::invalid_argument(
         fmt::format("{} simulations of the tail; at least 1 is needed", options.simulations));
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  ExponentialTail tail{threshold, 0, nan, nan, nan, nan, nan, nan};
+  ExponentialTail tail{threshold, 0, kNan, kNan, kNan, kNan, kNan, kNan};
   std::vector<double> excess;
   int all = 0;
   for (const double f : numbers) {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 
 LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
@@ -23,7 +25,6 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
   if (weights.size() != 0 && weights.minCoeff() < 0)
     throw std::invalid_argument("least squares: a weight is negative");
 
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Index n = a.cols();
   Eigen::MatrixXd matrix = a, right = b;
   if (weights.size() != 0) {
@@ -32,11 +33,11 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
     right = root.asDiagonal() * right;
   }
   LeastSquares result;
-  result.solution = Eigen::MatrixXd::Constant(n, b.cols(), nan);
-  result.covariance = Eigen::MatrixXd::Constant(n, n, nan);
+  result.solution = Eigen::MatrixXd::Constant(n, b.cols(), kNan);
+  result.covariance = Eigen::MatrixXd::Constant(n, n, kNan);
   result.condition = std::numeric_limits<double>::infinity();
   result.data = right.squaredNorm();
-  result.residual = nan;
+  result.residual = kNan;
   if (n == 0 || a.rows() == 0) return result;
 
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);

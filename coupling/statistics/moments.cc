@@ -1,13 +1,13 @@
 #include "coupling/statistics/moments.h"
 
 #include <cmath>
-#include <limits>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 
 Moments moments(const Eigen::VectorXd& numbers) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Moments result{static_cast<int>(numbers.size()), nan, nan, nan};
+  Moments result{static_cast<int>(numbers.size()), kNan, kNan, kNan};
   if (numbers.size() == 0) return result;
   const double n = static_cast<double>(numbers.size());
   result.mean = numbers.sum() / n;

@@ -2,14 +2,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "continuum/constants.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Principal values nearer than this to each other, relative to the largest: no axis.
 constexpr double kCoincide = 1e-12;
 
@@ -40,11 +40,13 @@ double TensorAxes::deviator() const {
   return std::sqrt(1.5 * s.squaredNorm());
 }
 
-double TensorAxes::deviatoric_fraction() const { return trace() == 0 ? nan : deviator() / trace(); }
+double TensorAxes::deviatoric_fraction() const {
+  return trace() == 0 ? kNan : deviator() / trace();
+}
 
 double TensorAxes::angle_deg(int k) const {
   const double largest = values.head(dim).cwiseAbs().maxCoeff();
-  if (dim != 2 || !(deviator() > kCoincide * largest)) return nan;
+  if (dim != 2 || !(deviator() > kCoincide * largest)) return kNan;
   return as_axis(std::atan2(axes(1, k), axes(0, k)) * 180 / std::numbers::pi);
 }
 
@@ -53,8 +55,8 @@ TensorAxes tensor_axes(const Eigen::Matrix3d& tensor, int dim) {
   out.dim = dim;
   const Eigen::Matrix3d symmetric = (tensor + tensor.transpose()) / 2;
   if (!symmetric.topLeftCorner(dim, dim).allFinite()) {
-    out.values.head(dim).setConstant(nan);
-    out.axes.setConstant(nan);
+    out.values.head(dim).setConstant(kNan);
+    out.axes.setConstant(kNan);
     return out;
   }
   const auto put = [&](const auto& solver) {
@@ -103,7 +105,7 @@ void add_angle_between(Field& field, const std::string& a, const std::string& b)
   Eigen::VectorXd between(first.size());
   for (Eigen::Index p = 0; p < first.size(); ++p)
     between[p] =
-        std::isfinite(first[p] - second[p]) ? angle_between_axes_deg(first[p], second[p]) : nan;
+        std::isfinite(first[p] - second[p]) ? angle_between_axes_deg(first[p], second[p]) : kNan;
   field.add("angle_" + a + "_" + b, "deg").value = between;
 }
 

@@ -157,6 +157,7 @@ class EngineLoop final : public Engine {
 
   void wake_all();
   void search();
+  void build_sleepers_grid();
   void part_sleepers();
   void swap_bodies(int i, int j);
   Pair recalled(int i, int j, bool wall, const std::vector<std::pair<Key, double>>& kept);

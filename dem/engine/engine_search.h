@@ -116,6 +116,19 @@ auto EngineLoop<Shape, Law, Integrator>::recalled(int i, int j, bool wall,
   return pair;
 }
 
+/// Of the bodies from awake_ on.
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::build_sleepers_grid() {
+  std::vector<Reach> still;
+  still.reserve(bodies_.size() - static_cast<std::size_t>(awake_));
+  for (std::size_t j = static_cast<std::size_t>(awake_); j < bodies_.size(); ++j) {
+    const Body& b = bodies_[j];
+    still.push_back({b.x, b.y, b.radius, b.inverse_mass == 0});
+  }
+  sleepers_grid_.build(still);
+  sleepers_changed_ = false;
+}
+
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::search() {
   // The springs in use, by the grains' ids: the order of the bodies changes below. A spring is the
@@ -156,14 +169,7 @@ void EngineLoop<Shape, Law, Integrator>::search() {
     grid_.build(reaches_);
   }
   locate_applied();
-  if (sleepers_changed_) {
-    std::vector<Reach> still(all - n);
-    for (int j = n; j < all; ++j) {
-      still[j - n] = {bodies_[j].x, bodies_[j].y, bodies_[j].radius, bodies_[j].inverse_mass == 0};
-    }
-    sleepers_grid_.build(still);
-    sleepers_changed_ = false;
-  }
+  if (sleepers_changed_) build_sleepers_grid();
 
   std::vector<std::pair<int, int>> found;
   grid_.pairs(found);

@@ -290,8 +290,12 @@ void EngineLoop<Shape, Law, Integrator>::restore(const std::string& image) {
             asleep_.size() == all && quiet_.size() == all && rests_.size() == all &&
             touches_.size() == all && pair_forces_.size() == pairs_.size() &&
             felt_.size() == pairs_.size() && wall_forces_.size() == wall_pairs_.size());
-  sleepers_changed_ = true;
-  if (!search_needed_) index_contacts();
+  if (search_needed_) {
+    sleepers_changed_ = true;
+  } else {
+    index_contacts();
+    build_sleepers_grid();  // a review may ask it before the next search
+  }
   locate_applied();
 }
 

@@ -152,6 +152,38 @@ TEST(Sleep, GravityWakesAll) {
   EXPECT_EQ(engine->measure().awake, 12);
 }
 
+// No grain is added after the restart, so that a review may come before the next search.
+TEST(Sleep, AnImpactOnSleepersGoesOnBitForBitFromAnyStep) {
+  const auto settings = polygon_settings(1, true);
+  auto engine = polygon_box(settings, 8, 5);
+  engine->step(60000);
+  ASSERT_EQ(engine->measure().awake, 0);
+  Random random(0);
+  NewGrain falls = polygon_grain(random, 0.09, 0.16);
+  falls.vy = -2;
+  engine->add(falls);
+  std::vector<std::pair<long, std::string>> images;
+  int most_awake = 0;
+  for (int k = 0; k < 250; ++k) {
+    engine->step(7);
+    images.emplace_back(engine->steps(), engine->image());
+    most_awake = std::max(most_awake, engine->measure().awake);
+  }
+  EXPECT_GT(most_awake, 5) << "the impact wakes sleepers";
+  const long end = engine->steps() + 300;
+  engine->step(300);
+  const std::string uninterrupted = engine->image();
+  for (const auto& [step, image] : images) {
+    auto resumed = make_engine(settings);
+    resumed->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+    resumed->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
+    resumed->add_wall({"right", {8 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
+    resumed->restore(image);
+    resumed->step(end - resumed->steps());
+    EXPECT_TRUE(resumed->image() == uninterrupted) << "resumed at step " << step;
+  }
+}
+
 TEST(Sleep, PouringGivesTheSameBitsOnAnyThreadsAndAfterRestarts) {
   const auto pour = [](int threads, int restart_at) {
     auto engine = polygon_box(polygon_settings(threads, true), 6, 2);
