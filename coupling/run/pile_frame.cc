@@ -34,7 +34,21 @@ void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
   frame.half_right = right - frame.apex_x;
 }
 
+// A rough floor lies at the tops of the fixed grains that carry: there a pile's own floor is zero,
+// and its plane is out of reach below.
 double floor_of(const dem::Snapshot& pile) {
+  double tops = 0;
+  int contacts = 0;
+  for (const dem::Contact& contact : pile.contacts) {
+    if (contact.j < 0) continue;
+    const dem::Grain& a = pile.grains[static_cast<std::size_t>(contact.i)];
+    const dem::Grain& b = pile.grains[static_cast<std::size_t>(contact.j)];
+    if (a.fixed == b.fixed) continue;
+    const dem::Grain& carries = a.fixed ? a : b;
+    tops += carries.position.y() + carries.radius;
+    ++contacts;
+  }
+  if (contacts > 0) return tops / contacts;
   for (const dem::Wall& wall : pile.walls) {
     if (wall.name == "floor") return wall.point.y();
   }

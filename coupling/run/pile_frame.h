@@ -30,8 +30,8 @@ struct PileFrame {
   double in_half_bases(double x) const;
 };
 
-/// Measures a heap on its floor (the wall "floor"; without it layer.h: contacts with
-/// fixed grains, or the lowest grain's edge). Where the flanks have too few columns for a line
+/// Measures a heap on its floor: the tops of the fixed grains that carry it; without such the wall
+/// "floor", or the lowest grain's edge. Where the flanks have too few columns for a line
 /// (heaps of a few grains), apex and feet are the middle of the highest tenth and the outermost
 /// grains' edges. Throws std::invalid_argument for a 3D snapshot or one without a free grain.
 PileFrame pile_frame(const dem::Snapshot& pile);

@@ -120,6 +120,25 @@ TEST(PileRun, LeavesEverything) {
               HasSubstr("realization_000/gravity_8.829: 2D, "));
 }
 
+// Grains are fixed with their tops at y = 0, where the simulation measures from; the plane far
+// below them is no floor.
+TEST(PileRun, ARoughFloorLiesAtTheTopsOfItsGrains) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", tiny_pile("[output]\nreport = false\n"));
+  const Output run = program("run " + file + " -o " + (folder / "out") +
+                             " --set floor.kind=rough --set ensemble.realizations=1");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary s = read_summary(folder / "out/summary.json");
+  const auto figure = [&](const char* key) { return std::get<double>(s.at(key)); };
+  const double fraction = figure("heap.volume_fraction");
+  EXPECT_GT(fraction, 0.65);
+  EXPECT_LT(fraction, 0.95);
+  // rho g h of the analysis with the h of the simulation; 5000 kg/m2 by default.
+  EXPECT_NEAR(figure("heap.rho_g_h"), 5000 * fraction * 9.81 * figure("pile.height"),
+              1e-9 * figure("heap.rho_g_h"));
+  EXPECT_NEAR(figure("base.weight_ratio"), 1, 2e-3);
+}
+
 TEST(PileRun, SameBitsOnAnyThreadsAndAfterAStop) {
   const Folder folder;
   const auto one = results_of(folder, "one", "--threads 1");
