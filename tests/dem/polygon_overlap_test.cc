@@ -125,21 +125,6 @@ TEST(PolygonOverlap, SwappedIsMirroredAndTheFrameDoesNotMatter) {
   }
 }
 
-// Polygons with corners on an integer lattice: boxes, diamonds, triangles, octagons.
-Outline lattice_outline(Random& random) {
-  const double m = 1 + static_cast<int>(random.uniform(0, 3));
-  switch (static_cast<int>(random.uniform(0, 4))) {
-    case 0:
-      return box(2 * m, 2 + 2 * static_cast<int>(random.uniform(0, 2)));
-    case 1:
-      return {{m, 0}, {0, m}, {-m, 0}, {0, -m}};
-    case 2:
-      return {{-m, -m}, {2 * m, -m}, {-m, 2 * m}};
-    default:
-      return {{2, -1}, {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}};
-  }
-}
-
 TEST(PolygonOverlap, LatticePolygonsTouchAndCoincideInEveryWay) {
   Random random(4);
   int touching = 0, overlapping = 0, inside = 0;

@@ -191,4 +191,54 @@ inline std::pair<Placed, Placed> random_pair(Random& random, int kind) {
   return {a, placed(distance)};
 }
 
+// Polygons with corners on an integer lattice: boxes, diamonds, triangles, octagons.
+inline Outline lattice_outline(Random& random) {
+  const double m = 1 + static_cast<int>(random.uniform(0, 3));
+  switch (static_cast<int>(random.uniform(0, 4))) {
+    case 0:
+      return box(2 * m, 2 + 2 * static_cast<int>(random.uniform(0, 2)));
+    case 1:
+      return {{m, 0}, {0, m}, {-m, 0}, {0, -m}};
+    case 2:
+      return {{-m, -m}, {2 * m, -m}, {-m, 2 * m}};
+    default:
+      return {{2, -1}, {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}};
+  }
+}
+
+/// Pairs that random numbers never draw: corner on corner, edge along edge, shapes that coincide.
+inline std::pair<Placed, Placed> degenerate_pair(Random& random, int kind) {
+  const auto shift = [&] { return std::floor(random.uniform(-5, 6)); };
+  const auto turned = [](Outline outline, double angle) {
+    for (auto& [x, y] : outline) {
+      const double c = std::cos(angle), s = std::sin(angle), px = x;
+      x = c * px - s * y;
+      y = s * px + c * y;
+    }
+    return outline;
+  };
+  const int corners = 3 + static_cast<int>(random.uniform() * 8);
+  const Outline any = random_outline(random, corners, 1, random.uniform(1, 3));
+  switch (kind % 5) {
+    case 0:
+      return {Placed(lattice_outline(random), 0, 0),
+              Placed(lattice_outline(random), shift(), shift())};
+    case 1:
+      return {Placed(any, 0, 0), Placed(any, 0, 0)};
+    case 2: {  // mirrored: its corners in the opposite order, to turn the right way round
+      Outline mirrored(any.rbegin(), any.rend());
+      for (auto& corner : mirrored) corner[0] = -corner[0];
+      return {Placed(any, 0, 0), Placed(mirrored, 0, 0)};
+    }
+    case 3: {  // turned onto itself by its own symmetry
+      const Outline even = regular(corners, 1);
+      return {Placed(even, 0, 0), Placed(turned(even, 2 * std::numbers::pi / corners), 0, 0)};
+    }
+    default: {  // turned half round about a side's middle: the sides lie on each other
+      const auto &p = any[0], &q = any[1];
+      return {Placed(any, 0, 0), Placed(turned(any, std::numbers::pi), p[0] + q[0], p[1] + q[1])};
+    }
+  }
+}
+
 }  // namespace grainfield::dem
