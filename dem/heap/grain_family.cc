@@ -21,6 +21,9 @@ constexpr int kPentagon = 5;
 // Triangles with gaps at their bounds are 3.5 times as long as wide; on an ellipse of this ratio
 // none is a sliver for centred_outline, which refuses 20.
 constexpr double kMostAxisRatio = 5;
+constexpr double kMostPolydispersity = 0.99;
+// Of an outline's farthest corner over the radius, and of its inverse.
+constexpr double kMostStretch = 5;
 
 template <class Value>
 void require(bool holds, const char* key, const Value& found, const std::string& allowed) {
@@ -126,8 +129,10 @@ NewGrain ShapedGrain::at(double x, double y, double density) const {
 
 void check_shape(const ShapeSetup& s) {
   require(s.radius > 0 && std::isfinite(s.radius), "radius", s.radius, "above 0");
-  require(s.polydispersity >= 0 && s.polydispersity < 1, "polydispersity", s.polydispersity,
-          "0 to below 1 (radii are uniform in radius (1 -+ polydispersity))");
+  require(s.polydispersity >= 0 && s.polydispersity <= kMostPolydispersity, "polydispersity",
+          s.polydispersity,
+          fmt::format("0 to {:g} (radii are uniform in radius (1 -+ polydispersity))",
+                      kMostPolydispersity));
   if (s.kind == "rand1" || s.kind == "regular") {
     require(s.corners_min >= 3, "corners_min", s.corners_min, "3 or more");
     require(s.corners_max >= s.corners_min, "corners_max", s.corners_max,
@@ -148,6 +153,10 @@ void check_shape(const ShapeSetup& s) {
         "\"outline\"",
         s.outline.size(), s.kind));
   }
+  if (s.kind != "irregular") {
+    require(s.side == 0, "side", s.side,
+            "0, because only grains of shape.kind \"irregular\" have it; set shape.radius");
+  }
   if (s.kind == "irregular") {
     require(s.side >= 0 && std::isfinite(s.side), "side", s.side,
             "above 0, or 0 to take it from shape.radius");
@@ -158,10 +167,18 @@ void check_shape(const ShapeSetup& s) {
           "corners",
           s.outline.size()));
     }
+    double farthest = 0;
     try {
-      centred_outline(given(s, 1));
+      farthest = circumradius_of(centred_outline(given(s, 1)));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("shape.outline: {}", error.what()));
+    }
+    // Typed in metres, it would make dust or boulders of the grains.
+    if (!(farthest >= 1 / kMostStretch && farthest <= kMostStretch)) {
+      throw std::invalid_argument(
+          fmt::format("shape.outline: its farthest corner lies {:g} shape.radius from the "
+                      "centroid, allowed: {:g} to {:g}; corners are in units of shape.radius",
+                      farthest, 1 / kMostStretch, kMostStretch));
     }
   }
 }

@@ -36,8 +36,8 @@ std::string named(const Outline& outline, std::size_t k) {
 
 void check_count_and_values(const Outline& outline) {
   if (outline.size() < 3) {
-    throw std::invalid_argument(
-        fmt::format("an outline needs at least 3 corners, found {}", outline.size()));
+    throw std::invalid_argument(fmt::format(
+        "an outline needs at least 3 corners (x1, y1, x2, y2, x3, y3), found {}", outline.size()));
   }
   if (outline.size() > static_cast<std::size_t>(kMostCorners)) {
     throw std::invalid_argument(
@@ -92,9 +92,10 @@ void check_simple(const Outline& outline) {
     for (std::size_t m = k + 2; m < n && m < k + n - 1; ++m) {
       const Point &c = outline[m], &d = outline[(m + 1) % n];
       if (cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0) {
-        throw std::invalid_argument(
-            fmt::format("the edge from {} crosses the edge from {}: the outline crosses itself",
-                        named(outline, k), named(outline, m)));
+        throw std::invalid_argument(fmt::format(
+            "the edge from {} crosses the edge from {}: the outline crosses itself; list "
+            "the corners in their order round the grain",
+            named(outline, k), named(outline, m)));
       }
     }
   }
@@ -112,15 +113,20 @@ void check_convex(const Outline& outline, double sense) {
     const double angle = std::atan2(sine, cosine);
     turning += angle;
     if (std::fabs(angle) > 3.14159265) {
-      throw std::invalid_argument(named(outline, k) + " turns straight back: the outline folds");
+      throw std::invalid_argument(named(outline, k) +
+                                  " turns straight back: the outline folds; "
+                                  "list the corners in their order round the grain");
     }
     if (angle < -kStraight) {
-      throw std::invalid_argument(named(outline, k) + " turns inwards: the outline is not convex");
+      throw std::invalid_argument(named(outline, k) +
+                                  " turns inwards: the outline is not convex; "
+                                  "leave that corner out, or give the convex hull");
     }
   }
   if (turning > 7) {  // 2 pi for one way round, 4 pi and more for stars
     throw std::invalid_argument(
-        fmt::format("the outline goes {:.0f} times round its inside: it crosses itself",
+        fmt::format("the outline goes {:.0f} times round its inside: it crosses itself; list the "
+                    "corners in their order round the grain",
                     turning / 6.283185307179586));
   }
 }
@@ -133,10 +139,11 @@ Outline centred_outline(const Outline& corners) {
   check_distinct(corners, longest);
   const double shortest = shortest_extent(corners);
   if (!(longest <= kSlenderness * shortest)) {
-    throw std::invalid_argument(fmt::format(
-        "the outline is a sliver: its longest extent {:g} m is more than {:g} times its "
-        "shortest one, {:g} m",
-        longest, kSlenderness, shortest));
+    throw std::invalid_argument(
+        fmt::format("the outline is a sliver: its longest extent {:g} is more than {:g} times its "
+                    "shortest one, "
+                    "{:g}; give it more width",
+                    longest, kSlenderness, shortest));
   }
   check_simple(corners);
   const double area = area_of(corners);

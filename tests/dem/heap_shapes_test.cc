@@ -199,7 +199,7 @@ TEST(GrainFamily, RefusesWhatIsNoGrain) {
   EXPECT_EQ(refusal(s), "accepted");
   s.polydispersity = 1;
   EXPECT_THAT(refusal(s),
-              testing::StartsWith("shape.polydispersity: found 1, allowed: 0 to below"));
+              testing::StartsWith("shape.polydispersity: found 1, allowed: 0 to 0.99"));
   s.polydispersity = -0.1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("shape.polydispersity: found -0.1"));
   s = ShapeSetup{};
@@ -222,6 +222,9 @@ TEST(GrainFamily, RefusesWhatIsNoGrain) {
   s.kind = "irregular";
   s.side = -1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("shape.side: found -1"));
+  s = ShapeSetup{};
+  s.side = 0.003;  // of rand1
+  EXPECT_THAT(refusal(s), testing::HasSubstr("shape.side: found 0.003, allowed: 0, because only"));
 }
 
 TEST(GrainFamily, RefusesOutlinesThatAreNotConvexPolygons) {
@@ -244,6 +247,8 @@ TEST(GrainFamily, RefusesOutlinesThatAreNotConvexPolygons) {
   }
   s.outline = {0, 0, 1, 0, 1, 1, 0, 1};
   EXPECT_EQ(refusal(s), "accepted");
+  for (double& corner : s.outline) corner *= 0.00275;  // in metres
+  EXPECT_THAT(refusal(s), testing::HasSubstr("corners are in units of shape.radius"));
 }
 
 TEST(GrainSupply, PentagonsFillRowsAndStayWithinTheirBounds) {

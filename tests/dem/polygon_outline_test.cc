@@ -75,28 +75,32 @@ std::string complaint(const Outline& outline) {
 }
 
 TEST(PolygonOutline, SaysWhatIsWrongWithWhichCorner) {
-  EXPECT_EQ(complaint({{0, 0}, {1, 0}}), "an outline needs at least 3 corners, found 2");
+  EXPECT_EQ(complaint({{0, 0}, {1, 0}}),
+            "an outline needs at least 3 corners (x1, y1, x2, y2, x3, y3), found 2");
   EXPECT_EQ(complaint(regular(65, 1)), "an outline has at most 64 corners, found 65");
   EXPECT_THAT(complaint({{0, 0}, {NAN, 0}, {0, 1}}), HasSubstr("corner 2 (nan, 0) is not a pair"));
   EXPECT_THAT(complaint({{0, 0}, {INFINITY, 0}, {0, 1}}), HasSubstr("corner 2 (inf, 0)"));
   EXPECT_EQ(complaint({{0, 0}, {1, 0}, {1, 1}, {0, 0}}),
             "corner 4 (0, 0) coincides with corner 1: give each corner once");
   EXPECT_EQ(complaint({{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}),
-            "corner 3 (0.5, 0.5) turns inwards: the outline is not convex");
+            "corner 3 (0.5, 0.5) turns inwards: the outline is not convex; leave that corner out, "
+            "or give the convex hull");
   EXPECT_EQ(complaint({{0, 2}, {0.5, 0.5}, {2, 0}, {0, 0}}),  // the same, clockwise
-            "corner 2 (0.5, 0.5) turns inwards: the outline is not convex");
+            "corner 2 (0.5, 0.5) turns inwards: the outline is not convex; leave that corner out, "
+            "or give the convex hull");
   EXPECT_EQ(complaint({{0, 0}, {2, 2}, {2, 0}, {0, 1}}),
             "the edge from corner 1 (0, 0) crosses the edge from corner 3 (2, 0): the outline "
-            "crosses itself");
+            "crosses itself; list the corners in their order round the grain");
   Outline star;
   for (int k = 0; k < 5; ++k) star.push_back(regular(5, 1)[(2 * k) % 5]);
   EXPECT_THAT(complaint(star), HasSubstr("crosses itself"));
   EXPECT_EQ(complaint(box(21, 1)),
-            "the outline is a sliver: its longest extent 21.0238 m is more than 20 times its "
-            "shortest one, 1 m");
+            "the outline is a sliver: its longest extent 21.0238 is more than 20 times its "
+            "shortest one, 1; give it more width");
   EXPECT_THAT(complaint({{0, 0}, {1, 1}, {2, 2}}), HasSubstr("sliver"));
   EXPECT_EQ(complaint({{0, 0}, {2, 0}, {3, 0}, {2.5, 0}, {1, 1}}),
-            "corner 3 (3, 0) turns straight back: the outline folds");
+            "corner 3 (3, 0) turns straight back: the outline folds; list the corners in their "
+            "order round the grain");
 }
 
 }  // namespace
