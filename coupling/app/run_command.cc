@@ -62,6 +62,7 @@ struct Given {
   std::vector<std::string> sets;
   bool quick = false, resume = false;
   int threads = 0;
+  double checkpoint_seconds = 30;
   long stop_after_steps = 0;
 };
 
@@ -89,6 +90,7 @@ int run(const Given& given) {
   const int cores = ranks.size() > 1 ? 1 : static_cast<int>(std::thread::hardware_concurrency());
   options.threads = given.threads > 0 ? given.threads : std::max(1, cores);
   options.resume = given.resume;
+  options.checkpoint_seconds = given.checkpoint_seconds;
   options.stop_after_steps = given.stop_after_steps;
   options.progress = [&](const EnsembleProgress& p) { line.show(p); };
   options.note = [&](const std::string& text) { line.note(text); };
@@ -119,6 +121,10 @@ void add_run(CLI::App& app, Action& action) {
       "--threads", given->threads,
       "default: all cores; under mpirun one per rank; the results do not depend on it");
   command->add_flag("--resume", given->resume, "continue an interrupted run");
+  command
+      ->add_option("--checkpoint-seconds", given->checkpoint_seconds,
+                   "wall time between checkpoints: what a crash may cost; default 30")
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--stop-after-steps", given->stop_after_steps,
                    "for tests: stop as by Ctrl-C when a realization has made this many steps")

@@ -193,6 +193,7 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
       fmt::format("{} realization{} of grains", tasks.size(), tasks.size() == 1 ? "" : "s"));
   EnsembleOptions ensemble;
   ensemble.threads = options.threads;
+  ensemble.checkpoint_seconds = options.checkpoint_seconds;
   ensemble.stop_after_steps = options.stop_after_steps;
   ensemble.progress = options.progress;
   run_tasks(tasks, ranks, ensemble);

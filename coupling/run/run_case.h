@@ -12,8 +12,9 @@ namespace grainfield::coupling {
 struct RunOptions {
   std::string folder;  ///< of the outputs; made where missing
   int threads = 1;
-  bool resume = false;        ///< continue from FOLDER/checkpoint where there is one
-  long stop_after_steps = 0;  ///< for tests: see EnsembleOptions
+  bool resume = false;             ///< continue from FOLDER/checkpoint where there is one
+  double checkpoint_seconds = 30;  ///< see EnsembleOptions
+  long stop_after_steps = 0;       ///< for tests: see EnsembleOptions
   std::function<void(const EnsembleProgress&)> progress;
   std::function<void(const std::string&)> note;  ///< one line about what begins now
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
 #include <sstream>
 
 #include "coupling/output/tables.h"
@@ -151,6 +152,38 @@ TEST(PileRun, SameBitsOnAnyThreadsAndAfterAStop) {
   }
   ASSERT_EQ(program(run + " --resume --threads 2").code, 0);
   EXPECT_EQ(one, testing::contents(folder / "stopped"));
+}
+
+// Killed without warning at random, in the middle of a step or of writing a checkpoint, while many
+// grains sleep.
+TEST(PileRun, SameBitsAfterKills) {
+  const Folder folder;
+  const std::string run =
+      "run " + folder.write("x.toml", tiny_pile("[output]\nreport = false\n")) +
+      " --set source.grains=200 --set floor.length=8 --set source.height=1 --set rest.max_time=30 "
+      "--set sleep.wake_reach=0.3 --set sleep.quiet_move=0.01 --set ensemble.realizations=1 "
+      "--threads 1 ";
+  ASSERT_EQ(program(run + "-o " + (folder / "whole")).code, 0);
+  const auto whole = testing::contents(folder / "whole");
+  std::mt19937 random(std::random_device{}());
+  int kills = 0, resumed = 0;
+  Output output;
+  do {
+    const double seconds = std::uniform_real_distribution(0.1, 0.8)(random);
+    resumed += testing::fs::exists(folder / "killed/checkpoint/realization_000.h5.checkpoint");
+    output = program(run + "--checkpoint-seconds 0 --resume -o " + (folder / "killed"),
+                     "timeout -s KILL " + std::to_string(seconds));
+    kills += output.code == 137;
+  } while (output.code == 137 && kills < 200);
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_GT(kills, 2);
+  EXPECT_GT(resumed, 1);
+  const auto pieces = testing::contents(folder / "killed");
+  ASSERT_EQ(pieces.size(), whole.size());
+  for (const auto& [name, text] : whole) {
+    ASSERT_EQ(pieces.count(name), 1U) << name;
+    EXPECT_TRUE(pieces.at(name) == text) << name << " differs after " << kills << " kills";
+  }
 }
 
 TEST(PileRun, MoreRealizationsReuseTheGrainsOfAFailedAnalysis) {
