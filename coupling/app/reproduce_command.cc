@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "coupling/app/commands.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/reproduce/page.h"
+#include "coupling/reproduce/record.h"
 
 namespace grainfield::coupling {
 
@@ -16,9 +19,17 @@ void add_reproduce(CLI::App& app, Action& action) {
   auto output = std::make_shared<std::string>();
   command->add_option("folder", *folder, "holds CASE.json: the summary.json of each study")
       ->required();
+  auto add = std::make_shared<std::vector<std::string>>();
+  command
+      ->add_option("--add", *add,
+                   "folder of a finished run: its summary, profiles and pictures come first")
+      ->allow_extra_args(false);
   command->add_option("-o,--output", *output, "page to write; default: print it");
   command->callback([=, &action] {
     action = [=] {
+      for (const std::string& run : *add) {
+        for (const std::string& file : record_run(run, *folder)) fmt::print("{}\n", file);
+      }
       const std::string page = reproduction_page(Results(*folder));
       if (output->empty()) {
         fmt::print("{}", page);

@@ -52,6 +52,30 @@ std::string grain_seconds(const Results& r, const std::string& study) {
   return wall.empty() ? "" : wall + " wall";
 }
 
+// Links to the profiles and the pictures themselves, of the studies that have them.
+std::string profiles_and_maps(const Results& results, const std::vector<std::string>& studies) {
+  std::string out;
+  for (const std::string& study : studies) {
+    std::string links, pictures;
+    for (const std::string& file : results.beside(study)) {
+      const std::string path = "reproduction/results/" + file;
+      if (file.ends_with(".md")) {
+        links += fmt::format(" ([profiles as tables]({}))", path);
+      } else if (file.ends_with(".svg") || file.ends_with(".png")) {
+        const std::string what = file.substr(study.size() + 1);
+        pictures += fmt::format("![{}]({})\n", what.substr(0, what.rfind('.')), path);
+      }
+    }
+    if (!pictures.empty()) out += fmt::format("`{}`{}:\n\n{}\n", study, links, pictures);
+  }
+  if (out.empty()) return out;
+  return "\n## Base pressure and volume fraction\n\n"
+         "To be laid beside Roul 3.3 and 3.4: mean over the piles with standard errors, the "
+         "pressure "
+         "in units of each pile's own ρ g h.\n\n" +
+         out;
+}
+
 }  // namespace
 
 std::string reproduction_page(const Results& results) {
@@ -60,6 +84,7 @@ std::string reproduction_page(const Results& results) {
       "Generated from the summaries in `docs/reproduction/results/` (`CASE.json` is the "
       "`summary.json` of `grainfield run cases/CASE.toml`) by\n\n"
       "    build/release/grainfield reproduce docs/reproduction/results -o docs/reproduction.md\n\n"
+      "`--add DIR` takes the summary, the profiles and the pictures of a finished run in.\n\n"
       "Errors are standard errors over realizations. A number agrees when the source's value with "
       "its reading error (angles 1°, fractions 0.01, \"about\" 25 %) and ours ± 2 standard errors "
       "meet; the spread is too wide to tell when 2 standard errors exceed {:.0f} % of the value, "
@@ -86,6 +111,7 @@ std::string reproduction_page(const Results& results) {
       studies.push_back(figure.study);
     }
   }
+  out += profiles_and_maps(results, studies);
   out +=
       "\n## How they were run\n\n"
       "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step "

@@ -20,10 +20,22 @@ Results::Results(const std::string& folder) {
   }
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+    if (entry.path().extension() == ".json") {
+      files.push_back(entry.path());
+    } else {
+      others_.push_back(entry.path().filename().string());
+    }
   }
+  std::sort(others_.begin(), others_.end());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) all_[file.stem().string()] = read_summary(file.string());
+}
+
+std::vector<std::string> Results::beside(const std::string& name) const {
+  std::vector<std::string> out;
+  std::copy_if(others_.begin(), others_.end(), std::back_inserter(out),
+               [&](const std::string& file) { return file.starts_with(name + "."); });
+  return out;
 }
 
 std::optional<double> Results::plain(const std::string& name, const std::string& key) const {

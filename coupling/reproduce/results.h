@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coupling/output/tables.h"
 
@@ -26,9 +27,12 @@ class Results {
   std::optional<double> plain(const std::string& name, const std::string& key) const;
   std::optional<std::string> text(const std::string& name, const std::string& key) const;
   const std::map<std::string, Summary>& all() const { return all_; }
+  /// Files beside CASE.json whose name begins with "CASE.": profiles and pictures; sorted.
+  std::vector<std::string> beside(const std::string& name) const;
 
  private:
   std::map<std::string, Summary> all_;
+  std::vector<std::string> others_;  // file names
 };
 
 }  // namespace grainfield::coupling

@@ -179,6 +179,30 @@ TEST(Reproduce, AgreementByItsRule) {
   EXPECT_EQ(agreement(f, {1.07, 0.02}), "agrees");
 }
 
+TEST(Reproduce, TakesAFinishedRunIn) {
+  const Folder run, results;
+  run.write("summary.json", R"({"case.name": "pile-elliptic", "repose.mean_deg": 31.5})");
+  run.write("profiles.md", "# Profiles\n");
+  run.write("report.html",
+            R"(<img width="9" height="9" alt="Stress" src="data:image/png;base64,QQ==">)"
+            R"(<img width="9" height="9" alt="Volume fraction" src="data:image/png;base64,UE5H">)"
+            R"(<img width="9" height="9" alt="Vertical pressure on the base" )"
+            R"(src="data:image/svg+xml;base64,PHN2Zy8+">)");
+  const auto output = program("reproduce " + results.path() + " --add " + run.path() + " -o " +
+                              (results / "page.txt"));
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_EQ(testing::read_text(results / "pile-elliptic.json"),
+            testing::read_text(run / "summary.json"));
+  EXPECT_EQ(testing::read_text(results / "pile-elliptic.profiles.md"), "# Profiles\n");
+  EXPECT_EQ(testing::read_text(results / "pile-elliptic.base-pressure.svg"), "<svg/>");
+  EXPECT_EQ(testing::read_text(results / "pile-elliptic.volume-fraction.png"), "PNG");
+  const std::string page = testing::read_text(results / "page.txt");
+  EXPECT_THAT(page, HasSubstr("| 31.5 deg |"));
+  EXPECT_THAT(page, HasSubstr("(reproduction/results/pile-elliptic.profiles.md)"));
+  EXPECT_THAT(page, HasSubstr("![base-pressure](reproduction/results/"));
+  EXPECT_EQ(program("reproduce " + results.path() + " --add " + results.path()).code, 2);
+}
+
 TEST(Reproduce, RefusesFoldersAndFilesThatAreNone) {
   const Folder folder;
   const auto missing = program("reproduce " + (folder / "none"));
