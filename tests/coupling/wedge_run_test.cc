@@ -1,4 +1,5 @@
 // The study of elastic-plastic heaps: shapes of base pressures, slip lines, shipped cases.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -115,6 +116,33 @@ TEST(WedgeRun, HeapsBesideTheClosedWedges) {
   EXPECT_THAT(file("slip_lines_associated.vtu"), HasSubstr("Name=\"line\""));
   EXPECT_THAT(file("core_associated.vtu"), HasSubstr("NumberOfCells=\"2\""));
   EXPECT_THAT(file("heaps.csv"), HasSubstr("associated;0."));
+}
+
+// docs/cases/wedge-construction-history.md: the history moves the pressure by one per cent, soft
+// ground by twice that, and none makes a dip.
+TEST(WedgeRun, HistoryHardlyMovesThePressure) {
+  std::vector<std::string> sets;
+  const std::vector<std::string> heaps = {"at_once", "rise", "grow", "grow_frictional",
+                                          "grow_soft"};
+  for (const std::string& heap : heaps) {
+    sets.push_back("model." + heap + ".cells=12");
+    if (heap != "at_once") sets.push_back("model." + heap + ".layers=6");
+  }
+  const StudyResult result = shipped("wedge-construction-history.toml", sets);
+  const auto figure = [&](const std::string& key) {
+    return std::get<double>(result.summary.at(key));
+  };
+  for (const std::string& heap : heaps) {
+    EXPECT_EQ(word(result, "wedge." + heap + ".base_shape"), "peak") << heap;
+    EXPECT_EQ(word(result, "wedge." + heap + ".nearest"), "ife") << heap;
+    EXPECT_NEAR(figure("model." + heap + ".weight_ratio"), 1, 1e-6) << heap;
+    EXPECT_NEAR(figure("wedge." + heap + ".base_axis"), 0.8, 0.02) << heap;
+  }
+  for (const char* history : {"rise", "grow"}) {
+    EXPECT_LT(figure(fmt::format("compare.{}.max", history)), 0.015) << history;
+    EXPECT_GT(figure(fmt::format("compare.{}.max", history)), 1e-4) << "another way to the end";
+  }
+  EXPECT_LT(figure("compare.grow_soft.max"), 0.03);
 }
 
 TEST(WedgeRun, MapCountsHeapsWithoutEquilibrium) {
