@@ -117,6 +117,13 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   fmt::print("{}: {}D, {} grains ({} fixed), {} contacts ({} with walls), {} walls\n",
              imported.group, s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls,
              s.walls.size());
+  const GrainSizes sizes = grain_sizes(s);
+  fmt::print("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as SI)\n",
+             sizes.diameter, sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
+  const auto warn = [&](const std::string& text) {
+    fmt::print(stderr, "grainfield: warning: {}: {}\n", imported.group, text);
+  };
+  if (const std::string text = strange_units(s); !text.empty()) warn(text);
   if (imported.left_out > 0)
     fmt::print("  left out: {} contacts across periodic boundaries\n", imported.left_out);
   fmt::print("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
@@ -137,8 +144,7 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   } else {
     warnings = doubts_of(check);
   }
-  for (const std::string& text : warnings)
-    fmt::print(stderr, "grainfield: warning: {}: {}\n", imported.group, text);
+  for (const std::string& text : warnings) warn(text);
 }
 
 }  // namespace

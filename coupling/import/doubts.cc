@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that is not at rest
 constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
+constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
+constexpr double kLeastDiameter = 1e-7, kMostDiameter = 100;  // m
 
 std::string unbalanced(const PackingCheck& check) {
   if (!(check.unbalanced_force_ratio > kUnbalanced)) return "";
@@ -28,6 +30,22 @@ std::string unsupported(const PackingCheck& check) {
 }
 
 }  // namespace
+
+GrainSizes grain_sizes(const dem::Snapshot& packing) {
+  GrainSizes sizes;
+  double mass = 0, volume = 0, radius = 0;
+  int count = 0;
+  for (const dem::Grain& grain : packing.grains) {
+    if (grain.fixed) continue;
+    mass += grain.mass;
+    volume += grain.volume;
+    radius += grain.radius;
+    ++count;
+  }
+  sizes.density = mass / volume;
+  sizes.diameter = 2 * radius / count;
+  return sizes;
+}
 
 std::string tension_in(const PackingCheck& check) {
   const double all = check.pairs_along_gravity + check.walls_along_gravity;
@@ -51,6 +69,23 @@ std::vector<std::string> doubts_of(const PackingCheck& check) {
     if (!text.empty()) out.push_back(std::move(text));
   }
   return out;
+}
+
+std::string strange_units(const dem::Snapshot& packing) {
+  const GrainSizes sizes = grain_sizes(packing);
+  const char* unit = packing.dim == 2 ? "kg/m2" : "kg/m3";
+  if (sizes.density < kLeastDensity || sizes.density > kMostDensity) {
+    return fmt::format(
+        "mean density {:.3g} {}, where grains have {:g} to {:g}: are the file's units SI?",
+        sizes.density, unit, kLeastDensity, kMostDensity);
+  }
+  if (sizes.diameter < kLeastDiameter || sizes.diameter > kMostDiameter) {
+    return fmt::format(
+        "mean diameter {:.3g} m, where grains have {:g} to {:g}: are the file's "
+        "units SI?",
+        sizes.diameter, kLeastDiameter, kMostDiameter);
+  }
+  return "";
 }
 
 void DoubtList::add(const std::string& name, const PackingCheck& check) {

@@ -16,6 +16,18 @@ std::string tension_in(const PackingCheck& check);
 /// fixed grains that carry another part of the weight than 0.9 to 1.1. `tension_in` aside.
 std::vector<std::string> doubts_of(const PackingCheck& check);
 
+/// Of the free grains; nan without one.
+struct GrainSizes {
+  double density = 0;   ///< all mass over all volume, kg/m3 (2D kg/m2)
+  double diameter = 0;  ///< mean, m
+};
+GrainSizes grain_sizes(const dem::Snapshot& packing);
+
+/// Why the units may not be SI: a mean density of the free grains (mass over volume) outside 10 to
+/// 30,000 kg/m3 (2D kg/m2) or a mean diameter outside 0.1 um to 100 m; one sentence. Empty:
+/// neither.
+std::string strange_units(const dem::Snapshot& packing);
+
 /// The doubts of several packings as one list: the first that has each, and how many others do.
 class DoubtList {
  public:

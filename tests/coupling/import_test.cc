@@ -1,6 +1,7 @@
 // Our own packings through every foreign format and back, and mistakes in foreign files.
 #include "coupling/import/import.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +66,24 @@ const char* axis_walls =
 const char* fix_walls =
     " --wall floor:y=0:fix=f_floor --wall left:x=0:fix=f_left"
     " --wall right:x=0.12:fix=f_right";
+
+TEST(Import, SaysTheSizesAndDoubtsUnitsThatAreHardlySI) {
+  const Folder folder;
+  const auto imported = [&](double radius, double mass) {
+    const std::string rows = fmt::format("id,x,y,radius,mass\n0,0,0,{0},{1}\n1,{2},0,{0},{1}\n",
+                                         radius, mass, 2 * radius);
+    return program("import --from csv --without-contacts " + folder.write("g.csv", rows) + " -o " +
+                   (folder / "in.h5"));
+  };
+  const Output si = imported(0.001, M_PI * 1e-6 * 5000);
+  EXPECT_THAT(si.out, HasSubstr("mean diameter 0.002 m, density 5000 kg/m2"));
+  EXPECT_EQ(si.err, "");
+  const Output reduced = imported(0.5, M_PI / 4);  // Lennard-Jones units
+  EXPECT_EQ(reduced.code, 0);
+  EXPECT_THAT(reduced.err, HasSubstr("mean density 1 kg/m2, where grains have 10 to 30000"));
+  const Output large = imported(500, M_PI * 250000 * 5000);
+  EXPECT_THAT(large.err, HasSubstr("mean diameter 1e+03 m, where grains have 1e-07 to 100"));
+}
 
 TEST(Import, EveryFormatGivesBackTheStress) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
