@@ -35,7 +35,8 @@ void shape(Section s) {
            "irregular: mean length of a side; 0: of the regular pentagon in the circle of radius",
            "Roul 5.1");
   s.numbers_or_none("outline", "-", +IN(Numbers, pile.shape.outline), {},
-                    "outline: corners x1, y1, x2, y2, ... in units of radius, convex");
+                    "outline: corners x1, y1, x2, y2, ... in units of radius, in their order round "
+                    "the grain, convex; the farthest 0.2 to 5 from the centroid");
 }
 
 void source(Section s) {

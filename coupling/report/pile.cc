@@ -127,6 +127,7 @@ void add_tables(Report& report, const PileReport& in) {
     }
     report.sections.emplace_back(std::move(distances));
   }
+  if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
   for (const auto& [title, rows] :
        {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
     if (rows.empty()) continue;

@@ -52,6 +52,21 @@ std::string grain_seconds(const Results& r, const std::string& study) {
   return wall.empty() ? "" : wall + " wall";
 }
 
+// What the studies themselves conclude.
+std::string verdicts(const Results& results, const std::vector<std::string>& studies) {
+  std::string out;
+  for (const std::string& study : studies) {
+    const auto sentence = results.text(study, "verdict.sentence");
+    const bool judged = study.starts_with("fit-") || results.text(study, "dip.verdict");
+    if (sentence && judged) out += fmt::format("- `{}`: {}\n", study, *sentence);
+  }
+  if (out.empty()) return out;
+  return "\n## Which theory the grains support\n\n" + out +
+         "\nLayers under a point load: [verdict over all "
+         "packings](cases/point-load-verdict.md); lattice piles: "
+         "[Liffman](cases/liffman-lattice.md).\n";
+}
+
 // Links to the profiles and the pictures themselves, of the studies that have them.
 std::string profiles_and_maps(const Results& results, const std::vector<std::string>& studies) {
   std::string out;
@@ -103,14 +118,17 @@ std::string reproduction_page(const Results& results) {
   for (const SourceFigure& figure : source_figures()) {
     const auto [ours, word] = row_of(figure, results);
     const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
-    out += fmt::format("| {} | {} | {}{} | {} | {} | {} | `{}` |\n", figure.source, figure.what,
-                       figure.theirs, unit, ours, word,
-                       optional_number(results, figure.study, "ensemble.realizations", "{:g}"),
-                       figure.study);
+    out += fmt::format(
+        "| {} | {} | {}{} | {} | {} | {} | `{}` |\n", figure.source, figure.what, figure.theirs,
+        unit, ours, word,
+        ours == kNotRun ? ""
+                        : optional_number(results, figure.study, "ensemble.realizations", "{:g}"),
+        figure.study);
     if (std::find(studies.begin(), studies.end(), figure.study) == studies.end()) {
       studies.push_back(figure.study);
     }
   }
+  out += verdicts(results, studies);
   out += profiles_and_maps(results, studies);
   out +=
       "\n## How they were run\n\n"

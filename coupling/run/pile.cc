@@ -270,6 +270,29 @@ class Analysis {
     out.summary["verdict.sentence"] = sentence;
   }
 
+  // A row for every changed gravity.
+  static Table changes_of(const Summary& summary) {
+    Table table{
+        "Changed gravity",
+        "Means over the piles with standard errors; against each pile under its own gravity.",
+        {"state", "contacts per grain, ratio", "contacts opened", "closed", "brought to sliding",
+         "largest displacement / d", "dip's change (rho g h)"},
+        {}};
+    for (const auto& [key, unused] : summary) {
+      const std::string first = "change.", last = ".coordination_ratio";
+      if (!key.starts_with(first) || !key.ends_with(last)) continue;
+      const std::string name = key.substr(0, key.size() - last.size());
+      std::vector<std::string> row{name.substr(first.size())};
+      for (const char* what :
+           {".coordination_ratio", ".contacts_lost", ".contacts_gained", ".newly_sliding",
+            ".max_displacement_over_diameter", ".dip_difference_change"}) {
+        row.push_back(shown_with_error(summary, name + what));
+      }
+      table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+
   static Report page(const StudyResult& result, const Realization* first,
                      const std::string& averaged) {
     PileReport in;
@@ -309,6 +332,7 @@ class Analysis {
                                               "dem.unbalanced_force_ratio",
                                               "average.coarse_graining.balance_rms",
                                               "average.particle_centre.balance_rms"});
+    in.changes = changes_of(result.summary);
     in.made = origin_rows(result);
     return pile_report(in);
   }

@@ -55,12 +55,14 @@ std::string dip_sentence(const Dip& dip) {
                        dip.difference.values, dip.difference.values == 1 ? "" : "s", numbers,
                        least_for_significance);
   }
+  const bool peak = dip.verdict == "peak";
+  const double p = dip.difference.p_value;
   const std::string spread =
-      fmt::format("{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g}", numbers,
-                  dip.difference.mean, dip.difference.standard_error, dip.difference.values,
-                  dip.difference.p_value);
+      fmt::format("{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} of no {}",
+                  numbers, dip.difference.mean, dip.difference.standard_error,
+                  dip.difference.values, peak ? 1 - p : p, peak ? "peak" : "dip");
   if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
-  if (dip.verdict == "peak") return fmt::format("No dip but a pressure peak: {}.", spread);
+  if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);
   return fmt::format("No dip and no peak beyond the spread: {}.", spread);
 }
 

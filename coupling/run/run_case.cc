@@ -89,6 +89,9 @@ class Workplace {
     write_text_file((checkpoint_ / "grains.txt").string(), identity(value));
   }
 
+  bool unfinished() const { return fs::exists(checkpoint_); }
+  bool finished() const { return fs::exists(folder_ / "summary.json"); }
+
   // Finished or half-done realizations that --resume could go on from.
   bool holds_work() const noexcept {
     std::error_code error;
@@ -288,7 +291,13 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
   Workplace place(options.folder);
   bool opened = false;
   try {
-    on_first_rank(ranks, [&] { place.open(value, options.resume); });
+    on_first_rank(ranks, [&] {
+      if (options.resume && !place.unfinished()) {
+        options.note(fmt::format("nothing to resume in {}{}: starting anew", options.folder,
+                                 place.finished() ? ", whose run is finished" : ""));
+      }
+      place.open(value, options.resume);
+    });
     opened = true;
     const InterruptGuard guard;
     compute(value, place, ranks, options);

@@ -80,16 +80,20 @@ void write_page(const std::string& folder, const StudyResult& result) {
 
 }  // namespace
 
+std::string shown_with_error(const Summary& summary, const std::string& key) {
+  const std::string error = shown(summary, key + ".standard_error");
+  return shown(summary, key) + (error.empty() || error == "-" ? "" : " +- " + error);
+}
+
 ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys) {
   ReportRows rows;
   for (const std::string& key : keys) {
     const std::string value = shown(summary, key);
     const SummaryKey* declared = find_summary_key(key);
     if (value.empty() || declared == nullptr) continue;
-    const std::string error = shown(summary, key + ".standard_error");
-    const std::string spread = error.empty() || error == "-" ? "" : " +- " + error;
-    rows.emplace_back(fmt::format("{} ({})", declared->meaning, key),
-                      value + spread + (declared->unit == "-" ? "" : " " + declared->unit));
+    rows.emplace_back(
+        fmt::format("{} ({})", declared->meaning, key),
+        shown_with_error(summary, key) + (declared->unit == "-" ? "" : " " + declared->unit));
   }
   return rows;
 }

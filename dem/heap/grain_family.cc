@@ -175,10 +175,11 @@ void check_shape(const ShapeSetup& s) {
     }
     // Typed in metres, it would make dust or boulders of the grains.
     if (!(farthest >= 1 / kMostStretch && farthest <= kMostStretch)) {
-      throw std::invalid_argument(
-          fmt::format("shape.outline: its farthest corner lies {:g} shape.radius from the "
-                      "centroid, allowed: {:g} to {:g}; corners are in units of shape.radius",
-                      farthest, 1 / kMostStretch, kMostStretch));
+      throw std::invalid_argument(fmt::format(
+          "shape.outline: its farthest corner lies {:g} shape.radius from the "
+          "centroid, allowed: {:g} to {:g}; corners are in units of shape.radius: divide "
+          "metres by {:g}",
+          farthest, 1 / kMostStretch, kMostStretch, s.radius));
     }
   }
 }

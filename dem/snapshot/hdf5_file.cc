@@ -68,6 +68,10 @@ Handle open_for_reading(const std::string& file) {
   if (!std::filesystem::exists(file, error)) {
     throw std::invalid_argument(fmt::format("{}: no such file", file));
   }
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::invalid_argument(
+        fmt::format("{0}: a folder; name its file, such as {0}/snapshots.h5", file));
+  }
   if (H5Fis_hdf5(file.c_str()) <= 0) {
     throw std::invalid_argument(
         fmt::format("{}: not an HDF5 file, or its beginning is broken", file));

@@ -123,6 +123,20 @@ TEST(PileRun, LeavesEverything) {
 
 // Grains are fixed with their tops at y = 0, where the simulation measures from; the plane far
 // below them is no floor.
+TEST(PileRun, ReportTellsWhatChangedGravityDid) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", tiny_pile());
+  const Output run = program("run " + file + " -o " + (folder / "out") +
+                             " --resume --set change.gravity=[8.829,5.0] --set source.grains=25");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out + run.err, HasSubstr("nothing to resume in"));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("<h2>Changed gravity</h2>"));
+  EXPECT_THAT(page, HasSubstr("gravity_8.829"));
+  EXPECT_THAT(page, HasSubstr("gravity_5"));
+  EXPECT_THAT(page, HasSubstr("contacts opened"));
+}
+
 TEST(PileRun, ARoughFloorLiesAtTheTopsOfItsGrains) {
   const Folder folder;
   const std::string file = folder.write("x.toml", tiny_pile("[output]\nreport = false\n"));

@@ -79,10 +79,10 @@ TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
                         "| agrees | 8 | `pile-point-source` |"));
   EXPECT_THAT(page, HasSubstr("| 24.0 ± 0.5 deg | differs by 2 deg (4.0 standard errors) |"));
   EXPECT_THAT(page,
-              HasSubstr("| dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.001; centre over "
-                        "largest 0.80 | agrees |"));
+              HasSubstr("| dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.001 of no dip; centre "
+                        "over largest 0.80 | agrees |"));
   // A line source with a dip is a difference.
-  EXPECT_THAT(page, HasSubstr("p = 0.001; centre over largest 0.80 | differs |"));
+  EXPECT_THAT(page, HasSubstr("p = 0.001 of no dip; centre over largest 0.80 | differs |"));
   EXPECT_THAT(page, HasSubstr("| too few realizations to tell |"));
   // The ratio of 0.22 +- 0.2 and 0.1 +- 0.02.
   EXPECT_THAT(page, HasSubstr("| about 2 | 2.200 ± 2.048 | spread too wide to tell |"));
