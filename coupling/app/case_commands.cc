@@ -36,7 +36,8 @@ void add_keys(CLI::App& app, Action& action) {
   auto section = std::make_shared<std::string>();
   auto markdown = std::make_shared<bool>(false);
   auto summary = std::make_shared<bool>(false);
-  command->add_option("section", *section, "only this section or key, such as fit or fit.heights");
+  command->add_option("section", *section,
+                      "only this section, key or part of one, such as fit, fit.heights or frict");
   command->add_flag("--markdown", *markdown, "as the page docs/keys.md");
   command->add_flag("--summary", *summary, "the keys of summary.json instead");
   command->callback([=, &action] {

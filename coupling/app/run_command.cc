@@ -57,6 +57,9 @@ class ProgressLine {
   std::chrono::steady_clock::time_point last_;
 };
 
+// Of the smaller radius; Roul's piles reach 0.04.
+constexpr double kDeepOverlap = 0.1;
+
 struct Given {
   std::string file, output;
   std::vector<std::string> sets;
@@ -70,6 +73,14 @@ void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
   const auto sentence = summary.find("verdict.sentence");
   if (sentence != summary.end()) fmt::print("{}\n", std::get<std::string>(sentence->second));
+  const auto at = summary.find("dem.max_overlap_ratio");
+  const double* overlap = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
+  if (overlap != nullptr && *overlap > kDeepOverlap) {
+    fmt::print(stderr,
+               "grainfield: warning: grains overlap by up to {:.0f} % of a radius, too soft for a "
+               "contact law of small overlaps; raise material.young\n",
+               100 * *overlap);
+  }
   fmt::print("results: {}\n", folder);
   if (value.output.report) fmt::print("report: {}/report.html\n", folder);
 }

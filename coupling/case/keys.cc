@@ -206,12 +206,20 @@ std::string value_text(const Key& key, const Case& value) {
       key.where);
 }
 
+// Letters that a search for keys takes.
+constexpr std::size_t kLeastPart = 3;
+
 std::string keys_text(const std::string& section) {
   const auto names = sections();
   const Key* one = find_key(section);
   const bool known =
       section.empty() || std::find(names.begin(), names.end(), section) != names.end();
-  if (one == nullptr && !known) {
+  // A part of a key's path: all keys that have it.
+  const auto has_part = [&](const Key& key) {
+    return section.size() >= kLeastPart && key.path().find(section) != std::string::npos;
+  };
+  const bool part = one == nullptr && !known && std::any_of(keys().begin(), keys().end(), has_part);
+  if (one == nullptr && !known && !part) {
     // A key's path is nearest to keys, a word to sections.
     std::vector<std::string> near = names;
     if (section.find('.') != std::string::npos) {
@@ -225,7 +233,10 @@ std::string keys_text(const std::string& section) {
   }
   std::string out, current = "-";
   for (const Key& key : keys()) {
-    if (known ? !section.empty() && key.section != section : &key != one) continue;
+    const bool wanted = known  ? section.empty() || key.section == section
+                        : part ? has_part(key)
+                               : &key == one;
+    if (!wanted) continue;
     if (key.section != current) {
       current = key.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", heading(current));

@@ -329,6 +329,7 @@ class Analysis {
                                               "dip.difference",
                                               "dip.standard_error",
                                               "dip.p_value",
+                                              "dem.max_overlap_ratio",
                                               "dem.unbalanced_force_ratio",
                                               "average.coarse_graining.balance_rms",
                                               "average.particle_centre.balance_rms"});

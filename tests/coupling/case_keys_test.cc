@@ -16,6 +16,7 @@ namespace grainfield::coupling {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Keys, EveryPathIsDeclaredOnceWithMeaningUnitAndDefault) {
   std::set<std::string> seen;
@@ -68,6 +69,10 @@ TEST(Keys, OneKeyAlone) {
   EXPECT_THAT(text, HasSubstr("  heights = [0.1, 0.25, 0.4]"));
   EXPECT_EQ(text.find("huber"), std::string::npos);
   EXPECT_THAT(keys_text("study"), HasSubstr("study = "));
+  const std::string found = keys_text("frict");
+  EXPECT_THAT(found, HasSubstr("floor_friction = "));
+  EXPECT_THAT(found, HasSubstr("  friction = "));
+  EXPECT_THAT(found, Not(HasSubstr("young = ")));
   try {
     keys_text("fit.hights");
     FAIL();

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Output;
 using testing::program;
 
@@ -219,6 +220,16 @@ TEST(PileRun, MoreRealizationsReuseTheGrainsOfAFailedAnalysis) {
 }
 
 // Forty grains have no flanks to measure: the user has to say how steep they are.
+TEST(PileRun, WarnsOfGrainsThatAreTooSoft) {
+  const Folder folder;
+  const std::string run = "run " + folder.write("x.toml", tiny_pile("[output]\nreport = false\n")) +
+                          " --set source.grains=25 --set ensemble.realizations=1 -o ";
+  EXPECT_THAT(program(run + (folder / "stiff")).err, Not(HasSubstr("too soft")));
+  const Output soft = program(run + (folder / "soft") + " --set material.young=3e4");
+  EXPECT_EQ(soft.code, 0) << soft.err;
+  EXPECT_THAT(soft.err, HasSubstr("too soft for a contact law"));
+}
+
 TEST(PileRun, FrictionAngleIsNotGuessed) {
   const Folder folder;
   const std::string file = folder.write(
