@@ -9,10 +9,14 @@
 namespace grainfield::dem::hdf5 {
 namespace {
 
-// HDF5 prints its own error stack; ours is one line.
-void silence() {
+// HDF5 prints its own error stack; ours is one line. And we close what we open: at the program's
+// end HDF5 would write once more to files that could not be closed on a full disk, and crash.
+void prepare() {
   static std::once_flag once;
-  std::call_once(once, [] { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); });
+  std::call_once(once, [] {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  });
 }
 
 [[noreturn]] void fail_write(const std::string& name) {
@@ -63,7 +67,7 @@ std::vector<T> read_any(hid_t group, const std::string& name, int columns, const
 }  // namespace
 
 Handle open_for_reading(const std::string& file) {
-  silence();
+  prepare();
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
     throw std::invalid_argument(fmt::format("{}: no such file", file));
@@ -84,7 +88,7 @@ Handle open_for_reading(const std::string& file) {
 }
 
 Handle open_for_adding(const std::string& file) {
-  silence();
+  prepare();
   std::error_code error;
   const bool there = std::filesystem::exists(file, error);
   Handle handle(there ? H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <random>
 #include <sstream>
 
@@ -178,13 +179,16 @@ TEST(PileRun, SameBitsAfterKills) {
       " --set source.grains=200 --set floor.length=8 --set source.height=1 --set rest.max_time=30 "
       "--set sleep.wake_reach=0.3 --set sleep.quiet_move=0.01 --set ensemble.realizations=1 "
       "--threads 1 ";
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(program(run + "-o " + (folder / "whole")).code, 0);
+  const double whole_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const auto whole = testing::contents(folder / "whole");
   std::mt19937 random(std::random_device{}());
   int kills = 0, resumed = 0;
   Output output;
   do {
-    const double seconds = std::uniform_real_distribution(0.1, 0.8)(random);
+    const double seconds = whole_seconds * std::uniform_real_distribution(0.05, 0.35)(random);
     resumed += testing::fs::exists(folder / "killed/checkpoint/realization_000.h5.checkpoint");
     output = program(run + "--checkpoint-seconds 0 --resume -o " + (folder / "killed"),
                      "timeout -s KILL " + std::to_string(seconds));
