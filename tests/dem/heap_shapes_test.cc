@@ -198,8 +198,7 @@ TEST(GrainFamily, RefusesWhatIsNoGrain) {
   ShapeSetup s;
   EXPECT_EQ(refusal(s), "accepted");
   s.polydispersity = 1;
-  EXPECT_THAT(refusal(s),
-              testing::StartsWith("shape.polydispersity: found 1, allowed: 0 to 0.99"));
+  EXPECT_THAT(refusal(s), testing::StartsWith("shape.polydispersity: found 1, allowed: 0 to 0.99"));
   s.polydispersity = -0.1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("shape.polydispersity: found -0.1"));
   s = ShapeSetup{};
