@@ -90,6 +90,10 @@ int run(const Given& given) {
     throw std::invalid_argument(
         fmt::format("--threads: found {}, allowed: 1 or more", given.threads));
   }
+  if (!(given.checkpoint_seconds >= 0)) {
+    throw std::invalid_argument(fmt::format("--checkpoint-seconds: found {:g}, allowed: 0 or more",
+                                            given.checkpoint_seconds));
+  }
   const Case value = read_case(find_case(given.file), given.quick, given.sets);
   const Ranks ranks;
   ProgressLine line(!ranks.first());
@@ -132,10 +136,8 @@ void add_run(CLI::App& app, Action& action) {
       "--threads", given->threads,
       "default: all cores; under mpirun one per rank; the results do not depend on it");
   command->add_flag("--resume", given->resume, "continue an interrupted run");
-  command
-      ->add_option("--checkpoint-seconds", given->checkpoint_seconds,
-                   "wall time between checkpoints: what a crash may cost; default 30")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--checkpoint-seconds", given->checkpoint_seconds,
+                      "wall time between checkpoints: what a crash may cost; default 30");
   command
       ->add_option("--stop-after-steps", given->stop_after_steps,
                    "for tests: stop as by Ctrl-C when a realization has made this many steps")

@@ -39,6 +39,8 @@ TEST(Errors, Usage) {
   expect_refusal(program("rum x.toml"), 2, "rum");
   expect_refusal(program("run"), 2, "run: case is required");
   expect_refusal(program("keys materiel"), 2, "nearest: material");
+  expect_refusal(program("run fit-osl-point --checkpoint-seconds -1"), 2,
+                 "--checkpoint-seconds: found -1, allowed: 0 or more");
   EXPECT_EQ(program("--help").code, 0);
   EXPECT_THAT(program("--version").out, StartsWith("grainfield "));
 }
