@@ -96,6 +96,11 @@ int run(const Given& given) {
   }
   const Case value = read_case(find_case(given.file), given.quick, given.sets);
   const Ranks ranks;
+  if (ranks.first()) {
+    for (const std::string& text : value.idle) {
+      fmt::print(stderr, "grainfield: warning: {}\n", text);
+    }
+  }
   ProgressLine line(!ranks.first());
   RunOptions options;
   options.folder = !given.output.empty() ? given.output

@@ -36,22 +36,27 @@ void average(Section s) {
          {"coarse_graining", "particle_centre", "area_exact"},
          "averagings to report; the first one is compared with the models",
          "Weinhart et al. 2012; Roul 2.6");
-  s.word("kernel", +IN(string, average.kernel), {"lucy", "gaussian", "heaviside"},
-         "coarse_graining: the weight", "Weinhart et al. 2012");
+  s.word("kernel", +IN(string, average.kernel), {"lucy", "gaussian", "heaviside"}, "the weight",
+         "Weinhart et al. 2012");
+  s.only("average.methods", {"coarse_graining"});
   s.number("width", "m", +IN(double, average.width), kNotNegative,
-           "coarse_graining: w of the kernel (lucy ends at 2 w); wider is smoother and blurs "
+           "w of the kernel (lucy ends at 2 w); wider is smoother and blurs "
            "peaks; 0: width_diameters mean diameters");
+  s.only("average.methods", {"coarse_graining"});
   s.number("width_diameters", "-", +IN(double, average.width_diameters), {0, 100, true},
            "the same in mean grain diameters, used where width is 0");
+  s.only("average.width", {"0.0"});
   s.word("rve_shape", +IN(string, average.rve_shape), {"circle", "square"},
-         "particle_centre, area_exact: shape of the representative volume element");
-  s.number(
-      "rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
-      "particle_centre, area_exact: radius or half side; larger is smoother; 0: rve_diameters mean "
-      "diameters",
-      "Roul 3.2");
+         "shape of the representative volume element");
+  s.only("average.methods", {"particle_centre", "area_exact"});
+  s.number("rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
+           "radius or half side; larger is smoother; 0: rve_diameters mean "
+           "diameters",
+           "Roul 3.2");
+  s.only("average.methods", {"particle_centre", "area_exact"});
   s.number("rve_diameters", "-", +IN(double, average.rve_diameters), {0, 100, true},
            "the same in mean grain diameters, used where rve_radius is 0");
+  s.only("average.rve_radius", {"0.0"});
   s.number("depths", "-", +IN(Numbers, average.depths), {0, 1, true},
            "profiles below the surface, as shares of the layer's height; the base is always added");
   s.number("points", "-", +IN(Integer, average.points), {3, 100000}, "of a profile");

@@ -125,7 +125,11 @@ std::string write_case(const Case& value) {
     std::string remark = key.unit == "-" ? "" : key.unit + "; ";
     remark += key.meaning;
     if (!key.choices.empty()) remark = allowed(key) + "; " + remark;
-    out += fmt::format("# {}\n{} = {}\n", remark, key.name, value_text(key, value));
+    // A written-out case says what holds: keys without effect are there for those who look.
+    const bool idle = is_idle(key, value);
+    if (idle) remark = fmt::format("only with {}; {}", condition(key), remark);
+    out += fmt::format("# {}\n{}{} = {}\n", remark, idle ? "# " : "", key.name,
+                       value_text(key, value));
   }
   for (const auto& model : value.models) {
     const auto& info = continuum::find_model(model.name);

@@ -173,6 +173,9 @@ struct Case {
   SweepSetup sweep;
   std::vector<Variant> variants;    ///< members of a sweep whose key is "variant"
   std::vector<ModelChoice> models;  ///< in the order of compare.models
+  /// Keys that were written but have no effect with what the case chooses elsewhere, a line each:
+  /// "FILE:LINE: KEY: ...".
+  std::vector<std::string> idle;
 };
 
 /// One member of a sweep: the value as folder and key suffix ("friction_0.3") and its case.

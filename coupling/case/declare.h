@@ -35,7 +35,9 @@ class Section {
                      meaning,
                      source,
                      range.open_least,
-                     false});
+                     false,
+                     "",
+                     {}});
   }
   /// A list of numbers that may be empty.
   void numbers_or_none(const std::string& name, const std::string& unit, Binding where, Range range,
@@ -46,10 +48,15 @@ class Section {
   void word(const std::string& name, Binding where, std::vector<std::string> choices,
             const std::string& meaning, const std::string& source = "") {
     keys_.push_back(
-        {name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false, false});
+        {name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false, false, "", {}});
+  }
+  /// The last key has an effect only where another one is (or, of a list, holds) one of these.
+  void only(const std::string& needs, std::vector<std::string> needed) {
+    keys_.back().needs = needs;
+    keys_.back().needed = std::move(needed);
   }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
-    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false, false});
+    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false, false, "", {}});
   }
 
  private:

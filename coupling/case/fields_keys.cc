@@ -34,12 +34,15 @@ void fields(Section s) {
            "is smoother and sees less of the heap's edges",
            "Roul 2.7 (100-200 grains)");
   s.number("sizes", "-", +IN(Numbers, fields.sizes), kPositive,
-           "rve_size: radii that are tried, mean grain diameters", "Roul figs 2.8-2.10");
+           "radii that are tried, mean grain diameters", "Roul figs 2.8-2.10");
+  s.only("fields.topics", {"rve_size"});
   s.number("tolerance", "-", +IN(double, fields.tolerance), {0, 1, true},
-           "rve_size: an RVE is large enough when larger ones change its mean by less than half of "
+           "an RVE is large enough when larger ones change its mean by less than half of "
            "this and it scatters between piles by less than this; smaller asks for larger RVEs");
+  s.only("fields.topics", {"rve_size"});
   s.word("measure", +IN(string, fields.measure), strain_measures(),
          "strain of elastic, fabric and forces", "Roul 2.6.2, 3.8");
+  s.only("fields.topics", {"elastic", "fabric", "forces"});
   s.number("columns", "-", +IN(Integer, fields.columns), {3, 10000},
            "points of the maps along x, over the whole heap");
   s.number("rows", "-", +IN(Integer, fields.rows), {3, 10000}, "points of the maps along y");

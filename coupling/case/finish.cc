@@ -242,6 +242,7 @@ std::vector<std::string>& model_names(Case& value) {
 }
 
 void finish(Draft& draft) {
+  draft.value.idle.clear();
   check_sections(draft);
   choose_models(draft);
   check_elastic(draft);
@@ -250,6 +251,13 @@ void finish(Draft& draft) {
   check_verdict(draft);
   check_grains(draft);
   check_sweep(draft);
+  for (const auto& [path, a] : draft.last) {
+    const Key& key = *find_key(path);
+    if (!is_idle(key, draft.value)) continue;
+    draft.value.idle.push_back(fmt::format("{}: {}: has no effect, only with {} (now {})", a.origin,
+                                           path, condition(key),
+                                           value_text(*find_key(key.needs), draft.value)));
+  }
 }
 
 }  // namespace grainfield::coupling

@@ -32,38 +32,50 @@ void packing(Section s) {
            "radius of mono and of the larger bidisperse grains; larger grains: fewer of them and a "
            "longer time step",
            kRoul);
+  s.only("packing.sizes", {"mono", "bidisperse"});
   s.number("radius_small", "m", +IN(double, packing.radius_small), kPositive,
            "radius of the smaller bidisperse grains", kRoul);
+  s.only("packing.sizes", {"bidisperse"});
   s.number("fraction_small", "-", +IN(double, packing.fraction_small), {0, 1},
            "share by number of the smaller bidisperse grains; 0 and 1 are mono-disperse");
+  s.only("packing.sizes", {"bidisperse"});
   s.number("radius_min", "m", +IN(double, packing.radius_min), kPositive,
            "smallest radius of uniform sizes; it sets the time step", kRoul);
+  s.only("packing.sizes", {"uniform"});
   s.number("radius_max", "m", +IN(double, packing.radius_max), kPositive,
            "largest radius of uniform sizes", kRoul);
+  s.only("packing.sizes", {"uniform"});
   s.number("columns", "-", +IN(int, packing.columns), {2, 100000},
-           "lattices: grains in a row; more moves the side walls away from the load", kRoul);
+           "grains in a row; more moves the side walls away from the load", kRoul);
+  s.only("packing.kind", {"triangular", "sqrt3"});
   s.number("rows", "-", +IN(int, packing.rows), {1, 100000},
-           "lattices: rows of grains; more makes the layer deeper", kRoul);
-  s.number(
-      "spacing", "-", +IN(double, packing.spacing), {0.71, 1},
-      "sqrt3: distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
-      "not touch and a grain has four contacts",
-      "Roul 5.4");
+           "rows of grains; more makes the layer deeper", kRoul);
+  s.only("packing.kind", {"triangular", "sqrt3"});
+  s.number("spacing", "-", +IN(double, packing.spacing), {0.71, 1},
+           "distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
+           "not touch and a grain has four contacts",
+           "Roul 5.4");
+  s.only("packing.kind", {"sqrt3"});
   s.number("width", "m", +IN(double, packing.width), kPositive,
-           "layered: distance of the side walls; four depths keep their influence small", kRoul);
+           "distance of the side walls; four depths keep their influence small", kRoul);
+  s.only("packing.kind", {"layered"});
   s.number("depth", "m", +IN(double, packing.depth), kPositive,
-           "layered: rows are dropped until the surface is this high", kRoul);
+           "rows are dropped until the surface is this high", kRoul);
+  s.only("packing.kind", {"layered"});
   s.number("drop_height", "m", +IN(double, packing.drop_height), kPositive,
-           "layered: height above the surface from which a row falls; higher packs denser",
+           "height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
+  s.only("packing.kind", {"layered"});
   s.word("shape", +IN(string, packing.shape), {"disk", "irregular"},
-         "layered: disks, or irregular pentagons (sizes and radii are not used)", "Roul 5.1");
-  s.number("side", "m", +IN(double, packing.side), kPositive, "irregular: mean length of a side",
-           "Roul 5.1");
+         "disks, or irregular pentagons (sizes and radii are not used)", "Roul 5.1");
+  s.only("packing.kind", {"layered"});
+  s.number("side", "m", +IN(double, packing.side), kPositive, "mean length of a side", "Roul 5.1");
+  s.only("packing.shape", {"irregular"});
   s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
          "flat wall with friction, or a row of fixed grains", "Roul 5.5");
   s.number("jitter", "-", +IN(double, packing.jitter), {0, 0.5},
-           "lattices: radii uniform in radius * [1 - 2 jitter, 1]; 0 is the perfect lattice");
+           "radii uniform in radius * [1 - 2 jitter, 1]; 0 is the perfect lattice");
+  s.only("packing.sizes", {"mono"});
 }
 
 void material(Section s) {
@@ -73,20 +85,25 @@ void material(Section s) {
   s.number("density", "kg/m2", +SHARED(double, material.density), kPositive,
            "areal density of the grains; heavier grains: longer time step", kBoth);
   s.number("young", "N/m", +SHARED(double, material.young), kPositive,
-           "overlap_area: Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
+           "Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
            "time step",
            kBoth);
+  s.only("material.law", {"overlap_area"});
   s.number("damping", "-", +SHARED(double, material.damping), kNotNegative,
-           "overlap_area: gamma of the normal dashpot; more dissipates faster", kBoth);
+           "gamma of the normal dashpot; more dissipates faster", kBoth);
+  s.only("material.law", {"overlap_area"});
   s.number("normal_stiffness", "N/m", +SHARED(double, material.normal_stiffness), kPositive,
-           "linear: normal spring");
+           "normal spring");
+  s.only("material.law", {"linear"});
   s.number("tangential_stiffness", "N/m", +SHARED(double, material.tangential_stiffness),
-           kNotNegative,
-           "linear: tangential spring; 2/7 of the normal one makes both swing in step");
+           kNotNegative, "tangential spring; 2/7 of the normal one makes both swing in step");
+  s.only("material.law", {"linear"});
   s.number("normal_damping", "1/s", +SHARED(double, material.normal_damping), kNotNegative,
-           "linear: normal force of the dashpot per reduced mass and approach velocity");
+           "normal force of the dashpot per reduced mass and approach velocity");
+  s.only("material.law", {"linear"});
   s.number("tangential_damping", "1/s", +SHARED(double, material.tangential_damping), kNotNegative,
-           "linear: the same, tangential");
+           "tangential force of the dashpot per reduced mass and slip velocity");
+  s.only("material.law", {"linear"});
   s.number(
       "friction", "-", +SHARED(double, material.friction), {0, 10},
       "Coulomb coefficient grain on grain; more merges the two peaks of the sqrt(3) lattice into "
@@ -111,6 +128,7 @@ void motion(Section s) {
            "grains edge "
            "on edge",
            "Roul 2.10");
+  s.only("motion.time_step", {"0.0"});
 }
 
 void rest(Section s) {

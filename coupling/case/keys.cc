@@ -87,6 +87,12 @@ Defaults defaults_of(const Key& key) {
   return out;
 }
 
+// What stands before a key's meaning: for which studies and with which choices it has an effect.
+std::string limits(const Key& key) {
+  const std::string with = condition(key);
+  return own_studies(key) + (with.empty() ? "" : "with " + with + ": ");
+}
+
 }  // namespace
 
 std::string toml_text(const std::string& text) {
@@ -158,6 +164,34 @@ bool key_applies(const Key& key, const std::string& study) {
   const Study* known = find_study(study);
   return known == nullptr || std::find(known->without.begin(), known->without.end(), key.path()) ==
                                  known->without.end();
+}
+
+bool is_idle(const Key& key, const Case& value) {
+  const Key* other = key.needs.empty() ? nullptr : find_key(key.needs);
+  if (other == nullptr || !key_applies(*other, value.study)) return false;
+  if (value.sweep.key == "variant" || value.sweep.key == other->path()) return false;
+  if (is_idle(*other, value)) return true;
+  return std::visit(
+      [&](auto where) {
+        const auto& held = where(const_cast<Case&>(value));  // only read
+        const auto& needed = key.needed;
+        const auto is_needed = [&](const std::string& word) {
+          return std::find(needed.begin(), needed.end(), word) != needed.end();
+        };
+        using T = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+          return std::none_of(held.begin(), held.end(), is_needed);
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          return !is_needed(held);
+        } else {
+          return !is_needed(value_text(*other, value));
+        }
+      },
+      other->where);
+}
+
+std::string condition(const Key& key) {
+  return key.needs.empty() ? "" : fmt::format("{} = {}", key.needs, fmt::join(key.needed, " or "));
 }
 
 std::string type_name(const Key& key) {
@@ -248,8 +282,7 @@ std::string keys_text(const std::string& section) {
       others += fmt::format("; {}: {}", study, text);
     out += fmt::format("  {} = {}{}  ({}; {}; {})\n      {}{}{}\n", key.name, defaults.first,
                        others, type_name(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
-                       own_studies(key), key.meaning,
-                       key.source.empty() ? "" : " [" + key.source + "]");
+                       limits(key), key.meaning, key.source.empty() ? "" : " [" + key.source + "]");
   }
   return out;
 }
@@ -283,7 +316,7 @@ std::string keys_markdown() {
     }
     out +=
         fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_name(key), key.unit,
-                    standard, cell(allowed(key)), own_studies(key) + cell(key.meaning), key.source);
+                    standard, cell(allowed(key)), cell(limits(key) + key.meaning), key.source);
   }
   return out;
 }

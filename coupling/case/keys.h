@@ -26,6 +26,9 @@ struct Key {
   std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
   bool open_least = false;           ///< the least value itself is not allowed
   bool may_be_empty = false;         ///< lists: without any value
+  std::string needs;                 ///< path of the key on which it depends; empty: on none
+  std::vector<std::string>
+      needed;  ///< ... and the values (as TOML, words bare) that give it effect
 
   std::string path() const { return section.empty() ? name : section + "." + name; }
 };
@@ -37,6 +40,11 @@ std::vector<std::string> sections();
 /// Whether a section, or a key of it, means something to a study (coupling/run/studies.h).
 bool section_applies(const std::string& section, const std::string& study);
 bool key_applies(const Key& key, const std::string& study);
+/// Whether what the case chooses elsewhere leaves a key without effect (source.height of a line
+/// source). Not when the run varies that choice.
+bool is_idle(const Key& key, const Case& value);
+/// "source.kind = point"; empty for a key that depends on no other.
+std::string condition(const Key& key);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);

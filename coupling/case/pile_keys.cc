@@ -25,18 +25,21 @@ void shape(Section s) {
            "sizes uniform in radius (1 -+ this); the smallest grain sets the time step",
            "Roul table 2 (point 0.3, line 0.1)");
   s.number("corners_min", "-", +IN(Integer, pile.shape.corners_min), {3, 64},
-           "rand1, regular: fewest corners; fewer: rougher grains",
-           "Roul table 2 (point 6-8, line 7)");
+           "fewest corners; fewer: rougher grains", "Roul table 2 (point 6-8, line 7)");
+  s.only("shape.kind", {"rand1", "regular"});
   s.number("corners_max", "-", +IN(Integer, pile.shape.corners_max), {3, 64},
-           "rand1, regular: most corners; uniform between the two", kRoul);
+           "most corners; uniform between the two", kRoul);
+  s.only("shape.kind", {"rand1", "regular"});
   s.number("axis_ratio", "-", +IN(double, pile.shape.axis_ratio), {1, 5},
-           "rand1: major over minor axis of the ellipse", "Roul 3.1 (elliptic: 2)");
+           "major over minor axis of the ellipse", "Roul 3.1 (elliptic: 2)");
+  s.only("shape.kind", {"rand1"});
   s.number("side", "m", +IN(double, pile.shape.side), kNotNegative,
-           "irregular: mean length of a side; 0: of the regular pentagon in the circle of radius",
-           "Roul 5.1");
+           "mean length of a side; 0: of the regular pentagon in the circle of radius", "Roul 5.1");
+  s.only("shape.kind", {"irregular"});
   s.numbers_or_none("outline", "-", +IN(Numbers, pile.shape.outline), {},
-                    "outline: corners x1, y1, x2, y2, ... in units of radius, in their order round "
+                    "corners x1, y1, x2, y2, ... in units of radius, in their order round "
                     "the grain, convex; the farthest 0.2 to 5 from the centroid");
+  s.only("shape.kind", {"outline"});
 }
 
 void source(Section s) {
@@ -47,29 +50,35 @@ void source(Section s) {
            "comes to a point before",
            kRoul);
   s.number("height", "m", +IN(double, pile.source.height), kPositive,
-           "point: of the funnel's mouth above the floor; higher: faster grains at the top", kRoul);
+           "of the funnel's mouth above the floor; higher: faster grains at the top", kRoul);
+  s.only("source.kind", {"point"});
   s.number("speed", "m/s", +IN(double, pile.source.speed), kNotNegative, "downwards, at the start",
            kRoul);
   s.number("interval", "s", +IN(double, pile.source.interval), kPositive,
-           "point: from one grain to the next; longer: each grain comes to rest before the next, "
+           "from one grain to the next; longer: each grain comes to rest before the next, "
            "and the pouring takes as much longer",
            kRoul);
+  s.only("source.kind", {"point"});
   s.number("spread", "-", +IN(double, pile.source.spread), {0, 1000},
-           "point: grains start within +- this many mean radii of the funnel's axis");
+           "grains start within +- this many mean radii of the funnel's axis");
+  s.only("source.kind", {"point"});
   s.number("move", "m", +IN(double, pile.source.move), {},
-           "point: the funnel moves this far to the right while it pours; an asymmetric pile",
+           "the funnel moves this far to the right while it pours; an asymmetric pile",
            "Roul 3.11");
+  s.only("source.kind", {"point"});
   s.number("clearance", "m", +IN(double, pile.source.clearance), kPositive,
-           "line: height above the pile from which a layer falls", kRoul);
-  s.number(
-      "length", "m", +IN(double, pile.source.length), kPositive,
-      "line: of the first layer; later ones are as long as the pile's plateau. Pouring ends when "
-      "it has come to a point: about 0.7 of the finished pile's base fits all grains",
-      "Roul 3.1");
+           "height above the pile from which a layer falls", kRoul);
+  s.only("source.kind", {"line"});
+  s.number("length", "m", +IN(double, pile.source.length), kPositive,
+           "of the first layer; later ones are as long as the pile's plateau. Pouring ends when "
+           "it has come to a point: about 0.7 of the finished pile's base fits all grains",
+           "Roul 3.1");
+  s.only("source.kind", {"line"});
   s.number("shift", "m", +IN(double, pile.source.shift), {},
-           "line: every layer's middle lies this far to the right of the last one's; an asymmetric "
+           "every layer's middle lies this far to the right of the last one's; an asymmetric "
            "pile, steeper on the right; below 0: to the left",
            "Roul 3.11");
+  s.only("source.kind", {"line"});
 }
 
 void ground(Section s) {
@@ -86,17 +95,23 @@ void sleep(Section s) {
          "final state is always relaxed with every grain awake");
   s.number("quiet_time", "s", +IN(double, pile.sleep.quiet_time), kPositive,
            "a grain must be quiet this long before it sleeps; longer: fewer errors, dearer");
+  s.only("sleep.on", {"true"});
   s.number("quiet_move", "-", +IN(double, pile.sleep.quiet_move), kPositive,
            "quiet: moved less than this share of its diameter in quiet_time");
+  s.only("sleep.on", {"true"});
   s.number("quiet_force", "-", +IN(double, pile.sleep.quiet_force), kPositive,
            "quiet: resultant below this share of the forces on it");
+  s.only("sleep.on", {"true"});
   s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), kPositive,
            "wakes: resultant above this share of the forces on it; less wakes more");
+  s.only("sleep.on", {"true"});
   s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), kPositive,
            "wakes: touched at more than this times sqrt(g d)");
+  s.only("sleep.on", {"true"});
   s.number("wake_reach", "-", +IN(double, pile.sleep.wake_reach), kNotNegative,
            "wakes: within this times d v / sqrt(g d) of a grain that comes near at such a speed v; "
            "0: only what it touches, and impacts hardly move the pile");
+  s.only("sleep.on", {"true"});
 }
 
 void change(Section s) {
@@ -107,9 +122,11 @@ void change(Section s) {
   s.word("method", +IN(string, pile.change.method), {"newton", "damped"},
          "quasi-static solver on the contact network, or slow damped dynamics");
   s.number("unbalanced_force_ratio", "-", +IN(double, pile.change.unbalanced_force_ratio),
-           {0, 0.1, true}, "newton: mean resultant over mean contact force to be reached");
+           {0, 0.1, true}, "mean resultant over mean contact force to be reached");
+  s.only("change.method", {"newton"});
   s.number("ramp_time", "s", +IN(double, pile.change.ramp_time), kPositive,
-           "damped: from the old to the new gravity; longer is closer to quasi-static");
+           "from the old to the new gravity; longer is closer to quasi-static");
+  s.only("change.method", {"damped"});
 }
 
 void heap(Section s) {
