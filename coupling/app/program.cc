@@ -13,6 +13,7 @@
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
 #include "coupling/run/interrupt.h"
+#include "coupling/version.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -29,7 +30,7 @@ int complain(int code, const std::string& what) {
 int parse_and_act(int argc, char** argv) {
   CLI::App app{"grainfield: grains in, fields out, and a verdict on the continuum models",
                "grainfield"};
-  app.set_version_flag("--version", "grainfield " GRAINFIELD_VERSION);
+  app.set_version_flag("--version", "grainfield " + version_and_commit());
   app.require_subcommand(1);
   Action action;
   add_run(app, action);

@@ -69,6 +69,26 @@ struct Given {
   long stop_after_steps = 0;
 };
 
+// As a shell takes it: in single quotes where it holds more than plain characters.
+std::string shell_word(const std::string& text) {
+  const std::string plain = "_-+.,:=/@%";
+  const bool quote = !std::all_of(text.begin(), text.end(), [&](unsigned char ch) {
+    return std::isalnum(ch) != 0 || plain.find(static_cast<char>(ch)) != std::string::npos;
+  });
+  if (!quote && !text.empty()) return text;
+  std::string out = "'";
+  for (const char ch : text) out += ch == '\'' ? std::string("'\\''") : std::string(1, ch);
+  return out + "'";
+}
+
+/// What decides the numbers, as it was typed: neither folder nor threads.
+std::string command_of(const Given& given) {
+  std::string out = "grainfield run " + shell_word(given.file);
+  if (given.quick) out += " --quick";
+  for (const std::string& text : given.sets) out += " --set " + shell_word(text);
+  return out;
+}
+
 void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
   const auto sentence = summary.find("verdict.sentence");
@@ -94,7 +114,8 @@ int run(const Given& given) {
     throw std::invalid_argument(fmt::format("--checkpoint-seconds: found {:g}, allowed: 0 or more",
                                             given.checkpoint_seconds));
   }
-  const Case value = read_case(find_case(given.file), given.quick, given.sets);
+  Case value = read_case(find_case(given.file), given.quick, given.sets);
+  value.command = command_of(given);
   const Ranks ranks;
   if (ranks.first()) {
     for (const std::string& text : value.idle) {

@@ -17,6 +17,7 @@
 #include "coupling/output/field_io.h"
 #include "coupling/run/average_files.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/version.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -184,7 +185,7 @@ FitOutcome fit_files(const FitRequest& request) {
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
   out.verdict = result.comparison.verdict.sentence;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));
-  result.summary["version"] = std::string(GRAINFIELD_VERSION);
+  result.summary["version"] = version_and_commit();
   result.summary["ensemble.realizations"] =
       static_cast<std::int64_t>(result.comparison.realizations);
   require_documented(result.summary);

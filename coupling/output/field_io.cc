@@ -13,6 +13,7 @@
 #include "coupling/averaging/nearest.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/xdmf.h"
+#include "coupling/version.h"
 #include "dem/snapshot/hdf5_file.h"
 
 namespace grainfield::coupling {
@@ -154,7 +155,7 @@ void write_fields(const std::string& file, const NamedFields& fields) {
   {
     h5::Handle out = h5::open_for_adding(target.temporary());
     h5::write_attribute(out, "program", "grainfield");
-    h5::write_attribute(out, "version", GRAINFIELD_VERSION);
+    h5::write_attribute(out, "version", version_and_commit());
     h5::write_attribute(out, "field_format", format_version);
     for (const auto& [name, field] : fields) write_one(out, name, field, file);
     h5::finish(std::move(out), file);

@@ -150,13 +150,13 @@ std::string reproduction_page(const Results& results) {
       return optional_number(results, study, key, format);
     };
     out += fmt::format(
-        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | `grainfield run cases/{}.toml` "
-        "|\n",
-        study, value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
+        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | `{}` |\n", study,
+        value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
         value("source.interval", "{:g}"), value("sleep.wake_reach", "{:g}"),
         value("dem.time_step", "{:.3g}"), value("dem.steps", "{:.4g}"),
         value("dem.grain_steps", "{:.3g}"), grain_seconds(results, study),
-        value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""), study);
+        value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""),
+        results.text(study, "case.command").value_or("grainfield run cases/" + study + ".toml"));
   }
   out +=
       "\n## Misprints and inconsistencies of the sources\n\n"

@@ -20,6 +20,7 @@
 #include "coupling/run/heap_field.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/version.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -252,7 +253,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     }
   }
   const Comparison comparison = compared(scene, std::move(profiles), std::move(models));
-  summary["version"] = std::string(GRAINFIELD_VERSION);
+  summary["version"] = version_and_commit();
   summary["ensemble.realizations"] = static_cast<std::int64_t>(scene.field.realizations);
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
@@ -267,7 +268,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   make_folder(request.folder);
   const ReportRows made{{"fields", request.file},
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
-                        {"version", GRAINFIELD_VERSION}};
+                        {"version", version_and_commit()}};
   write_profiles(request.folder, comparison);
   write_report(request.folder + "/report.html",
                page_of(request, scene, comparison, map, model_maps, made));

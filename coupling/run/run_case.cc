@@ -18,6 +18,7 @@
 #include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
+#include "coupling/version.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -30,7 +31,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string identity(const Case& value) {
-  return "# grainfield " GRAINFIELD_VERSION "\n" + grain_keys_text(value);
+  return "# grainfield " + version() + "\n" + grain_keys_text(value);
 }
 
 std::string read_text(const fs::path& file) {

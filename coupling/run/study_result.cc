@@ -12,6 +12,7 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/version.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -100,7 +101,7 @@ ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& k
 
 ReportRows origin_rows(const StudyResult& result) {
   ReportRows rows;
-  for (const char* key : {"case.name", "case.hash", "version", "ensemble.realizations",
+  for (const char* key : {"case.command", "case.hash", "version", "ensemble.realizations",
                           "ensemble.seed", "dem.steps", "dem.time_step"}) {
     const std::string value = shown(result.summary, key);
     if (!value.empty()) rows.emplace_back(key, value);
@@ -124,8 +125,9 @@ std::string hash_text(const std::string& text) {
 void add_identity(Summary& summary, const Case& value) {
   summary["case.name"] = value.name;
   summary["case.study"] = value.study;
+  if (!value.command.empty()) summary["case.command"] = value.command;
   summary["case.hash"] = hash_text(write_case(value));
-  summary["version"] = std::string(GRAINFIELD_VERSION);
+  summary["version"] = version_and_commit();
   if (study_of(value).has_grains()) {
     summary["ensemble.realizations"] = value.ensemble.realizations;
     summary["ensemble.seed"] = value.ensemble.seed;

@@ -24,9 +24,11 @@ bool matches(const char* pattern, const char* text) {
 const std::vector<SummaryKey>& summary_keys() {
   static const std::vector<SummaryKey> before_models = {
       {"case.name", "text", "name of the case file"},
+      {"case.command", "text", "what was run, without folder and threads (they change no number)"},
       {"case.study", "text", "kind of study"},
       {"case.hash", "text", "FNV-1a hash of the written-out case (case.toml)"},
-      {"version", "text", "of grainfield"},
+      {"version", "text",
+       "of grainfield, with the commit it was built from (+: files were changed)"},
       {"ensemble.realizations", "-", "independent packings"},
       {"ensemble.seed", "-", "seed from which the realizations' seeds are derived"},
       {"dem.grains", "-", "moving grains"},

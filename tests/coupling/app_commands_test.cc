@@ -193,11 +193,19 @@ TEST(Commands, SweepLeavesOneFolderPerValueAndASummary) {
   const Folder folder;
   const std::string text = tiny_case(
       "[output]\nvtu = false\n[sweep]\nkey = \"material.friction\"\nvalues = [0.3, 0.6]\n");
-  const Output run = program("run " + folder.write("x.toml", text) +
-                             " --set ensemble.realizations=1 -o " + (folder / "out"));
+  const std::string file = folder.write("x.toml", text);
+  const Output run = program("run " + file + " --set ensemble.realizations=1 --set " +
+                             "'average.depths=[0.4, 0.6]' --threads 1 -o " + (folder / "out"));
   ASSERT_EQ(run.code, 0) << run.err;
   const Summary all = read_summary(folder / "out/summary.json");
   const Summary one = read_summary(folder / "out/friction_0.6/summary.json");
+  // What decides the numbers, ready for a shell.
+  const std::string command =
+      "grainfield run " + file + " --set ensemble.realizations=1 --set 'average.depths=[0.4, 0.6]'";
+  EXPECT_EQ(std::get<std::string>(all.at("case.command")), command);
+  EXPECT_EQ(std::get<std::string>(one.at("case.command")), command);
+  EXPECT_THAT(testing::read_text(folder / "out/friction_0.6/report.html"),
+              HasSubstr("ensemble.realizations=1"));
   EXPECT_EQ(all.at("response.peak.friction_0.6"), one.at("response.peak"));
   EXPECT_NE(all.at("response.peak.friction_0.6"), all.at("response.peak.friction_0.3"));
   EXPECT_TRUE(testing::fs::exists(folder / "out/report.html"));

@@ -98,8 +98,8 @@ base = "rough"
 )" + more;
 }
 
-/// Every file below a folder by relative name. Times and memory (keys time.*, memory.*) are left
-/// out.
+/// Every file below a folder by relative name. Times, memory and the command (keys time.*,
+/// memory.*, case.command) are left out.
 inline std::map<std::string, std::string> contents(const std::string& folder) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -110,6 +110,7 @@ inline std::map<std::string, std::string> contents(const std::string& folder) {
       std::string line, kept;
       while (std::getline(lines, line)) {
         if (line.find("\"time.") != std::string::npos) continue;
+        if (line.find("\"case.command") != std::string::npos) continue;
         if (line.find("\"memory.") == std::string::npos) kept += line + "\n";
       }
       text = kept;

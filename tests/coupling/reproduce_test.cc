@@ -181,7 +181,8 @@ TEST(Reproduce, AgreementByItsRule) {
 
 TEST(Reproduce, TakesAFinishedRunIn) {
   const Folder run, results;
-  run.write("summary.json", R"({"case.name": "pile-elliptic", "repose.mean_deg": 31.5})");
+  run.write("summary.json", R"({"case.name": "pile-elliptic", "repose.mean_deg": 31.5,
+                               "case.command": "grainfield run pile-elliptic --set a=1"})");
   run.write("profiles.md", "# Profiles\n");
   run.write("report.html",
             R"(<img width="9" height="9" alt="Stress" src="data:image/png;base64,QQ==">)"
@@ -198,6 +199,7 @@ TEST(Reproduce, TakesAFinishedRunIn) {
   EXPECT_EQ(testing::read_text(results / "pile-elliptic.volume-fraction.png"), "PNG");
   const std::string page = testing::read_text(results / "page.txt");
   EXPECT_THAT(page, HasSubstr("| 31.5 deg |"));
+  EXPECT_THAT(page, HasSubstr("| `grainfield run pile-elliptic --set a=1` |"));
   EXPECT_THAT(page, HasSubstr("(reproduction/results/pile-elliptic.profiles.md)"));
   EXPECT_THAT(page, HasSubstr("![base-pressure](reproduction/results/"));
   EXPECT_EQ(program("reproduce " + results.path() + " --add " + results.path()).code, 2);
