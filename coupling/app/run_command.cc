@@ -93,6 +93,8 @@ void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
   const auto sentence = summary.find("verdict.sentence");
   if (sentence != summary.end()) fmt::print("{}\n", std::get<std::string>(sentence->second));
+  const auto differences = summary.find("sweep.sentence");
+  if (differences != summary.end()) fmt::print("{}\n", std::get<std::string>(differences->second));
   const auto at = summary.find("dem.max_overlap_ratio");
   const double* overlap = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
   if (overlap != nullptr && *overlap > kDeepOverlap) {

@@ -172,10 +172,10 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
     out.texts.insert(out.texts.end(), result.texts.begin(), result.texts.end());
     sentence += (sentence.empty() ? "" : " ") + result.sentence;
   }
-  out.overview = {{"E (N/m)", "elastic.young"},
-                  {"RVE (grains)", "rve_size.grains"},
-                  {"g2", "fabric.g2"},
-                  {"coordination", "heap.coordination"}};
+  out.overview = {{"E (N/m)", "elastic.young", ""},
+                  {"RVE (grains)", "rve_size.grains", ""},
+                  {"g2", "fabric.g2", ""},
+                  {"coordination", "heap.coordination", ""}};
   out.comparison.verdict.sentence = sentence;
   out.summary["verdict.sentence"] = sentence;
   const std::string gaps = piles.gaps_text();

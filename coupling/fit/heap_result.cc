@@ -57,11 +57,11 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", fits_markdown(*fits)},
                {"fits.tex", fits_tex(*fits)}};
-  out.overview = {{"best model", "verdict.best_model"},
-                  {"beta_hat (deg)", "fit.cantelaube.beta_hat_deg"},
-                  {"b1", "fit.cantelaube.b1"},
-                  {"eta", "fit.osl.eta"},
-                  {"mu", "fit.osl.mu"}};
+  out.overview = {{"best model", "verdict.best_model", ""},
+                  {"beta_hat (deg)", "fit.cantelaube.beta_hat_deg", ""},
+                  {"b1", "fit.cantelaube.b1", ""},
+                  {"eta", "fit.osl.eta", ""},
+                  {"mu", "fit.osl.mu", ""}};
   out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
     return page_of(result, first, *fits, drawn);
   };

@@ -144,11 +144,13 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", layer_fits_markdown(*fits)},
                {"fits.tex", layer_fits_tex(*fits)}};
-  out.overview = {
-      {"best model", "verdict.best_model"},    {"alone", "verdict.distinguishable"},
-      {"equations", "verdict.equations"},      {"within the errors", "verdict.agrees"},
-      {"peaks on the base", "response.peaks"}, {"peak / (F/h)", "response.peak_over_F_per_h"},
-      {"contacts lost", "load.contacts_lost"}};
+  out.overview = {{"best model", "verdict.best_model", ""},
+                  {"alone", "verdict.distinguishable", ""},
+                  {"equations", "verdict.equations", ""},
+                  {"within the errors", "verdict.agrees", ""},
+                  {"peaks on the base", "response.peaks", ""},
+                  {"peak / (F/h)", "response.peak_over_F_per_h", ""},
+                  {"contacts lost", "load.contacts_lost", ""}};
   for (Frame& frame : layer_frames(*fits, "sigma_yy", {"0.5", "base"})) {
     out.sweep_frames.push_back(std::move(frame));
   }

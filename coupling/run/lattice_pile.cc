@@ -60,13 +60,13 @@ class Analysis {
                                    fmt::format("{:g}°", lattice_.slope_deg));
     out.sweep_x = "x / B";
     out.sweep_y = "force / (m g)";
-    out.overview = {{"disks", "dem.grains"},
-                    {"rows", "liffman.rows"},
-                    {"N: largest error", "liffman.normal_max_error"},
-                    {"H: largest error", "liffman.horizontal_max_error"},
-                    {"N: lines", "liffman.line_normal_max_difference"},
-                    {"H: lines", "liffman.line_horizontal_max_difference"},
-                    {"contacts in rows", "liffman.row_contacts"}};
+    out.overview = {{"disks", "dem.grains", ""},
+                    {"rows", "liffman.rows", ""},
+                    {"N: largest error", "liffman.normal_max_error", ""},
+                    {"H: largest error", "liffman.horizontal_max_error", ""},
+                    {"N: lines", "liffman.line_normal_max_difference", ""},
+                    {"H: lines", "liffman.line_horizontal_max_difference", ""},
+                    {"contacts in rows", "liffman.row_contacts", ""}};
     return out;
   }
 

@@ -38,13 +38,13 @@ class Analysis {
     out.page = [averaged](const StudyResult& result, const Realization* first) {
       return page(result, first, averaged);
     };
-    out.overview = {{"dip ratio", "dip.ratio"},
-                    {"dip difference (rho g h)", "dip.difference"},
-                    {"standard error", "dip.standard_error"},
-                    {"p", "dip.p_value"},
-                    {"repose left (deg)", "dem.repose_angle_left_deg"},
-                    {"repose right (deg)", "dem.repose_angle_right_deg"},
-                    {"volume fraction", "heap.volume_fraction"}};
+    out.overview = {{"dip ratio", "dip.ratio", ""},
+                    {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
+                    {"p of a dip", "dip.p_value", ""},
+                    {"repose (deg)", "repose.mean_deg", ""},
+                    {"left - right (deg)", "repose.left_minus_right_deg", ""},
+                    {"volume fraction", "heap.volume_fraction", ""},
+                    {"contacts per grain", "heap.coordination", ""}};
     return out;
   }
 

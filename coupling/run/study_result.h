@@ -14,6 +14,14 @@
 
 namespace grainfield::coupling {
 
+/// A column of a sweep's table.
+struct OverviewColumn {
+  std::string heading, key;  ///< of the summary
+  std::string error_key;     ///< of its standard error; empty: KEY.standard_error
+
+  std::string error() const { return error_key.empty() ? key + ".standard_error" : error_key; }
+};
+
 struct StudyResult {
   Case value;
   Comparison comparison;
@@ -26,8 +34,7 @@ struct StudyResult {
   /// Builds report.html from this result and its first realization (null without grains). Empty:
   /// the page of a loaded layer.
   std::function<Report(const StudyResult&, const Realization*)> page;
-  /// Columns of a sweep's table: heading, summary key. Empty: those of a loaded layer.
-  std::vector<std::pair<std::string, std::string>> overview;
+  std::vector<OverviewColumn> overview;  ///< of a sweep's table; empty: those of a loaded layer
   /// Frames of this member in a sweep's report, grains and models. Empty: one curve in the frames
   /// that all members share.
   std::vector<Frame> sweep_frames;
