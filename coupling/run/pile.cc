@@ -276,7 +276,7 @@ class Analysis {
         "Changed gravity",
         "Means over the piles with standard errors; against each pile under its own gravity.",
         {"state", "contacts per grain, ratio", "contacts opened", "closed", "brought to sliding",
-         "largest displacement / d", "dip's change (rho g h)"},
+         "largest displacement / r", "dip's change (rho g h)"},
         {}};
     for (const auto& [key, unused] : summary) {
       const std::string first = "change.", last = ".coordination_ratio";
@@ -285,7 +285,7 @@ class Analysis {
       std::vector<std::string> row{name.substr(first.size())};
       for (const char* what :
            {".coordination_ratio", ".contacts_lost", ".contacts_gained", ".newly_sliding",
-            ".max_displacement_over_diameter", ".dip_difference_change"}) {
+            ".max_displacement_over_radius", ".dip_difference_change"}) {
         row.push_back(shown_with_error(summary, name + what));
       }
       table.rows.push_back(std::move(row));

@@ -167,14 +167,8 @@ void PileEnsemble::add_change(const std::string& name, const dem::Snapshot& pile
                               const dem::Snapshot& changed, const PileFrame& frame) {
   require_same_grains(pile, changed);
   const double now = coordination(changed);
-  double largest = 0;
-  for (std::size_t g = 0; g < pile.grains.size(); ++g) {
-    largest = std::max(largest, (changed.grains[g].position - pile.grains[g].position).norm());
-  }
   figures_["change." + name + ".coordination"].push_back(now);
   figures_["change." + name + ".coordination_ratio"].push_back(now / coordination(pile));
-  figures_["change." + name + ".max_displacement_over_diameter"].push_back(largest /
-                                                                           frame.diameter);
   const BaseWindows before = base_windows(pile, frame, value_.heap);
   const BaseWindows after = base_windows(changed, frame, value_.heap);
   // Pressures in units of the pile's rho g h: the gravity's own factor is taken out.
