@@ -14,11 +14,15 @@ std::string duration_text(double seconds) {
 std::string progress_text(const EnsembleProgress& p) {
   const std::string awake =
       p.awake > 0 && p.awake < p.grains ? fmt::format(", {} awake", p.awake) : "";
-  return fmt::format(
-      "{:3.0f} %  {}/{} done  {}  t {:.3f} s  {} grains{}  kinetic {:.1e} J  unbalanced {:.1e}  {} "
-      "left",
-      100 * p.fraction, p.done, p.total, p.phase, p.simulated_time, p.grains, awake,
-      p.kinetic_energy, p.unbalanced_force_ratio, duration_text(p.seconds_left));
+  // The quasi-static solver has neither time nor speeds.
+  const bool moving = p.simulated_time > 0;
+  const std::string time = moving ? fmt::format("  t {:.3f} s", p.simulated_time) : "";
+  const std::string forces = moving ? fmt::format("  kinetic {:.1e} J  unbalanced {:.1e}",
+                                                  p.kinetic_energy, p.unbalanced_force_ratio)
+                                    : "";
+  return fmt::format("{:3.0f} %  {}/{} done  {}{}  {} grains{}{}  {} left", 100 * p.fraction,
+                     p.done, p.total, p.phase, time, p.grains, awake, forces,
+                     duration_text(p.seconds_left));
 }
 
 }  // namespace grainfield::coupling

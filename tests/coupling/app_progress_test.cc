@@ -36,6 +36,10 @@ TEST(Progress, LineNamesEverything) {
   EXPECT_EQ(progress_text(p).find("awake"), std::string::npos);
   p.seconds_left = -1;
   EXPECT_TRUE(progress_text(p).ends_with("? left"));
+  // A solver without time has neither speeds nor a clock to tell of.
+  p.phase = "gravity_5";
+  p.simulated_time = p.kinetic_energy = p.unbalanced_force_ratio = 0;
+  EXPECT_EQ(progress_text(p), " 12 %  1/4 done  gravity_5  80 grains  ? left");
 }
 
 }  // namespace
