@@ -33,6 +33,7 @@ struct Work {
   const NewtonProblem* problem = nullptr;
   Eigen::VectorXd u, r, x;
   std::vector<double> history, sizes;  // largest |r|; 2-norm, which the line search lowers
+  bool stalled = false, singular = false;
   std::exception_ptr thrown;
 };
 
@@ -68,8 +69,10 @@ int tangent_callback(N_Vector u, N_Vector r, SUNMatrix, void* data, N_Vector, N_
     w.history.push_back(view(r).cwiseAbs().maxCoeff());
     w.sizes.push_back(view(r).norm());
     const std::size_t k = w.sizes.size();
-    if (k > kPatience && w.sizes[k - 1] > kProgress * w.sizes[k - 1 - kPatience]) return -1;
-    return w.problem->factorize(w.u) ? 0 : -1;
+    w.stalled = k > kPatience && w.sizes[k - 1] > kProgress * w.sizes[k - 1 - kPatience];
+    if (w.stalled) return -1;
+    w.singular = !w.problem->factorize(w.u);
+    return w.singular ? -1 : 0;
   });
 }
 
@@ -109,6 +112,23 @@ Owned<Handle> own(Handle handle) {
   return Owned<Handle>(handle);
 }
 
+std::string reason(const Work& w, int flag) {
+  if (w.stalled) return "the residual hardly falls";
+  if (w.singular) return "the tangent is singular";
+  switch (flag) {
+    case KIN_MAXITER_REACHED:
+      return "too many iterations";
+    case KIN_LINESEARCH_NONCONV:
+    case KIN_LINESEARCH_BCFAIL:
+    case KIN_STEP_LT_STPTOL:
+      return "no step lowers the residual";
+    default:
+      const std::unique_ptr<char, decltype(&std::free)> name(KINGetReturnFlagName(flag),
+                                                             &std::free);
+      return name ? name.get() : "?";
+  }
+}
+
 void require(int flag, const char* call) {
   if (flag < 0) throw std::logic_error(std::string("KINSOL refused ") + call);
 }
@@ -126,6 +146,8 @@ NewtonReport newton(const NewtonProblem& problem, const NewtonSettings& settings
   const auto iterate = own(N_VMake_Serial(n, u.data(), context.get()));
   const auto ones = own(N_VNew_Serial(n, context.get()));
   N_VConst(1, ones.get());
+  const auto scales = own(N_VNew_Serial(n, context.get()));
+  N_VConst(1 / settings.scale, scales.get());
   const auto matrix = own(SUNMatNewEmpty(context.get()));
   matrix->ops->getid = custom_matrix;
   matrix->ops->zero = zero_matrix;
@@ -150,7 +172,7 @@ NewtonReport newton(const NewtonProblem& problem, const NewtonSettings& settings
   require(KINSetMaxBetaFails(memory, kBetaFails), "KINSetMaxBetaFails");
   require(KINSetMaxNewtonStep(memory, kMostStep), "KINSetMaxNewtonStep");
 
-  const int flag = KINSol(memory, iterate.get(), KIN_LINESEARCH, ones.get(), ones.get());
+  const int flag = KINSol(memory, iterate.get(), KIN_LINESEARCH, scales.get(), ones.get());
   if (work.thrown) std::rethrow_exception(work.thrown);
   NewtonReport report;
   long iterations = 0;
@@ -162,10 +184,7 @@ NewtonReport newton(const NewtonProblem& problem, const NewtonSettings& settings
   report.converged = norm <= settings.tolerance;
   report.history = std::move(work.history);
   report.history.push_back(norm);
-  if (!report.converged) {
-    const std::unique_ptr<char, decltype(&std::free)> name(KINGetReturnFlagName(flag), &std::free);
-    report.why = name ? name.get() : "?";
-  }
+  if (!report.converged) report.why = reason(work, flag);
   return report;
 }
 

@@ -21,13 +21,14 @@ struct NewtonProblem {
 struct NewtonSettings {
   double tolerance = 1e-9;  ///< largest |r| to be reached
   int max_iterations = 25;
+  double scale = 1;  ///< a large value of an unknown; steps are measured in it
 };
 
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   std::vector<double> history;  ///< largest |r| before each iteration, and at the end
-  std::string why;              ///< not converged: KINSOL's reason
+  std::string why;              ///< not converged: the reason in words
 };
 
 /// Improves u, the first guess. Without convergence u is the last iterate. What a callback throws

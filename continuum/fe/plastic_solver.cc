@@ -52,7 +52,10 @@ struct PlasticSolver::Impl : PlasticBody {
       clear_held(x);
     };
     const NewtonReport report =
-        newton(problem, {settings.tolerance, std::clamp(settings.work - spent, 1, iterations)}, u);
+        newton(problem,
+               {settings.tolerance, std::clamp(settings.work - spent, 1, iterations),
+                settings.displacement_scale},
+               u);
     spent += report.iterations;
     return report;
   }

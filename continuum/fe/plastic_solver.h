@@ -46,11 +46,12 @@ struct PlasticSettings {
   double tolerance = 1e-9;          ///< largest residual of a node over the force scale
   /// Where Newton's method stalls, at a corner of the yield surface, this residual will do.
   double stalled = 1e-5;
-  int iterations = 25;          ///< most Newton iterations in a load step
-  double first_step = 1;        ///< part of a stage's load that is tried first
-  double least_step = 1e-3;     ///< a smaller one is given up
-  double tangent_floor = 1e-9;  ///< of the elastic stiffness, added to the tangent alone
-  double stress_scale = 1;      ///< a large stress, N/m^2 (2D: N/m)
+  int iterations = 25;            ///< most Newton iterations in a load step
+  double first_step = 1;          ///< part of a stage's load that is tried first
+  double least_step = 1e-3;       ///< a smaller one is given up
+  double tangent_floor = 1e-9;    ///< of the elastic stiffness, added to the tangent alone
+  double stress_scale = 1;        ///< a large stress, N/m^2 (2D: N/m)
+  double displacement_scale = 1;  ///< a large displacement, m
   /// A step that fails is taken in viscoplastic time when it is not longer than this part of the
   /// stage's load; 0: never.
   double viscous_step = 0.25;

@@ -24,20 +24,80 @@ constexpr double kOnBorder = 1e-9;
 /// base holds the material.
 constexpr double kCoreFrom = 0.3, kCoreTo = 0.9;
 constexpr int kCoreDepths = 25, kCoreSamples = 400;
+/// Part of the half width that is left out beside the slope: there is hardly any stress.
+constexpr double kCoreSkin = 0.03;
+/// Of height and weight: squares and cubes of them occur.
+constexpr double kLeast = 1e-50, kMost = 1e50;
+/// A heap with more is elastic all over.
+constexpr double kMostCohesion = 1e6;
 
-/// The heap cut by lines along its sides into cells^2 congruent triangles.
-struct Lattice {
+/// Layers along two unlike slopes need mesh lines of their own in each half.
+bool in_halves(const WedgeProblem& p) {
+  return p.history == WedgeHistory::grow && p.left_deg != p.right_deg;
+}
+
+/// The heap cut by lines along its sides into cells^2 congruent triangles; or each of its halves
+/// below the apex likewise, the left one first.
+class Lattice {
+ public:
   explicit Lattice(const WedgeProblem& p)
       : left(-p.height / std::tan(p.left_deg * kDegree), -p.height),
-        right(p.height / std::tan(p.right_deg * kDegree), -p.height) {}
-  /// Of a point: parts of the apex, the left and the right foot.
-  Eigen::Vector3d parts(const Vector2d& p, double height) const {
-    const double apex = (p[1] + height) / height;
-    const double from_left = (p[0] - left[0] * (1 - apex)) / (right[0] - left[0]);
-    return {apex, 1 - apex - from_left, from_left};
+        right(p.height / std::tan(p.right_deg * kDegree), -p.height),
+        cells_(p.cells),
+        halves_(in_halves(p)) {}
+
+  fe::TriangleMesh mesh() const {
+    const Vector2d apex = Vector2d::Zero(), below(0, left[1]);
+    if (!halves_) return fe::triangle_lattice(left, right, apex, cells_);
+    fe::TriangleMesh out = fe::triangle_lattice(left, below, apex, cells_);
+    const fe::TriangleMesh other = fe::triangle_lattice(below, right, apex, cells_);
+    // Rows of cells + 1, cells, ... 1 corners: the left half's last ones are the right's first.
+    std::vector<int> renamed;
+    int end = -1;
+    for (int row = 0, i = 0; row <= cells_; ++row) {
+      end += cells_ - row + 1;
+      for (int k = 0; k <= cells_ - row; ++k, ++i) {
+        if (k > 0) out.vertices.push_back(other.vertices[static_cast<std::size_t>(i)]);
+        renamed.push_back(k > 0 ? static_cast<int>(out.vertices.size()) - 1 : end);
+      }
+    }
+    for (auto t : other.triangles) {
+      for (int& corner : t) corner = renamed[static_cast<std::size_t>(corner)];
+      out.triangles.push_back(t);
+    }
+    return out;
   }
+
+  /// Index of the triangle that holds the point; -1 outside.
+  int triangle_at(const Vector2d& p) const {
+    const bool on_right = halves_ && p[0] > 0;
+    const double from = on_right ? 0 : left[0], to = halves_ && !on_right ? 0 : right[0];
+    const int n = cells_;
+    // Parts of the apex and of the right foot; the left foot has the rest.
+    const double apex = 1 - p[1] / left[1], across = (p[0] - from * (1 - apex)) / (to - from);
+    if (!(std::min({apex, across, 1 - apex - across}) >= -kOnBorder)) return -1;
+    const double row = std::clamp(apex, 0., 1.) * n, column = std::clamp(across, 0., 1.) * n;
+    const int r = std::min(static_cast<int>(row), n - 1);
+    const int i = std::min(static_cast<int>(column), n - 1 - r);
+    const bool down = (row - r) + (column - i) > 1 && i + r + 1 < n;
+    // Row r starts after sum_{k<r} (2 (n - k) - 1) triangles.
+    return (on_right ? n * n : 0) + r * (2 * n - r) + 2 * i + (down ? 1 : 0);
+  }
+
+  /// A corner of the base near its middle.
+  int base_corner() const { return halves_ ? cells_ : cells_ / 2; }
+
   Vector2d left, right;
+
+ private:
+  int cells_;
+  bool halves_;
 };
+
+/// Mesh lines between layers: so many of `cells` are needed for each.
+int cells_of_a_layer(const WedgeProblem& p) {
+  return p.history == WedgeHistory::grow && !in_halves(p) ? 2 : 1;
+}
 
 /// The layer in which a point of the final heap is laid, from 0.
 int layer_of(const WedgeProblem& p, const Lattice& lattice, const Vector2d& point) {
@@ -86,19 +146,26 @@ void check_wedge(const WedgeProblem& p) {
   for (const auto& [name, slope] :
        {std::pair("left_deg", p.left_deg), std::pair("right_deg", p.right_deg)})
     refuse(!(slope > 0 && slope < 90), name, slope, "above 0 to below 90 deg");
-  refuse(!(p.height > 0), "height", p.height, "above 0 m");
-  refuse(!(p.rho_g > 0), "rho_g", p.rho_g, "above 0");
+  // Powers of these up to the third occur.
+  refuse(!(p.height >= kLeast && p.height <= kMost), "h", p.height, "1e-50 to 1e50 m");
+  refuse(!(p.rho_g >= kLeast && p.rho_g <= kMost), "rho_g", p.rho_g, "1e-50 to 1e50");
+  refuse(!(p.cohesion >= 0 && p.cohesion <= kMostCohesion), "cohesion", p.cohesion,
+         "0 to 1e6 (of rho g h)");
   refuse(p.dilation_deg > p.friction_deg, "dilation_deg", p.dilation_deg,
          fmt::format("0 to phi_deg, {:g}", p.friction_deg));
   // An infinite slope of this material, as deep as the heap, stands up to here.
   const double steepest = std::max(p.left_deg, p.right_deg);
   if (p.cohesion == 0)
-    refuse(steepest > p.friction_deg, "slope", steepest,
+    refuse(steepest > p.friction_deg, p.left_deg > p.right_deg ? "left_deg" : "right_deg", steepest,
            fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
   refuse(p.cells < 2, "cells", p.cells, "at least 2");
-  if (p.history != WedgeHistory::at_once)
-    refuse(p.layers < 1 || p.layers > p.cells, "layers", p.layers,
-           fmt::format("1 to cells, {}", p.cells));
+  if (p.history != WedgeHistory::at_once) {
+    const int step = cells_of_a_layer(p) * p.layers;
+    refuse(p.layers < 1, "layers", p.layers, "1 or more");
+    refuse(p.cells % step != 0, "cells", p.cells,
+           fmt::format("multiples of {} (nearest: {}), so that mesh lines lie between layers = {}",
+                       step, std::max(1, (p.cells + step / 2) / step) * step, p.layers));
+  }
   refuse(p.refinements < 0, "refinements", p.refinements, "at least 0");
   refuse(!(p.refine_share > 0 && p.refine_share <= 1), "refine_share", p.refine_share,
          "above 0, at most 1");
@@ -121,16 +188,8 @@ Eigen::Vector3d corner_weights(const fe::TriangleMesh& mesh, int triangle, const
 }  // namespace
 
 int WedgeResult::triangle_at(const Vector2d& point) const {
-  const Lattice lattice(problem);
-  const int n = problem.cells;
-  const Eigen::Vector3d parts = lattice.parts(point, problem.height);
-  if (!(parts.minCoeff() >= -kOnBorder)) return -1;
-  const double row = std::clamp(parts[0], 0., 1.) * n, across = std::clamp(parts[2], 0., 1.) * n;
-  const int r = std::min(static_cast<int>(row), n - 1);
-  const int i = std::min(static_cast<int>(across), n - 1 - r);
-  const bool down = (row - r) + (across - i) > 1 && i + r + 1 < n;
-  // Row r starts after sum_{k<r} (2 (n - k) - 1) triangles.
-  const int whole = r * (2 * n - r) + 2 * i + (down ? 1 : 0);
+  const int whole = Lattice(problem).triangle_at(point);
+  if (whole < 0) return -1;
   const auto& parts_of = pieces[static_cast<std::size_t>(whole)];
   int best = parts_of.front();
   double depth = -std::numeric_limits<double>::infinity();
@@ -173,7 +232,11 @@ double WedgeResult::mobilized_at(const Vector2d& point) const {
   const Vector4 s = stress_at(point);
   if (!s.allFinite()) return kNan;
   const Eigen::Vector3d p = plasticity::principal(s);
-  return (p[0] - p[2]) / (-(p[0] + p[2]) * std::sin(problem.friction_deg * kDegree));
+  const double phi = problem.friction_deg * kDegree;
+  const double cohesion = problem.cohesion * problem.rho_g * problem.height;
+  const double borne = 2 * cohesion * std::cos(phi) - (p[0] + p[2]) * std::sin(phi);
+  // No point of integration lies beyond the cone's tip; a mean of several may.
+  return borne > 0 ? (p[0] - p[2]) / borne : 1;
 }
 
 namespace {
@@ -214,6 +277,7 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   settings.name = "fe_mohr_coulomb_wedge";
   settings.force_scale = p.rho_g * cell_area;
   settings.stress_scale = scale;
+  settings.displacement_scale = p.height / p.young;
   settings.tolerance = p.tolerance;
   settings.iterations = p.iterations;
   settings.first_step = 1. / p.steps;
@@ -223,7 +287,7 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
                     std::tan(p.base_friction_deg * kDegree)};
   const double slack = kOnBorder * p.height;
   // On the smooth base one node is held against gliding; nothing pulls it.
-  const Vector2d held = out.mesh.vertices[static_cast<std::size_t>(p.cells / 2)];
+  const Vector2d held = out.mesh.vertices[static_cast<std::size_t>(lattice.base_corner())];
   const auto on_base = [&](const Vector2d& x) { return x[1] < -p.height + slack; };
   const auto supports = [&](const Vector2d& x) -> fe::Support {
     if (!on_base(x)) return {};
@@ -282,8 +346,7 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
 
 WedgeResult solve_wedge(const WedgeProblem& p) {
   check_wedge(p);
-  const Lattice lattice(p);
-  auto mesh = fe::triangle_lattice(lattice.left, lattice.right, Vector2d::Zero(), p.cells);
+  auto mesh = Lattice(p).mesh();
   const std::size_t whole = mesh.triangles.size();
   std::vector<int> lattice_cell(whole);
   std::iota(lattice_cell.begin(), lattice_cell.end(), 0);
@@ -313,10 +376,16 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
     for (const double side : {-1., 1.}) {
       const double slope = side < 0 ? p.left_deg : p.right_deg;
       const double outside = depth / std::tan(slope * kDegree);
+      const auto plastic = [&](int s) {
+        return result.mobilized_at({side * outside * s / kCoreSamples, -depth}) >= mobilized;
+      };
+      // Without a plastic flank there is no border.
       double x = kNan;
-      for (int s = kCoreSamples - 1; s >= 0 && std::isnan(x); --s)
-        if (result.mobilized_at({side * outside * s / kCoreSamples, -depth}) < mobilized)
-          x = outside * s / kCoreSamples;
+      const int first = static_cast<int>((1 - kCoreSkin) * kCoreSamples);
+      if (plastic(first)) {
+        for (int s = first - 1; s >= 0 && std::isnan(x); --s)
+          if (!plastic(s)) x = outside * s / kCoreSamples;
+      }
       (side < 0 ? core.left : core.right).push_back(side * x);
     }
     core.axis_mobilized += result.mobilized_at({0, -depth}) / kCoreDepths;

@@ -39,7 +39,9 @@ struct WedgeProblem {
   WedgeHistory history = WedgeHistory::at_once;
   int steps = 1;   ///< at_once: equal steps of gravity; layers: steps for the weight of each
   int layers = 8;  ///< of rise and grow
-  int cells = 32;  ///< triangles along each side of the heap; a multiple of 2 layers fits them
+  /// Triangles along each side of the heap. Mesh lines lie between layers: a multiple of them, of
+  /// twice as many where equal slopes grow.
+  int cells = 32;
   /// Adaptive refinement: so many times the triangles with the largest estimated errors of stress,
   /// which hold `refine_share` of the sum of squares, are cut, and the heap is laid anew.
   int refinements = 0;
@@ -75,8 +77,8 @@ struct WedgeResult {
   /// Stress xx, yy, zz, xy at a point, linear between the corners; nan outside.
   plasticity::Vector4 stress_at(const Eigen::Vector2d& point) const;
   Eigen::Vector2d displacement_at(const Eigen::Vector2d& point) const;
-  /// Mobilized part of the friction, (s1 - s3) / (-(s1 + s3) sin phi): 1 at the limit without
-  /// cohesion; larger than 1 only by cohesion.
+  /// Mobilized part of the strength, (s1 - s3) / (2 c cos phi - (s1 + s3) sin phi): 1 at the limit,
+  /// the cone's tip included; nan outside.
   double mobilized_at(const Eigen::Vector2d& point) const;
 };
 

@@ -1,0 +1,35 @@
+// Heaps for tests of the elasto-plastic wedge, and what the model says of settings and failures.
+#pragma once
+#include <string>
+
+#include "continuum/fe/wedge.h"
+#include "continuum/model.h"
+
+namespace grainfield::continuum {
+
+inline WedgeProblem heap(int cells, double slope) {
+  WedgeProblem p;
+  p.cells = cells;
+  p.left_deg = p.right_deg = slope;
+  return p;
+}
+
+inline std::string failure(const WedgeProblem& p) {
+  try {
+    solve_wedge(p);
+  } catch (const ComputationFailed& error) {
+    return error.what();
+  }
+  return "solved";
+}
+
+inline std::string refusal(const Settings& settings) {
+  try {
+    make_model("fe_mohr_coulomb_wedge", settings);
+  } catch (const BadParameter& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace grainfield::continuum
