@@ -12,6 +12,9 @@
 namespace grainfield::continuum {
 namespace {
 
+// Degrees. The coefficients grow like the square of 1/beta_hat.
+constexpr double kNarrowest = 1e-6;
+
 CoreBranch branch_of(const std::string& word) {
   if (word == "zero") return CoreBranch::zero;
   return word == "plus" ? CoreBranch::plus : CoreBranch::minus;
@@ -27,9 +30,9 @@ std::unique_ptr<Model> make(const Settings& s) {
     beta_hat *= kDegree;
   } else {
     throw BadParameter(
-        fmt::format("model cantelaube: beta_hat_deg = {} is not inside the heap; allowed: above 0 "
-                    "and below 90 - phi_deg = {:g} deg",
-                    s.at("beta_hat_deg"), most));
+        fmt::format("model cantelaube: beta_hat_deg = {} is not inside the heap; allowed: at least "
+                    "{:g} and below 90 - phi_deg = {:g} deg",
+                    s.at("beta_hat_deg"), kNarrowest, most));
   }
   const CoreConstants core = core_constants(phi, beta_hat);
   return std::make_unique<HeapModel>(
@@ -86,7 +89,7 @@ ModelInfo cantelaube_info() {
                   "Roul 4.10-4.12", {"minus", "zero", "plus"}),
            optional_number("beta_hat_deg", "deg",
                            "half tip angle of the core, instead of a branch; below 90 - phi_deg",
-                           "Roul 4.8", kAboveZero, 90)},
+                           "Roul 4.8", kNarrowest, 90)},
           make};
 }
 

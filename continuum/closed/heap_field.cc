@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "continuum/constants.h"
@@ -13,7 +14,8 @@ namespace {
 // Points this share of their distance from the apex outside a slope still belong to the heap: they
 // are typed or computed on it.
 constexpr double kOnSlope = 1e-9;
-// Directions per region in which the largest mobilised friction is looked for.
+// Directions inside of a region in which the largest mobilised friction is looked for, besides its
+// two rays.
 constexpr int kDirections = 64;
 
 Eigen::Vector2d normal_of(double theta) { return {std::cos(theta), std::sin(theta)}; }
@@ -69,14 +71,28 @@ double HeapField::jump(std::size_t ray) const {
       .maxCoeff();
 }
 
+Eigen::Vector3d HeapField::inside(std::size_t region, double share) const {
+  const HeapRegion& at = regions_[region];
+  const bool first = share == 0, last = share == 1;
+  const double theta = first ? at.from : last ? at.to : at.from + (at.to - at.from) * share;
+  const Eigen::Vector2d e(std::sin(theta), -std::cos(theta));
+  const LinearStress g = gradient(region, e.x(), e.y());
+  if (first && region == 0) return g * normal_of(theta);
+  if (last && region + 1 == regions_.size()) return -g * normal_of(theta);
+  return g * e;
+}
+
+// In a linear field radius^2 over centre^2 is a quadratic function of 1/centre with a positive
+// leading coefficient (the radius' square where the centre vanishes): where the centre keeps its
+// sign it is largest on one of the two rays.
 double HeapField::largest_mobilised() const {
   double largest = 0;
   for (std::size_t k = 0; k < regions_.size(); ++k) {
-    for (int i = 0; i <= kDirections; ++i) {
-      const double theta =
-          regions_[k].from + (regions_[k].to - regions_[k].from) * (i + 0.5) / (kDirections + 1);
-      const Eigen::Vector2d e(std::sin(theta), -std::cos(theta));
-      largest = std::max(largest, mobilised_sine(gradient(k, e.x(), e.y()) * e));
+    for (int i = 0; i <= kDirections + 1; ++i) {
+      const Eigen::Vector3d s = inside(k, static_cast<double>(i) / (kDirections + 1));
+      if (s.hasNaN()) return kNan;
+      largest = std::max(
+          largest, s[0] + s[1] < 0 ? mobilised_sine(s) : std::numeric_limits<double>::infinity());
     }
   }
   return largest / std::sin(phi_);

@@ -52,10 +52,17 @@ class HeapField {
   /// regions().size() - 1 at unit distance from the apex.
   double jump(std::size_t ray) const;
   /// Largest mobilised friction over all directions, sin(mobilised angle) / sin(phi): 1 at yield,
-  /// above 1 where Mohr and Coulomb's limit is violated.
+  /// above 1 where Mohr and Coulomb's limit is violated, infinite where the mean stress is no
+  /// compression. Exact for linear fields, whose extremes are on the rays that bound regions (both
+  /// sides are looked at; on a slope, which is free of stress, the limit from inside); of samples
+  /// for others.
   double largest_mobilised() const;
 
  private:
+  /// Stress of the region at unit distance from the apex, at a share of the way from its left to
+  /// its right ray; on a slope its derivative inwards.
+  Eigen::Vector3d inside(std::size_t region, double share) const;
+
   std::vector<HeapRegion> regions_;
   std::vector<Eigen::Vector2d> normals_;  // of rays()
   double rho_g_, phi_;

@@ -33,6 +33,8 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
+bool is_comment(const std::string& text) { return text.empty() || text == "\r" || text[0] == '#'; }
+
 std::vector<std::string> read_header(const std::string& file, int line, const std::string& text,
                                      const std::vector<std::string>& fields) {
   auto names = split(text);
@@ -86,7 +88,7 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
   int line = 0;
   for (std::string text; std::getline(stream, text);) {
     ++line;
-    if (text.empty() || text == "\r" || text[0] == '#') continue;
+    if (is_comment(text)) continue;
     if (names.empty())
       names = read_header(file, line, text, fields);
     else
@@ -124,6 +126,18 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
       values[static_cast<Eigen::Index>(k)] = rows[k].values[c];
   }
   return map;
+}
+
+std::vector<std::string> map_columns(const std::string& file) {
+  if (file.empty()) return {};
+  std::ifstream stream(file);
+  for (std::string text; std::getline(stream, text);) {
+    if (is_comment(text)) continue;
+    auto names = split(text);
+    names.erase(names.begin(), names.begin() + std::min<long>(2, static_cast<long>(names.size())));
+    return names;
+  }
+  return {};
 }
 
 double FieldMap::at(const std::string& name, double x, double y) const {

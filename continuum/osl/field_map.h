@@ -33,4 +33,8 @@ FieldMap read_field_map(const std::string& file);
 FieldMap read_field_map(const std::string& file, const std::vector<std::string>& fields,
                         bool may_lack);
 
+/// Names after x,y in the header of such a file; none for an empty name and for a file that cannot
+/// be opened, which read_field_map refuses.
+std::vector<std::string> map_columns(const std::string& file);
+
 }  // namespace grainfield::continuum::osl

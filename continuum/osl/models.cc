@@ -26,6 +26,8 @@ constexpr double kOnSlope = 1e-9;
 constexpr double kLoadWidth = 0.1, kRoom = 0.1;
 /// Of columns of at most half the load's width on either side.
 constexpr double kMostColumns = 1e6;
+/// A million unknowns take 190 MB and a second of CPU time.
+constexpr double kMostUnknowns = 1e7;
 
 double number_or(const Settings& s, const std::string& name, double otherwise) {
   const double value = number_of(s, name);
@@ -40,6 +42,33 @@ Closure heap_closure(const Settings& s, double phi) {
     return {eta_at_yield(phi, free), free};
   }
   return {eta, std::isnan(mu) ? mu_at_yield(phi, eta) : mu};
+}
+
+/// Where a map gives eta or mu alone and the other is left open, it is everywhere as the yielding
+/// slope asks for with the map's value.
+void leave_open(Problem& p, const Settings& s, const FieldMap& map, double phi) {
+  const bool has_eta = map.values.count("eta") != 0, has_mu = map.values.count("mu") != 0;
+  if (has_eta && !has_mu && std::isnan(number_of(s, "mu")))
+    p.mu = [eta = p.eta, phi](double x, double y) { return mu_at_yield(phi, eta(x, y)); };
+  if (has_mu && !has_eta && std::isnan(number_of(s, "eta")))
+    p.eta = [mu = p.mu, phi](double x, double y) { return eta_at_yield(phi, mu(x, y)); };
+}
+
+/// Before a mesh of so many columns in all is made.
+void require_memory(const std::string& name, const Settings& s, double columns,
+                    const std::string& remedy) {
+  const bool march = s.at("solver") == "march";
+  const double order = number_of(s, "order");
+  const double unknowns =
+      2 * columns * (march ? 1 : number_of(s, "rows") * (order + 1) * (order + 1));
+  if (unknowns <= kMostUnknowns) return;
+  const std::string also =
+      march ? "" : fmt::format(", rows = {} and order = {}", s.at("rows"), s.at("order"));
+  throw BadParameter(fmt::format(
+      "model {}: {:.0f} columns (columns = {}){} ask for {:.3g} unknowns; allowed: up to {:g}; "
+      "lower columns{}{}",
+      name, columns, s.at("columns"), also, unknowns, kMostUnknowns, march ? "" : ", rows or order",
+      remedy));
 }
 
 /// Coefficients, numerics and what both bodies share.
@@ -63,11 +92,13 @@ Task wedge_task(const Settings& s) {
   const FieldMap map = read_field_map(s.at("map"));
   map.require_cover(wedge_name, slope * depth, depth);
   Task task = begin(wedge_name, s, heap_closure(s, phi), map);
+  leave_open(task.problem, s, map, phi);
   task.slope = slope;
   const Characteristics c = characteristics(task.problem, 0, 0, 1);
   require_entering(task.problem, c, upwind_flux(c, 1, -slope), slope, 0, 0);
   const int columns = static_cast<int>(number_of(s, "columns"));
   const int rows = static_cast<int>(number_of(s, "rows"));
+  require_memory(wedge_name, s, 2. * columns, "");
   if (s.at("mesh") == "box") {
     task.mesh = box_mesh(slope * depth, depth, columns, rows);
     task.problem.weight = [inside = task.problem.weight, slope](double x, double y) {
@@ -103,16 +134,17 @@ Task layer_task(const Settings& s) {
         "half of width",
         layer_name, asked / depth, width / (2 * depth)));
   // The load ends on borders of columns.
-  const int under =
-      std::max(1, static_cast<int>(std::lround(number_of(s, "columns") * width / (2 * depth))));
-  const double step = width / 2 / under;
+  const double wanted = number_of(s, "columns") * (width / (2 * depth));
+  const double under = std::max(1., std::round(wanted)), step = width / 2 / under;
   if (!(asked / step <= kMostColumns))
     throw BadParameter(fmt::format(
         "model {}: width = {:.6g} m asks for {:.3g} columns over half the layer's width of {:.6g} "
-        "m; allowed: up to {:.0e} columns, a wider load or less half_width",
-        layer_name, width, asked / step, asked, kMostColumns));
-  const int columns = std::max(under, static_cast<int>(std::ceil(asked / step - kOnSlope)));
+        "m; allowed: up to {:.0e} columns, {} or less half_width",
+        layer_name, width, asked / step, asked, kMostColumns,
+        wanted < 1 ? "a wider load" : "less width, fewer columns"));
+  const int columns = static_cast<int>(std::max(under, std::ceil(asked / step - kOnSlope)));
   const double half_width = columns * step;
+  require_memory(layer_name, s, 2. * columns, ", or half_width");
   task.mesh = box_mesh(half_width, depth, columns, static_cast<int>(number_of(s, "rows")));
   map.require_cover(layer_name, half_width, depth);
   p.surface = [load, width](double x, double) -> State {
@@ -160,7 +192,8 @@ std::unique_ptr<Model> make(const Settings& settings) {
 }
 
 std::vector<Parameter> with_numerics(std::vector<Parameter> all, int order, int columns, int rows,
-                                     const std::string& columns_meaning) {
+                                     const std::string& columns_meaning,
+                                     const std::string& left_open) {
   for (auto& p : std::vector<Parameter>{
            choice("solver",
                   "dg: discontinuous Galerkin finite elements; march: finite volumes marched down "
@@ -175,7 +208,8 @@ std::vector<Parameter> with_numerics(std::vector<Parameter> all, int order, int 
            whole_number("steps", "march: most steps", "numerics", 1000000, 1, 1000000000),
            text("map",
                 "CSV file of fields on a regular grid, columns x,y and one or more of "
-                "rho_g,eta,mu, which then replace these parameters",
+                "rho_g,eta,mu, which then replace these parameters" +
+                    left_open,
                 "measured fields")})
     all.push_back(std::move(p));
   return all;
@@ -215,7 +249,9 @@ ModelInfo fe_osl_wedge_info() {
                   "aligned: along slopes, axis and the characteristic from the apex; rays: along "
                   "slopes and axis; box: rectangles, weightless beyond the slopes",
                   "numerics", {"aligned", "rays", "box"})},
-          2, 16, 16, "columns on either side of the axis"),
+          2, 16, 16, "columns on either side of the axis",
+          "; of eta and mu the one that is left open is as the yielding slope asks for with the "
+          "map's other one"),
       osl::make<osl::wedge_name>};
 }
 
@@ -245,7 +281,7 @@ ModelInfo fe_osl_layer_info() {
                   "hyperbolic layer", {"far", "walls"}),
            number("wall_friction", "-", "|sigma_xy| / sigma_xx at walls, down; 0: smooth",
                   "Janssen", 0, 0, 100)},
-          3, 40, 40, "columns over a length of one depth"),
+          3, 40, 40, "columns over a length of one depth", ""),
       osl::make<osl::layer_name>};
 }
 

@@ -66,7 +66,11 @@ continuum::Settings parse_settings(const std::vector<std::string>& texts,
       throw std::invalid_argument(
           fmt::format("{}: found \"{}\", expected parameter=value", where, text));
     }
-    out[text.substr(0, at)] = text.substr(at + 1);
+    const auto [first, fresh] = out.emplace(text.substr(0, at), text.substr(at + 1));
+    if (!fresh)
+      throw std::invalid_argument(fmt::format("{}: {} is given twice, {} and {}; leave one out",
+                                              where, first->first, first->second,
+                                              text.substr(at + 1)));
   }
   return out;
 }

@@ -90,14 +90,37 @@ TEST(Cantelaube, FreeAngleIsTheBranchAtItsAngle) {
   EXPECT_NEAR(make_model("cantelaube", {})->figures().at("beta_hat_deg"), 22.496, 5e-4);
 }
 
+// Down to the least core allowed the coefficients are finite, and a core in tension says so.
+TEST(Cantelaube, NarrowCoresAreFiniteAndSayThatTheyAreInTension) {
+  for (const char* phi : {"1", "28", "80"}) {
+    for (const char* beta_hat : {"1e-6", "1e-3", "0.1", "5"}) {
+      const auto model = make_model("cantelaube", {{"phi_deg", phi}, {"beta_hat_deg", beta_hat}});
+      const auto figures = model->figures();
+      for (const char* name : {"a1", "a2", "b1"})
+        EXPECT_TRUE(std::isfinite(figures.at(name))) << phi << " " << beta_hat << " " << name;
+      const Stresses s = model->stress((Points(2, 2) << 0, -1, 1e-9, -1).finished());
+      EXPECT_TRUE(s.allFinite()) << phi << " " << beta_hat;
+      if (s.col(0).maxCoeff() > 0 || s.col(1).maxCoeff() > 0) {
+        EXPECT_GT(figures.at("mobilised_sine_ratio"), 1) << phi << " " << beta_hat;
+      }
+    }
+  }
+  EXPECT_GT(make_model("cantelaube", {{"beta_hat_deg", "5"}})
+                ->stress((Points(1, 2) << 0, -1).finished())(0, 1),
+            0);
+}
+
 TEST(Cantelaube, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal("cantelaube", {{"phi_deg", "0"}}),
               HasSubstr("phi_deg = 0 is out of range; allowed: 1 to 80 deg"));
   EXPECT_THAT(refusal("cantelaube", {{"phi_deg", "91"}}), HasSubstr("phi_deg = 91"));
-  EXPECT_THAT(refusal("cantelaube", {{"phi_deg", "28"}, {"beta_hat_deg", "62"}}),
-              HasSubstr("beta_hat_deg = 62 is not inside the heap; allowed: above 0 and below 90 - "
-                        "phi_deg = 62 deg"));
-  EXPECT_THAT(refusal("cantelaube", {{"beta_hat_deg", "0"}}), HasSubstr("allowed: above 0"));
+  EXPECT_THAT(
+      refusal("cantelaube", {{"phi_deg", "28"}, {"beta_hat_deg", "62"}}),
+      HasSubstr("beta_hat_deg = 62 is not inside the heap; allowed: at least 1e-06 and below "
+                "90 - phi_deg = 62 deg"));
+  for (const char* narrow : {"0", "1e-300", "9e-7", "-3"})
+    EXPECT_THAT(refusal("cantelaube", {{"beta_hat_deg", narrow}}),
+                HasSubstr("is out of range; allowed: 1e-06 to 90 deg"));
   EXPECT_THAT(refusal("cantelaube", {{"branch", "mius"}}),
               HasSubstr("branch = 'mius' is not one of minus, zero, plus; did you mean 'minus'?"));
   EXPECT_THAT(refusal("cantelaube", {{"rho_g", "-1"}}), HasSubstr("rho_g = -1"));

@@ -123,9 +123,9 @@ TEST(FeOslWedge, OtherMeshesComeNear) {
   const Stresses closed = heap(points, 28, -std::tan(28 * std::numbers::pi / 180));
   for (const char* mesh : {"rays", "box"}) {
     for (const char* solver : {"dg", "march"}) {
-      const auto model = make_model(
-          "fe_osl_wedge",
-          {{"mesh", mesh}, {"solver", solver}, {"order", "1"}, {"columns", "32"}, {"rows", "32"}});
+      Settings s{{"mesh", mesh}, {"solver", solver}, {"columns", "32"}};
+      if (s.at("solver") == "dg") s.insert({{"order", "1"}, {"rows", "32"}});
+      const auto model = make_model("fe_osl_wedge", s);
       EXPECT_LT(difference(model->stress(points), closed), 0.05) << mesh << " " << solver;
     }
   }
@@ -148,6 +148,7 @@ TEST(FeOslLayer, ElementsAndMarchMeetTheClosedForm) {
     EXPECT_LT(elements->figures().at("force_balance"), 1e-13);
     field["solver"] = "march";
     field["columns"] = "100";
+    field.erase("rows");
     const auto march = make_model("fe_osl_layer", field);
     EXPECT_LT(difference(march->stress(points), closed), 0.02 * peak);
     EXPECT_NEAR(march->figures().at("load"), 3, 1e-12);
@@ -176,15 +177,12 @@ TEST(FeOslLayer, TwoPeaksAtTheFeetOfTheCharacteristics) {
 TEST(FeOslLayer, WeightAndWallsConserveTheForce) {
   for (const char* sides : {"far", "walls"}) {
     for (const char* solver : {"dg", "march"}) {
-      const auto model = make_model("fe_osl_layer", {{"sides", sides},
-                                                     {"wall_friction", "0.4"},
-                                                     {"rho_g", "2"},
-                                                     {"F", "3"},
-                                                     {"half_width", "0.5"},
-                                                     {"closure", "mirrored"},
-                                                     {"columns", "20"},
-                                                     {"rows", "10"},
-                                                     {"solver", solver}});
+      Settings s{{"sides", sides},       {"rho_g", "2"},    {"F", "3"},
+                 {"half_width", "0.5"},  {"columns", "20"}, {"solver", solver},
+                 {"closure", "mirrored"}};
+      if (s.at("sides") == "walls") s["wall_friction"] = "0.4";
+      if (s.at("solver") == "dg") s["rows"] = "10";
+      const auto model = make_model("fe_osl_layer", s);
       model->stress((Points(1, 2) << 0, -1).finished());
       const auto f = model->figures();
       EXPECT_NEAR(f.at("weight"), 2, 1e-10) << sides << solver;
@@ -209,6 +207,65 @@ TEST_F(Maps, AMapOfConstantsIsTheConstants) {
     // Marching chooses its steps by errors that differ by round-off.
     EXPECT_LT(difference(mapped->stress(points), plain->stress(points)), 1e-9);
   }
+}
+
+// Also where one of eta and mu is left open: what the slope asks for, as without a map.
+TEST_F(Maps, AMapLeavesOpenWhatTheConstantsLeaveOpen) {
+  const Points points = grid(1.8, 1, 10);
+  for (const auto& [name, value] :
+       std::vector<std::pair<std::string, std::string>>{{"eta", "0.7"}, {"mu", "-0.2"}}) {
+    const std::string v = "," + value + "\n";
+    const std::string file =
+        write("x,y," + name + "\n-2,-1" + v + "2,-1" + v + "-2,0" + v + "2,0" + v);
+    for (const char* solver : {"dg", "march"}) {
+      const auto mapped = make_model("fe_osl_wedge", {{"map", file}, {"solver", solver}});
+      const auto plain = make_model("fe_osl_wedge", {{name, value}, {"solver", solver}});
+      EXPECT_LT(difference(mapped->stress(points), plain->stress(points)), 1e-9) << name << solver;
+      EXPECT_NEAR(mapped->figures().at("c1"), plain->figures().at("c1"), 1e-12) << name;
+    }
+  }
+}
+
+TEST_F(Maps, RefuseParametersThatTheyReplace) {
+  const std::string file =
+      write("# of a heap\nx, y ,eta,rho_g\n-2,-1,0.7,1\n2,-1,0.7,1\n-2,0,0.7,1\n2,0,0.7,1\n");
+  for (const char* model : {"fe_osl_wedge", "fe_osl_layer"}) {
+    for (const char* name : {"eta", "rho_g"})
+      EXPECT_EQ(refusal(model, {{"map", file}, {name, "0.9"}}),
+                "model " + std::string(model) + ": " + name + " = 0.9 has no effect beside map = " +
+                    file + ", which replaces it; leave one of the two out");
+    EXPECT_EQ(refusal(model, {{"map", file}, {"mu", "0.1"}}), "accepted");
+    EXPECT_EQ(refusal(model, {{"map", ""}, {"eta", "0.6"}}), "accepted");
+    // What is wrong with the map is said first.
+    EXPECT_THAT(refusal(model, {{"map", "/nowhere/map.csv"}, {"eta", "0.6"}}),
+                HasSubstr("/nowhere/map.csv: cannot be opened"));
+  }
+}
+
+TEST(FeOslModels, MoreUnknownsThanMemoryAreRefused) {
+  const auto made = [](const std::string& model, const Settings& settings) -> std::string {
+    try {
+      make_model(model, settings);
+    } catch (const BadParameter& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(
+      made("fe_osl_wedge", {{"columns", "100000"}, {"rows", "100000"}}),
+      "model fe_osl_wedge: 200000 columns (columns = 100000), rows = 100000 and order = 2 ask "
+      "for 3.6e+11 unknowns; allowed: up to 1e+07; lower columns, rows or order");
+  EXPECT_EQ(
+      made("fe_osl_wedge", {{"columns", "2000"}, {"rows", "2000"}, {"order", "1"}})
+          .find("model fe_osl_wedge: 4000 columns (columns = 2000), rows = 2000 and order = 1"),
+      0U);
+  EXPECT_EQ(made("fe_osl_wedge", {{"columns", "700"}, {"rows", "390"}}), "accepted");
+  EXPECT_EQ(made("fe_osl_wedge", {{"columns", "100000"}, {"solver", "march"}}), "accepted");
+  EXPECT_THAT(made("fe_osl_layer", {{"columns", "10000"}, {"rows", "10000"}}),
+              HasSubstr("(columns = 10000), rows = 10000 and order = 3 ask for"));
+  EXPECT_THAT(made("fe_osl_layer", {{"half_width", "1000"}, {"rows", "1000"}}),
+              HasSubstr("lower columns, rows or order, or half_width"));
+  EXPECT_EQ(made("fe_osl_layer", {{"columns", "100"}, {"rows", "100"}}), "accepted");
 }
 
 TEST_F(Maps, BothSolversAgreeOnAMapThatVaries) {

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <limits>
+
 #include "continuum/model.h"
 #include "heap_scene.h"
 
@@ -52,7 +55,79 @@ double weight_above(const HeapField& field) {
   return field.rho_g() * (right - left) / 2;
 }
 
+// From the principal stresses; infinite where their sum is no compression.
+double principal_ratio(const Eigen::Vector3d& s, double phi) {
+  Eigen::Matrix2d full;
+  full << s[0], s[2], s[2], s[1];
+  const Eigen::Vector2d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(full).eigenvalues();
+  const double sum = principal[0] + principal[1];
+  if (!(sum < 0)) return std::numeric_limits<double>::infinity();
+  return (principal[0] - principal[1]) / sum / std::sin(phi);
+}
+
+// Of many directions, up to kNear of a region's width from the rays that bound it.
+constexpr double kNear = 1e-6;
+double sampled_ratio(const HeapField& field, int directions) {
+  double largest = 0;
+  for (const HeapRegion& region : field.regions()) {
+    for (int i = 0; i <= directions; ++i) {
+      const double share = std::clamp(static_cast<double>(i) / directions, kNear, 1 - kNear);
+      const double theta = region.from + (region.to - region.from) * share;
+      largest = std::max(
+          largest, principal_ratio(field.stress(std::sin(theta), -std::cos(theta)), field.phi()));
+    }
+  }
+  return largest;
+}
+
+void expect_largest(const HeapField& field, const std::string& what) {
+  const double sampled = sampled_ratio(field, 500), found = field.largest_mobilised();
+  if (std::isinf(sampled)) {
+    EXPECT_TRUE(std::isinf(found)) << what << " " << found;
+    return;
+  }
+  // Between the outermost samples and the rays the ratio changes by its square at most.
+  EXPECT_NEAR(found / sampled, 1, 1e-4 * std::max(1., sampled)) << what;
+}
+
 }  // namespace
+
+TEST(Heaps, LargestMobilisedFrictionIsThatOfManyDirections) {
+  Random random(10);
+  int beyond = 0, tension = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Heap heap = random_heap(random);
+    expect_largest(*heap.field, where(heap, k));
+    const double largest = heap.field->largest_mobilised();
+    beyond += largest > 1 + 1e-9;
+    tension += std::isinf(largest);
+  }
+  std::printf("of 2000 heaps %d beyond the limit of friction, %d in tension somewhere\n", beyond,
+              tension);
+  EXPECT_GT(beyond, 100);
+  EXPECT_GT(tension, 20);
+  for (const double degrees : {15., 28., 40.})
+    expect_largest(IfeField(degrees * kDegree, 2), "ife");
+}
+
+// A core beyond the limit on a ray that bounds regions only: on the axis, on its border.
+TEST(Heaps, TheLimitIsExceededOnTheRaysThatBoundRegions) {
+  const double phi = 28 * kDegree;
+  const auto ratio = [&](double beta_hat_deg) {
+    return cantelaube_field(phi, beta_hat_deg * kDegree, 1).largest_mobilised();
+  };
+  for (const double beta_hat : {22.4, 22., 48.7}) {
+    const SectorField field = cantelaube_field(phi, beta_hat * kDegree, 1);
+    EXPECT_NEAR(ratio(beta_hat), principal_ratio(field.stress(0, -1), phi), 1e-12) << beta_hat;
+  }
+  EXPECT_NEAR(ratio(22.4), 1.0193, 5e-5);
+  EXPECT_NEAR(ratio(22.0), 1.103, 5e-4);
+  EXPECT_NEAR(ratio(48.7), 1.0037, 5e-5);
+  // Between the branches minus and plus the core is inside the limit, beyond them it is not.
+  EXPECT_NEAR(ratio(22.5), 1, 1e-12);
+  EXPECT_NEAR(ratio(48.6), 1, 1e-12);
+}
 
 TEST(Heaps, AreInEquilibrium) {
   Random random(1);

@@ -98,6 +98,84 @@ TEST(Idle, BranchBesideAnAngle) {
   EXPECT_EQ(refusal("fe_cantelaube_core", both), "accepted");
 }
 
+TEST(Idle, BranchesAndRaysOfClosedWedges) {
+  for (const char* branch : {"minus", "zero", "plus"})
+    EXPECT_EQ(refusal("cantelaube", {{"beta_hat_deg", "30"}, {"branch", branch}}),
+              "branch| model cantelaube: branch = " + std::string(branch) +
+                  " has no effect beside beta_hat_deg = 30, which replaces its angle; leave one "
+                  "of the two out");
+  EXPECT_EQ(refusal("cantelaube", {{"branch", "plus"}}), "accepted");
+  EXPECT_EQ(refusal("cantelaube", {{"beta_hat_deg", "30"}}), "accepted");
+  EXPECT_THAT(refusal("cantelaube_asymmetric", {{"yield_ray_deg", "5"}}),
+              HasSubstr("yield_ray_deg = 5 has no effect with branch = zero; leave it out or set "
+                        "branch = minus or plus"));
+  for (const char* branch : {"minus", "plus"})
+    EXPECT_EQ(refusal("cantelaube_asymmetric", {{"branch", branch}, {"yield_ray_deg", "5"}}),
+              "accepted");
+}
+
+TEST(Idle, ReturnsFromAnAbsorbingBase) {
+  EXPECT_THAT(refusal("osl_layer", {{"returns", "3"}}),
+              HasSubstr("returns = 3 has no effect with base = absorbing; leave it out or set base "
+                        "= reflecting"));
+  EXPECT_EQ(refusal("osl_layer", {{"base", "reflecting"}, {"returns", "3"}}), "accepted");
+}
+
+TEST(Idle, FrictionOfWallsThatAreNot) {
+  EXPECT_THAT(refusal("fe_osl_layer", {{"wall_friction", "0.3"}}),
+              HasSubstr("wall_friction = 0.3 has no effect with sides = far; leave it out or set "
+                        "sides = walls"));
+  EXPECT_EQ(refusal("fe_osl_layer", {{"sides", "walls"}, {"wall_friction", "0.3"}}), "accepted");
+}
+
+TEST(Idle, NumericsOfTheOtherSolver) {
+  for (const char* model : {"fe_osl_wedge", "fe_osl_layer"}) {
+    for (const char* name : {"order", "rows"}) {
+      EXPECT_THAT(refusal(model, {{"solver", "march"}, {name, "4"}}),
+                  HasSubstr(std::string(name) + " = 4 has no effect with solver = march; leave it "
+                                                "out or set solver = dg"));
+      EXPECT_EQ(refusal(model, {{name, "4"}}), "accepted");
+    }
+    for (const auto& [name, value] : Settings{{"tolerance", "1e-6"}, {"steps", "50"}}) {
+      EXPECT_THAT(refusal(model, {{name, value}}),
+                  HasSubstr(name + " = " + value +
+                            " has no effect with solver = dg; leave it out "
+                            "or set solver = march"));
+      EXPECT_EQ(refusal(model, {{"solver", "march"}, {name, value}}), "accepted");
+    }
+  }
+}
+
+TEST(Idle, ClosedOrthotropicBodies) {
+  const Settings moduli{{"E_x", "2"}, {"E_y", "1"}, {"G", "1"}, {"nu_xy", "0.2"}};
+  for (const char* model : {"orthotropic_half_plane", "orthotropic_layer"}) {
+    EXPECT_EQ(refusal(model, moduli), "accepted");
+    for (const char* name : {"r", "t"}) {
+      Settings both = moduli;
+      both[name] = "0.5";
+      EXPECT_THAT(refusal(model, both), HasSubstr("has no effect beside E_x = 2"));
+    }
+  }
+  EXPECT_THAT(
+      refusal("orthotropic_half_plane", {{"nu_xy", "0.2"}}),
+      HasSubstr("nu_xy = 0.2 has no effect beside r and t; leave it out or set E_x, E_y and "
+                "G"));
+  // A run may fill in a rough base.
+  EXPECT_EQ(refusal("orthotropic_layer", {{"nu_xy", "0.2"}}), "accepted");
+  EXPECT_EQ(refusal("orthotropic_layer", {{"nu_xy", "0.2"}, {"base", "rough"}}), "accepted");
+}
+
+TEST(Idle, TentProfilesWithoutABend) {
+  EXPECT_THAT(refusal("liffman", {{"bend", "0.2"}}),
+              HasSubstr("bend = 0.2 has no effect with top_alpha_deg = 0, a triangle; leave it out "
+                        "or set top_alpha_deg"));
+  EXPECT_THAT(refusal("liffman", {{"bend", "0.5"}, {"top_alpha_deg", "20"}}),
+              HasSubstr("top_alpha_deg = 20 has no effect with bend = 0.5, on the axis; leave it "
+                        "out or set bend below 0.5"));
+  EXPECT_EQ(refusal("liffman", {{"bend", "0.2"}, {"top_alpha_deg", "20"}}), "accepted");
+  EXPECT_EQ(refusal("liffman", {{"alpha_deg", "20"}}), "accepted");
+}
+
 TEST(Idle, MakeModelRefuses) {
   try {
     make_model("fe_cantelaube_core", {{"base", "rough"}, {"base_stiffness", "2"}});

@@ -45,6 +45,21 @@ TEST(Errors, Usage) {
   EXPECT_THAT(program("--version").out, StartsWith("grainfield "));
 }
 
+TEST(Errors, SettingsOfModels) {
+  const Folder folder;
+  const auto model = [&](const std::string& rest) {
+    return program("model " + rest + " --points " + folder.write("p.csv", "x,y\n0,-1\n"));
+  };
+  expect_refusal(model("cantelaube --set phi_deg=20 --set phi_deg=30"), 2,
+                 "--set: phi_deg is given twice, 20 and 30; leave one out");
+  expect_refusal(model("cantelaube --set branch=plus --set beta_hat_deg=30"), 2,
+                 "model cantelaube: branch = plus has no effect beside beta_hat_deg = 30");
+  expect_refusal(model("cantelaube --set beta_hat_deg=1e-300"), 2,
+                 "model cantelaube: beta_hat_deg = 1e-300 is out of range; allowed: 1e-06 to 90");
+  expect_refusal(model("fe_osl_wedge --set columns=100000 --set rows=100000"), 2,
+                 "ask for 3.6e+11 unknowns; allowed: up to 1e+07; lower columns, rows or order");
+}
+
 TEST(Errors, CaseFiles) {
   const Folder folder;
   const auto run = [&](const std::string& text) {
