@@ -26,6 +26,8 @@ constexpr double kCoreFrom = 0.3, kCoreTo = 0.9;
 constexpr int kCoreDepths = 25, kCoreSamples = 400;
 /// Part of the half width that is left out beside the slope: there is hardly any stress.
 constexpr double kCoreSkin = 0.03;
+/// Of the depths: with a border at fewer of them there is no line through it.
+constexpr double kCoreLeast = 0.5;
 /// Of height and weight: squares and cubes of them occur.
 constexpr double kLeast = 1e-50, kMost = 1e50;
 /// A heap with more is elastic all over.
@@ -156,8 +158,8 @@ void check_wedge(const WedgeProblem& p) {
   // An infinite slope of this material, as deep as the heap, stands up to here.
   const double steepest = std::max(p.left_deg, p.right_deg);
   if (p.cohesion == 0)
-    refuse(steepest > p.friction_deg, p.left_deg > p.right_deg ? "left_deg" : "right_deg", steepest,
-           fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
+    refuse(steepest > p.friction_deg, p.left_deg >= p.right_deg ? "left_deg" : "right_deg",
+           steepest, fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
   refuse(p.cells < 2, "cells", p.cells, "at least 2");
   if (p.history != WedgeHistory::at_once) {
     const int step = cells_of_a_layer(p) * p.layers;
@@ -403,8 +405,11 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
       tangents.push_back(std::abs(x[k]) / core.depth[k]);
       core.share += 0.5 / static_cast<double>(x.size());
     }
-    const double tangent = median(tangents);
-    for (const double t : tangents) apart.push_back(std::abs(t - tangent));
+    const bool enough =
+        static_cast<double>(tangents.size()) >= kCoreLeast * static_cast<double>(x.size());
+    const double tangent = enough ? median(tangents) : kNan;
+    if (enough)
+      for (const double t : tangents) apart.push_back(std::abs(t - tangent));
     degrees = std::atan(tangent) / kDegree;
     misfit = median(apart);
   };

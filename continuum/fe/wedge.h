@@ -91,7 +91,8 @@ struct WedgeCore {
   double axis_mobilized = 0;               ///< mobilized friction on the axis, mean over the depths
   /// Angle from the vertical, in degrees, of the line from the apex that has half of the boundary
   /// on either side (Cantelaube's beta_hat): the arc tangent of the median of |x|/depth. Misfit:
-  /// the median distance from it in |x|/depth; large, there is no such line.
+  /// the median distance from it in |x|/depth; large, there is no such line. Both nan where fewer
+  /// than half of the depths have a boundary.
   double left_deg = 0, right_deg = 0, left_misfit = 0, right_misfit = 0;
 };
 

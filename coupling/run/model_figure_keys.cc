@@ -97,7 +97,7 @@ std::vector<SummaryKey> model_figure_keys() {
        "plastic heap: part of the depths from 0.3 to 0.9 h, both sides, at which the plastic flank "
        "has an inner border"},
       {"model.*.axis_mobilized", "-",
-       "plastic heap: mobilized friction on the axis, mean over the same depths"},
+       "plastic heap: mobilized strength on the axis, mean over the same depths"},
       {"model.*.plastic_share", "-", "plastic heap: part that yielded in the last load step"},
       {"model.*.beta_hat_left_deg", "deg",
        "plastic heap: angle from the vertical of the line from the apex that has half of the left "
