@@ -139,6 +139,12 @@ TEST(FePlastic, NewtonConvergesQuadratically) {
   const WedgeResult r = solve_wedge(heap(12, 25));
   std::printf("%s", print(r.steps).c_str());
   EXPECT_TRUE(quadratic(r.steps));
+  // At the angle of repose too, where three quarters of the heap yield (associated flow).
+  WedgeProblem p = heap(16, 28);
+  p.dilation_deg = 28;
+  const WedgeResult repose = solve_wedge(p);
+  std::printf("%s", print(repose.steps).c_str());
+  EXPECT_TRUE(quadratic(repose.steps));
 }
 
 TEST(FePlastic, AsymmetricHeapAndItsMirrorImage) {
