@@ -38,6 +38,16 @@ double parse(const ModelInfo& info, const Parameter& parameter, const std::strin
   return value;
 }
 
+/// The allowed range for a message about this text.
+std::string missed(const Parameter& parameter, const std::string& text, double value) {
+  const bool tiny =
+      value >= 0 && value < parameter.least && parameter.least == kAboveZero &&
+      text.substr(0, text.find_first_of("eEpP")).find_first_of("123456789") != std::string::npos;
+  if (!tiny) return allowed(parameter);
+  return fmt::format("at least {}{}", parameter.least,
+                     parameter.unit == "-" ? "" : " " + parameter.unit);
+}
+
 }  // namespace
 
 std::string nearest(const std::string& name, const std::vector<std::string>& names) {
@@ -133,7 +143,8 @@ Settings complete(const ModelInfo& info, const Settings& settings) {
       if (value < parameter.least || value > parameter.most ||
           (parameter.whole && value != std::round(value)))
         throw BadParameter(fmt::format("model {}: {} = {} is out of range; allowed: {}", info.name,
-                                       parameter.name, found->second, allowed(parameter)));
+                                       parameter.name, found->second,
+                                       missed(parameter, found->second, value)));
       full[parameter.name] = found->second;
     }
   }

@@ -24,7 +24,9 @@ std::unique_ptr<Model> make(const Settings& s) {
   const double phi = number_of(s, "phi_deg") * kDegree;
   const double most = 90 - number_of(s, "phi_deg");
   double beta_hat = number_of(s, "beta_hat_deg");
+  std::vector<std::size_t> yielding_rays;
   if (std::isnan(beta_hat)) {
+    if (s.at("branch") != "zero") yielding_rays = {2};
     beta_hat = core_angle(phi, branch_of(s.at("branch")));
   } else if (beta_hat < most) {
     beta_hat *= kDegree;
@@ -35,10 +37,15 @@ std::unique_ptr<Model> make(const Settings& s) {
                     s.at("beta_hat_deg"), kNarrowest, most));
   }
   const CoreConstants core = core_constants(phi, beta_hat);
-  return std::make_unique<HeapModel>(
-      std::make_unique<SectorField>(cantelaube_field(phi, beta_hat, number_of(s, "rho_g"))),
-      std::map<std::string, double>{
-          {"beta_hat_deg", beta_hat / kDegree}, {"a1", core.a1}, {"a2", core.a2}, {"b1", core.b1}});
+  auto field =
+      std::make_unique<SectorField>(cantelaube_field(phi, beta_hat, number_of(s, "rho_g")));
+  std::map<std::string, double> figures{
+      {"beta_hat_deg", beta_hat / kDegree},
+      {"a1", core.a1},
+      {"a2", core.a2},
+      {"b1", core.b1},
+      {"yield_residual", field->off_yield({0, 3}, yielding_rays)}};
+  return std::make_unique<HeapModel>(std::move(field), std::move(figures));
 }
 
 }  // namespace

@@ -232,6 +232,9 @@ std::unique_ptr<Model> make(const Settings& s) {
       std::make_unique<SectorField>(asymmetric_field(heap, branch, ray, number_of(s, "rho_g")));
   std::map<std::string, double> figures{{"core_left_deg", -field->regions()[1].from / kDegree},
                                         {"core_right_deg", field->regions().back().from / kDegree}};
+  const std::size_t last = field->regions().size() - 1;
+  figures["yield_residual"] = field->off_yield(
+      {0, last}, last == 3 ? std::vector<std::size_t>{2} : std::vector<std::size_t>{});
   return std::make_unique<HeapModel>(std::move(field), std::move(figures));
 }
 

@@ -98,6 +98,34 @@ double HeapField::largest_mobilised() const {
   return largest / std::sin(phi_);
 }
 
+double HeapField::largest_imbalance() const {
+  double largest = 0;
+  for (std::size_t k = 0; k < regions_.size(); ++k) {
+    const double from = regions_[k].from, width = regions_[k].to - from;
+    for (int i = 0; i < kDirections; ++i) {
+      const double theta = from + width * (i + 0.5) / kDirections;
+      largest =
+          std::max(largest, equilibrium_residual(k, std::sin(theta), -std::cos(theta)).norm());
+    }
+  }
+  return largest / rho_g_;
+}
+
+double HeapField::off_yield(const std::vector<std::size_t>& in,
+                            const std::vector<std::size_t>& on) const {
+  double largest = 0;
+  const auto add = [&](const Eigen::Vector3d& s) {
+    largest = std::max(largest, std::fabs(mobilised_sine(s) / std::sin(phi_) - 1));
+  };
+  for (const std::size_t k : in)
+    for (int i = 0; i < kDirections; ++i) add(inside(k, (i + 0.5) / kDirections));
+  for (const std::size_t ray : on) {
+    add(inside(ray - 1, 1));
+    add(inside(ray, 0));
+  }
+  return largest;
+}
+
 SectorField::SectorField(std::vector<HeapRegion> regions, std::vector<LinearStress> fields,
                          double rho_g, double phi)
     : HeapField(std::move(regions), rho_g, phi), fields_(std::move(fields)) {}
@@ -125,6 +153,7 @@ double mobilised_sine(const Eigen::Vector3d& s) {
 
 HeapModel::HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures)
     : field_(std::move(field)), figures_(std::move(figures)) {
+  figures_["equilibrium_residual"] = field_->largest_imbalance();
   figures_["mobilised_sine_ratio"] = field_->largest_mobilised();
   const auto& regions = field_->regions();
   for (std::size_t k = 1; k < regions.size(); ++k) {

@@ -58,6 +58,12 @@ class HeapField {
   /// for others.
   double largest_mobilised() const;
 
+  /// Largest |equilibrium_residual| over rho g, of samples inside of every region.
+  double largest_imbalance() const;
+  /// Largest |sin(mobilised angle) / sin(phi) - 1|, of samples inside of these regions and on both
+  /// sides of these rays (as jump() counts them).
+  double off_yield(const std::vector<std::size_t>& in, const std::vector<std::size_t>& on) const;
+
  private:
   /// Stress of the region at unit distance from the apex, at a share of the way from its left to
   /// its right ray; on a slope its derivative inwards.
@@ -95,8 +101,8 @@ class HeapModel : public Model {
  public:
   HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures);
   Stresses stress(const Points& points) override { return field_->stress(points); }
-  /// Those given, `mobilised_sine_ratio`, and `ray_K_deg` of the rays between regions, from the
-  /// left.
+  /// Those given, `equilibrium_residual`, `mobilised_sine_ratio`, and `ray_K_deg` of the rays
+  /// between regions, from the left.
   std::map<std::string, double> figures() const override { return figures_; }
   const HeapField& field() const { return *field_; }
 

@@ -11,7 +11,7 @@ Parameter friction_angle() {
 
 Parameter weight() {
   return number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
-                "force balance", 1, kAboveZero, kUnbounded);
+                "force balance", 1, kLeastScale, kMostScale);
 }
 
 }  // namespace grainfield::continuum

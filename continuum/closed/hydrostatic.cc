@@ -1,5 +1,6 @@
 #include "continuum/closed/hydrostatic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,10 @@ class Hydrostatic : public Model {
  public:
   explicit Hydrostatic(const HydrostaticSetup& setup) : setup_(setup) {}
   Stresses stress(const Points& points) override { return hydrostatic_stress(setup_, points); }
+  // d sigma_xx / dx is not 0 under a slope, and no shear balances it: over rho g its tangent.
+  std::map<std::string, double> figures() const override {
+    return {{"equilibrium_residual", std::tan(std::max(setup_.left, setup_.right))}};
+  }
 
  private:
   HydrostaticSetup setup_;

@@ -257,18 +257,18 @@ LinearStress IfeField::gradient(std::size_t region, double x, double y) const {
 }
 
 ModelInfo ife_info() {
-  return {
-      "ife",
-      "heap at the limit of friction everywhere (incipient failure everywhere)",
-      2,
-      {number("phi_deg", "deg", "friction angle, and slope of a heap at its angle of repose",
-              "Roul 4.2", 28, kLeastAngle, kLargestAngle),
-       weight()},
-      [](const Settings& s) -> std::unique_ptr<Model> {
-        return std::make_unique<HeapModel>(
-            std::make_unique<IfeField>(number_of(s, "phi_deg") * pi / 180, number_of(s, "rho_g")),
-            std::map<std::string, double>{});
-      }};
+  return {"ife",
+          "heap at the limit of friction everywhere (incipient failure everywhere)",
+          2,
+          {number("phi_deg", "deg", "friction angle, and slope of a heap at its angle of repose",
+                  "Roul 4.2", 28, kLeastAngle, kLargestAngle),
+           weight()},
+          [](const Settings& s) -> std::unique_ptr<Model> {
+            auto field = std::make_unique<IfeField>(number_of(s, "phi_deg") * pi / 180,
+                                                    number_of(s, "rho_g"));
+            std::map<std::string, double> figures{{"yield_residual", field->off_yield({0, 1}, {})}};
+            return std::make_unique<HeapModel>(std::move(field), std::move(figures));
+          }};
 }
 
 }  // namespace grainfield::continuum

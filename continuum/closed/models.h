@@ -19,6 +19,9 @@ ModelInfo osl_layer_info();
 ModelInfo orthotropic_half_plane_info();
 ModelInfo orthotropic_layer_info();
 
+/// Range of sizes, weights and loads of heaps and OSL layers: squares of rho g h^2 stay finite.
+inline constexpr double kLeastScale = 1e-50, kMostScale = 1e50;
+
 /// Parameters that all heaps share: phi_deg (friction angle and, unless the model has slopes of its
 /// own, slope) and rho_g.
 Parameter friction_angle();

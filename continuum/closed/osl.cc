@@ -51,15 +51,28 @@ void check(const Settings& s, double phi, const Closure& closure) {
         found, most, s.at("phi_deg")));
 }
 
+// Largest |closure_residual| over rho g h, of samples at a depth h = 1.
+double off_closure(const SectorField& field, const Closure& closure) {
+  constexpr int kSamples = 64;
+  const double half = std::tan(field.rays().back());
+  double largest = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = half * ((2 * i + 1.) / kSamples - 1);
+    largest = std::max(largest, std::fabs(closure_residual(closure, field.stress(x, -1), x)));
+  }
+  return largest / field.rho_g();
+}
+
 std::unique_ptr<Model> model_of(double phi, const Closure& closure, double rho_g) {
   const StressRatio ratio = ratio_of(closure);
-  return std::make_unique<HeapModel>(
-      std::make_unique<SectorField>(osl_field(phi, closure, rho_g)),
-      std::map<std::string, double>{{"eta", closure.eta},
-                                    {"mu", closure.mu},
-                                    {"K", ratio.K},
-                                    {"tau_deg", ratio.tau / kDegree},
-                                    {"eta_at_yield", eta_at_yield(phi, closure.mu)}});
+  auto field = std::make_unique<SectorField>(osl_field(phi, closure, rho_g));
+  std::map<std::string, double> figures{{"eta", closure.eta},
+                                        {"mu", closure.mu},
+                                        {"K", ratio.K},
+                                        {"tau_deg", ratio.tau / kDegree},
+                                        {"eta_at_yield", eta_at_yield(phi, closure.mu)},
+                                        {"closure_residual", off_closure(*field, closure)}};
+  return std::make_unique<HeapModel>(std::move(field), std::move(figures));
 }
 
 std::unique_ptr<Model> make(const Settings& s) {

@@ -28,7 +28,7 @@ Characteristics characteristics(const Problem& problem, double x, double depth, 
     throw BadParameter(fmt::format(
         "model {}: eta = {:.6g} with mu = {:.6g} at x = {:.6g}, depth {:.6g} is outside the "
         "hyperbolic range; allowed: mu^2 + 4 eta above 0, here eta above {:.6g}",
-        problem.name, c.eta, mu, x, depth, problem.mirrored ? 0. : -mu * mu / 4));
+        problem.name, c.eta, mu, x, depth, problem.mirrored ? 0. : 0 - mu * mu / 4));
   if (problem.mirrored && !(c.eta > 0))
     throw BadParameter(
         fmt::format("model {}: eta = {:.6g} with mu = {:.6g} at x = {:.6g}, depth {:.6g} has both "

@@ -99,6 +99,11 @@ Task wedge_task(const Settings& s) {
   const int columns = static_cast<int>(number_of(s, "columns"));
   const int rows = static_cast<int>(number_of(s, "rows"));
   require_memory(wedge_name, s, 2. * columns, "");
+  if (columns < 2 && s.at("mesh") == "aligned")
+    throw BadParameter(
+        fmt::format("model {}: columns = {} does not fit the heap; allowed with mesh = aligned: at "
+                    "least 2, one on either side of the characteristic from the apex",
+                    wedge_name, columns));
   if (s.at("mesh") == "box") {
     task.mesh = box_mesh(slope * depth, depth, columns, rows);
     task.problem.weight = [inside = task.problem.weight, slope](double x, double y) {
@@ -240,11 +245,11 @@ ModelInfo fe_osl_wedge_info() {
       "heap with oriented stress linearity as a field problem: finite elements or marching", 2,
       osl::with_numerics(
           {friction_angle(), weight(),
-           number("h", "m", "height of the heap", "Roul 4.2", 1, kAboveZero, kUnbounded),
+           number("h", "m", "height of the heap", "Roul 4.2", 1, kLeastScale, kMostScale),
            optional_number("eta", "-", "unset: as the yielding slope asks for, as of osl",
-                           "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+                           "Roul 4.22, 4.24", -kMostScale, kMostScale),
            optional_number("mu", "-", "unset: as the yielding slope asks for, as of osl",
-                           "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+                           "Roul 4.22, 4.24", -kMostScale, kMostScale),
            choice("mesh",
                   "aligned: along slopes, axis and the characteristic from the apex; rays: along "
                   "slopes and axis; box: rectangles, weightless beyond the slopes",
@@ -260,19 +265,19 @@ ModelInfo fe_osl_layer_info() {
       osl::layer_name,
       "layer with oriented stress linearity as a field problem: finite elements or marching", 2,
       osl::with_numerics(
-          {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
-           number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
+          {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kMostScale, kMostScale),
+           number("h", "m", "depth of the layer", "Roul 5.6", 1, kLeastScale, kMostScale),
            number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
-                  "force balance", 0, 0, kUnbounded),
-           number("eta", "-", "sigma_xx / sigma_yy without shear", "Roul 4.22", 0.5, -kUnbounded,
-                  kUnbounded),
-           number("mu", "-", "tilts the characteristics", "Roul 4.22", 0, -kUnbounded, kUnbounded),
+                  "force balance", 0, 0, kMostScale),
+           number("eta", "-", "sigma_xx / sigma_yy without shear", "Roul 4.22", 0.5, -kMostScale,
+                  kMostScale),
+           number("mu", "-", "tilts the characteristics", "Roul 4.22", 0, -kMostScale, kMostScale),
            choice("closure", "uniform: mu everywhere as it is; mirrored: with the sign of x",
                   "Roul 4.22", {"uniform", "mirrored"}),
            optional_number("width", "m",
                            "the load is spread as 1 + cos over this width; unset: "
                            "h/10",
-                           "stated load", kAboveZero, kUnbounded),
+                           "stated load", kLeastScale, kMostScale),
            optional_number("half_width", "h",
                            "half the width of the domain, in depths; unset: what the load reaches",
                            "numerics", kAboveZero, 1000),

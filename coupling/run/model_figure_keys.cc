@@ -41,8 +41,21 @@ std::vector<SummaryKey> model_figure_keys() {
        "ray between two regions of a closed wedge, counted from the left, from the vertical"},
       {"model.*.mobilised_sine_ratio", "-",
        "largest sin(mobilised friction angle)/sin(phi): above 1 the limit of friction is exceeded "
-       "somewhere. Closed wedges: all over the heap; fe_cantelaube_core: of samples on the core's "
+       "somewhere, inf: the heap pulls somewhere. Closed wedges: all over the heap; "
+       "fe_cantelaube_core: of samples on the core's "
        "border, base and axis below 5 % of the height"},
+      {"model.*.equilibrium_residual", "-",
+       "closed wedges and hydrostatic: largest |div sigma - (0, rho g)| over rho g, of samples "
+       "inside "
+       "the heap; of hydrostatic the tangent of its steeper slope"},
+      {"model.*.closure_residual", "-",
+       "osl, fpa, bcc: largest |sigma_xx - eta sigma_yy - mu sign(x) sigma_xy| (compression "
+       "positive, "
+       "y down) over rho g h"},
+      {"model.*.yield_residual", "-",
+       "largest |sin(mobilised friction angle)/sin(phi) - 1| where the field is to yield: flanks "
+       "and "
+       "a yielding axis or inner ray of cantelaube and cantelaube_asymmetric, ife everywhere"},
       {"model.*.axis_iterations", "-",
        "fe_cantelaube_core: solves on the last mesh until a yielding axis meets its condition"},
       {"model.*.axis_misfit", "-",

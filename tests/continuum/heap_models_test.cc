@@ -316,6 +316,71 @@ TEST(Ife, AgreesWithShootingFromTheAxis) {
   EXPECT_EQ(shoot(0.995 * centre, 0.99 * cot, v, w), Fate::root);
 }
 
+// Figures that say how well a field keeps what it promises: equilibrium, its closure, yield.
+TEST(Heaps, FiguresOfTheResiduals) {
+  for (const char* phi : {"16", "28", "40"}) {
+    for (const char* name : {"cantelaube", "cantelaube_asymmetric", "osl", "fpa", "bcc", "ife"}) {
+      const auto f = make_model(name, {{"phi_deg", phi}, {"rho_g", "7"}})->figures();
+      const bool wedge = std::string(name).rfind("cantelaube", 0) == 0, ife = name[0] == 'i';
+      EXPECT_LT(f.at("equilibrium_residual"), ife ? 1e-6 : 1e-13) << name;
+      EXPECT_EQ(f.count("yield_residual"), wedge || ife) << name;
+      EXPECT_EQ(f.count("closure_residual"), !wedge && !ife) << name;
+      if (wedge || ife) {
+        EXPECT_LT(f.at("yield_residual"), 1e-9) << name;
+      } else {
+        EXPECT_LT(f.at("closure_residual"), 1e-13) << name;
+      }
+    }
+  }
+  for (const char* branch : {"minus", "plus"})
+    EXPECT_LT(make_model("cantelaube_asymmetric",
+                         {{"branch", branch}, {"left_deg", "25"}, {"yield_ray_deg", "2"}})
+                  ->figures()
+                  .at("yield_residual"),
+              1e-11);
+}
+
+// They are not 0 by construction.
+TEST(Heaps, ResidualsOfFieldsThatAreWrong) {
+  const double phi = 28 * kDegree;
+  SectorField right = cantelaube_field(phi, core_angle(phi, CoreBranch::zero), 2);
+  std::vector<LinearStress> fields;
+  for (std::size_t k = 0; k < right.regions().size(); ++k) fields.push_back(right.linear(k));
+  fields[2](2, 0) += 0.2;  // d sigma_xy / dx
+  fields[3] *= 0.9;
+  const SectorField wrong(right.regions(), fields, 2, phi);
+  EXPECT_NEAR(right.largest_imbalance(), 0, 1e-14);
+  EXPECT_NEAR(wrong.largest_imbalance(), 0.1, 1e-12);
+  EXPECT_NEAR(right.off_yield({0, 3}, {}), 0, 1e-12);
+  EXPECT_NEAR(wrong.off_yield({0, 3}, {}), 0, 1e-12);
+  fields[3](1, 0) *= 1.1;
+  EXPECT_GT(SectorField(right.regions(), fields, 2, phi).off_yield({0, 3}, {}), 0.01);
+  // The axis of a plateau does not yield, that of a dip does.
+  EXPECT_GT(right.off_yield({0, 3}, {2}), 0.05);
+  EXPECT_LT(cantelaube_field(phi, core_angle(phi, CoreBranch::minus), 2).off_yield({}, {2}), 1e-12);
+}
+
+// Against differences of the stress: pressure alone does not hold a slope.
+TEST(Heaps, HydrostaticPressureIsNoEquilibriumUnderASlope) {
+  for (const auto& [left, right] : {std::pair{0., 0.}, {20., 30.}, {35., 10.}}) {
+    const auto model = make_model(
+        "hydrostatic",
+        {{"rho_g", "5"}, {"left_deg", std::to_string(left)}, {"right_deg", std::to_string(right)}});
+    double largest = 0;
+    const double d = 1e-3;
+    for (const double x : {-0.5, 0.5}) {
+      const Stresses s = model->stress((Points(4, 2) << x - d, -2, x + d, -2,  //
+                                        x, -2 - d, x, -2 + d)
+                                           .finished());
+      const double along = (s(1, 0) - s(0, 0) + s(3, 2) - s(2, 2)) / (2 * d),
+                   up = (s(1, 2) - s(0, 2) + s(3, 1) - s(2, 1)) / (2 * d) - 5;
+      largest = std::max(largest, std::hypot(along, up) / 5);
+    }
+    EXPECT_NEAR(model->figures().at("equilibrium_residual"), largest, 1e-9) << left << right;
+    EXPECT_NEAR(largest, std::tan(std::max(left, right) * kDegree), 1e-9);
+  }
+}
+
 TEST(Heaps, TheRegistryFillsAndReports) {
   for (const char* name : {"cantelaube", "cantelaube_asymmetric", "osl", "fpa", "bcc", "ife"}) {
     const auto model = make_model(name, {{"phi_deg", "30"}, {"rho_g", "2"}});

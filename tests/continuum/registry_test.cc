@@ -72,3 +72,20 @@ TEST(Registry, EveryModelIsDocumentedAndItsDefaultsAreAllowed) {
     EXPECT_TRUE(dim == 2 || dim == 3);
   }
 }
+
+// A number above 0 that is no normal one is told the bound that it misses.
+TEST(Registry, NumbersTooSmallToCountAreToldTheBound) {
+  const auto refusal = [](const std::string& height) -> std::string {
+    try {
+      make_model("layer", {{"h", height}});
+    } catch (const BadParameter& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  for (const std::string h : {"1e-320", "1e-400"})
+    EXPECT_EQ(refusal(h), "model layer: h = " + h +
+                              " is out of range; allowed: at least 2.2250738585072014e-308 m");
+  for (const std::string h : {"0", "-0.0", "-1e-320", "-3"})
+    EXPECT_EQ(refusal(h), "model layer: h = " + h + " is out of range; allowed: above 0 m");
+}
