@@ -13,10 +13,11 @@ Report wedge_report(const WedgeReport& in) {
       "(zero), a peak (plus).";
   report.sections.emplace_back(std::move(base));
   if (!in.mobilized.empty()) {
-    Picture zones = maps("Mobilized friction, slip lines and the border of the core", "x / h",
+    Picture zones = maps("Mobilized strength, slip lines and the border of the core", "x / h",
                          "y / h", "mobilized", in.mobilized, false);
     zones.caption =
-        "(σ1 - σ3)/(-(σ1 + σ3) sin φ): 1 where the material is at its limit. White: slip lines of "
+        "(σ1 - σ3)/(2c cos φ - (σ1 + σ3) sin φ): 1 where the material is at its limit. White: slip "
+        "lines of "
         "both families. Red: border between the plastic flanks and the core, the first place seen "
         "from the slope where less than 0.99 is mobilized; dashed: the line from the apex that "
         "halves it, at the measured β̂.";

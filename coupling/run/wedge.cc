@@ -87,13 +87,15 @@ void WedgeAnalysis::summarize(StudyResult& out) const {
     if (!m.heap) continue;
     ++equilibria;
     ++words[m.shape.word];
-    if (m.nearest.empty()) continue;
-    out.summary[own + "nearest"] = m.nearest;
-    out.summary[own + "nearest_rel_l2"] = m.nearest_rel_l2;
-    if (!mapped_)
-      sentence += fmt::format("{}{}: {} ({:.3f} rho g h on the axis), nearest {} ({:.1f} %)",
-                              sentence.empty() ? "" : "; ", m.choice.label, m.shape.word,
-                              m.shape.axis / unit, m.nearest, 100 * m.nearest_rel_l2);
+    if (!m.nearest.empty()) {
+      out.summary[own + "nearest"] = m.nearest;
+      out.summary[own + "nearest_rel_l2"] = m.nearest_rel_l2;
+    }
+    if (mapped_) continue;
+    sentence += fmt::format("{}{}: {} ({:.3f} rho g h on the axis)", sentence.empty() ? "" : "; ",
+                            m.choice.label, m.shape.word, m.shape.axis / unit);
+    if (!m.nearest.empty())
+      sentence += fmt::format(", nearest {} ({:.1f} %)", m.nearest, 100 * m.nearest_rel_l2);
   }
   out.summary["wedge.heaps"] = heaps;
   out.summary["wedge.equilibria"] = equilibria;
@@ -101,7 +103,7 @@ void WedgeAnalysis::summarize(StudyResult& out) const {
   out.summary["wedge.plateaus"] = words["plateau"];
   out.summary["wedge.peaks"] = words["peak"];
   out.summary["time.continuum_s"] = seconds;
-  if (mapped_)
+  if (sentence.empty())
     sentence = fmt::format(
         "{} heaps, {} with an equilibrium: {} with a dip under the apex, {} with a plateau, {} "
         "with a peak",

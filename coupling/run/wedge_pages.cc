@@ -21,7 +21,7 @@ Table WedgeAnalysis::table() const {
                 "rel. L2",        "plastic", "unknowns",   "steps, iterations"};
   const double unit = setup_.rho_g * height_;
   for (const WedgeMember& m : members_) {
-    const auto figure = [&m](const char* name) {
+    const auto figure = [&m](const std::string& name) {
       const auto at = m.figures.find(name);
       return at == m.figures.end() ? kNan : at->second;
     };
@@ -38,9 +38,13 @@ Table WedgeAnalysis::table() const {
                                  fmt::format("{:.3f}", m.shape.dip_ratio),
                                  m.shape.word};
     if (m.heap) {
-      row.push_back(fmt::format("{:.1f}°, {:.1f}° ({:.2f}, {:.2f})", figure("beta_hat_left_deg"),
-                                figure("beta_hat_right_deg"), figure("beta_hat_left_misfit"),
-                                figure("beta_hat_right_misfit")));
+      const auto core = [&](const std::string& side) {
+        const double angle = figure("beta_hat_" + side + "_deg");
+        return std::isnan(angle)
+                   ? std::string("none")
+                   : fmt::format("{:.1f}° ({:.2f})", angle, figure("beta_hat_" + side + "_misfit"));
+      };
+      row.push_back(core("left") + ", " + core("right"));
       row.push_back(m.nearest.empty() ? "-" : m.nearest);
       row.push_back(std::isnan(m.nearest_rel_l2) ? "-"
                                                  : fmt::format("{:.1f} %", 100 * m.nearest_rel_l2));

@@ -14,8 +14,10 @@
 
 using namespace grainfield::coupling;
 using grainfield::coupling::testing::shipped;
+using grainfield::coupling::testing::number;
 using grainfield::coupling::testing::word;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 
 namespace {
 
@@ -154,6 +156,17 @@ TEST(WedgeRun, MapCountsHeapsWithoutEquilibrium) {
   EXPECT_EQ(std::get<std::int64_t>(result.summary.at("wedge.equilibria")), 1);
   EXPECT_THAT(word(result, "wedge.heap_at_once_dilation28_basesmooth.failed"),
               HasSubstr("no equilibrium found beyond"));
+}
+
+// Without a closed wedge beside them, and with a flank that does not yield.
+TEST(WedgeRun, HeapsAlone) {
+  const auto result = shipped("wedge-construction-history.toml",
+                              {"compare.models=[\"at_once\"]", "wedge.right_deg=15",
+                               "model.at_once.cells=8", "model.at_once.dilation_deg=28"});
+  EXPECT_THAT(word(result, "verdict.sentence"), MatchesRegex("at_once: peak .0.8[0-9]* rho g h on "
+                                                             "the axis...?"));
+  EXPECT_EQ(result.summary.count("wedge.at_once.nearest"), 0U);
+  EXPECT_TRUE(std::isnan(number(result, "model.at_once.beta_hat_right_deg")));
 }
 
 TEST(WedgeRun, RefusesWhatDoesNotFit) {
