@@ -13,7 +13,8 @@ Table WedgeAnalysis::table() const {
   out.title = "The heaps";
   out.caption =
       "Pressures over rho g h. Axis: mean within 5 % of the half width; dip: axis below 0.98 of "
-      "the largest, plateau: at a quarter of the half width still 0.98 of the axis, else peak. "
+      "the largest on either side, plateau: at a quarter of the half width on both sides still "
+      "0.98 of the axis, else peak. "
       "Core angle: left and right, with the median distance of the border from the line in "
       "|x|/depth. Nearest: of the closed wedges, by the relative L2 distance on the base.";
   out.header = {"heap",           "axis",    "largest",    "at |x|/h",

@@ -13,8 +13,8 @@
 #include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;
-using grainfield::coupling::testing::shipped;
 using grainfield::coupling::testing::number;
+using grainfield::coupling::testing::shipped;
 using grainfield::coupling::testing::word;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
@@ -48,6 +48,15 @@ TEST(WedgeRun, ShapesOfTheClosedBranches) {
   EXPECT_EQ(closed_shape("plus").word, "peak");
   EXPECT_NEAR(closed_shape("zero").dip_ratio, 1, 1e-9);
   EXPECT_NEAR(closed_shape("minus").largest_at, std::tan(22.496 * std::numbers::pi / 180), 0.032);
+  // One side alone that is higher is no dip: the peak lies beside the axis. A valley is one.
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(201, -1, 1);
+  const Eigen::VectorXd leaning = 1 - (x.array() - 0.2).abs();
+  EXPECT_EQ(base_shape(x, leaning, 1).word, "peak");
+  EXPECT_NEAR(base_shape(x, leaning, 1).largest_at, 0.2, 1e-9);
+  const Eigen::VectorXd valley =
+      (x.array() < 0).select(1 - (x.array() + 0.3).abs(), 1.1 - (x.array() - 0.4).abs());
+  EXPECT_EQ(base_shape(x, valley, 1).word, "dip");
+  EXPECT_NEAR(base_shape(x, valley, 1).largest_at, 0.4, 1e-9);
   EXPECT_THROW(base_shape(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 1, 1), 3),
                std::invalid_argument);
 }
@@ -160,11 +169,15 @@ TEST(WedgeRun, MapCountsHeapsWithoutEquilibrium) {
 
 // Without a closed wedge beside them, and with a flank that does not yield.
 TEST(WedgeRun, HeapsAlone) {
-  const auto result = shipped("wedge-construction-history.toml",
-                              {"compare.models=[\"at_once\"]", "wedge.right_deg=15",
-                               "model.at_once.cells=8", "model.at_once.dilation_deg=28"});
-  EXPECT_THAT(word(result, "verdict.sentence"), MatchesRegex("at_once: peak .0.8[0-9]* rho g h on "
-                                                             "the axis...?"));
+  const auto result =
+      shipped("wedge-construction-history.toml",
+              {"compare.models=[\"at_once\", \"grow\"]", "wedge.right_deg=15",
+               "model.at_once.cells=8", "model.at_once.dilation_deg=28", "model.grow.cells=8",
+               "model.grow.layers=4", "model.grow.dilation_deg=28"});
+  EXPECT_THAT(
+      word(result, "verdict.sentence"),
+      MatchesRegex("at_once: peak .0.8[0-9]* rho g h on the axis.; grow: peak .0.8[0-9]* rho "
+                   "g h on the axis.."));
   EXPECT_EQ(result.summary.count("wedge.at_once.nearest"), 0U);
   EXPECT_TRUE(std::isnan(number(result, "model.at_once.beta_hat_right_deg")));
 }
