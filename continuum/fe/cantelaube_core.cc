@@ -8,8 +8,10 @@
 // This second condition is met by iteration on the axis' traction, accelerated (Anderson 1965),
 // because both sides of it are linear. On the base either the closed form's displacement, or rigid
 // and rough, or rigid and smooth, or springs. A yielding axis holds nothing, and its corner with
-// another base than the closed form's is singular (rough) or must be pinned by a force (smooth): it
-// is solved on the closed form's base only.
+// another base than the closed form's is singular (rough) or must be pinned by a force (smooth). On
+// springs branch plus has a solution; with branch minus, whose axis answers a change of sigma_yy
+// with a larger one of sigma_xx, what is found changes without end as the mesh is refined. So a
+// yielding axis is solved on the closed form's base and, of branch plus, on springs.
 //
 // The closed form's stress is linear in the half core, its displacement a polynomial of degree two,
 // which elements of degree two hold exactly: they return it to the accuracy of the linear solver,
@@ -108,10 +110,11 @@ class CantelaubeCore : public fe::SolvedModel<2> {
       throw BadParameter(fmt::format(
           "model {}: beta_hat_deg is set with axis = branch; allowed: axis = continuous or yields",
           kName));
-    if (yields_ && base_ != "closed")
+    if (yields_ && base_ != "closed" && !(base_ == "elastic" && branch == "plus"))
       throw BadParameter(
           fmt::format("model {}: base = {} is not solved with a yielding axis (axis = {}, branch = "
-                      "{}); allowed: base = closed, or axis = continuous",
+                      "{}); allowed: base = closed, base = elastic with branch = plus, or axis = "
+                      "continuous",
                       kName, base_, condition, branch));
     const double active = (1 - std::sin(phi_)) / (1 + std::sin(phi_));
     ratio_ = branch == "plus" ? active : 1 / active;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
@@ -295,11 +296,8 @@ std::string keys_markdown() {
       "with `--quick`. `[model.LABEL]` holds a model's parameters (`grainfield model NAME --list`) "
       "and optionally `name`.\n";
   std::string current = "-";
-  const auto cell = [](std::string text) {
-    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
-      text.replace(at, 1, "\\|");
-    }
-    return text;
+  const auto cell = [](const std::string& text) {
+    return boost::replace_all_copy(text, "|", "\\|");
   };
   for (const Key& key : keys()) {
     if (key.section != current) {

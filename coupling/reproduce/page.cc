@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <vector>
 
@@ -155,7 +156,9 @@ std::string reproduction_page(const Results& results) {
         value("dem.time_step", "{:.3g}"), value("dem.steps", "{:.4g}"),
         value("dem.grain_steps", "{:.3g}"), grain_seconds(results, study),
         value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""),
-        results.text(study, "case.command").value_or("grainfield run cases/" + study + ".toml"));
+        boost::replace_all_copy(
+            results.text(study, "case.command").value_or("grainfield run cases/" + study + ".toml"),
+            "|", "\\|"));
   }
   out +=
       "\n## Misprints and inconsistencies of the sources\n\n"

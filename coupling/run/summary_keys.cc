@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <stdexcept>
 
 namespace grainfield::coupling {
@@ -385,7 +386,8 @@ std::string summary_keys_markdown() {
       "carries the member at its end, e.g. `response.peaks.friction_0.3`.\n\n"
       "| key | unit | meaning |\n|---|---|---|\n";
   for (const auto& key : summary_keys()) {
-    out += fmt::format("| `{}` | {} | {} |\n", key.pattern, key.unit, key.meaning);
+    out += fmt::format("| `{}` | {} | {} |\n", key.pattern, key.unit,
+                       boost::replace_all_copy(key.meaning, "|", "\\|"));
   }
   return out;
 }
