@@ -258,7 +258,7 @@ TEST(PileRun, SweepComparesMembers) {
   const Summary all = read_summary(folder / "out/summary.json");
   EXPECT_EQ(all.count("dip.ratio.on_true"), 1U);
   EXPECT_EQ(all.count("dip.ratio.on_false"), 1U);
-  EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("repose left (deg)"));
+  EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("repose (deg)"));
 }
 
 TEST(PileRun, SweepsThatThePageNamesAreAccepted) {
