@@ -1,7 +1,9 @@
 #include "coupling/run/sweep.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "coupling/output/atomic_file.h"
@@ -73,6 +75,22 @@ Table table_of(const std::vector<SweepDifference>& differences,
                           fmt::format("{:.2g}", d.p_value), fmt::format("{:.2g}", d.p_holm)});
   }
   return table;
+}
+
+// Numbers of the table that could not be compared: " Not compared, without errors: peak (N/m)."
+std::string left_out(const std::vector<OverviewColumn>& columns,
+                     const std::vector<SweepDifference>& differences, const Summary& first) {
+  std::vector<std::string> names;
+  for (const OverviewColumn& column : columns) {
+    const auto at = first.find(column.key);
+    const bool is_number = at != first.end() && !std::holds_alternative<std::string>(at->second);
+    const bool compared =
+        std::any_of(differences.begin(), differences.end(),
+                    [&](const SweepDifference& d) { return d.key == column.key; });
+    if (is_number && !compared) names.push_back(column.heading);
+  }
+  return names.empty() ? ""
+                       : fmt::format(" Not compared, without errors: {}.", fmt::join(names, ", "));
 }
 
 void add_differences(Summary& summary, const std::vector<SweepDifference>& differences,
@@ -153,8 +171,9 @@ void write_sweep(const std::string& folder, const Case& value,
                         : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]));
   }
   const auto differences = sweep_differences(columns_of(results), summaries);
-  const std::string sentence = differences_sentence(differences, names);
+  std::string sentence = differences_sentence(differences, names);
   if (!sentence.empty()) {
+    sentence += left_out(columns_of(results), differences, summaries.front());
     add_differences(all, differences, members);
     all["sweep.sentence"] = sentence;
     report.sections.emplace_back(Text{"Between the members", sentence, true});
