@@ -153,7 +153,7 @@ struct CompareSetup {
 };
 
 struct Case {
-  std::string name;  ///< of the file, without folder and ".toml"
+  std::string name;     ///< of the file, without folder and ".toml"
   std::string command;  ///< that asked for the run, for the record; may be empty
   std::string title;
   std::string study = "point-load";
