@@ -12,6 +12,12 @@
 
 namespace grainfield::coupling {
 
+void warn_of_idle_keys(const Case& value) {
+  for (const std::string& text : value.idle) {
+    fmt::print(stderr, "grainfield: warning: {}\n", text);
+  }
+}
+
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "validate a case without running it");
   auto file = std::make_shared<std::string>();
@@ -24,6 +30,7 @@ void add_check(CLI::App& app, Action& action) {
     action = [=] {
       *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
+      warn_of_idle_keys(value);
       fmt::print("{}: ok ({}, {} model{})\n", *file, value.study, value.models.size(),
                  value.models.size() == 1 ? "" : "s");
       return 0;

@@ -6,6 +6,8 @@
 
 namespace grainfield::coupling {
 
+struct Case;
+
 /// What the chosen command does; returns the exit code. Throws std::invalid_argument (exit 2),
 /// the modules' ComputationFailed (exit 3) or anything else (exit 1).
 using Action = std::function<int()>;
@@ -22,5 +24,8 @@ void add_import(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
+
+/// One line on standard error for every key of the case that has no effect.
+void warn_of_idle_keys(const Case& value);
 
 }  // namespace grainfield::coupling

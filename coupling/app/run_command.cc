@@ -119,11 +119,7 @@ int run(const Given& given) {
   Case value = read_case(find_case(given.file), given.quick, given.sets);
   value.command = command_of(given);
   const Ranks ranks;
-  if (ranks.first()) {
-    for (const std::string& text : value.idle) {
-      fmt::print(stderr, "grainfield: warning: {}\n", text);
-    }
-  }
+  if (ranks.first()) warn_of_idle_keys(value);
   ProgressLine line(!ranks.first());
   RunOptions options;
   options.folder = !given.output.empty() ? given.output

@@ -187,7 +187,7 @@ TEST(IdleKeys, OfShippedCasesAreNone) {
   }
 }
 
-TEST(IdleKeys, AreWarnedOfByRun) {
+TEST(IdleKeys, AreWarnedOfByRunAndCheck) {
   const Folder folder;
   const std::string file = folder.write("x.toml", testing::tiny_case());
   const auto out = testing::program("run " + file + " -o " + folder.path() +
@@ -196,6 +196,9 @@ TEST(IdleKeys, AreWarnedOfByRun) {
   EXPECT_EQ(out.code, 0) << out.err;
   EXPECT_THAT(out.err, HasSubstr("grainfield: warning: --set: packing.width: has no effect, only "
                                  "with packing.kind = layered (now \"triangular\")"));
+  const auto check = testing::program("check " + file + " --set packing.width=0.2");
+  EXPECT_EQ(check.code, 0);
+  EXPECT_THAT(check.err, HasSubstr("grainfield: warning: --set: packing.width: has no effect"));
 }
 
 }  // namespace
