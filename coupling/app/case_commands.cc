@@ -1,5 +1,6 @@
 // check, keys, cases: what needs no computation.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 #include <vector>
@@ -40,20 +41,26 @@ void add_check(CLI::App& app, Action& action) {
 
 void add_keys(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("keys", "every case key: type, unit, default, range, meaning");
-  auto section = std::make_shared<std::string>();
+  auto sections = std::make_shared<std::vector<std::string>>();
   auto markdown = std::make_shared<bool>(false);
   auto summary = std::make_shared<bool>(false);
-  command->add_option("section", *section,
-                      "only this section, key or part of one, such as fit, fit.heights or frict");
+  command->add_option(
+      "section", *sections,
+      "only these sections, keys or parts of keys, such as fit, fit.heights, frict");
   command->add_flag("--markdown", *markdown, "as the page docs/keys.md");
   command->add_flag("--summary", *summary, "the keys of summary.json instead");
   command->callback([=, &action] {
     action = [=] {
-      const std::string text = *summary
-                                   ? (*markdown ? summary_keys_markdown() : summary_keys_text())
-                               : *markdown ? keys_markdown()
-                                           : keys_text(*section);
-      fmt::print("{}", text);
+      if (*summary) {
+        fmt::print("{}", *markdown ? summary_keys_markdown() : summary_keys_text());
+      } else if (*markdown) {
+        fmt::print("{}", keys_markdown());
+      } else {
+        std::vector<std::string> texts;
+        for (const std::string& section : *sections) texts.push_back(keys_text(section));
+        fmt::print("{}",
+                   sections->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
+      }
       return 0;
     };
   });

@@ -126,7 +126,10 @@ Comparison described(const std::vector<Profile>& profiles, double load, double d
   c.realizations = realizations > 0
                        ? realizations
                        : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
-  for (const Profile& p : profiles) c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+  for (const Profile& p : profiles) {
+    c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+    c.shape_errors.push_back(shape_errors(p.x, p.samples));
+  }
   return c;
 }
 
@@ -201,13 +204,17 @@ std::map<std::string, double> summary_figures(const Comparison& c, std::size_t m
   figures["verdict.position"] = c.verdict.position;
   figures["verdict.position_error"] = c.verdict.position_error;
   if (main < c.shapes.size()) {
-    const ProfileShape& s = c.shapes[main];
-    figures["response.peak"] = s.peak;
+    const ProfileShape &s = c.shapes[main], &error = c.shape_errors[main];
+    const auto put_shape = [&](const std::string& name, double value, double its_error) {
+      figures["response." + name] = value;
+      if (std::isfinite(its_error)) figures["response." + name + ".standard_error"] = its_error;
+    };
+    put_shape("peak", s.peak, error.peak);
+    put_shape("width", s.fwhm, error.fwhm);
+    put_shape("rms_width", s.rms_width, error.rms_width);
+    put_shape("integral", s.integral, error.integral);
     figures["response.peak_at"] = s.peak_at;
-    figures["response.width"] = s.fwhm;
-    figures["response.rms_width"] = s.rms_width;
     figures["response.peaks"] = s.peaks;
-    figures["response.integral"] = s.integral;
   }
   return figures;
 }

@@ -76,8 +76,9 @@ struct Comparison {
   std::vector<Profile> profiles;
   std::vector<Profile> beside;  ///< other averages of the same places: in tables, not compared
   std::vector<ModelProfiles> models;
-  std::vector<ProfileShape> shapes;      ///< of the simulation, one per profile
-  std::vector<ModelComparison> results;  ///< in the order of models
+  std::vector<ProfileShape> shapes;        ///< of the simulation, one per profile
+  std::vector<ProfileShape> shape_errors;  ///< their standard errors: compare/shape.h
+  std::vector<ModelComparison> results;    ///< in the order of models
   Verdict verdict;
   int realizations = 1;
   double load = 0;   ///< F, N
@@ -101,7 +102,8 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
 
 /// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,dof}, also per profile as
 /// compare.MODEL.PROFILE.*, verdict.position, verdict.position_error, and of the profile `main`
-/// (index) response.{peak,peak_at,width,rms_width,peaks,integral}. verdict.best_model is a word:
+/// (index) response.{peak,peak_at,width,rms_width,peaks,integral}, with .standard_error from two
+/// realizations on (not of peak_at and peaks). verdict.best_model is a word:
 /// see Verdict.
 std::map<std::string, double> summary_figures(const Comparison& comparison, std::size_t main);
 

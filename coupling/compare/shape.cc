@@ -98,4 +98,21 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
   return shape;
 }
 
+ProfileShape shape_errors(const Eigen::VectorXd& x, const Eigen::MatrixXd& samples) {
+  const Eigen::Index n = samples.cols();
+  const Eigen::VectorXd sum = samples.rowwise().sum();
+  if (n < 2 || sum.array().isFinite().count() < 3) return {kNan, kNan, kNan, kNan, 0, kNan};
+  Eigen::Matrix<double, 4, Eigen::Dynamic> without(4, n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const ProfileShape s =
+        profile_shape(x, (sum - samples.col(r)) / static_cast<double>(n - 1), {});
+    without.col(r) << s.peak, s.fwhm, s.rms_width, s.integral;
+  }
+  const Eigen::Vector4d centre = without.rowwise().mean();
+  const Eigen::Vector4d squares = (without.colwise() - centre).rowwise().squaredNorm();
+  const double share = static_cast<double>(n - 1) / static_cast<double>(n);
+  const Eigen::Vector4d error = (share * squares).cwiseSqrt();
+  return {error[0], kNan, error[1], error[2], 0, error[3]};
+}
+
 }  // namespace grainfield::coupling

@@ -21,4 +21,12 @@ struct ProfileShape {
 ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& value,
                            const Eigen::VectorXd& error);
 
+/// Standard errors of the shape of the mean profile, from the means with one realization left out
+/// each (jackknife; Efron & Stein 1981); of the integral that is the standard error of the
+/// realizations' integrals. `samples`: x.size() x realizations. `peaks` is 0 and `peak_at`, whose
+/// place jumps from point to point, nan; so is a figure that one of the means lacks, and all with
+/// fewer than two realizations or three points that all realizations have. Throws
+/// std::invalid_argument for sizes that differ.
+ProfileShape shape_errors(const Eigen::VectorXd& x, const Eigen::MatrixXd& samples);
+
 }  // namespace grainfield::coupling

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -98,19 +100,26 @@ void add_tables(Report& report, const PointLoadReport& in) {
   report.sections.emplace_back(std::move(distances));
 
   Table shapes{"Shape of the profiles",
-               "Peak in F/h, widths and places in h, integral over x in F.",
+               "Peak in F/h, widths and places in h, integral over x in F; standard errors of the "
+               "grains by leaving one realization out at a time.",
                {"profile", "of", "peak", "at", "full width at half maximum", "rms width", "peaks",
                 "integral"},
                {}};
-  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s) {
-    shapes.rows.push_back({profile, of, shown(s.peak * c.depth / c.load),
-                           shown(s.peak_at / c.depth, 2), shown(s.fwhm / c.depth),
-                           shown(s.rms_width / c.depth), fmt::format("{}", s.peaks),
-                           shown(s.integral / c.load, 4)});
+  const auto with_error = [](double value, double error) {
+    return std::isfinite(error) ? shown(value) + " ± " + shown(error, 1) : shown(value);
   };
+  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
+                       const ProfileShape& error) {
+    shapes.rows.push_back(
+        {profile, of, with_error(s.peak / c.unit(), error.peak / c.unit()),
+         shown(s.peak_at / c.depth, 2), with_error(s.fwhm / c.depth, error.fwhm / c.depth),
+         with_error(s.rms_width / c.depth, error.rms_width / c.depth), fmt::format("{}", s.peaks),
+         with_error(s.integral / c.load, error.integral / c.load)});
+  };
+  const ProfileShape exact{kNan, kNan, kNan, kNan, 0, kNan};
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    row(c.profiles[k].name, "grains", c.shapes[k]);
-    for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k]);
+    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k]);
+    for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k], exact);
   }
   report.sections.emplace_back(std::move(shapes));
   for (const auto& [title, rows] :

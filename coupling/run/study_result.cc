@@ -138,6 +138,9 @@ void add_comparison(Summary& summary, const Comparison& comparison, std::size_t 
   for (const auto& [key, number] : summary_figures(comparison, main)) summary[key] = number;
   const double unit = comparison.load / comparison.depth;
   summary["response.peak_over_F_per_h"] = comparison.shapes[main].peak / unit;
+  if (const double error = comparison.shape_errors[main].peak; std::isfinite(error)) {
+    summary["response.peak_over_F_per_h.standard_error"] = error / unit;
+  }
   for (std::size_t p = 0; p < comparison.profiles.size(); ++p) {
     if (p == main) continue;
     const std::string prefix = "response." + comparison.profiles[p].key;

@@ -50,6 +50,50 @@ TEST(Shape, OfAnOpenProfileHasNoWidth) {
   EXPECT_EQ(profile_shape(x, VectorXd::Constant(41, -1.0), {}).peaks, 0);
 }
 
+// Ensembles of eight bells that differ in height, width and by smooth noise: what is estimated from
+// one ensemble against the spread over 400 of them.
+TEST(ShapeErrors, AreTheSpreadOfTheShape) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const VectorXd x = axis(81, 6);
+  constexpr int ensembles = 400, realizations = 8;
+  Eigen::Array4d sum = Eigen::Array4d::Zero(), squares = sum, estimated = sum;
+  for (int e = 0; e < ensembles; ++e) {
+    Eigen::MatrixXd samples(x.size(), realizations);
+    VectorXd integrals(realizations);
+    for (int r = 0; r < realizations; ++r) {
+      const double height = 1 + 0.1 * normal(random), width = 1 + 0.1 * normal(random);
+      samples.col(r) =
+          bell(x, 0, width, height) + 0.02 * normal(random) * bell(x, normal(random), 0.7, 1);
+      integrals[r] = profile_shape(x, samples.col(r), {}).integral;
+    }
+    const ProfileShape s = profile_shape(x, samples.rowwise().mean(), {});
+    const ProfileShape error = shape_errors(x, samples);
+    const Eigen::Array4d figures{s.peak, s.fwhm, s.rms_width, s.integral};
+    sum += figures;
+    squares += figures.square();
+    estimated += Eigen::Array4d{error.peak, error.fwhm, error.rms_width, error.integral}.square();
+    const double spread = std::sqrt((integrals.array() - integrals.mean()).square().sum() /
+                                    (realizations * (realizations - 1.0)));
+    EXPECT_NEAR(error.integral, spread, 1e-12);
+    EXPECT_TRUE(std::isnan(error.peak_at));
+  }
+  const Eigen::Array4d variance = squares / ensembles - (sum / ensembles).square();
+  const Eigen::Array4d ratio = (estimated / ensembles / variance).sqrt();
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(ratio[k], 1, 0.12) << k;
+}
+
+TEST(ShapeErrors, OfTooLittleAreUnknown) {
+  const VectorXd x = axis(41, 3);
+  EXPECT_TRUE(std::isnan(shape_errors(x, bell(x, 0, 1, 1)).peak));
+  EXPECT_TRUE(std::isnan(shape_errors(x, {}).peak));
+  Eigen::MatrixXd gaps(41, 2);
+  gaps << bell(x, 0, 1, 1), bell(x, 0, 1, 1.2);
+  EXPECT_NEAR(shape_errors(x, gaps).peak, 0.1, 1e-12);
+  gaps.col(1).head(39).setConstant(NAN);
+  EXPECT_TRUE(std::isnan(shape_errors(x, gaps).peak));
+}
+
 // Twenty noisy curves each: correlated noise whose size the errors state.
 TEST(Shape, CountsOneAndTwoPeaksUnderNoise) {
   std::mt19937 random(3);
@@ -327,6 +371,10 @@ TEST(Compare, SummaryHasTheAgreedKeys) {
                           "response.peak", "response.width", "response.peaks", "verdict.position"})
     EXPECT_TRUE(figures.count(key)) << key;
   EXPECT_EQ(figures.at("response.peaks"), 1);
+  for (const char* key : {"response.peak", "response.width", "response.integral"})
+    EXPECT_GT(figures.at(std::string(key) + ".standard_error"), 0) << key;
+  EXPECT_EQ(
+      summary_figures(compared(scene(1, 0.92, 0.05)), 0).count("response.peak.standard_error"), 0);
 }
 
 TEST(Compare, Refuses) {
