@@ -6,6 +6,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -51,6 +52,13 @@ void write_text_file(const std::string& path, const std::string& text) {
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write {}: disk full?", path));
   file.commit();
+}
+
+std::string read_text_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
 }
 
 }  // namespace grainfield::coupling

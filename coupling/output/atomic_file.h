@@ -1,4 +1,4 @@
-// A file that appears complete or not at all.
+// Files as whole texts; one that is written appears complete or not at all.
 #pragma once
 #include <string>
 
@@ -24,5 +24,7 @@ class AtomicFile {
 
 /// Writes text through an AtomicFile. Throws also when the disk is full.
 void write_text_file(const std::string& path, const std::string& text);
+/// All of a file; empty when it cannot be read.
+std::string read_text_file(const std::string& path);
 
 }  // namespace grainfield::coupling

@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "coupling/output/atomic_file.h"
+
 extern char** environ;
 
 namespace grainfield::coupling {
@@ -44,13 +46,6 @@ class Folder {
  private:
   fs::path path_;
 };
-
-std::string read_all(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 // Exit status, or -1 after the time limit.
 int run(const std::string& program, const std::string& script, const std::string& messages,
@@ -107,14 +102,14 @@ Drawing draw(const std::string& gnuplot, const std::string& terminal, const std:
   }
   const int status = run(gnuplot, script, messages, seconds);
   Drawing result;
-  if (status == 0) result.bytes = read_all(output);
+  if (status == 0) result.bytes = read_text_file(output);
   if (!result.bytes.empty()) return result;
   if (status == -1) {
     result.error = fmt::format("gnuplot took longer than {:g} s", seconds);
     return result;
   }
   // gnuplot shows the line, a caret, and then the message.
-  std::istringstream lines(read_all(messages));
+  std::istringstream lines(read_text_file(messages));
   for (std::string line; std::getline(lines, line);)
     if (line.find("picture.gp") != std::string::npos && line.find("line ") != std::string::npos)
       result.error = line.substr(line.find("line "));

@@ -4,8 +4,6 @@
 
 #include <boost/beast/core/detail/base64.hpp>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
@@ -22,13 +20,6 @@ struct Kept {
 };
 constexpr Kept kKept[] = {{"Vertical pressure on the base", "base-pressure"},
                           {"Volume fraction", "volume-fraction"}};
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 std::string decoded(const std::string& text) {
   namespace codec = boost::beast::detail::base64;
@@ -53,9 +44,9 @@ std::vector<std::string> record_run(const std::string& run, const std::string& r
     written.push_back((to / fmt::format("{}{}", *name, suffix)).string());
     write_text_file(written.back(), text);
   };
-  write(".json", text_of(from / "summary.json"));
-  if (fs::exists(from / "profiles.md")) write(".profiles.md", text_of(from / "profiles.md"));
-  const std::string report = text_of(from / "report.html");
+  write(".json", read_text_file(from / "summary.json"));
+  if (fs::exists(from / "profiles.md")) write(".profiles.md", read_text_file(from / "profiles.md"));
+  const std::string report = read_text_file(from / "report.html");
   for (const Kept& kept : kKept) {
     const std::string before = fmt::format("alt=\"{}\" src=\"data:image/", kept.title);
     const std::size_t begin = report.find(before);

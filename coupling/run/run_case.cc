@@ -8,7 +8,6 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -32,13 +31,6 @@ double seconds_since(Clock::time_point start) {
 
 std::string identity(const Case& value) {
   return "# grainfield " + version() + "\n" + grain_keys_text(value);
-}
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
 }
 
 // "friction = 0.3 there, friction = 0.5 here": the first line in which two written cases differ.
@@ -73,7 +65,7 @@ class Workplace {
             "{}: holds an unfinished run; continue it with --resume, or remove that folder",
             checkpoint_.string()));
       }
-      const std::string there = read_text(checkpoint_ / "grains.txt");
+      const std::string there = read_text_file(checkpoint_ / "grains.txt");
       const std::string here = identity(value);
       if (there != here) {
         throw std::invalid_argument(
