@@ -114,8 +114,8 @@ void add_average(CLI::App& app, Action& action) {
   auto* kernel = command->add_option(
       "--kernel", options.kernel,
       "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
-  command->add_option("--width", options.width,
-                      "m; default one mean diameter (particle_centre, area_exact: 2.5)");
+  auto* width = command->add_option(
+      "--width", options.width, "m; default one mean diameter (particle_centre, area_exact: 2.5)");
   command->add_option("--frame", wanted.frame,
                       "layer: load at 0,0, surface y = 0; heap: apex at 0,0, lengths over its "
                       "height; packing: as it is");
@@ -141,7 +141,7 @@ void add_average(CLI::App& app, Action& action) {
       if (request.options.method != "coarse_graining" && kernel->count() == 0) {
         request.options.kernel = "circle";
       }
-      if (!(request.options.width >= 0)) {
+      if (width->count() > 0 && !(request.options.width > 0)) {
         throw std::invalid_argument(
             fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
       }

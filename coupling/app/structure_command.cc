@@ -79,10 +79,12 @@ void show(const std::string& title, const dem::Snapshot& s, const std::string& f
   try {
     const BaseForces base = base_forces(s);
     const ExponentialTail tail = exponential_tail(base.normalised, 1);
-    fmt::print(
-        "  base: {} grains, mean vertical force {:.4g} N; P(n) for n > 1 falls as exp(-{:.3g} n) "
-        "({:.3g} to {:.3g}), p = {:.2g}\n",
-        base.force.size(), base.mean, tail.rate, tail.low, tail.high, tail.p_value);
+    fmt::print("  base: {} grains, mean vertical force {:.4g} N; ", base.force.size(), base.mean);
+    if (std::isnan(tail.rate))
+      fmt::print("{} of them above the mean, too few for a tail\n", tail.count);
+    else
+      fmt::print("P(n) for n > 1 falls as exp(-{:.3g} n) ({:.3g} to {:.3g}), p = {:.2g}\n",
+                 tail.rate, tail.low, tail.high, tail.p_value);
     base_text = base_csv(base);
   } catch (const std::invalid_argument& e) {
     fmt::print("  base: {}\n", e.what());

@@ -23,6 +23,9 @@ void check(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
                        options.width));
   if (options.threads < 1)
     refuse(fmt::format("averaging on {} threads; at least 1 is needed", options.threads));
+  if (options.least_grains < 0)
+    refuse(fmt::format("averages from at least {} grains; it must be 0 or more",
+                       options.least_grains));
   if (options.free_surface != "open" && options.free_surface != "normalised")
     refuse(unknown_name("free surface", options.free_surface, {"open", "normalised"}));
   if (points.cols() != snapshot.dim)

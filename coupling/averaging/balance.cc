@@ -35,6 +35,11 @@ std::string component(const char* name, int a, int b) {
 
 std::string component(const char* name, int a) { return fmt::format("{}_{}", name, "xyz"[a]); }
 
+// Keeps the larger of two errors; an undefined one is the worst.
+void worse(double& worst, double error) {
+  if (std::isnan(error) || std::abs(error) > std::abs(worst)) worst = error;
+}
+
 }  // namespace
 
 BalanceResidual balance_residual(const dem::Snapshot& snapshot, const MatrixXd& points,
@@ -91,6 +96,11 @@ BalanceResidual balance_residual(const dem::Snapshot& snapshot, const MatrixXd& 
 
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options) {
   const double diameter = mean_diameter(snapshot), width = options.width;
+  if (!(snapshot.gravity.y() < 0))
+    throw std::invalid_argument(fmt::format(
+        "the packing's gravity is {:g} {:g} m/s2; what the averagings carry is compared with its "
+        "weight along -y",
+        snapshot.gravity.x(), snapshot.gravity.y()));
   const Region region(snapshot);
   const LayerFrame frame = layer_frame(snapshot);
   // Points over the packing, a third of a diameter apart near its edges' heights.
@@ -133,9 +143,8 @@ std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOpti
         const double share = 0.1 * k;
         const CutForce cut =
             cut_force(snapshot, frame.floor + share * (region.highest() - frame.floor), options);
-        if (std::abs(cut.error()) > std::abs(row.worst_cut)) row.worst_cut = cut.error();
-        const double sharp = cut.force / cut.sharp - 1;
-        if (std::abs(sharp) > std::abs(row.worst_sharp)) row.worst_sharp = sharp;
+        worse(row.worst_cut, cut.error());
+        worse(row.worst_sharp, cut.force / cut.sharp - 1);
       }
       out.push_back(row);
     }

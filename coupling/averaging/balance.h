@@ -38,8 +38,9 @@ struct CutForce {
 /// Integrates the averaged field itself along the cut at height y with a midpoint rule of spacing
 /// `step` (0: width / 40). coarse_graining: along the whole line, and `weight` is the weight
 /// smeared with the kernel, exact for packings in equilibrium. The RVE methods: between the
-/// packing's ends, and `weight` is weight_above over the part of the RVE inside the packing, spread
-/// over the width as the height of the packing above. 2D. Throws as average().
+/// packing's ends, over the points with a value, and `weight` is weight_above, where the contacts
+/// carry it through each height, averaged over the part of the RVE inside the packing. 2D. Throws
+/// as average().
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& options,
                    double step = 0);
 
@@ -61,7 +62,8 @@ struct BalanceRow {
 /// Every method with each of its kernels (coarse graining without and with extension into the
 /// walls would differ only in where the traction is: `options` decides). Widths: `options.width`
 /// mean diameters for the kernels' standard deviation, and RVEs of 2.5 times as much. Cuts at 0,
-/// 0.1, ..., 0.8 of the height. Throws as average().
+/// 0.1, ..., 0.8 of the height. Throws as average(), and std::invalid_argument for a packing less
+/// than four mean diameters high or without gravity along -y.
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options);
 /// The table as Markdown.
 std::string balance_markdown(const std::vector<BalanceRow>& rows);

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/branches.h"
 #include "coupling/averaging/clip.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/kernel.h"
+#include "coupling/averaging/weights.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -47,44 +49,77 @@ double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& o
   return sum;
 }
 
-// The stress that carries weight_above, spread over the width as the height of the packing above,
-// averaged over the part of the RVE inside the packing and integrated along the cut. Midpoint rule
-// on cells of `step`.
+// The vertical force through every cell of `cut` (columns, spacing dx) at the heights (rows, from
+// `bottom` on, spacing dy), N: of the contacts whose branch crosses that height, where it does;
+// what weight_above has beyond them (parts of grains on the other side of the line than their
+// centroid) is spread over the width as the height of the packing above.
+RowMatrix force_through(const dem::Snapshot& snapshot, const Region& region, const MatrixXd& cut,
+                        double dx, const Eigen::VectorXd& heights) {
+  const Index rows = heights.size(), cells = cut.rows();
+  RowMatrix force = RowMatrix::Zero(rows, cells);
+  const double dy = rows > 1 ? heights[1] - heights[0] : 1;
+  const auto cross = [&](const dem::Vec3& a, const dem::Vec3& b, const dem::Vec3& f) {
+    const double low = std::min(a.y(), b.y()), high = std::max(a.y(), b.y());
+    const auto row_from = [&](double y) {
+      return static_cast<Index>(
+          std::clamp(std::ceil((y - heights[0]) / dy), 0.0, static_cast<double>(rows)));
+    };
+    for (Index r = row_from(low); r < row_from(high); ++r) {
+      const double x = a.x() + (heights[r] - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      const double k = std::floor((x - cut(0, 0)) / dx + 0.5);
+      force(r, static_cast<Index>(std::clamp(k, 0.0, static_cast<double>(cells - 1)))) +=
+          a.y() > b.y() ? f.y() : -f.y();
+    }
+  };
+  for_each_branch(snapshot, {true, region.floor(), 0}, cross,
+                  [](const dem::Vec3&, const dem::Vec3&) {});
+  for (Index r = 0; r < rows; ++r) {
+    Eigen::VectorXd above(cells);
+    for (Index p = 0; p < cells; ++p)
+      above[p] = std::max(0.0, region.surface(cut(p, 0)) - heights[r]);
+    if (above.sum() <= 0) continue;
+    const double rest = weight_above(snapshot, heights[r]) - force.row(r).sum();
+    force.row(r) += rest / above.sum() * above.transpose();
+  }
+  return force;
+}
+
+// The vertical force averaged over the part of the RVE inside the packing and integrated along the
+// cut, over the points where `known`. Midpoint rule on cells of `step`.
 double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, double y,
-                          const AverageOptions& options, const MatrixXd& cut, double step) {
+                          const AverageOptions& options, const MatrixXd& cut, double step,
+                          const std::vector<bool>& known) {
   const Support& support = *find_support(options.kernel);
   const double width = options.width, bottom = std::max(region.floor(), y - width);
   const double top = std::min(region.highest(), y + width);
-  const int rows = std::max(1, static_cast<int>(std::ceil((top - bottom) / step)));
-  const double dy = (top - bottom) / rows, dx = cut.rows() > 1 ? cut(1, 0) - cut(0, 0) : step;
-  Eigen::VectorXd volume(cut.rows()), sum = Eigen::VectorXd::Zero(cut.rows());
-  for (Index p = 0; p < cut.rows(); ++p)
-    volume[p] = region.measure(support, width, cut.row(p).transpose());
-  for (int r = 0; r < rows; ++r) {
-    const double at = bottom + (r + 0.5) * dy;
-    Eigen::VectorXd height(cut.rows());
-    for (Index p = 0; p < cut.rows(); ++p)
-      height[p] = std::max(0.0, region.surface(cut(p, 0)) - at);
-    if (height.sum() <= 0) continue;
-    const Eigen::VectorXd force = weight_above(snapshot, at) / height.sum() * dy * height;
+  if (!(top > bottom)) return 0;
+  const Index rows = std::max<Index>(1, static_cast<Index>(std::ceil((top - bottom) / step)));
+  const double dy = (top - bottom) / static_cast<double>(rows),
+               dx = cut.rows() > 1 ? cut(1, 0) - cut(0, 0) : step;
+  Eigen::VectorXd heights(rows);
+  for (Index r = 0; r < rows; ++r) heights[r] = bottom + (static_cast<double>(r) + 0.5) * dy;
+  const RowMatrix force = force_through(snapshot, region, cut, dx, heights);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(cut.rows());
+  for (Index r = 0; r < rows; ++r) {
     // A chord of the RVE at this height takes a run of cells; running sums make it quick.
     Eigen::VectorXd running(cut.rows() + 1);
     running[0] = 0;
-    for (Index p = 0; p < cut.rows(); ++p) running[p + 1] = running[p] + force[p];
+    for (Index p = 0; p < cut.rows(); ++p) running[p + 1] = running[p] + force(r, p) * dy;
     double half = width;
     if (support.distance({width, width, 0}) > width)
-      half = std::sqrt(std::max(0.0, width * width - (at - y) * (at - y)));
+      half = std::sqrt(std::max(0.0, width * width - (heights[r] - y) * (heights[r] - y)));
     const auto until = [&](double x) {  // of the force left of x
       const double k = std::clamp((x - cut(0, 0)) / dx + 0.5, 0.0, static_cast<double>(cut.rows()));
       const auto whole = std::min(static_cast<Index>(k), cut.rows() - 1);
-      return running[whole] + (k - static_cast<double>(whole)) * force[whole];
+      return running[whole] + (k - static_cast<double>(whole)) * force(r, whole) * dy;
     };
     for (Index p = 0; p < cut.rows(); ++p)
       sum[p] += until(cut(p, 0) + half) - until(cut(p, 0) - half);
   }
   double total = 0;
   for (Index p = 0; p < cut.rows(); ++p)
-    if (volume[p] > 0) total += sum[p] / volume[p] * dx;
+    if (known[static_cast<std::size_t>(p)])
+      total += sum[p] / region.measure(support, width, cut.row(p).transpose()) * dx;
   return total;
 }
 
@@ -118,8 +153,11 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
   CutForce cut;
   cut.height = y;
   cut.sharp = weight_above(snapshot, y);
-  for (Index p = 0; p < n; ++p)
-    if (!std::isnan(stress[p])) cut.force -= stress[p] * dx;
+  std::vector<bool> known;
+  for (Index p = 0; p < n; ++p) {
+    known.push_back(!std::isnan(stress[p]));
+    if (known.back()) cut.force -= stress[p] * dx;
+  }
   if (kernels) {
     const auto kernel = make_kernel(options.kernel, options.width);
     const auto share = [&](double height) { return kernel->beyond(y - height); };
@@ -136,9 +174,12 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
           .select(0, field_of.find("volume_fraction")->value)
           .sum();
     };
-    const double counted =
-        given.method == "area_exact" ? 1 : solid("particle_centre") / solid("area_exact");
-    cut.weight = counted * weight_through_rve(snapshot, region, y, options, line, dx);
+    double counted = 1;
+    if (given.method != "area_exact") {
+      const double inside = solid("area_exact");
+      if (inside > 0) counted = solid("particle_centre") / inside;
+    }
+    cut.weight = counted * weight_through_rve(snapshot, region, y, options, line, dx, known);
   }
   return cut;
 }

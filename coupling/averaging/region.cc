@@ -21,6 +21,13 @@ using Eigen::Vector3d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
+// A lid that no grain touches says nothing about where the packing ends.
+bool touched(const dem::Snapshot& snapshot, std::size_t wall) {
+  const auto j = -1 - static_cast<std::int64_t>(wall);
+  return std::any_of(snapshot.contacts.begin(), snapshot.contacts.end(),
+                     [j](const dem::Contact& contact) { return contact.j == j; });
+}
+
 double circle_in_box(double w, const Vector3d& low, const Vector3d& high, int dim) {
   if (dim == 2) return disk_in_box(w, low.head<2>(), high.head<2>());
   // Slices of the sphere, z = w sin(t): the area of a slice ends with the square of the distance
@@ -97,10 +104,11 @@ Region::Region(const dem::Snapshot& snapshot)
     low_ = low_.cwiseMin((grain.position.array() - grain.radius).matrix());
     high_ = high_.cwiseMax((grain.position.array() + grain.radius).matrix());
   }
-  for (const dem::Wall& wall : snapshot.walls)
+  for (std::size_t w = 0; w < snapshot.walls.size(); ++w)
     for (int a = 0; a < 3; ++a) {
+      const dem::Wall& wall = snapshot.walls[w];
       if (wall.normal[a] > 1 - 1e-9) low_[a] = wall.point[a];
-      if (wall.normal[a] < -1 + 1e-9) high_[a] = wall.point[a];
+      if (wall.normal[a] < -1 + 1e-9 && (a < 2 || touched(snapshot, w))) high_[a] = wall.point[a];
     }
 }
 
@@ -139,9 +147,11 @@ void Region::find_surface(const dem::Snapshot& snapshot) {
       add(middle, floor());
   }
   add(right(), end_height(top.back(), right_wall));
-  for (const dem::Wall& wall : snapshot.walls)
-    if (wall.normal.y() < -1 + 1e-9)  // a lid or piston
+  for (std::size_t w = 0; w < snapshot.walls.size(); ++w) {
+    const dem::Wall& wall = snapshot.walls[w];
+    if (wall.normal.y() < -1 + 1e-9 && touched(snapshot, w))  // a lid or piston
       surface_ = {{left(), wall.point.y()}, {right(), wall.point.y()}};
+  }
   high_.y() = -infinity;
   for (const Vector2d& corner : surface_) high_.y() = std::max(high_.y(), corner.y());
 }

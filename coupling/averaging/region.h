@@ -28,8 +28,8 @@ const Support* find_support(const std::string& name);
 /// 2D: the free surface is the polyline through the highest points of the free grains in columns
 /// two mean diameters wide; it meets a side wall (or a side steeper than any heap) level, and
 /// otherwise the floor at the outermost grain's edge. A wall that faces down (lid, piston) is the
-/// surface. 3D: the box of the axis-parallel walls,
-/// closed by the grains' extent where there is none.
+/// surface if a grain touches it. 3D: the box of the axis-parallel walls, closed by the grains'
+/// extent where there is none or no grain touches the lid.
 class Region {
  public:
   /// Throws std::invalid_argument "the snapshot has no free grain".

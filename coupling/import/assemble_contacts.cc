@@ -131,6 +131,12 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
         refuse(fmt::format("grain {} is a polygon: its contacts need px and py", a.id));
       c.point = a.position - (a.position - wall.point).dot(wall.normal) * wall.normal;
     }
+    const double arm = (c.point - a.position).norm();
+    if (arm > kDistant * a.radius)
+      refuse(fmt::format(
+          "grain {} of radius {:g} m in contact with wall {} at a distance of {:g} m: is the wall "
+          "where it says?",
+          a.id, a.radius, wall.name, arm));
   } else {
     const dem::Grain& b = at(c.j);
     const Vec3 branch = b.position - a.position;
@@ -176,9 +182,18 @@ ImportedSnapshot Assembly::finish() {
       });
   for (std::size_t k = 1; k < contacts_.size(); ++k) {
     const dem::Contact &a = contacts_[k - 1].contact, &b = contacts_[k].contact;
-    // Two facets of one wall may touch a grain, and so may two polygons at two points.
-    if (a.i != b.i || a.j != b.j || a.j < 0) continue;
+    if (a.i != b.i || a.j != b.j) continue;
     const dem::Grain& i = s.grains[static_cast<std::size_t>(a.i)];
+    if (a.j < 0) {
+      // Two facets of one wall may touch a grain, but not with the same force at the same point.
+      if (a.force == b.force && a.point == b.point && a.force.squaredNorm() > 0)
+        throw std::invalid_argument(fmt::format(
+            "{}: the contact of grain {} and wall {} is there already, at {}",
+            contacts_[k].source.where(), i.id, s.walls[static_cast<std::size_t>(-1 - a.j)].name,
+            contacts_[k - 1].source.where()));
+      continue;
+    }
+    // Two polygons may touch at two points.
     const dem::Grain& j = s.grains[static_cast<std::size_t>(a.j)];
     if (!i.outline.empty() && !j.outline.empty() && a.point != b.point) continue;
     throw std::invalid_argument(

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -29,6 +31,13 @@ std::string unsupported(const PackingCheck& check) {
                          : "gravity or masses are too small, or contacts stand there twice");
 }
 
+std::string off_walls(const PackingCheck& check) {
+  if (check.off_wall_contacts == 0) return "";
+  return fmt::format(
+      "{} of {} contacts with walls are more than two radii off their wall: is it where it says?",
+      check.off_wall_contacts, check.wall_contacts);
+}
+
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
@@ -42,6 +51,7 @@ GrainSizes grain_sizes(const dem::Snapshot& packing) {
     radius += grain.radius;
     ++count;
   }
+  if (count == 0) return {kNan, kNan};
   sizes.density = mass / volume;
   sizes.diameter = 2 * radius / count;
   return sizes;
@@ -65,7 +75,7 @@ std::string tension_in(const PackingCheck& check) {
 
 std::vector<std::string> doubts_of(const PackingCheck& check) {
   std::vector<std::string> out;
-  for (std::string text : {unbalanced(check), unsupported(check)}) {
+  for (std::string text : {unbalanced(check), unsupported(check), off_walls(check)}) {
     if (!text.empty()) out.push_back(std::move(text));
   }
   return out;
@@ -89,7 +99,7 @@ std::string strange_units(const dem::Snapshot& packing) {
 }
 
 void DoubtList::add(const std::string& name, const PackingCheck& check) {
-  const std::string texts[] = {unbalanced(check), unsupported(check)};
+  const std::string texts[] = {unbalanced(check), unsupported(check), off_walls(check)};
   for (std::size_t k = 0; k < entries_.size(); ++k) {
     if (texts[k].empty()) continue;
     if (entries_[k].first.empty()) {

@@ -13,7 +13,8 @@ namespace grainfield::coupling {
 std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
-/// fixed grains that carry another part of the weight than 0.9 to 1.1. `tension_in` aside.
+/// fixed grains that carry another part of the weight than 0.9 to 1.1, contacts with walls more
+/// than two radii off them. `tension_in` aside.
 std::vector<std::string> doubts_of(const PackingCheck& check);
 
 /// Of the free grains; nan without one.
@@ -39,7 +40,7 @@ class DoubtList {
     std::string first;
     int others = 0;
   };
-  std::vector<Entry> entries_{2};  // in the order of doubts_of
+  std::vector<Entry> entries_{3};  // in the order of doubts_of
 };
 
 }  // namespace grainfield::coupling

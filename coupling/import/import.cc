@@ -14,6 +14,9 @@
 namespace grainfield::coupling {
 namespace {
 
+// A contact point farther than this many radii from its wall's plane is on another wall.
+constexpr double kOffWall = 2;
+
 // The tables of one time step; of a format without steps all of them.
 struct StepTables {
   std::vector<ForeignTable> grains, contacts, walls;
@@ -173,6 +176,12 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     if (c.j >= 0) add(sum, c.j, c.point, -c.force);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
+    if (c.j < 0) {
+      const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+      const double off = std::abs((c.point - wall.point).dot(wall.normal));
+      ++check.wall_contacts;
+      check.off_wall_contacts += off > kOffWall * s.grains[static_cast<std::size_t>(c.i)].radius;
+    }
     if (!free(c.i) && free(c.j)) support -= c.force;
   }
   double total = 0;

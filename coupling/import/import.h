@@ -79,6 +79,8 @@ struct PackingCheck {
   /// Force of walls and fixed grains on the free grains, against gravity, over their weight and the
   /// applied force along gravity; nan without gravity or contacts.
   double support_ratio = std::numeric_limits<double>::quiet_NaN();
+  int wall_contacts = 0;      ///< contacts with walls
+  int off_wall_contacts = 0;  ///< of them, those whose point is over two radii off the wall's plane
 };
 PackingCheck check_packing(const dem::Snapshot& snapshot);
 

@@ -229,6 +229,13 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
 
 void TableColumns::missing(const std::string& what) const {
   const auto& columns = *table_.columns;
+  // LAMMPS' scaled coordinates run from 0 to 1 over the box: no lengths.
+  for (const char* scaled : {"s", "su"})
+    if ((what == "x" || what == "y" || what == "z") &&
+        std::find(columns.begin(), columns.end(), what + scaled) != columns.end())
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: no column \"{}\"; {}{} is in units of the box: dump x y z (or xu yu zu), in m",
+          table_.file, table_.header_line, what, what, scaled));
   std::string nearest = same_meaning(what, columns);
   // What would do instead of ours, under its own name.
   for (const auto& [ours, instead] :

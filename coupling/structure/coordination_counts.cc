@@ -1,5 +1,6 @@
 #include "coupling/structure/coordination_counts.h"
 
+#include "continuum/constants.h"
 #include "coupling/averaging/grain_facts.h"
 
 namespace grainfield::coupling {
@@ -24,8 +25,9 @@ CoordinationCounts coordination_counts(const dem::Snapshot& snapshot) {
     count(out.with_bearing, facts.bearing_contacts);
     bearing += facts.bearing_contacts;
   }
-  out.mean = contacts / out.grains;
-  out.mean_bearing = bearing / (out.grains - out.rattlers);
+  const int bearers = out.grains - out.rattlers;
+  out.mean = out.grains > 0 ? contacts / out.grains : kNan;
+  out.mean_bearing = bearers > 0 ? bearing / bearers : kNan;
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/grain_facts.h"
 #include "coupling/structure/tensor_axes.h"
 
@@ -42,7 +43,7 @@ std::vector<Stressed> stresses(const dem::Snapshot& s, const ChainOptions& optio
     sum += grains[g].load;
     ++out.bearing;
   }
-  out.mean_load = sum / out.bearing;
+  out.mean_load = out.bearing > 0 ? sum / out.bearing : kNan;
   for (Stressed& grain : grains) {
     grain.chosen = grain.chosen && grain.load > options.least_load * out.mean_load;
     if (grain.chosen) ++out.stressed;
@@ -130,7 +131,9 @@ ForceChains force_chains(const dem::Snapshot& s, const ChainOptions& options) {
       keep(walk(g, first ? 0 : 1));
     }
   }
-  out.mean_length = static_cast<double>(out.in_chains) / static_cast<double>(out.chains.size());
+  out.mean_length = out.chains.empty() ? kNan
+                                       : static_cast<double>(out.in_chains) /
+                                             static_cast<double>(out.chains.size());
   return out;
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "dem/snapshot/hdf5_file.h"
 
@@ -161,6 +163,8 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
   }
   Snapshot s;
   s.dim = static_cast<int>(hdf5::read_number_attribute(group, "dim"));
+  if (s.dim != 2 && s.dim != 3)
+    throw std::invalid_argument(fmt::format("{}: found dim {}, allowed: 2, 3", where, s.dim));
   s.time = hdf5::read_number_attribute(group, "time");
   s.loaded_grain = static_cast<std::int64_t>(hdf5::read_number_attribute(group, "loaded_grain"));
   for (int k = 0; k < 3; ++k) {
@@ -177,6 +181,20 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (!child.valid()) throw std::invalid_argument(fmt::format("{}: no group '{}'", where, name));
     return child;
   };
+  // nan is for coefficients that other programs do not tell; what moves, weighs or pushes is known.
+  const auto finite = [&](const std::vector<double>& values, int columns, const char* what,
+                          const auto& name_of) {
+    const auto bad =
+        std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+    if (bad == values.end()) return;
+    throw std::invalid_argument(
+        fmt::format("{}: {} of {} is {}; it must be a finite number", where, what,
+                    name_of(static_cast<std::size_t>(bad - values.begin()) / columns), *bad));
+  };
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(s.gravity[k]) || !std::isfinite(s.applied_force[k]))
+      throw std::invalid_argument(
+          fmt::format("{}: gravity or the applied force is not a finite number", where));
   const auto same_length = [&](std::size_t found, std::size_t wanted, const char* what) {
     if (found != wanted) {
       throw std::invalid_argument(
@@ -191,6 +209,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     const auto doubles = [&](const char* name, int columns) {
       auto values = hdf5::read_doubles(g, name, columns, at);
       same_length(values.size() / columns, n, name);
+      finite(values, columns, name, [&](std::size_t k) { return fmt::format("grain {}", id[k]); });
       return values;
     };
     const auto position = doubles("position", 3), velocity = doubles("velocity", 3);
@@ -217,6 +236,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (H5Lexists(g, "outline_start", H5P_DEFAULT) > 0) {
       const auto start = hdf5::read_integers(g, "outline_start", 1, at);
       const auto corners = hdf5::read_doubles(g, "outline", 2, at);
+      finite(corners, 2, "outline", [](std::size_t k) { return fmt::format("corner {}", k); });
       same_length(start.size(), n + 1, "outline_start");
       const auto total = static_cast<long long>(corners.size() / 2);
       if (start.front() != 0 || start.back() != total ||
@@ -238,6 +258,9 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     const auto friction = hdf5::read_doubles(w, "friction", 1, at);
     same_length(point.size() / 3, friction.size(), "walls/point");
     same_length(normal.size() / 3, friction.size(), "walls/normal");
+    const auto wall = [](std::size_t k) { return fmt::format("wall {}", k); };
+    finite(point, 3, "point", wall);
+    finite(normal, 3, "normal", wall);
     std::string names = hdf5::read_text_attribute(w, "names");
     for (std::size_t k = 0; k < friction.size(); ++k) {
       const std::size_t comma = names.find(',');
@@ -255,6 +278,9 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     const auto doubles = [&](const char* name, int columns) {
       auto values = hdf5::read_doubles(c, name, columns, at);
       same_length(values.size() / columns, n, name);
+      const std::string_view coefficient = name;
+      if (coefficient != "spring" && coefficient != "friction")
+        finite(values, columns, name, [](std::size_t k) { return fmt::format("contact {}", k); });
       return values;
     };
     const auto point = doubles("point", 3), normal = doubles("normal", 3),

@@ -120,6 +120,17 @@ TEST(Average, RefusesWithOneLine) {
   expect_refusal(program(start + end + " --free-surface opn"), "did you mean \"open\"?");
   expect_refusal(program(start + end + " --method area_exact --kernel lucy"),
                  "unknown kernel of area_exact");
+  expect_refusal(program(start + end + " --width 0"), "--width: found 0, allowed: above 0");
+  expect_refusal(program(start + end + " --least-grains -1"),
+                 "averages from at least -1 grains; it must be 0 or more");
+  dem::Snapshot weightless = test::layer(4);
+  weightless.gravity.setZero();
+  expect_refusal(program("average " + written(folder, weightless, "w.h5") + " --balance"),
+                 "the packing's gravity is 0 0 m/s2; what the averagings carry");
+  dem::Snapshot lost = test::layer(4);
+  lost.grains[3].position.x() = std::nan("");
+  expect_refusal(program("average " + written(folder, lost, "lost.h5") + end),
+                 "position of grain 3 is nan; it must be a finite number");
   EXPECT_FALSE(testing::fs::exists(folder / "f.h5"));
 }
 

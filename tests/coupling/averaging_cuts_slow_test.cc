@@ -11,9 +11,8 @@
 namespace grainfield::coupling {
 namespace {
 
-// 32 grains wide: the kernels carry the weight up to the unbalanced forces; RVEs up to the levers
-// of the contacts at their edges, which average out with the number of grains along the cut
-// (docs/averaging.md, "Horizontal cuts").
+// 32 grains wide: the kernels carry the weight up to the unbalanced forces; RVEs of 90 grains up to
+// the levers of the contacts at their edges (docs/averaging.md, "Horizontal cuts").
 TEST(Cuts, ForceIsTheWeightAbove) {
   const dem::Snapshot& s = test::settled_layer();
   const LayerFrame frame = layer_frame(s);
@@ -31,10 +30,26 @@ TEST(Cuts, ForceIsTheWeightAbove) {
         worst = std::max(worst, std::abs(error));
         mean += error / 9;
       }
-      EXPECT_LT(worst, smooth ? 5e-4 : 0.025) << method.name << " " << kernel;
-      EXPECT_LT(std::abs(mean), smooth ? 5e-4 : 0.01) << method.name << " " << kernel;
+      EXPECT_LT(worst, smooth ? 5e-4 : 0.01) << method.name << " " << kernel;
+      EXPECT_LT(std::abs(mean), smooth ? 5e-4 : 0.002) << method.name << " " << kernel;
       RecordProperty(method.name + "_" + kernel, std::to_string(worst));
     }
+}
+
+// Side walls and ends change the share of an RVE that is inside, not the weight that a cut carries:
+// small RVEs, whose edges take shares of grains, keep to 1 % too.
+TEST(Cuts, SmallElementsCarryTheWeightBetweenTheWalls) {
+  const dem::Snapshot& s = test::settled_layer();
+  const LayerFrame frame = layer_frame(s);
+  for (const std::string& kernel : support_names()) {
+    AverageOptions options;
+    options.method = "area_exact";
+    options.kernel = kernel;
+    options.width = 2.5 * mean_diameter(s);
+    for (int k = 0; k < 9; ++k)
+      EXPECT_NEAR(cut_force(s, frame.floor + 0.1 * k * frame.depth(), options).error(), 0, 0.01)
+          << kernel << k;
+  }
 }
 
 TEST(Cuts, TableHoldsEveryAveraging) {

@@ -88,6 +88,39 @@ TEST(Cuts, WeightAboveIsThatOfTheParts) {
   EXPECT_EQ(weight_above(s, 3), 0);
 }
 
+// Columns of disks that get lower to both sides: at the feet of the heap elements lie all but
+// outside it, where their area inside is rounding.
+TEST(Cuts, EndsOfAHeapSpoilNothing) {
+  const double d = 0.01;
+  dem::Snapshot s;
+  s.gravity = {0, -10, 0};
+  test::add_wall(s, "floor", {0, 0, 0}, {0, 1, 0});
+  const int columns = 41;
+  for (int c = 0; c < columns; ++c) {
+    const int high = 1 + std::min(c, columns - 1 - c);
+    const double x = c * d + 0.0007 * std::sin(c);
+    const auto first = static_cast<std::int64_t>(s.grains.size());
+    for (int r = 0; r < high; ++r) {
+      s.grains.push_back(test::disk(first + r, x, (r + 0.5) * d, d / 2));
+      dem::Contact touch;
+      touch.i = r == 0 ? first : first + r - 1;
+      touch.j = r == 0 ? -1 : first + r;
+      touch.point = {x, r * d, 0};
+      touch.normal = {0, r == 0 ? -1. : 1., 0};
+      touch.force = -touch.normal * 10 * s.grains.back().mass * (high - r);
+      s.contacts.push_back(touch);
+    }
+  }
+  for (const char* method : {"particle_centre", "area_exact"})
+    for (const std::string& kernel : support_names())
+      for (double width : {2., 2.5, 3.})
+        for (int k = 0; k < 10; ++k) {
+          const CutForce cut = cut_force(s, 2 * k * d, options(method, kernel, width * d), 0.1 * d);
+          EXPECT_GT(cut.weight, 0) << method << kernel << width << k;
+          EXPECT_LT(cut.weight, 1.5 * test::weight(s)) << method << kernel << width << k;
+        }
+}
+
 TEST(Averaging, EveryMethodGivesTheSameBitsOnAnyNumberOfThreads) {
   const dem::Snapshot s = layer(10);
   const Eigen::MatrixXd points = grid_points(-0.01, 0.13, 29, -0.01, 0.08, 17);
@@ -200,6 +233,9 @@ TEST(Region, SphereInABox) {
       normal[a] = -side;
       test::add_wall(s, "wall", -2 * normal, normal);
     }
+  dem::Contact touch;
+  touch.j = -6;  // the last wall, above
+  s.contacts.push_back(touch);
   const Region region(s);
   const Support& sphere = *find_support("circle");
   const auto inside = [&](double x, double y, double z, double r) {
@@ -212,6 +248,29 @@ TEST(Region, SphereInABox) {
   // A cap of height h: pi h^2 (3 r - h)/3.
   EXPECT_NEAR(inside(0, 0, 1.5, 1), 1 - 0.25 * (3 - 0.5) / 4, 1e-12);
   EXPECT_NEAR(inside(0, 0, 0, 4) * sphere.measure(4, 3), 64, 1e-9);
+}
+
+TEST(Region, ALidThatNothingTouchesIsNotTheSurface) {
+  dem::Snapshot s = layer(4);
+  const Region open(s);
+  test::add_wall(s, "lid", {0, 1, 0}, {0, -1, 0});
+  EXPECT_EQ(Region(s).highest(), open.highest());
+  EXPECT_EQ(Region(s).corners().size(), open.corners().size());
+  dem::Contact touch;
+  touch.i = static_cast<std::int64_t>(s.grains.size()) - 1;
+  touch.j = -static_cast<std::int64_t>(s.walls.size());
+  s.contacts.push_back(touch);
+  EXPECT_EQ(Region(s).highest(), 1);
+
+  dem::Snapshot ball;
+  ball.dim = 3;
+  ball.grains.push_back(test::disk(0, 0, 0, 0.5));
+  test::add_wall(ball, "lid", {0, 0, 2}, {0, 0, -1});
+  EXPECT_EQ(Region(ball).highest(), 0.5);
+  touch.i = 0;
+  touch.j = -1;
+  ball.contacts.push_back(touch);
+  EXPECT_EQ(Region(ball).highest(), 2);
 }
 
 // A cubic lattice of spheres with a force on every bond of each direction.

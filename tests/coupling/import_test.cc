@@ -284,6 +284,19 @@ void expect_refused(const std::string& format, const Mistake& m) {
             static_cast<long>(!m.grains.empty()) + static_cast<long>(!m.contacts.empty()));
 }
 
+// The contact points say where the wall is, --wall says otherwise.
+TEST(Import, WarnsOfAWallThatIsElsewhere) {
+  const Folder folder;
+  const std::string files =
+      folder.write("g", "id,x,y,radius,mass\n1,0,1,1,10000\n2,5,1,1,10000\n") + " " +
+      folder.write("c", "i,j,px,py,fx,fy\n1,floor,0,0,0,98100\n2,floor,5,0,0,98100\n") + " -o " +
+      (folder / "o.h5");
+  EXPECT_THAT(program("import --from csv --wall floor:y=-3 " + files).err,
+              HasSubstr("2 of 2 contacts with walls are more than two radii off their wall: is it "
+                        "where it says?"));
+  EXPECT_EQ(program("import --from csv --wall floor:y=0 " + files).err, "");
+}
+
 TEST(Import, MistakesInCsv) {
   const std::string g = "id,x,y,radius,mass\n1,0,0,1,1\n2,0,1.9,1,1\n", c = "i,j,fx,fy\n1,2,0,-3\n";
   const std::vector<Mistake> mistakes{
@@ -321,6 +334,14 @@ TEST(Import, MistakesInCsv) {
       {g, c + "2,2,0,0\n", "", "c.txt:3: grain 2 in contact with itself"},
       {g, c + "2,1,0,0\n", "", "c.txt:3: the contact of grains 1 and 2 is there already, at "},
       {g, c + "2,1,0,inf\n", "", "c.txt:3: column fy: found \"inf\""},
+      {g, c + "1,floor,0,3\n", "--wall floor:y=-5",
+       "c.txt:3: grain 1 of radius 1 m in contact with wall floor at a distance of 5 m: is the "
+       "wall "
+       "where it says?"},
+      {g, c + "1,floor,0,3\n1,floor,0,3\n", "--wall floor:y=-1",
+       "c.txt:4: the contact of grain 1 and wall floor is there already, at "},
+      {"id,xs,ys,radius,mass\n1,0,0,1,1\n", c, "",
+       "g.txt:1: no column \"x\"; xs is in units of the box: dump x y z (or xu yu zu), in m"},
       {g + "3,50,0,1,1\n", c + "1,3,0,0\n", "", "across a periodic boundary? --leave-out-distant"},
       {g, "i,j,nx,ny,px,py,fx,fy\n1,2,0,0,0,1,1,1\n", "",
        "c.txt:2: the contact's normal has length 0"},

@@ -493,6 +493,17 @@ TEST(ForceChains, PropertiesInRandomLayers) {
   }
 }
 
+TEST(ForceChains, NothingThatBearsIsNan) {
+  dem::Snapshot s;
+  s.grains.push_back(test::disk(0, 0, 0, 1));
+  const CoordinationCounts counts = coordination_counts(s);
+  const ForceChains chains = force_chains(s);
+  for (const double undefined : {counts.mean_bearing, chains.mean_load, chains.mean_length}) {
+    EXPECT_TRUE(std::isnan(undefined));
+    EXPECT_FALSE(std::signbit(undefined));  // printed as "nan", not as "-nan"
+  }
+}
+
 TEST(StructureCommand, PrintsAndWrites) {
   const testing::Folder folder;
   const std::string file = folder / "s.h5";

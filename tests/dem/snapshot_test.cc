@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "dem/random/random.h"
 
@@ -141,6 +143,34 @@ TEST_F(SnapshotFile, AFullDiskIsSaid) {
     }
   }
   std::signal(SIGXFSZ, old_handler);
+}
+
+TEST_F(SnapshotFile, RefusesWhatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto said = [&](const auto& spoil) {
+    Snapshot s = sample();
+    spoil(s);
+    write_snapshot(file_, "/loaded", s);
+    const std::string text = message([&] { read_snapshot(file_, "/loaded"); });
+    std::filesystem::remove(file_);
+    return text;
+  };
+  EXPECT_THAT(
+      said([&](Snapshot& s) { s.grains[1].position.y() = nan; }),
+      testing::HasSubstr(":/loaded: position of grain " + std::to_string(sample().grains[1].id) +
+                         " is nan; it must be a finite number"));
+  EXPECT_THAT(said([&](Snapshot& s) { s.grains[0].mass = INFINITY; }),
+              testing::HasSubstr("mass of grain " + std::to_string(sample().grains[0].id)));
+  EXPECT_THAT(said([&](Snapshot& s) { s.contacts[1].force.x() = nan; }),
+              testing::HasSubstr("force of contact 1 is nan"));
+  EXPECT_THAT(said([&](Snapshot& s) { s.walls[1].point.x() = nan; }),
+              testing::HasSubstr("point of wall 1 is nan"));
+  EXPECT_THAT(said([&](Snapshot& s) { s.gravity.y() = nan; }), testing::HasSubstr("gravity"));
+  EXPECT_THAT(said([&](Snapshot& s) { s.dim = 4; }),
+              testing::HasSubstr("found dim 4, allowed: 2, 3"));
+  // What another program does not tell.
+  EXPECT_EQ(said([&](Snapshot& s) { s.contacts[0].spring = s.contacts[0].friction = nan; }),
+            "no std::invalid_argument");
 }
 
 TEST_F(SnapshotFile, RefusesContactsOfUnknownGrains) {
