@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -14,6 +16,8 @@ namespace {
 constexpr double kNugget = 0.02;  // keeps the whitening from resting on differences of neighbours
 constexpr int kBins = 24;         // of distances, for the correlation length
 constexpr double kLeastVariance = 1e-4;  // of a component's mean variance
+constexpr double kRounding = 1e-9;       // of the largest value
+constexpr int kLeastForOwn = 3;          // realizations: below, a value's own variance says nothing
 
 double matern(double s) { return (1 + s) * std::exp(-s); }
 double correlation_at(double distance, double length) {
@@ -27,23 +31,29 @@ Eigen::VectorXd sample_variances(const Eigen::MatrixXd& d) {
   return d.rowwise().squaredNorm() / static_cast<double>(d.cols() - 1);
 }
 
-// No value may count as exact: at least a small part of its component's mean variance.
-void keep_positive(const FitData& data, Eigen::VectorXd& variance) {
-  for (std::size_t c = 0; c < data.components.size(); ++c) {
-    double sum = 0;
-    int count = 0;
-    for (int k = 0; k < data.values(); ++k) {
-      if (data.component[static_cast<std::size_t>(k)] != static_cast<int>(c)) continue;
-      sum += variance[k];
-      ++count;
-    }
-    const double least = count > 0 ? kLeastVariance * sum / count : 0;
-    for (int k = 0; k < data.values(); ++k) {
-      if (data.component[static_cast<std::size_t>(k)] == static_cast<int>(c)) {
-        variance[k] = std::max(variance[k], least);
-      }
-    }
+// Mean of every component's variances, value by value.
+Eigen::VectorXd of_component(const FitData& data, const Eigen::VectorXd& variance) {
+  const auto m = data.components.size();
+  std::vector<double> sum(m, 0), count(m, 0);
+  for (int k = 0; k < data.values(); ++k) {
+    const auto c = static_cast<std::size_t>(data.component[static_cast<std::size_t>(k)]);
+    sum[c] += variance[k];
+    count[c] += 1;
   }
+  Eigen::VectorXd out(data.values());
+  for (int k = 0; k < data.values(); ++k) {
+    const auto c = static_cast<std::size_t>(data.component[static_cast<std::size_t>(k)]);
+    out[k] = sum[c] / count[c];
+  }
+  return out;
+}
+
+// No value may count as exact: at least a small part of its component's mean variance, and of all
+// components' where its own has none.
+void keep_positive(const FitData& data, Eigen::VectorXd& variance) {
+  const Eigen::VectorXd least =
+      kLeastVariance * of_component(data, variance).cwiseMax(kLeastVariance * variance.mean());
+  variance = variance.cwiseMax(least);
 }
 
 // Pooled correlations of one component by distance: mean per bin and pairs in it.
@@ -146,8 +156,10 @@ void set_whitener(Covariance& c, double scale) {
       std::sqrt(scale) * Eigen::MatrixXd(factor.matrixL().solve(Eigen::MatrixXd::Identity(n, n)));
 }
 
-Covariance parametric(const FitData& data) {
-  const int n = data.values();
+// Both kinds with variances pooled over neighbours.
+Covariance pooled(const FitData& data, bool correlated) {
+  const int n = data.values(), realizations = data.realizations();
+  const bool own = realizations >= kLeastForOwn;
   const Eigen::MatrixXd d = deviations(data);
   Eigen::VectorXd variance = sample_variances(d);
   keep_positive(data, variance);
@@ -156,8 +168,11 @@ Covariance parametric(const FitData& data) {
                            std::sqrt(d.cols() - 1.0));
   };
   Covariance out;
-  out.kind = "parametric";
-  out.correlation_length = fitted_length(correlogram(data, normalised_by(variance)));
+  out.kind = correlated ? "parametric" : "diagonal";
+  // Two realizations differ by one number per value, over its own size 1 or -1: the component's
+  // mean stands in for it.
+  const Eigen::VectorXd first = own ? variance : of_component(data, variance);
+  out.correlation_length = fitted_length(correlogram(data, normalised_by(first)));
   const double length = out.correlation_length;
   // Smooth the variances over three correlation lengths.
   Eigen::VectorXd smooth(n);
@@ -174,7 +189,7 @@ Covariance parametric(const FitData& data) {
       sum += w * variance[j];
       weight += w;
     }
-    smooth[i] = 0.5 * (variance[i] + sum / weight);
+    smooth[i] = 0.5 * (first[i] + sum / weight);
   }
   const Eigen::MatrixXd between = between_components(data, normalised_by(smooth));
   out.of_mean.resize(n, n);
@@ -186,29 +201,14 @@ Covariance parametric(const FitData& data) {
       const double rho =
           between(a, b) * correlation_at((data.points.row(i) - data.points.row(j)).norm(), length);
       sum += rho * rho;
-      out.of_mean(i, j) = std::sqrt(smooth[i] * smooth[j]) * rho / data.realizations();
+      out.of_mean(i, j) =
+          correlated || i == j ? std::sqrt(smooth[i] * smooth[j]) * rho / realizations : 0;
     }
   }
   out.effective_values = static_cast<double>(n) * n / sum;
-  set_whitener(out, 1);
-  return out;
-}
-
-Covariance diagonal(const FitData& data) {
-  const int n = data.values();
-  const Eigen::MatrixXd d = deviations(data);
-  Eigen::VectorXd variance = sample_variances(d);
-  keep_positive(data, variance);
-  Covariance out;
-  out.kind = "diagonal";
-  out.effective_values = n;
-  if (data.realizations() >= 3) {
-    const Covariance correlated = parametric(data);
-    out.correlation_length = correlated.correlation_length;
-    out.effective_values = correlated.effective_values;
-  }
-  out.of_mean = (variance / data.realizations()).asDiagonal();
-  set_whitener(out, out.effective_values / n);
+  out.freedom = (realizations - 1) * out.effective_values;
+  const double shared = correlated ? 1 : out.effective_values / n;
+  set_whitener(out, own ? shared / inverse_bias(realizations) : shared);
   return out;
 }
 
@@ -218,6 +218,7 @@ Covariance sample(const FitData& data) {
   Covariance out;
   out.kind = "sample";
   out.effective_values = n;
+  out.freedom = r - n;
   out.of_mean = d * d.transpose() / (static_cast<double>(r - 1) * r);
   set_whitener(out, static_cast<double>(r - n - 2) / (r - 1));
   return out;
@@ -236,14 +237,19 @@ Covariance given(const FitData& data) {
   return out;
 }
 
+// Copies of one packing, or of a perfect lattice: they differ by rounding only.
+bool all_equal(const FitData& data) {
+  return deviations(data).cwiseAbs().maxCoeff() <= kRounding * data.samples.cwiseAbs().maxCoeff();
+}
+
 Covariance unknown(const FitData& data) {
   const int n = data.values();
   Covariance out;
   out.kind = "unknown";
-  out.note =
-      "one realization, and a diagonal covariance needs 2, a parametric one 3: no errors, all "
-      "values "
-      "count alike";
+  out.note = data.realizations() == 1
+                 ? "one realization, and a diagonal covariance needs 2, a parametric one 3"
+                 : fmt::format("all {} realizations are equal", data.realizations());
+  out.note += ": no errors, all values count alike";
   out.effective_values = n;
   out.of_mean = Eigen::MatrixXd::Identity(n, n);
   out.whitener = out.of_mean;
@@ -251,6 +257,25 @@ Covariance unknown(const FitData& data) {
 }
 
 }  // namespace
+
+double inverse_bias(int realizations) {
+  if (realizations < 2) {
+    throw std::invalid_argument(
+        fmt::format("variance: found {} realization, needed: 2 or more", realizations));
+  }
+  // x: sample variance over sigma^2, f x of chi-squared distribution with f degrees of freedom;
+  // y = sqrt x takes the pole of its density at 0 away.
+  const double half = 0.5 * (realizations - 1);
+  const auto integrand = [half](double y) {
+    if (!(y > 0)) return half == 0.5 ? 4 * std::sqrt(half) / std::tgamma(half) : 0.0;
+    const double x = y * y;
+    const double density =
+        std::exp(half * std::log(half) + (half - 1) * std::log(x) - half * x - std::lgamma(half));
+    return 2 * y * density * 2 / (1 + x);
+  };
+  return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+      integrand, 0.0, std::numeric_limits<double>::infinity(), 12, 1e-10);
+}
 
 int least_realizations(const std::string& kind, int values) {
   if (kind == "sample") return values + 3;
@@ -264,13 +289,14 @@ Covariance covariance_of(const FitData& data, const std::string& kind) {
   check(data);
   const std::string asked = kind == "auto" ? "parametric" : kind;
   const int needed = least_realizations(asked, data.values()), found = data.realizations();
+  if (found > 1 && all_equal(data)) return unknown(data);
   if (found >= needed) {
     if (asked == "sample") return sample(data);
-    return asked == "parametric" ? parametric(data) : diagonal(data);
+    return pooled(data, asked == "parametric");
   }
   if (found == 1) return data.error.size() > 0 ? given(data) : unknown(data);
   const std::string next = asked == "sample" && found >= 3 ? "parametric" : "diagonal";
-  Covariance out = next == "parametric" ? parametric(data) : diagonal(data);
+  Covariance out = pooled(data, next == "parametric");
   out.note = fmt::format("{} covariance of {} values needs {} realizations, found {}: {} instead",
                          asked, data.values(), needed, found, next);
   return out;

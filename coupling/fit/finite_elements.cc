@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "coupling/fit/fit_tables.h"
 
 namespace grainfield::coupling {
@@ -27,7 +29,9 @@ void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance
                        ""};
   out.model = predict(data, given, Eigen::VectorXd(0));
   const Eigen::VectorXd mean = data.mean(), off = mean - out.model;
-  out.chi2_per_dof = (covariance.whitener * off).squaredNorm() / fitted.dof;
+  out.chi2_per_dof = std::isfinite(fitted.chance)
+                         ? (covariance.whitener * off).squaredNorm() / fitted.dof
+                         : std::nan("");
   out.rel_l2 = off.norm() / mean.norm();
   out.from_closed = (out.model - fitted.model).norm() / fitted.model.norm();
 }

@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -19,6 +21,7 @@ namespace {
 constexpr int kMostEvaluations = 4000;
 constexpr int kHuberRounds = 8;
 constexpr double kNearBound = 1e-4;  // of the allowed interval
+constexpr double kChance = 1.35e-3;  // of a true model: three standard deviations, one-sided
 
 // Between the bounds by the logistic function, beyond them never.
 struct Bounds {
@@ -90,6 +93,13 @@ double minimise(Residuals& residuals, Eigen::VectorXd& inner, bool& converged) {
   return r.squaredNorm();
 }
 
+double most_by_chance(double dof, double freedom) {
+  if (!std::isfinite(freedom)) {
+    return boost::math::quantile(complement(boost::math::chi_squared(dof), kChance)) / dof;
+  }
+  return boost::math::quantile(complement(boost::math::fisher_f(dof, freedom), kChance));
+}
+
 Eigen::VectorXd huber_weights(const Eigen::VectorXd& r, double limit) {
   return r.unaryExpr([limit](double v) {
     const double size = std::fabs(v);
@@ -97,11 +107,13 @@ Eigen::VectorXd huber_weights(const Eigen::VectorXd& r, double limit) {
   });
 }
 
-// d model / d parameters, whitened; at a bound one-sided inwards would be needed: its column is 0.
+// d model / d parameters, whitened; of the parameters in `of`.
 Eigen::MatrixXd jacobian_at(const FitData& data, const Eigen::MatrixXd& whitener,
-                            const FitModel& model, const Eigen::VectorXd& parameters) {
-  Eigen::MatrixXd out(whitener.rows(), parameters.size());
-  for (Eigen::Index k = 0; k < parameters.size(); ++k) {
+                            const FitModel& model, const Eigen::VectorXd& parameters,
+                            const std::vector<Eigen::Index>& of) {
+  Eigen::MatrixXd out(whitener.rows(), static_cast<Eigen::Index>(of.size()));
+  for (std::size_t c = 0; c < of.size(); ++c) {
+    const Eigen::Index k = of[c];
     const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
     double h = 1e-6 * std::max(1.0, std::fabs(parameters[k]));
     if (std::isfinite(p.least) && std::isfinite(p.most)) {
@@ -110,12 +122,18 @@ Eigen::MatrixXd jacobian_at(const FitData& data, const Eigen::MatrixXd& whitener
     Eigen::VectorXd more = parameters, less = parameters;
     more[k] += h;
     less[k] -= h;
-    out.col(k) = whitener * (predict(data, model, more) - predict(data, model, less)) / (2 * h);
+    out.col(static_cast<Eigen::Index>(c)) =
+        whitener * (predict(data, model, more) - predict(data, model, less)) / (2 * h);
   }
   return out;
 }
 
 }  // namespace
+
+bool better(const Fit& a, const Fit& b) {
+  if (std::isnan(a.aicc) || std::isnan(b.aicc)) return a.rel_l2 < b.rel_l2;
+  return a.aicc < b.aicc;
+}
 
 Eigen::VectorXd predict(const FitData& data, const FitModel& model,
                         const Eigen::VectorXd& parameters, int* outside) {
@@ -189,10 +207,14 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
   out.chi2 = (covariance.whitener * off).squaredNorm();
   const double n = covariance.kind == "diagonal" ? covariance.effective_values : data.values();
   out.dof = n - static_cast<double>(k);
-  out.chi2_per_dof = out.dof > 0 ? out.chi2 / out.dof : kNan;
+  const bool known = covariance.kind != "unknown";
+  const bool tested = known && out.dof > 0;
+  out.chi2_per_dof = tested ? out.chi2 / out.dof : kNan;
+  out.chance = tested ? most_by_chance(out.dof, covariance.freedom) : kNan;
   const double kk = static_cast<double>(k), left = n - kk - 1;
-  out.aicc = left > 0 ? out.chi2 + 2 * kk + 2 * kk * (kk + 1) / left
-                      : std::numeric_limits<double>::infinity();
+  out.aicc = !known     ? kNan
+             : left > 0 ? out.chi2 + 2 * kk + 2 * kk * (kk + 1) / left
+                        : std::numeric_limits<double>::infinity();
   out.rel_l2 = off.norm() / mean.norm();
   if (outside > 0)
     out.note = fmt::format("{} values outside the model's domain count as 0", outside);
@@ -205,22 +227,40 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
     bound[static_cast<std::size_t>(p)] =
         std::isfinite(room) && (best[p] - q.least < room || q.most - best[p] < room);
   }
-  const bool known = covariance.kind != "unknown";
-  if (k > 0 && known) {
-    const Eigen::MatrixXd jacobian = jacobian_at(data, covariance.whitener, model, best);
-    const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian *
-                                                         scale.cwiseInverse().asDiagonal());
-    if (qr.rank() == k) {
-      const Eigen::MatrixXd normal = (jacobian * scale.cwiseInverse().asDiagonal()).transpose() *
-                                     (jacobian * scale.cwiseInverse().asDiagonal());
-      spread = scale.cwiseInverse().asDiagonal() *
-               normal.ldlt().solve(Eigen::MatrixXd::Identity(k, k)) *
-               scale.cwiseInverse().asDiagonal();
-    } else {
-      out.note += fmt::format("{}the values do not determine all {} parameters",
-                              out.note.empty() ? "" : "; ", k);
+  // Those at a bound are held there: the others' errors are for it where it is. So are those that
+  // no value depends on.
+  std::vector<Eigen::Index> inside;
+  std::vector<bool> determined(static_cast<std::size_t>(k), true);
+  for (Eigen::Index p = 0; p < k; ++p) {
+    if (bound[static_cast<std::size_t>(p)]) continue;
+    determined[static_cast<std::size_t>(p)] =
+        jacobian_at(data, covariance.whitener, model, best, {p}).norm() > 0;
+    if (determined[static_cast<std::size_t>(p)]) inside.push_back(p);
+  }
+  if (!inside.empty()) {
+    const auto m = static_cast<Eigen::Index>(inside.size());
+    const Eigen::MatrixXd jacobian = jacobian_at(data, covariance.whitener, model, best, inside);
+    const Eigen::VectorXd scale = jacobian.colwise().norm();
+    const Eigen::MatrixXd scaled = jacobian * scale.cwiseInverse().asDiagonal();
+    if (Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(scaled).rank() < m) {
+      for (const Eigen::Index p : inside) determined[static_cast<std::size_t>(p)] = false;
+    } else if (known) {
+      const Eigen::MatrixXd own =
+          scale.cwiseInverse().asDiagonal() *
+          (scaled.transpose() * scaled).ldlt().solve(Eigen::MatrixXd::Identity(m, m)) *
+          scale.cwiseInverse().asDiagonal();
+      for (Eigen::Index a = 0; a < m; ++a) {
+        for (Eigen::Index b = 0; b < m; ++b) {
+          spread(inside[static_cast<std::size_t>(a)], inside[static_cast<std::size_t>(b)]) =
+              own(a, b);
+        }
+      }
     }
+  }
+  for (Eigen::Index p = 0; p < k; ++p) {
+    if (determined[static_cast<std::size_t>(p)]) continue;
+    out.note += fmt::format("{}the values do not determine {}", out.note.empty() ? "" : "; ",
+                            model.parameters[static_cast<std::size_t>(p)].name);
   }
   out.correlation = Eigen::MatrixXd::Constant(k, k, kNan);
   for (Eigen::Index a = 0; a < k; ++a) {
@@ -262,7 +302,8 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
     f.value = best[p];
     f.at_bound = bound[static_cast<std::size_t>(p)];
     f.error = f.at_bound ? kNan : std::sqrt(spread(p, p));
-    f.bootstrap_error = drawn[p];
+    f.determined = determined[static_cast<std::size_t>(p)];
+    f.bootstrap_error = f.determined ? drawn[p] : kNan;
     f.low = f.value - t * f.error;
     f.high = f.value + t * f.error;
     if (f.at_bound) {

@@ -27,6 +27,7 @@ struct FittedParameter {
   double bootstrap_error = 0;  ///< standard deviation over draws of the realizations; nan without
   double low = 0, high = 0;    ///< interval of `level`: value +- Student's t times error
   bool at_bound = false;       ///< the search ended at the parameter's bound: no error
+  bool determined = true;  ///< false: the values do not depend on it, or on it with others alone
 };
 
 struct Fit {
@@ -37,12 +38,20 @@ struct Fit {
   Eigen::VectorXd residual;     ///< (mean - model) / standard error, value by value
   double chi2 = 0;              ///< |W (mean - model)|^2
   double dof = 0;               ///< effective values - parameters
-  double chi2_per_dof = 0;
-  double aicc = 0;    ///< chi2 + 2 k + 2 k (k + 1) / (n - k - 1); inf for n <= k + 1
+  double chi2_per_dof = 0;      ///< nan for a covariance of kind "unknown"
+  /// chi2_per_dof that a true model exceeds in 1.35 of 1000 (three standard deviations): of
+  /// Fisher's F with dof and the covariance's degrees of freedom; nan where there is no test.
+  double chance = 0;
+  /// chi2 + 2 k + 2 k (k + 1) / (n - k - 1); inf for n <= k + 1; nan for a covariance of kind
+  /// "unknown": chi2 has no scale then.
+  double aicc = 0;
   double rel_l2 = 0;  ///< |mean - model| / |mean|
   bool converged = false;
   std::string note;  ///< what the reader must know: bound hit, not determined, ...
 };
+
+/// Whether a describes the data better than b: by AICc, without it by relative L2.
+bool better(const Fit& a, const Fit& b);
 
 /// The parameters that minimise |W (mean - model)|^2 (Levenberg-Marquardt, Eigen/MINPACK, from
 /// every start; bounds by a logistic map). Values outside the model's domain count as 0. Throws

@@ -61,7 +61,11 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
       rows.push_back(
           {f.name, p.parameter.name, with_error(p),
            std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
-           p.parameter.unit, with, p.at_bound ? "at its bound" : ""});
+           p.parameter.unit, with,
+           p.at_bound      ? "at its bound"
+           : !p.determined ? "not determined"
+           : !f.converged  ? "search did not converge"
+                           : ""});
     }
   }
   return rows;
@@ -79,8 +83,9 @@ std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
   std::vector<std::vector<std::string>> rows;
   for (const Score& s : selection.ranking) {
     const Fit& f = fit_named(fits, s.name);
-    rows.push_back({s.name, fmt::format("{}", f.parameters.size()), number(f.chi2_per_dof),
-                    fmt::format("{:.1f}", s.aicc_difference),
+    rows.push_back({s.name, fmt::format("{}", f.parameters.size()),
+                    std::isnan(f.chi2_per_dof) ? "-" : number(f.chi2_per_dof),
+                    std::isnan(s.aicc_difference) ? "-" : fmt::format("{:.1f}", s.aicc_difference),
                     std::isfinite(s.behind_error)
                         ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
                         : "-",
@@ -135,6 +140,7 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
       summary[prefix + p.parameter.name + ".bootstrap_error"] = p.bootstrap_error;
     }
     summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
+    summary[prefix + "chi2_chance"] = f.chance;
     summary[prefix + "rel_l2"] = f.rel_l2;
     summary[prefix + "note"] = f.note;
   }

@@ -111,6 +111,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) 
       grid.block(component * cells, heap, cells, 1) = values.tail(cells);
     }
   }
+  drop_copies(all, grid, heaps.name, out);
   fill_heap_maps(grid, out.facts, out.width / height, out.maps);
   keep_rows(setup, points, level, all, out);
   return out;

@@ -17,7 +17,7 @@ const Fit* best_of(const HeapFits& fits, const std::vector<std::string>& names) 
   const Fit* best = nullptr;
   for (const Fit& f : fits.fits) {
     if (std::find(names.begin(), names.end(), f.name) == names.end()) continue;
-    if (best == nullptr || f.aicc < best->aicc) best = &f;
+    if (best == nullptr || better(f, *best)) best = &f;
   }
   return best;
 }

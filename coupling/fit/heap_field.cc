@@ -123,13 +123,14 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
       if (column->error.size() > k) errors(c * n + p, 0) = column->error[k] / pressure;
     }
   }
-  if (field.nx > 1 && field.ny > 1) {
+  Eigen::MatrixXd grid(0, static_cast<Eigen::Index>(count));
+  const bool mapped = field.nx > 1 && field.ny > 1;
+  if (mapped) {
     out.maps.columns = field.nx;
     out.maps.rows = field.ny;
     out.maps.points = points;
     const Eigen::Index cells = points.rows();
-    Eigen::MatrixXd grid =
-        Eigen::MatrixXd::Constant(3 * cells, static_cast<Eigen::Index>(count), std::nan(""));
+    grid = Eigen::MatrixXd::Constant(3 * cells, static_cast<Eigen::Index>(count), std::nan(""));
     for (Eigen::Index c = 0; c < 3; ++c) {
       const Column* column = columns[static_cast<std::size_t>(c)];
       if (column == nullptr) continue;
@@ -139,8 +140,10 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
         grid.block(c * cells, at, cells, 1) = values / pressures[r];
       }
     }
-    fill_heap_maps(grid, out.facts, out.width / height, out.maps);
   }
+  drop_copies(
+      all, grid, [&](std::size_t r) { return fmt::format("realization {} of {}", r, where); }, out);
+  if (mapped) fill_heap_maps(grid, out.facts, out.width / height, out.maps);
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);
   warn_of_low_heights(shares, height, out.width, out);

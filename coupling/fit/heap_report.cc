@@ -58,11 +58,16 @@ void add_derived(Summary& summary, const std::string& key, const Fit& fit,
 
 std::string weights_note(const HeapFits& fits) {
   const Covariance& c = fits.covariance;
-  std::string out = fmt::format(
-      "{} values of {} piles at {} heights; {} covariance, correlation length {:.3g} h, {:.0f} "
-      "effective values",
-      fits.heaps.data.values(), fits.heaps.data.realizations(), fits.heaps.data.levels.size(),
-      c.kind, c.correlation_length, c.effective_values);
+  const auto counted = [](int n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  std::string out = fmt::format("{} values of {} at {}", fits.heaps.data.values(),
+                                counted(fits.heaps.data.realizations(), "pile"),
+                                counted(static_cast<int>(fits.heaps.data.levels.size()), "height"));
+  if (c.kind != "unknown") {
+    out += fmt::format("; {} covariance, correlation length {:.3g} h, {:.0f} effective values",
+                       c.kind, c.correlation_length, c.effective_values);
+  }
   if (!c.note.empty()) out += "; " + c.note;
   for (const FitModel& model : fits.absent) {
     out += fmt::format("; {} left out: {}", model.name, model.absent);

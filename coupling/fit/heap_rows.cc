@@ -12,6 +12,7 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr int kLeastValues = 10;
+constexpr double kRounding = 1e-9;  // of the largest value
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 double tangent(double degrees) { return std::tan(degrees * std::numbers::pi / 180); }
@@ -45,6 +46,26 @@ double mean_slope(const std::vector<PileFrame>& frames) {
     ++heaps;
   }
   return heaps > 0 ? sum / heaps : std::nan("");
+}
+
+// Whether two packings have the same values, and the same places without one.
+bool same(const Eigen::MatrixXd& all, Eigen::Index a, Eigen::Index b) {
+  double largest = 0, off = 0;
+  for (Eigen::Index k = 0; k < all.rows(); ++k) {
+    if (std::isfinite(all(k, a)) != std::isfinite(all(k, b))) return false;
+    if (!std::isfinite(all(k, a))) continue;
+    largest = std::max(largest, std::fabs(all(k, a)));
+    off = std::max(off, std::fabs(all(k, a) - all(k, b)));
+  }
+  return off <= kRounding * largest;
+}
+
+Eigen::MatrixXd columns(const Eigen::MatrixXd& all, const std::vector<Eigen::Index>& kept) {
+  Eigen::MatrixXd out(all.rows(), static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    out.col(static_cast<Eigen::Index>(k)) = all.col(kept[k]);
+  }
+  return out;
 }
 
 }  // namespace
@@ -117,6 +138,33 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       "or a smaller fit.width_diameters",
       low.size() == 1 ? "" : "s", fmt::join(low, ", "), width, width / height,
       std::ceil(100 * width / height) / 100));
+}
+
+void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
+                 const std::function<std::string(std::size_t)>& name, HeapData& out) {
+  std::vector<Eigen::Index> kept;
+  std::string first;
+  for (Eigen::Index r = 0; r < all.cols(); ++r) {
+    const auto original = std::find_if(kept.begin(), kept.end(),
+                                       [&](Eigen::Index other) { return same(all, other, r); });
+    if (original == kept.end()) {
+      kept.push_back(r);
+    } else if (first.empty()) {
+      first = fmt::format("{} is a copy of {}", name(static_cast<std::size_t>(r)),
+                          name(static_cast<std::size_t>(*original)));
+    }
+  }
+  const std::size_t copies = static_cast<std::size_t>(all.cols()) - kept.size();
+  if (copies == 0) return;
+  std::vector<PileFrame> frames;
+  for (const Eigen::Index r : kept) frames.push_back(out.frames[static_cast<std::size_t>(r)]);
+  out.frames = std::move(frames);
+  all = columns(all, kept);
+  grid = columns(grid, kept);
+  out.warnings.push_back(fmt::format(
+      "{}{}: copies are no independent realizations and do not count", first,
+      copies == 1 ? ""
+                  : fmt::format(" (likewise {} other{})", copies - 1, copies == 2 ? "" : "s")));
 }
 
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,

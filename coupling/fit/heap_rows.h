@@ -1,6 +1,7 @@
 // What both sources of heap data share: geometry of the mean heap, lines through it, and the rows
 // that every realization has.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoot
 /// constants are biased.
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
                          HeapData& out);
+
+/// Drops packings that are copies of an earlier one (all values equal but for rounding), with a
+/// warning: they are no independent realizations. `all`, `grid`: values x packings, and the frames
+/// in `out`; `name` of a packing, for the warning.
+void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
+                 const std::function<std::string(std::size_t)>& name, HeapData& out);
 
 /// Chooses the components and drops rows that are not finite in every realization. `all`: values of
 /// sigma_xx on all points, then sigma_yy, sigma_xy; columns realizations. `level`: of each point.

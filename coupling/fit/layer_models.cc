@@ -230,7 +230,7 @@ std::unique_ptr<ModelChoice> finite_element_choice(const std::string& name,
   const Fit* best = nullptr;
   for (const Fit& f : fits) {
     if (word == represents.end() || f.name.rfind(word->second, 0) != 0) continue;
-    if (best == nullptr || f.aicc < best->aicc) best = &f;
+    if (best == nullptr || better(f, *best)) best = &f;
   }
   if (best == nullptr) {
     why = "no fitted model that it represents";

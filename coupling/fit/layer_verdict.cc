@@ -14,10 +14,6 @@
 namespace grainfield::coupling {
 namespace {
 
-// A model agrees when its chi2/dof is within so many standard deviations sqrt(2/dof) of 1; the
-// covariance is estimated, so that chi2 scatters more than that of a known one.
-constexpr double kChance = 3;
-
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -36,9 +32,10 @@ LayerVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
   out.model = order.front()->name;
   out.equations = "not distinguishable";
   out.sentence = fmt::format(
-      "{} realization{}: without a spread nothing is distinguishable. Nearest is {} (relative L2 "
+      "{}{} realization{}: without a spread nothing is distinguishable. Nearest is {} (relative L2 "
       "{:.1f} %)",
-      realizations, realizations == 1 ? "" : "s", out.model, 100 * order.front()->rel_l2);
+      realizations < least_for_significance ? "" : "All equal, ", realizations,
+      realizations == 1 ? "" : "s", out.model, 100 * order.front()->rel_l2);
   if (order.size() > 1) {
     out.sentence += fmt::format(", then {} ({:.1f} %)", order[1]->name, 100 * order[1]->rel_l2);
   }
@@ -67,7 +64,9 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   if (fits.empty() || selection.ranking.empty()) {
     throw std::invalid_argument("verdict: no fitted model");
   }
-  if (realizations < least_for_significance) return without_spread(fits, realizations);
+  if (realizations < least_for_significance || std::isnan(fits.front().aicc)) {
+    return without_spread(fits, realizations);
+  }
   LayerVerdict out;
   std::vector<std::string> supported;
   std::set<std::string> types;
@@ -83,8 +82,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   out.equations = types.size() == 1 ? *types.begin() : "not distinguishable";
   out.alone = std::all_of(supported.begin(), supported.end(),
                           [&](const std::string& name) { return contains(name, out.model); });
-  const double most = 1 + kChance * std::sqrt(2 / std::max(simplest->dof, 1.0));
-  out.agrees = simplest->chi2_per_dof <= most;
+  out.agrees = simplest->chi2_per_dof <= simplest->chance;
   const std::string evidence = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
                                            simplest->chi2_per_dof, 100 * simplest->rel_l2);
   if (out.alone) {
@@ -117,7 +115,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   if (!out.agrees) {
     out.sentence += fmt::format(
         " No agreement within the errors: chi2/dof {:.3g}, where up to {:.2g} would be chance.",
-        simplest->chi2_per_dof, most);
+        simplest->chi2_per_dof, simplest->chance);
   }
   return out;
 }

@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -81,24 +83,28 @@ double level_score(const FitData& data, const Covariance& c, const FitModel& mod
 
 // What the best fit's chi squared says against every model; empty: nothing.
 std::string doubt(const Fit& best) {
-  if (!(best.dof > 0)) {
+  if (!std::isnan(best.aicc) && !(best.dof > 0)) {
     return fmt::format(" {} has as many free numbers as there are effective values: no test.",
                        best.name);
   }
-  const double chance = 1 + 3 * std::sqrt(2 / best.dof);
-  if (!(best.chi2_per_dof > chance)) return "";
+  if (!(best.chi2_per_dof > best.chance)) return "";
   return fmt::format(
       " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
       "would be chance.",
-      best.chi2_per_dof, chance);
+      best.chi2_per_dof, best.chance);
 }
 
 }  // namespace
 
-void mark_supported(std::vector<Score>& ranking, double least_aicc) {
+double least_errors(int realizations) {
+  if (realizations < kLeastRealizations) return std::numeric_limits<double>::infinity();
+  return boost::math::quantile(boost::math::students_t(realizations - 1.0), 0.975);
+}
+
+void mark_supported(std::vector<Score>& ranking, double least_aicc, double least_errors) {
   for (Score& s : ranking) {
-    const bool clearly_behind =
-        s.aicc_difference > least_aicc && s.behind > 2 * s.behind_error;  // false for nan
+    const bool clearly_behind = s.aicc_difference > least_aicc &&
+                                s.behind > least_errors * s.behind_error;  // false for nan
     s.supported = &s == &ranking.front() || !clearly_behind;
   }
   // Who is at least as far behind in both as one that is not supported is not supported either.
@@ -130,14 +136,15 @@ Selection select(const FitData& data, const Covariance& covariance,
   std::vector<std::size_t> order(m);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return fits[a].aicc < fits[b].aicc; });
+                   [&](std::size_t a, std::size_t b) { return better(fits[a], fits[b]); });
   const std::size_t best = order.front();
   Selection out;
   const int r = data.realizations();
   for (const std::size_t k : order) {
     Score s;
     s.name = models[k].name;
-    s.aicc_difference = fits[k].aicc - fits[best].aicc;
+    // More free numbers than values is behind everything, too.
+    s.aicc_difference = fits[k].aicc == fits[best].aicc ? 0 : fits[k].aicc - fits[best].aicc;
     s.realization_score = scores[k].mean();
     s.level_score = levels[k];
     const Eigen::VectorXd behind = scores[k] - scores[best];
@@ -148,7 +155,7 @@ Selection select(const FitData& data, const Covariance& covariance,
             : kNan;
     out.ranking.push_back(s);
   }
-  mark_supported(out.ranking, options.least_aicc);
+  mark_supported(out.ranking, options.least_aicc, least_errors(r));
   std::stable_partition(out.ranking.begin(), out.ranking.end(),
                         [](const Score& s) { return s.supported; });
   const auto supported = std::count_if(out.ranking.begin(), out.ranking.end(),
@@ -167,7 +174,22 @@ Selection select(const FitData& data, const Covariance& covariance,
         "cross-validation over {} realizations.",
         names.front(), second.name, second.aicc_difference, second.behind, second.behind_error, r);
   } else {
-    out.sentence = fmt::format("Not distinguishable: {}.", fmt::join(names, ", "));
+    out.sentence = fmt::format("Not distinguishable: {}", fmt::join(names, ", "));
+    const Score& second = out.ranking[1];
+    if (std::isnan(fits[best].aicc)) {
+      out.sentence +=
+          fmt::format("; the nearest misses by {:.1f} % (relative L2), the next by {:.1f} %.",
+                      100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
+    } else if (std::isnan(second.behind_error)) {
+      out.sentence +=
+          fmt::format("; the second is behind by {:.1f} in AICc.", second.aicc_difference);
+    } else {
+      out.sentence += fmt::format(
+          "; the second is behind by {:.1f} in AICc and by {:.3g} +- {:.2g} in cross-validation "
+          "over "
+          "{} realizations.",
+          second.aicc_difference, second.behind, second.behind_error, r);
+    }
   }
   out.sentence += doubt(fits[best]);
   return out;

@@ -10,7 +10,7 @@ namespace grainfield::coupling {
 std::vector<SourceFigure> fit_figures();
 
 /// "within the errors: chi2/dof 1.08 ..." or "beyond the errors: ...": beyond when chi2/dof exceeds
-/// 1 + 3 sqrt(2/dof), which chance gives in about one of a thousand.
-std::string fit_word(double chi2_per_dof, double values, double parameters, double rel_l2);
+/// `most`, which a true model exceeds in 1.35 of 1000 (Fit::chance).
+std::string fit_word(double chi2_per_dof, double most, double rel_l2);
 
 }  // namespace grainfield::coupling

@@ -109,7 +109,7 @@ std::string reproduction_page(const Results& results) {
       "(0.09, 0.08, 0.04). The steeper flank is the one with the larger mean, whichever side it "
       "is: the study's page says which was meant. Errors of fitted constants: the larger of the "
       "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
-      "exceeds 1 + 3 √(2/dof). A "
+      "exceeds what a true model's does by chance (1.35 of 1000). A "
       "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
       "beside the apex minus that under it). Nothing was tuned to agree.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"

@@ -157,6 +157,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"fit.*.error", "-", "error of the parameter from the covariance, in its unit"},
       {"fit.*.bootstrap_error", "-", "the same from draws of the piles"},
       {"fit.*.chi2_per_dof", "-", "whitened squared residual over values less parameters"},
+      {"fit.*.chi2_chance", "-", "chi2/dof that a true model exceeds in 1.35 of 1000"},
       {"fit.*.rel_l2", "-", "|grains - model| / |grains|"},
       {"fit.*.note", "text", "what the reader must know of the fit: bounds, no convergence"},
       {"fit.*.aicc_difference", "-", "corrected Akaike criterion, from the best model"},

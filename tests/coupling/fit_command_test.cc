@@ -138,6 +138,36 @@ TEST(FitCommand, TooFewHeapsFallBackAndSaySo) {
   EXPECT_NEAR(value(read_summary(folder / "one/summary.json"), "fit.osl.eta"), kEta, 0.1);
 }
 
+TEST(FitCommand, CopiesOfAHeapAreNoRealizations) {
+  const Folder folder;
+  const std::string heap = folder / "heap.h5";
+  dem::write_snapshot(heap, "/1/pile", osl_heap(1));
+  dem::write_snapshot(heap, "/2/pile", osl_heap(2));
+  testing::fs::copy_file(heap, folder / "copy.h5");
+  const std::string models = " --model osl --model hydrostatic --set fit.bootstrap=0 -o ";
+  const Output copied =
+      program("fit " + heap + ":/1/pile " + (folder / "copy.h5") + models + (folder / "out"));
+  ASSERT_EQ(copied.code, 0) << copied.err;
+  EXPECT_THAT(copied.err, HasSubstr("copy.h5:/1/pile is a copy of " + heap +
+                                    ":/1/pile: copies are no independent realizations"));
+  EXPECT_THAT(copied.out, HasSubstr(" of 2 piles at 3 heights; diagonal covariance"));
+  const Output thrice = program("fit " + heap + ":/1/pile " + heap + ":/1/pile " + heap +
+                                ":/1/pile" + models + (folder / "thrice"));
+  ASSERT_EQ(thrice.code, 0) << thrice.err;
+  EXPECT_THAT(thrice.err, HasSubstr("(likewise 1 other)"));
+  EXPECT_THAT(thrice.out,
+              HasSubstr("Not distinguishable: osl, hydrostatic; the nearest misses by"));
+
+  ASSERT_EQ(program("average " + heap + ":/1/pile " + heap + ":/2/pile " + heap +
+                    ":/1/pile --frame heap --width 0.02 --grid 61x31 -o " + (folder / "f.h5"))
+                .code,
+            0);
+  const Output field = program("fit " + (folder / "f.h5") + models + (folder / "field"));
+  ASSERT_EQ(field.code, 0) << field.err;
+  EXPECT_THAT(field.err, HasSubstr("realization 2 of "));
+  EXPECT_THAT(field.out, HasSubstr(" of 2 piles"));
+}
+
 TEST(FitCommand, RefusesWithOneLine) {
   const Folder folder;
   const std::string heap = folder / "heap.h5", out = " -o " + (folder / "out");

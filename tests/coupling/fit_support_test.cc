@@ -22,7 +22,7 @@ TEST(Support, ALargerDeficitWithALargerErrorIsNoBetter) {
   std::vector<Score> ranking{score(0, 0, 0), score(94, 0.034, 0.014), score(281, 0.098, 0.052)};
   ranking[1].name = "osl";
   ranking[2].name = "cantelaube_continuous";
-  mark_supported(ranking, 6);
+  mark_supported(ranking, 6, 2);
   EXPECT_TRUE(ranking[0].supported);
   EXPECT_FALSE(ranking[1].supported);
   EXPECT_FALSE(ranking[2].supported);
@@ -30,12 +30,12 @@ TEST(Support, ALargerDeficitWithALargerErrorIsNoBetter) {
 
 TEST(Support, WhatIsAheadInOneJudgeStays) {
   std::vector<Score> ranking{score(0, 0, 0), score(20, 0.1, 0.01), score(30, -0.02, 0.05)};
-  mark_supported(ranking, 6);
+  mark_supported(ranking, 6, 2);
   EXPECT_FALSE(ranking[1].supported);
   EXPECT_TRUE(ranking[2].supported);
   // Without cross-validation nothing is left out.
   ranking = {score(0, std::nan(""), std::nan("")), score(90, std::nan(""), std::nan(""))};
-  mark_supported(ranking, 6);
+  mark_supported(ranking, 6, 2);
   EXPECT_TRUE(ranking[1].supported);
 }
 
@@ -82,7 +82,7 @@ TEST(Support, NoSupportedModelIsFurtherBehindInBothThanOneThatIsNot) {
                              [](const Score& s) { return s.behind_error == 0; }),
                 ranking.end());
     for (std::size_t k = 0; k < ranking.size(); ++k) ranking[k].name = std::to_string(k);
-    mark_supported(ranking, 6);
+    mark_supported(ranking, 6, 2);
     EXPECT_TRUE(ranking.front().supported);
     for (const Score& s : ranking) {
       (s.supported ? kept : refused) += 1;

@@ -112,6 +112,19 @@ TEST(Fit, FallsBackWithANote) {
   EXPECT_EQ(covariance_of(data, "sample").kind, "sample");
 }
 
+// 2 e E1(1) for two degrees of freedom: x is then exponential.
+TEST(Fit, BiasOfTheInverseVariance) {
+  EXPECT_NEAR(inverse_bias(3), 1.1926947246, 1e-8);
+  // Mean of 2/(1 + z^2), z normal.
+  EXPECT_NEAR(inverse_bias(2),
+              2 * std::sqrt(std::numbers::pi / 2) * std::exp(0.5) * std::erfc(std::sqrt(0.5)),
+              1e-6);
+  EXPECT_LT(inverse_bias(8), 1.075);
+  EXPECT_GT(inverse_bias(8), 1.05);
+  EXPECT_NEAR(inverse_bias(1000), 1, 1e-3);
+  EXPECT_THROW(inverse_bias(1), std::invalid_argument);
+}
+
 TEST(Fit, BadData) {
   FitData data = places(5);
   data.samples.setZero();

@@ -139,6 +139,7 @@ std::vector<Fit> fits_named(const std::vector<std::string>& names) {
                   0.3)));
     out.back().dof = 50;
     out.back().chi2_per_dof = 1;
+    out.back().chance = 1.6;
     out.back().rel_l2 = 0.1 * static_cast<double>(out.size());
   }
   return out;

@@ -42,9 +42,10 @@ TEST(Reproduce, EveryFigureNamesAShippedCase) {
 TEST(Reproduce, FitsGiveTheLargerErrorAndQualityInWords) {
   const Folder folder;
   folder.write("fit-osl-point.json",
-               R"({"fit.values": 402, "fit.osl.eta": 0.72, "fit.osl.eta.error": 0.004,
+               R"({"fit.osl.eta": 0.72, "fit.osl.eta.error": 0.004,
  "fit.osl.eta.bootstrap_error": 0.02, "fit.osl.mu": -0.5, "fit.osl.mu.error": 0.03,
- "fit.osl.mu.bootstrap_error": "nan", "fit.osl.chi2_per_dof": 1.3, "fit.osl.rel_l2": 0.08})");
+ "fit.osl.mu.bootstrap_error": "nan", "fit.osl.chi2_per_dof": 1.3, "fit.osl.chi2_chance": 1.21,
+ "fit.osl.rel_l2": 0.08})");
   folder.write("fit-asymmetric.json",
                R"({"fit.cantelaube_asymmetric.kink": -0.3,
  "fit.cantelaube_asymmetric.kink.error": 0.1, "fit.cantelaube_asymmetric.ray_deg": 4})");
@@ -130,7 +131,6 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "elastic.bulk_fabric_correlation",
                                    "elastic.young_fabric_correlation",
                                    "elastic.shear_fabric_correlation",
-                                   "fit.values",
                                    "fit.cantelaube.a1",
                                    "fit.cantelaube.a2",
                                    "fit.cantelaube.b1",
@@ -149,6 +149,7 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
   for (const char* model :
        {"cantelaube", "cantelaube_minus", "cantelaube_plus", "osl", "cantelaube_asymmetric_zero"}) {
     all.insert(std::string("fit.") + model + ".chi2_per_dof");
+    all.insert(std::string("fit.") + model + ".chi2_chance");
     all.insert(std::string("fit.") + model + ".rel_l2");
   }
   std::string text = "{\"dip.verdict\": \"dip\", \"fit.cantelaube.branch\": \"zero\"";
