@@ -114,7 +114,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   }
   if (!out.agrees) {
     out.sentence += fmt::format(
-        " No agreement within the errors: chi2/dof {:.3g}, where up to {:.2g} would be chance.",
+        " No agreement within the errors: chi2/dof {:.3g}, where up to {:.3g} would be chance.",
         simplest->chi2_per_dof, simplest->chance);
   }
   return out;

@@ -89,7 +89,7 @@ std::string doubt(const Fit& best) {
   }
   if (!(best.chi2_per_dof > best.chance)) return "";
   return fmt::format(
-      " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
+      " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.3g} "
       "would be chance.",
       best.chi2_per_dof, best.chance);
 }
