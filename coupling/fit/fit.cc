@@ -303,7 +303,7 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
     f.at_bound = bound[static_cast<std::size_t>(p)];
     f.error = f.at_bound ? kNan : std::sqrt(spread(p, p));
     f.determined = determined[static_cast<std::size_t>(p)];
-    f.bootstrap_error = f.determined ? drawn[p] : kNan;
+    f.bootstrap_error = f.determined && !f.at_bound ? drawn[p] : kNan;
     f.low = f.value - t * f.error;
     f.high = f.value + t * f.error;
     if (f.at_bound) {
