@@ -1,7 +1,10 @@
 #include "coupling/averaging/base.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace grainfield::coupling {
 namespace {
@@ -31,7 +34,22 @@ Eigen::Vector2d support_force(const dem::Snapshot& snapshot, bool base) {
 
 }  // namespace
 
+bool has_base(const dem::Snapshot& snapshot) {
+  return std::any_of(snapshot.walls.begin(), snapshot.walls.end(),
+                     [](const dem::Wall& wall) { return wall.name == "floor"; }) ||
+         std::any_of(snapshot.grains.begin(), snapshot.grains.end(),
+                     [](const dem::Grain& grain) { return grain.fixed; });
+}
+
 Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, const Kernel& kernel) {
+  if (!has_base(snapshot)) {
+    std::string walls;
+    for (const dem::Wall& wall : snapshot.walls) walls += (walls.empty() ? "" : ", ") + wall.name;
+    throw std::invalid_argument(
+        "stress on the base: the packing has neither fixed grains nor a wall named \"floor\"; its "
+        "walls: " +
+        (walls.empty() ? std::string("none") : walls));
+  }
   Field field;
   field.points.resize(x.size(), 2);
   field.points.col(0) = x;

@@ -11,13 +11,17 @@
 
 namespace grainfield::coupling {
 
+/// The packing stands on something that can be told from side walls: a wall named "floor", or fixed
+/// grains.
+bool has_base(const dem::Snapshot& snapshot);
+
 /// Stress on the base at abscissas x (packing's axes, m). Columns sigma_yy and sigma_xy (N/m,
 /// tension positive: a pressing layer gives sigma_yy < 0), `contacts` (1: within the kernel's
 /// range). The points are (x, frame floor). Contacts with a wall named "floor" or with a fixed
 /// grain count. The integral of -sigma_yy over all x is the total vertical floor force.
 Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, const Kernel& kernel);
 
-/// base_profile(loaded) - base_profile(unloaded). Throws as require_same_grains.
+/// base_profile(loaded) - base_profile(unloaded). Throws as base_profile and require_same_grains.
 Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                     const Eigen::VectorXd& x, const Kernel& kernel);
 

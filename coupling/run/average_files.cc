@@ -184,8 +184,8 @@ NamedFields average_files(AverageRequest request, Gaps* gaps) {
   }
   const bool grid = request.points.size() == 0 && request.cuts.empty();
   const Eigen::MatrixXd points = points_of(request, all, read(items.front().state));
-  const bool base =
-      request.response && options.method == "coarse_graining" && request.frame == "layer";
+  const bool base = request.response && options.method == "coarse_graining" &&
+                    request.frame == "layer" && has_base(read(items.front().state));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
     field.attributes["method"] = options.method;

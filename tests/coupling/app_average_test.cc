@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "averaging_scene.h"
+#include "coupling/averaging/base.h"
+#include "coupling/averaging/kernel.h"
 #include "coupling/output/field_io.h"
 #include "program.h"
 
@@ -107,6 +109,34 @@ TEST(Average, ThreeDimensions) {
                              points);
   ASSERT_EQ(out.code, 0) << out.err;
   EXPECT_NEAR(field_of(folder / "f.h5").find("volume_fraction")->value[0], 0.5, 1e-12);
+}
+
+// A floor under another name is no base: no profile of zeros.
+TEST(Average, ResponseWithoutABaseHasNoBaseResponse) {
+  for (const bool named : {true, false}) {
+    const Folder folder;
+    const std::string file = folder / "s.h5";
+    for (const double load : {0., 3.}) {
+      dem::Snapshot s = test::layer(4, 12, 6, false, load);
+      if (!named) s.walls[0].name = "bottom";
+      dem::write_snapshot(file, load > 0 ? "a/loaded" : "a/unloaded", s);
+      const auto kernel = make_kernel("lucy", 0.01);
+      const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(5, 0, 0.1);
+      if (named) {
+        EXPECT_LT(base_profile(s, x, *kernel).find("sigma_yy")->value.minCoeff(), 0);
+        continue;
+      }
+      try {
+        base_profile(s, x, *kernel);
+        ADD_FAILURE();
+      } catch (const std::invalid_argument& e) {
+        EXPECT_THAT(e.what(), HasSubstr("nor a wall named \"floor\"; its walls: bottom, left"));
+      }
+    }
+    const Output out = program("average " + file + " --response -o " + (folder / "f.h5"));
+    EXPECT_EQ(out.code, 0) << out.err;
+    EXPECT_EQ(out.out.find("base_response") != std::string::npos, named) << out.out;
+  }
 }
 
 TEST(Average, RefusesWithOneLine) {
