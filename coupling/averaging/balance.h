@@ -61,7 +61,7 @@ struct BalanceRow {
 
 /// Every method with each of its kernels (coarse graining without and with extension into the
 /// walls would differ only in where the traction is: `options` decides). Widths: `options.width`
-/// mean diameters for the kernels' standard deviation, and RVEs of 2.5 times as much. Cuts at 0,
+/// mean diameters for the kernels' w, and RVEs of 2.5 times as much. Cuts at 0,
 /// 0.1, ..., 0.8 of the height. Throws as average(), and std::invalid_argument for a packing less
 /// than four mean diameters high or without gravity along -y.
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options);

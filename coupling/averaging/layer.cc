@@ -1,5 +1,7 @@
 #include "coupling/averaging/layer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -70,6 +72,14 @@ LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain)
     if (wall.name == "right") frame.right = wall.point.x();
     if (wall.name == "floor") frame.floor = wall.point.y();
   }
+  const auto between = [&](const dem::Grain& grain) {
+    return !grain.fixed && grain.position.x() >= frame.left && grain.position.x() <= frame.right;
+  };
+  if (std::none_of(snapshot.grains.begin(), snapshot.grains.end(), between))
+    throw std::invalid_argument(fmt::format(
+        "no free grain lies between the packing's sides at x = {:g} and {:g} m: are the "
+        "walls \"left\" and \"right\" where they say?",
+        frame.left, frame.right));
   double height = 0;
   int contacts = 0;
   for (const dem::Contact& contact : snapshot.contacts) {

@@ -25,7 +25,7 @@ struct LayerFrame {
 };
 
 /// Measures the layer. `loaded_grain`: id of the grain that is or will be loaded (for load_x), -1:
-/// the snapshot's own. Throws std::invalid_argument when the snapshot has no free grain or is 3D.
+/// the snapshot's own. Throws std::invalid_argument in 3D or if no free grain is between the sides.
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
 
 /// Mean diameter of the free grains, m; the unit in which kernel widths are usually chosen.

@@ -157,6 +157,10 @@ TEST(Average, RefusesWithOneLine) {
   weightless.gravity.setZero();
   expect_refusal(program("average " + written(folder, weightless, "w.h5") + " --balance"),
                  "the packing's gravity is 0 0 m/s2; what the averagings carry");
+  dem::Snapshot swapped = test::layer(4);
+  std::swap(swapped.walls[1].point, swapped.walls[2].point);
+  expect_refusal(program("average " + written(folder, swapped, "x.h5") + end),
+                 "no free grain lies between the packing's sides at x = 0.12 and 0 m");
   dem::Snapshot lost = test::layer(4);
   lost.grains[3].position.x() = std::nan("");
   expect_refusal(program("average " + written(folder, lost, "lost.h5") + end),
