@@ -10,6 +10,7 @@
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/output/other_file.h"
 #include "coupling/run/average_files.h"
 #include "coupling/run/compare_field.h"
 #include "dem/snapshot/snapshot.h"
@@ -155,6 +156,9 @@ void add_average(CLI::App& app, Action& action) {
       }
       if (!given->grid.empty()) parse_grid(given->grid, request);
       request.snapshots = parse_snapshot_names(given->snapshots);
+      std::vector<std::string> inputs{given->points};
+      for (const SnapshotName& name : request.snapshots) inputs.push_back(name.file);
+      require_other_file("-o", given->output, inputs);
       if (!given->points.empty()) {
         const int dim =
             dem::read_snapshot(request.snapshots[0].file, request.snapshots[0].group).dim;

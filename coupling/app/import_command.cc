@@ -12,6 +12,7 @@
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/other_file.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -186,6 +187,7 @@ void add_import(CLI::App& app, Action& action) {
     action = [=] {
       parse(*given);
       const ImportOptions& options = given->options;
+      require_other_file("-o", given->output, options.files);
       AtomicFile file(given->output);
       if (given->add && fs::exists(given->output)) {
         dem::list_snapshots(given->output);  // an HDF5 file of ours, or a clear refusal

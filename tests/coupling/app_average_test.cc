@@ -153,6 +153,11 @@ TEST(Average, RefusesWithOneLine) {
   expect_refusal(program(start + end + " --width 0"), "--width: found 0, allowed: above 0");
   expect_refusal(program(start + end + " --least-grains -1"),
                  "averages from at least -1 grains; it must be 0 or more");
+  const std::string own = folder / "s.h5";
+  expect_refusal(program(start + " -o " + folder.path() + "/../" +
+                         testing::fs::path(folder.path()).filename().string() + "/s.h5"),
+                 "s.h5 is an input and would be replaced; name another file");
+  EXPECT_EQ(dem::read_snapshot(own, "state").grains.size(), test::layer(4).grains.size());
   dem::Snapshot weightless = test::layer(4);
   weightless.gravity.setZero();
   expect_refusal(program("average " + written(folder, weightless, "w.h5") + " --balance"),

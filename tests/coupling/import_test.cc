@@ -284,6 +284,15 @@ void expect_refused(const std::string& format, const Mistake& m) {
             static_cast<long>(!m.grains.empty()) + static_cast<long>(!m.contacts.empty()));
 }
 
+TEST(Import, NeverReplacesItsInput) {
+  const Folder folder;
+  const std::string grains = folder.write("g", "id,x,y,radius,mass\n1,0,0,1,1\n");
+  const Output output = program("import --from csv --without-contacts " + grains + " -o " + grains);
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr("is an input and would be replaced; name another file"));
+  EXPECT_THAT(testing::read_text(grains), StartsWith("id,x,y"));
+}
+
 // The contact points say where the wall is, --wall says otherwise.
 TEST(Import, WarnsOfAWallThatIsElsewhere) {
   const Folder folder;
