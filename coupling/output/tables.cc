@@ -34,6 +34,9 @@ std::string number(double value) {
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
 
+constexpr std::size_t kModelsAcross = 2;      // side by side in a table of LaTeX
+constexpr const char* kModelWidth = "3.6cm";  // of a model's three columns
+
 struct Style {
   std::string begin, separator, end;  // of a row
 };
@@ -153,19 +156,37 @@ std::string profiles_markdown(const Comparison& c, int rows) {
 
 std::string profiles_latex(const Comparison& c, int rows) {
   std::string text = "% " + normalisation(c) + "\n";
+  const Style style{"  ", " & ", " \\\\"};
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    auto table = normalised(c, k, rows, [](std::string s) { return "$" + s + "$"; });
-    for (std::string& head : table[0])
-      if (head.front() != '$') head = escape_latex(head);
-    const Style style{"  ", " & ", " \\\\"};
-    text += fmt::format(
-        "\\begin{{table}}\n\\caption{{{}: {} in units of "
-        "${}$}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
-        escape_latex(c.profiles[k].name), escape_latex(c.profiles[k].quantity),
-        math_latex(c.scale.stress), std::string(table[0].size(), 'r'));
-    text += join(table[0], style) + "\\hline\n";
-    for (std::size_t r = 1; r < table.size(); ++r) text += join(table[r], style);
-    text += "\\hline\n\\end{tabular}\n\\end{table}\n";
+    const auto table = normalised(c, k, rows, [](std::string s) { return "$" + s + "$"; });
+    // A few models per table: more are wider than a page.
+    for (std::size_t from = 0; from == 0 || from < c.models.size(); from += kModelsAcross) {
+      const std::size_t to = std::min(from + kModelsAcross, c.models.size());
+      std::vector<std::string> models{"", "", ""};
+      std::vector<std::string> heads{table[0][0], "simulation", "error"};
+      for (std::size_t m = from; m < to; ++m) {
+        models.push_back(fmt::format("\\multicolumn{{3}}{{p{{{}}}}}{{\\centering {}}}", kModelWidth,
+                                     escape_latex(c.models[m].label)));
+        heads.insert(heads.end(), {"model", "diff.", "diff./error"});
+      }
+      text += fmt::format(
+          "\\begin{{table}}\n\\footnotesize\\setlength{{\\tabcolsep}}{{4pt}}\n\\caption{{{}: {} in "
+          "units "
+          "of ${}${}}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
+          escape_latex(c.profiles[k].name), escape_latex(c.profiles[k].quantity),
+          math_latex(c.scale.stress), from > 0 ? ", continued" : "",
+          std::string(3 + 3 * (to - from), 'r'));
+      if (to > from) text += join(models, style);
+      text += join(heads, style) + "\\hline\n";
+      for (std::size_t r = 1; r < table.size(); ++r) {
+        std::vector<std::string> row(table[r].begin(), table[r].begin() + 3);
+        const auto first = table[r].begin() + 3;
+        row.insert(row.end(), first + static_cast<std::ptrdiff_t>(3 * from),
+                   first + static_cast<std::ptrdiff_t>(3 * to));
+        text += join(row, style);
+      }
+      text += "\\hline\n\\end{tabular}\n\\end{table}\n";
+    }
   }
   return text;
 }

@@ -256,6 +256,35 @@ Comparison small() {
                  2, 0.5);
 }
 
+// Ten models side by side are wider than any page: two per table, every row with all its cells.
+TEST_F(Output, LatexTablesOfManyModelsFitAPage) {
+  Profile p = small().profiles.front();
+  std::vector<ModelProfiles> models;
+  for (int m = 0; m < 10; ++m) {
+    models.push_back({"m" + std::to_string(m),
+                      "model " + std::to_string(m) + " (a_b)",
+                      "f",
+                      {Eigen::Vector3d(1, 3 + m, 2)}});
+  }
+  const std::string tex = profiles_latex(compare({p}, models, 2, 0.5));
+  std::istringstream lines(tex);
+  int tables = 0, rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("\\begin{tabular}{rrrrrrrrr}") == 0) ++tables;
+    if (line.find(" \\\\") == std::string::npos) continue;
+    const auto cells = 1 + std::count(line.begin(), line.end(), '&');
+    const bool heads = line.find("\\multicolumn{3}") != std::string::npos;
+    EXPECT_EQ(cells, heads ? 5 : 9) << line;
+    ++rows;
+  }
+  EXPECT_EQ(tables, 5);
+  EXPECT_EQ(rows, 5 * 5);  // two lines of heads, three points
+  for (int m = 0; m < 10; ++m) {
+    EXPECT_THAT(tex, HasSubstr("\\centering model " + std::to_string(m) + " (a\\_b)}"));
+  }
+  EXPECT_THAT(tex, HasSubstr("$F/h$, continued}"));
+}
+
 TEST_F(Output, ProfilesHaveUnitsDifferencesAndNormalisation) {
   const std::string csv = profiles_csv(small());
   EXPECT_THAT(csv, testing::StartsWith("# F = 2 N, h = 0.5 m, F/h = 4 N/m"));
