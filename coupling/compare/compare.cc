@@ -181,6 +181,13 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
     result.overall.chi2_per_dof = totals.chi2 / totals.dof;
     c.results.push_back(std::move(result));
   }
+  if (std::none_of(c.results.begin(), c.results.end(),
+                   [](const ModelComparison& r) { return std::isfinite(r.overall.rel_l2); })) {
+    throw std::invalid_argument(fmt::format(
+        "nothing to compare on {}{}: no point has a value both of the simulation and of "
+        "a model; choose heights inside both",
+        profiles.front().name, profiles.size() > 1 ? " and the others" : ""));
+  }
   c.profiles = std::move(profiles);
   c.models = std::move(models);
   c.verdict = judge(c);

@@ -95,8 +95,8 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
                           int realizations = 0);
 
 /// `realizations`: behind the profiles' errors; 0: as many as the profiles have samples. Throws
-/// std::invalid_argument for no profile, no model, sizes that differ, or a simulation that is nan
-/// everywhere.
+/// std::invalid_argument for no profile, no model, sizes that differ, a simulation that is nan
+/// everywhere, or no point that both it and a model have.
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
                    double depth, int realizations = 0);
 

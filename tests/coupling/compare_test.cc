@@ -381,6 +381,16 @@ TEST(Compare, Refuses) {
   const Scene s = scene(2, 1, 0.1);
   EXPECT_EQ(refusal([&] { compare({}, s.models, 1, 1); }), "nothing to compare: no profile");
   EXPECT_EQ(refusal([&] { compare(s.profiles, {}, 1, 1); }), "nothing to compare with: no model");
+  Scene outside = s;
+  for (ModelProfiles& m : outside.models) {
+    for (VectorXd& v : m.values) v.setConstant(NAN);
+  }
+  EXPECT_EQ(
+      refusal([&] { compare(outside.profiles, outside.models, 1, 1); }),
+      "nothing to compare on " + s.profiles.front().name +
+          (s.profiles.size() > 1 ? " and the others" : "") +
+          ": no point has a value both of the simulation and of a model; choose heights inside "
+          "both");
   Scene broken = s;
   broken.models[0].values[0].resize(7);
   EXPECT_EQ(refusal([&] { compared(broken); }),

@@ -45,15 +45,15 @@ struct Count {
   int named = 0, type = 0, undecided = 0;
 };
 
-Count verdicts(const LayerTruth& truth, double noise, int trials) {
+Count verdicts(const LayerTruth& truth, double noise, int trials, bool among_all = false) {
   dem::Random random(7);
   FitOptions options;
   options.bootstrap = 0;
   // Two starts of the search are enough, the truth among them; the orthotropic layers, which take
-  // longest, are left to the test of coverage.
+  // longest, compete only in the runs by hand.
   std::vector<FitModel> models;
   for (const FitModel& m : scene().models) {
-    if (m.name.rfind("orthotropic_layer", 0) == 0) continue;
+    if (!among_all && m.name.rfind("orthotropic_layer", 0) == 0) continue;
     models.push_back(m);
     auto& starts = models.back().starts;
     if (m.name == truth.model) starts.insert(starts.begin(), truth.parameters);
@@ -77,9 +77,9 @@ Count verdicts(const LayerTruth& truth, double noise, int trials) {
   return out;
 }
 
-void expect_named(std::size_t k, int trials) {
+void expect_named(std::size_t k, int trials, bool among_all = false) {
   const LayerTruth truth = layer_truths()[k];
-  const Count c = verdicts(truth, 0.05, trials);
+  const Count c = verdicts(truth, 0.05, trials, among_all);
   std::printf("%s: named in %d of %d, its type in %d\n", truth.model.c_str(), c.named, trials,
               c.type);
   EXPECT_GE(c.named, trials * 95 / 100) << truth.model;
@@ -107,6 +107,11 @@ TEST(LayerFit, DISABLED_AllTrialsNameTheModel) {
   for (const std::size_t k : {std::size_t{1}, std::size_t{3}, std::size_t{6}}) {
     expect_named(k, kTrials);
   }
+}
+
+// All eight models make the data, and all eight compete.
+TEST(LayerFit, DISABLED_EveryModelIsNamedAmongAll) {
+  for (std::size_t k = 0; k < layer_truths().size(); ++k) expect_named(k, kTrials / 5, true);
 }
 
 TEST(LayerFit, DISABLED_AllTrialsAreNotDistinguishable) {
