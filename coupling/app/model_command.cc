@@ -13,6 +13,7 @@
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/other_file.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -104,6 +105,7 @@ void add_model(CLI::App& app, Action& action) {
         return 0;
       }
       if (given->points.empty()) throw std::invalid_argument("model: --points is missing");
+      if (!given->output.empty()) require_other_file("-o", given->output, {given->points});
       const auto settings = parse_settings(given->sets, "--set");
       const auto model = continuum::make_model(given->name, settings);
       const auto points = read_points_csv(given->points, continuum::dimension(info, settings));

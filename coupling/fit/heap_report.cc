@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "continuum/closed/cantelaube.h"
-#include "continuum/closed/osl.h"
 #include "continuum/constants.h"
+#include "coupling/fit/derived.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_maps.h"
 #include "coupling/fit/posteriors.h"
@@ -27,33 +26,19 @@ const FittedParameter* parameter_of(const Fit& fit, const std::string& name) {
   return nullptr;
 }
 
-// A number that follows from the parameters, with errors by linear propagation: their correlations
-// are those of the covariance in both.
-void add_derived(Summary& summary, const std::string& key, const Fit& fit,
-                 const std::function<double(const Eigen::VectorXd&)>& of) {
-  const auto n = static_cast<Eigen::Index>(fit.parameters.size());
-  Eigen::VectorXd at(n), gradient(n), error(n), drawn(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const FittedParameter& p = fit.parameters[static_cast<std::size_t>(k)];
-    at[k] = p.value;
-    error[k] = p.error;
-    drawn[k] = p.bootstrap_error;
+// The constants and, below those of their model, what follows from them.
+std::vector<std::vector<std::string>> constants_rows(const HeapFits& fits) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Fit& f : fits.fits) {
+    for (auto& row : parameter_rows({f})) rows.push_back(std::move(row));
+    for (const FittedParameter& d : derived_figures(f, fits.heaps.facts.slope_deg)) {
+      rows.push_back(
+          {f.name, d.parameter.name, with_error(d),
+           std::isfinite(d.bootstrap_error) ? fmt::format("{:.2g}", d.bootstrap_error) : "-",
+           d.parameter.unit, "-", "follows from those above"});
+    }
   }
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double h = 1e-6 * std::max(1.0, std::fabs(at[k]));
-    Eigen::VectorXd more = at, less = at;
-    more[k] += h;
-    less[k] -= h;
-    gradient[k] = (of(more) - of(less)) / (2 * h);
-  }
-  const auto spread = [&](const Eigen::VectorXd& errors) {
-    const Eigen::VectorXd part = gradient.cwiseProduct(errors);
-    return std::sqrt(std::max(0.0, part.dot(fit.correlation * part)));
-  };
-  const bool known = error.allFinite() && fit.correlation.allFinite();
-  summary[key] = of(at);
-  summary[key + ".error"] = known ? spread(error) : std::nan("");
-  summary[key + ".bootstrap_error"] = known && drawn.allFinite() ? spread(drawn) : std::nan("");
+  return rows;
 }
 
 std::string weights_note(const HeapFits& fits) {
@@ -200,22 +185,11 @@ void add_fits(Summary& summary, const HeapFits& fits) {
     if (const FittedParameter* angle = parameter_of(f, "beta_hat_deg")) {
       summary[prefix + "branch"] = nearest_branch(slope, angle->value);
     }
-    const FittedParameter *eta = parameter_of(f, "eta"), *mu = parameter_of(f, "mu");
-    if (mu != nullptr) {
-      const double phi = slope * kDegree;
-      const auto closure = [=](const Eigen::VectorXd& p) {
-        if (p.size() == 2) return continuum::Closure{p[0], p[1]};
-        return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};
-      };
-      add_derived(summary, prefix + "K", f,
-                  [=](const Eigen::VectorXd& p) { return continuum::ratio_of(closure(p)).K; });
-      add_derived(summary, prefix + "tau_deg", f, [=](const Eigen::VectorXd& p) {
-        return continuum::ratio_of(closure(p)).tau / kDegree;
-      });
-      if (eta == nullptr) {
-        add_derived(summary, prefix + "eta", f,
-                    [=](const Eigen::VectorXd& p) { return closure(p).eta; });
-      }
+    for (const FittedParameter& d : derived_figures(f, slope)) {
+      const std::string key = prefix + d.parameter.name;
+      summary[key] = d.value;
+      summary[key + ".error"] = d.error;
+      summary[key + ".bootstrap_error"] = d.bootstrap_error;
     }
   }
   add_ranking(summary, fits.selection);
@@ -228,13 +202,13 @@ std::string fits_markdown(const HeapFits& fits) {
   for (const std::string& text : fits.heaps.warnings) doubts += "Warning: " + text + ".\n\n";
   return fmt::format("{}\n\n{}.\n\n{}{}\n{}", fits.selection.sentence, weights_note(fits), doubts,
                      markdown_table(ranking_header(), ranking_rows(fits.fits, fits.selection)),
-                     markdown_table(parameter_header(), parameter_rows(fits.fits)));
+                     markdown_table(parameter_header(), constants_rows(fits)));
 }
 
 std::string fits_tex(const HeapFits& fits) {
   return fmt::format("% {}\n{}\n{}", weights_note(fits),
                      tex_table(ranking_header(), ranking_rows(fits.fits, fits.selection)),
-                     tex_table(parameter_header(), parameter_rows(fits.fits)));
+                     tex_table(parameter_header(), constants_rows(fits)));
 }
 
 std::vector<Section> fit_sections(const HeapFits& fits) {
@@ -287,7 +261,7 @@ std::vector<Section> fit_sections(const HeapFits& fits) {
   out.emplace_back(Table{"Fitted constants",
                          "Errors from the covariance; beside them those of bootstrap draws of the "
                          "piles.",
-                         parameter_header(), parameter_rows(fits.fits)});
+                         parameter_header(), constants_rows(fits)});
   return out;
 }
 

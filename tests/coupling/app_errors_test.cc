@@ -135,6 +135,9 @@ TEST(Errors, Points) {
   expect_refusal(program("model flamant --points " + (folder / "none.csv")), 2,
                  "none.csv: No such file");
   expect_refusal(program("model flamant"), 2, "--points is missing");
+  const std::string kept = folder.write("kept.csv", "x,y\n0,-1\n");
+  expect_refusal(program("model flamant --points " + kept + " -o " + kept), 2,
+                 "is an input and would be replaced; name another file");
   expect_refusal(program("model boussinesq --points " + folder.write("q.csv", "x,y\n1,2\n")), 2,
                  "no column \"z\", expected the header x,y,z");
 }

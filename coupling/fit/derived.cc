@@ -1,0 +1,73 @@
+#include "coupling/fit/derived.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "continuum/closed/osl.h"
+#include "continuum/constants.h"
+
+namespace grainfield::coupling {
+namespace {
+
+bool has(const Fit& fit, const std::string& name) {
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                     [&](const FittedParameter& p) { return p.parameter.name == name; });
+}
+
+FittedParameter derived(const std::string& name, const std::string& unit, const Fit& fit,
+                        const std::function<double(const Eigen::VectorXd&)>& of) {
+  const auto n = static_cast<Eigen::Index>(fit.parameters.size());
+  Eigen::VectorXd at(n), gradient(n), error(n), drawn(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const FittedParameter& p = fit.parameters[static_cast<std::size_t>(k)];
+    at[k] = p.value;
+    error[k] = p.error;
+    drawn[k] = p.bootstrap_error;
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double h = 1e-6 * std::max(1.0, std::fabs(at[k]));
+    Eigen::VectorXd more = at, less = at;
+    more[k] += h;
+    less[k] -= h;
+    gradient[k] = (of(more) - of(less)) / (2 * h);
+  }
+  const auto spread = [&](const Eigen::VectorXd& errors) {
+    if (!errors.allFinite() || !fit.correlation.allFinite()) return kNan;
+    const Eigen::VectorXd part = gradient.cwiseProduct(errors);
+    return std::sqrt(std::max(0.0, part.dot(fit.correlation * part)));
+  };
+  FittedParameter out;
+  out.parameter.name = name;
+  out.parameter.unit = unit;
+  out.value = of(at);
+  out.error = spread(error);
+  out.bootstrap_error = error.allFinite() ? spread(drawn) : kNan;
+  out.low = out.high = kNan;
+  return out;
+}
+
+}  // namespace
+
+std::vector<FittedParameter> derived_figures(const Fit& fit, double slope_deg) {
+  if (!has(fit, "mu")) return {};
+  const double phi = slope_deg * kDegree;
+  const auto closure = [phi](const Eigen::VectorXd& p) {
+    if (p.size() == 2) return continuum::Closure{p[0], p[1]};
+    return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};
+  };
+  std::vector<FittedParameter> out{
+      derived("K", "-", fit,
+              [&](const Eigen::VectorXd& p) { return continuum::ratio_of(closure(p)).K; }),
+      derived("tau_deg", "deg", fit, [&](const Eigen::VectorXd& p) {
+        return continuum::ratio_of(closure(p)).tau / kDegree;
+      })};
+  if (!has(fit, "eta")) {
+    out.push_back(
+        derived("eta", "-", fit, [&](const Eigen::VectorXd& p) { return closure(p).eta; }));
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling
