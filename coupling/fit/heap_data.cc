@@ -66,6 +66,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) 
   out.warnings = doubts.lines();
   out.width = setup.width_diameters * diameter;
   warn_of_low_heights(setup.heights, height, out.width, out);
+  warn_of_set_slopes(setup, out);
   AverageOptions options;
   options.method = "coarse_graining";
   options.kernel = "lucy";

@@ -147,6 +147,7 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);
   warn_of_low_heights(shares, height, out.width, out);
+  warn_of_set_slopes(setup, out);
   keep_rows(setup, places, level, all, out);
   if (!single && field.realizations > 1) {
     HeapData beside;

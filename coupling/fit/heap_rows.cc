@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kLeastValues = 10;
 constexpr double kRounding = 1e-9;  // of the largest value
+constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 double tangent(double degrees) { return std::tan(degrees * std::numbers::pi / 180); }
@@ -138,6 +139,19 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       "or a smaller fit.width_diameters",
       low.size() == 1 ? "" : "s", fmt::join(low, ", "), width, width / height,
       std::ceil(100 * width / height) / 100));
+}
+
+void warn_of_set_slopes(const FitSetup& setup, HeapData& out) {
+  const auto compare = [&](const char* key, double set, double PileFrame::*member) {
+    const double measured = mean_of(out.frames, member);
+    if (!(set > 0) || !(std::fabs(set - measured) > kFarSlope)) return;
+    out.warnings.push_back(
+        fmt::format("fit.{}: set to {:.4g} degrees, measured {:.3g}: models are cut off at a slope "
+                    "that the heaps do not have",
+                    key, set, measured));
+  };
+  compare("left_deg", setup.left_deg, &PileFrame::repose_left_deg);
+  compare("right_deg", setup.right_deg, &PileFrame::repose_right_deg);
 }
 
 void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,

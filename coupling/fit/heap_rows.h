@@ -32,6 +32,9 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoot
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
                          HeapData& out);
 
+/// Adds a warning for slopes of the setup that are more than 5 degrees off the heaps' own.
+void warn_of_set_slopes(const FitSetup& setup, HeapData& out);
+
 /// Drops packings that are copies of an earlier one (all values equal but for rounding), with a
 /// warning: they are no independent realizations. `all`, `grid`: values x packings, and the frames
 /// in `out`; `name` of a packing, for the warning.

@@ -159,6 +159,17 @@ TEST(FitDoubts, HeightsBelowTheAveragingWidthAreNamed) {
   const Output field =
       program("fit " + (folder / "f.h5") + " --heights 0.05,0.3" + kModels + (folder / "field"));
   EXPECT_THAT(field.err, HasSubstr("height 0.05 h nearer to the floor"));
+
+  // Slopes that the heaps do not have, from both sources.
+  for (const std::string& source : {file, folder / "f.h5"}) {
+    const auto slopes = [&](const std::string& set) {
+      return program("fit " + source + " --heights 0.3" + set + kModels + (folder / "slopes"));
+    };
+    const Output off = slopes(" --set fit.left_deg=15 --set fit.right_deg=31");
+    ASSERT_EQ(off.code, 0) << off.err;
+    EXPECT_THAT(off.err, HasSubstr("warning: fit.left_deg: set to 15 degrees, measured "));
+    EXPECT_THAT(off.err, Not(HasSubstr("fit.right_deg")));
+  }
 }
 
 double value(const Summary& s, const std::string& key) { return std::get<double>(s.at(key)); }
