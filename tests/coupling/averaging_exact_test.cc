@@ -16,17 +16,10 @@
 namespace grainfield::coupling {
 namespace {
 
+using test::options;
+
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-AverageOptions options(const std::string& method, const std::string& kernel, double width) {
-  AverageOptions o;
-  o.method = method;
-  o.kernel = kernel;
-  o.width = width;
-  o.least_grains = 0;
-  return o;
-}
 
 Matrix2d stress_at(const Field& f, Eigen::Index p) {
   Matrix2d s;

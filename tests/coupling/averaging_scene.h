@@ -6,12 +6,25 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "coupling/averaging/options.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::test {
+
+/// A value everywhere, however few the grains.
+inline coupling::AverageOptions options(const std::string& method, const std::string& kernel,
+                                        double width) {
+  coupling::AverageOptions o;
+  o.method = method;
+  o.kernel = kernel;
+  o.width = width;
+  o.least_grains = 0;
+  return o;
+}
 
 inline dem::Grain disk(std::int64_t id, double x, double y, double radius) {
   dem::Grain g;
