@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "continuum/fe/newton.h"
 #include "continuum/fe/plastic_body.h"
 #include "continuum/model.h"
+#include "dem/newton/newton.h"
 
 namespace grainfield::continuum::fe {
 namespace {
@@ -44,8 +44,11 @@ struct PlasticSolver::Impl : PlasticBody {
     problem.residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& r) {
       r = (internal(at) - target) / settings.force_scale;
       clear_held(r);
+      return true;
     };
-    problem.factorize = [&](const Eigen::VectorXd& at) { return factorize(at); };
+    problem.factorize = [&](const Eigen::VectorXd& at, const Eigen::VectorXd&) {
+      return factorize(at);
+    };
     problem.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
       x = settings.force_scale * rhs;
       grid.solve(x);

@@ -3,9 +3,9 @@
 // without deal.II.
 //
 // In every load step the equations  sum_cells int B^T sigma(e_n + B du) dV = f  are solved for the
-// displacement increment du by Newton's method with line search (newton.h), the consistent tangent
-// and a sparse direct factorization (UMFPACK). Strains are small. A step that does not converge is
-// halved; one that converges quickly is followed by a larger one.
+// displacement increment du by Newton's method with line search (dem/newton), the consistent
+// tangent and a sparse direct factorization (UMFPACK). Strains are small. A step that does not
+// converge is halved; one that converges quickly is followed by a larger one.
 //
 // A short step that does not converge is taken in viscoplastic time (Duvaut and Lions 1972; as a
 // solver Zienkiewicz and Cormeau 1974): the stress of a time step relaxes from the trial stress

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
+#include "coupling/averaging/layer.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -41,20 +42,14 @@ std::string off_walls(const PackingCheck& check) {
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
-  GrainSizes sizes;
-  double mass = 0, volume = 0, radius = 0;
-  int count = 0;
+  double mass = 0, volume = 0;
   for (const dem::Grain& grain : packing.grains) {
     if (grain.fixed) continue;
     mass += grain.mass;
     volume += grain.volume;
-    radius += grain.radius;
-    ++count;
   }
-  if (count == 0) return {kNan, kNan};
-  sizes.density = mass / volume;
-  sizes.diameter = 2 * radius / count;
-  return sizes;
+  if (volume == 0) return {kNan, kNan};
+  return {mass / volume, mean_diameter(packing)};
 }
 
 std::string tension_in(const PackingCheck& check) {

@@ -10,6 +10,7 @@
 #include "dem/engine/engine_search.h"
 #include "dem/engine/engine_sleep.h"
 #include "dem/engine/engine_state.h"
+#include "dem/engine/engine_step.h"
 #include "dem/integrators/gear.h"
 #include "dem/integrators/verlet.h"
 

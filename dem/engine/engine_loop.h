@@ -1,15 +1,13 @@
-// The step loop, compiled once per shape, law and integrator (see engine.h for the algorithm).
+// The step loop's state and the names of its parts, compiled once per shape, law and integrator
+// (see engine.h for the algorithm).
 #pragma once
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
-#include <limits>
 #include <numbers>
-#include <span>
+#include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "dem/engine/engine.h"
 #include "dem/engine/image.h"
@@ -21,9 +19,10 @@
 namespace grainfield::dem {
 
 // Skin of the neighbour list as a share of the mean radius, when none is given. A large one means
-// few searches and many idle pairs: it grows when a search comes within kOften steps of the last,
-// and shrinks when none was needed for kSeldom steps. At rest 0.03 was the fastest of 0.01, 0.03
-// and 0.1 on the settled packings of tests/benchmarks. Step counts alone decide, so the bits stay.
+// few searches and many idle pairs: it grows when motion asks for a search within kOften steps of
+// the last time, and shrinks when it has not for kSeldom steps. At rest 0.03 was the fastest of
+// 0.01, 0.03 and 0.1 on the settled packings of tests/benchmarks. Step counts alone decide, so the
+// bits stay.
 inline constexpr double kFirstSkin = 0.1, kLeastSkin = 0.03, kMostSkin = 0.4;
 inline constexpr long kOften = 60, kSeldom = 1000;
 // A grain may move half the skin, and at its present speed for this many steps, before the next
@@ -156,14 +155,14 @@ class EngineLoop final : public Engine {
   using Key = std::uint64_t;  // of a pair of ids, or of an id and a wall
 
   void wake_all();
-  void search();
+  void search(bool by_motion);
   void build_sleepers_grid();
   void part_sleepers();
   void swap_bodies(int i, int j);
   Pair recalled(int i, int j, bool wall, const std::vector<std::pair<Key, double>>& kept);
   static Key pair_key(std::int64_t a, std::int64_t b);
   static Key wall_key(std::int64_t id, int wall);
-  void adapt_skin();
+  void adapt_skin(bool by_motion);
   void gather_touches();
   void review();
   bool wake_sleepers();
@@ -203,7 +202,7 @@ class EngineLoop final : public Engine {
   int free_ = 0;
   std::int64_t first_new_ = 0;  // ids from here on have not been started yet
   double skin_ = 0, skin_share_ = kFirstSkin;
-  long last_search_ = 0;
+  long last_by_motion_ = 0;  // the last search that motion asked for
   bool search_needed_ = true;
   std::atomic<bool> moved_{false}, diverged_{false};
 
@@ -237,275 +236,5 @@ class EngineLoop final : public Engine {
   HierarchicalGrid grid_, sleepers_grid_;
   std::vector<Reach> reaches_;
 };
-
-template <class Shape, class Law, class Integrator>
-inline void EngineLoop<Shape, Law, Integrator>::begin(int i, bool& moved) {
-  Body& b = bodies_[i];
-  integrator_.begin(b, memory_[i]);
-  if constexpr (Shape::outlines) shapes_.place(i, b, memory_[i].angle);
-  const Reference& r = reference_[i];
-  const double dx = b.x - r.x, dy = b.y - r.y;
-  moved |= !(dx * dx + dy * dy <= r.limit);  // also true for nan
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::begin_all(int rank) {
-  bool moved = false;
-  for (int i = blocks_[rank]; i < blocks_[rank + 1]; ++i) {
-    if (bodies_[i].inverse_mass != 0) begin(i, moved);
-  }
-  if (moved) moved_.store(true, std::memory_order_relaxed);
-}
-
-template <class Shape, class Law, class Integrator>
-inline std::array<double, 2> EngineLoop<Shape, Law, Integrator>::applied_at(double t) const {
-  const double since = t - applied_.start;
-  const double s = applied_.ramp > 0 ? std::clamp(since / applied_.ramp, 0.0, 1.0) : 1.0;
-  const double part = s * s * (3 - 2 * s);
-  return {applied_.fx * part, applied_.fy * part};
-}
-
-template <class Shape, class Law, class Integrator>
-inline bool EngineLoop<Shape, Law, Integrator>::overlap_with_wall(int i, const Wall& w,
-                                                                  Overlap& o) const {
-  return shapes_.template overlap_plane<Law::needs_area>(i, bodies_[i], w.point.x(), w.point.y(),
-                                                         w.normal.x(), w.normal.y(), o);
-}
-
-/// The contact point, from the first grain.
-template <class Shape, class Law, class Integrator>
-std::array<double, 2> EngineLoop<Shape, Law, Integrator>::point_of(const Body& a,
-                                                                   const Overlap& o) {
-  if constexpr (Shape::outlines) {
-    return {a.x + o.lever_i * o.nx - o.shift_i * o.ny, a.y + o.lever_i * o.ny + o.shift_i * o.nx};
-  }
-  return {a.x + o.arm_i * o.nx, a.y + o.arm_i * o.ny};
-}
-
-/// With levers and shifts as in Overlap: velocities and torques at the contact point.
-template <class Shape, class Law, class Integrator>
-inline ContactForce EngineLoop<Shape, Law, Integrator>::evaluate(const Body& a, const Body& b,
-                                                                 const Overlap& o, double mu,
-                                                                 double dt, double& spring) const {
-  const double vx = a.vx - b.vx, vy = a.vy - b.vy;
-  ContactMotion m;
-  m.approach = vx * o.nx + vy * o.ny;
-  if constexpr (Shape::outlines) {
-    m.approach += b.spin * o.shift_j - a.spin * o.shift_i;
-    m.slip = vy * o.nx - vx * o.ny + a.spin * o.lever_i + b.spin * o.lever_j;
-  } else {
-    m.slip = vy * o.nx - vx * o.ny + a.spin * o.arm_i + b.spin * o.arm_j;
-  }
-  m.inverse_mass_i = a.inverse_mass;
-  m.inverse_mass_j = b.inverse_mass;
-  m.inverse_inertia_i = a.inverse_inertia;
-  m.inverse_inertia_j = b.inverse_inertia;
-  const LawForce f = law_(o, m, mu, dt, spring);
-  const double fx = -f.normal * o.nx - f.tangential * o.ny;
-  const double fy = -f.normal * o.ny + f.tangential * o.nx;
-  if constexpr (Shape::outlines) {
-    return {fx, fy, o.lever_i * f.tangential + o.shift_i * f.normal,
-            o.lever_j * f.tangential - o.shift_j * f.normal};
-  }
-  return {fx, fy, o.arm_i * f.tangential, o.arm_j * f.tangential};
-}
-
-/// Force of pair k between grains i and j; 0 and an empty memory when they do not touch.
-template <class Shape, class Law, class Integrator>
-inline bool EngineLoop<Shape, Law, Integrator>::pair_force(int i, int k, double dt,
-                                                           ContactForce& force) {
-  Pair& pair = pairs_[k];
-  const Body& a = bodies_[i];
-  const Body& b = bodies_[pair.j];
-  Overlap o;
-  if (!shapes_.template overlap<Law::needs_area>(i, a, pair.j, b, pair.feature, o)) {
-    pair.spring = 0;
-    return false;
-  }
-  force = evaluate(a, b, o, settings_.friction, dt, pair.spring);
-  return true;
-}
-
-/// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
-/// their second grain, as they do when one thread sweeps all.
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::incoming(int rank, double dt) {
-  for (const auto& [i, k] : incoming_[rank]) {
-    ContactForce& f = pair_forces_[k];
-    if (!pair_force(i, k, dt, f)) {
-      f = ContactForce{};
-      continue;
-    }
-    Sum& sum = sums_[pairs_[k].j];
-    sum.fx -= f.fx;
-    sum.fy -= f.fy;
-    sum.torque += f.torque_j;
-  }
-}
-
-/// The sweep over a block: grain i is complete once its own pairs (i, j > i) are done, because
-/// those with j < i were done at j; so it moves at once and no later pair needs its old place.
-template <class Shape, class Law, class Integrator>
-template <SweepKind kind>
-void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double dt) {
-  static const Body kWallBody{};  // at rest, of infinite mass
-  const int first = blocks_[rank], last = blocks_[rank + 1];
-  const auto [load_x, load_y] =
-      applied_at(static_cast<double>(step_index + 1) * settings_.time_step);
-  bool moved = false;
-  for (int i = first; i < last; ++i) {
-    __builtin_prefetch(&memory_[i] + kAhead / 2, 1);
-    double fx = sums_[i].fx, fy = sums_[i].fy, torque = sums_[i].torque;
-    sums_[i] = Sum{};
-    for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
-      const int j = pairs_[k].j;
-      const int later = pairs_[k + kAhead].j;
-      __builtin_prefetch(&bodies_[later], 1);
-      __builtin_prefetch(&sums_[later], 1);
-      ContactForce f;
-      if (j >= awake_) {  // a sleeper, or fixed: it only remembers what it feels
-        const bool touches = pair_force(i, k, dt, f);
-        if constexpr (kind == SweepKind::last) pair_forces_[k] = f;
-        if (!touches) continue;
-        if constexpr (kind != SweepKind::start) {
-          felt_[k].fx += f.fx;
-          felt_[k].fy += f.fy;
-          felt_[k].torque_j += f.torque_j;
-          felt_[k].torque_i += std::fabs(f.fx) + std::fabs(f.fy);
-        }
-      } else if (j >= last) {
-        f = pair_forces_[k];  // the block of j has evaluated it
-      } else if (pair_force(i, k, dt, f)) {
-        sums_[j].fx -= f.fx;
-        sums_[j].fy -= f.fy;
-        sums_[j].torque += f.torque_j;
-        if constexpr (kind == SweepKind::last) pair_forces_[k] = f;
-      } else {
-        if constexpr (kind == SweepKind::last) pair_forces_[k] = f;
-        continue;
-      }
-      fx += f.fx;
-      fy += f.fy;
-      torque += f.torque_i;
-    }
-    Body& b = bodies_[i];
-    if (b.inverse_mass == 0) continue;
-    for (int k = wall_start_[i]; k < wall_start_[i + 1]; ++k) {
-      Pair& pair = wall_pairs_[k];
-      const Wall& wall = walls_[pair.j];
-      Overlap o;
-      ContactForce f;
-      if (overlap_with_wall(i, wall, o)) {
-        f = evaluate(b, kWallBody, o, wall.friction, dt, pair.spring);
-        fx += f.fx;
-        fy += f.fy;
-        torque += f.torque_i;
-      } else {
-        pair.spring = 0;
-      }
-      if constexpr (kind == SweepKind::last) wall_forces_[k] = f;
-    }
-    if (i == applied_index_) {
-      fx += load_x;
-      fy += load_y;
-    }
-    const double ax = fx * b.inverse_mass + settings_.gravity_x - background_ * b.vx;
-    const double ay = fy * b.inverse_mass + settings_.gravity_y - background_ * b.vy;
-    const double aspin = torque * b.inverse_inertia - background_ * b.spin;
-    if constexpr (kind == SweepKind::start) {
-      if (ids_[i] >= first_new_) integrator_.start(memory_[i], ax, ay, aspin);
-    } else {
-      integrator_.end(b, memory_[i], ax, ay, aspin);
-      if constexpr (kind == SweepKind::move_on) begin(i, moved);
-    }
-  }
-  if (moved) moved_.store(true, std::memory_order_relaxed);
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::step(long n) {
-  if (n <= 0) return;
-  if (search_needed_) search();
-  const double dt = settings_.time_step;
-  const long start = steps_;
-  moved_ = false;
-  if (first_new_ < static_cast<std::int64_t>(ids_.size())) start_new_grains();
-  team_.run([&](int rank) {
-    begin_all(rank);
-    for (long s = 0; s < n; ++s) {
-      team_.meet();
-      const bool review_due =
-          settings_.sleep.on && start + s > 0 && (start + s) % kReviewEvery == 0;
-      const bool smaller_skin = start + s - last_search_ >= kSeldom && skin_share_ > kLeastSkin;
-      if (moved_.load(std::memory_order_relaxed) || smaller_skin || review_due) {
-        team_.meet();  // all have read the flags
-        if (rank == 0) {
-          const bool search_due = moved_.load(std::memory_order_relaxed) || smaller_skin;
-          steps_ = start + s;
-          check_motion();
-          if (!diverged_ && review_due) review();
-          if (!diverged_ && (search_due || search_needed_)) search();
-          moved_ = false;
-        }
-        team_.meet();
-        if (diverged_) return;
-      }
-      incoming(rank, dt);
-      team_.meet();
-      if (s + 1 < n) {
-        sweep<SweepKind::move_on>(rank, start + s, dt);
-      } else {
-        sweep<SweepKind::last>(rank, start + s, dt);
-      }
-    }
-  });
-  if (diverged_) report_divergence();
-  steps_ = start + n;
-}
-
-/// Grains added since the last step get the acceleration of where they stand, so that their first
-/// step is as accurate as any other. The contacts' memories stay as they are.
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::start_new_grains() {
-  const std::vector<Pair> pairs = pairs_, wall_pairs = wall_pairs_;
-  team_.run([&](int rank) {
-    incoming(rank, 0);
-    team_.meet();
-    sweep<SweepKind::start>(rank, steps_ - 1, 0);
-  });
-  pairs_ = pairs;
-  wall_pairs_ = wall_pairs;
-  first_new_ = static_cast<std::int64_t>(ids_.size());
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::check_motion() {
-  for (int i = 0; i < awake_; ++i) {
-    const Body& b = bodies_[i];
-    const double move = std::hypot(b.vx, b.vy) * settings_.time_step;
-    if (!(move <= kMaxMoveShare * b.radius) || !std::isfinite(b.x) || !std::isfinite(b.y)) {
-      diverged_ = true;
-    }
-  }
-}
-
-template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
-  for (int i = 0; i < awake_; ++i) {
-    const Body& b = bodies_[i];
-    const double speed = std::hypot(b.vx, b.vy);
-    if (speed * settings_.time_step <= kMaxMoveShare * b.radius && std::isfinite(b.x) &&
-        std::isfinite(b.y)) {
-      continue;
-    }
-    throw ComputationFailed(fmt::format(
-        "diverged at t = {:.6g} s (step {}): grain {} last seen near ({:.4g}, {:.4g}) m at {:.3g} "
-        "m/s "
-        "moves more than half its radius in a step; lower motion.time_step (now {:.3g} s) or the "
-        "load",
-        time(), steps_, ids_[i], reference_[i].x, reference_[i].y, speed, settings_.time_step));
-  }
-  throw ComputationFailed("diverged");
-}
 
 }  // namespace grainfield::dem

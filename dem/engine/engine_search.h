@@ -1,5 +1,11 @@
 // Neighbour search of the step loop: who is near whom, in which order, on which thread.
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 #include "dem/engine/engine_loop.h"
 
 namespace grainfield::dem {
@@ -58,13 +64,15 @@ void EngineLoop<Shape, Law, Integrator>::part_sleepers() {
 }
 
 template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::adapt_skin() {
-  const long since = steps_ - last_search_;
-  last_search_ = steps_;
-  if (since < kOften) {
-    skin_share_ = std::min(1.5 * skin_share_, kMostSkin);
-  } else if (since >= kSeldom) {
-    skin_share_ = std::max(0.5 * skin_share_, kLeastSkin);
+void EngineLoop<Shape, Law, Integrator>::adapt_skin(bool by_motion) {
+  if (by_motion) {
+    const long since = steps_ - last_by_motion_;
+    last_by_motion_ = steps_;
+    if (since < kOften) {
+      skin_share_ = std::min(1.5 * skin_share_, kMostSkin);
+    } else if (since >= kSeldom) {
+      skin_share_ = std::max(0.5 * skin_share_, kLeastSkin);
+    }
   }
   double sum = 0;
   for (int i = 0; i < awake_; ++i) sum += bodies_[i].radius;
@@ -129,8 +137,9 @@ void EngineLoop<Shape, Law, Integrator>::build_sleepers_grid() {
   sleepers_changed_ = false;
 }
 
+/// by_motion: because grains have left their margins, or have not for long.
 template <class Shape, class Law, class Integrator>
-void EngineLoop<Shape, Law, Integrator>::search() {
+void EngineLoop<Shape, Law, Integrator>::search(bool by_motion) {
   // The springs in use, by the grains' ids: the order of the bodies changes below. A spring is the
   // same seen from either of its grains. What has frozen since is not among them.
   const auto keep = [&](const std::vector<Pair>& pairs, const std::vector<int>& start, bool wall) {
@@ -151,7 +160,7 @@ void EngineLoop<Shape, Law, Integrator>::search() {
   gather_touches();
 
   part_sleepers();
-  adapt_skin();
+  adapt_skin(by_motion);
   const int n = awake_, all = static_cast<int>(bodies_.size());
   const double ahead = kStepsAhead * settings_.time_step;
   const auto reach_of = [&](int i) {

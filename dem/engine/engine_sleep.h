@@ -12,6 +12,11 @@
 // its force at zero velocity until one of them wakes. All of this follows from step counts and
 // states alone and is done by one thread, so the bits stay.
 #pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "dem/engine/engine_loop.h"
 
 namespace grainfield::dem {

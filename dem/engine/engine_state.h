@@ -1,5 +1,15 @@
 // What the step loop tells of its state: contacts, diagnostics, snapshots, checkpoints.
 #pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
 #include "dem/engine/engine_loop.h"
 
 namespace grainfield::dem {
@@ -205,7 +215,7 @@ std::string EngineLoop<Shape, Law, Integrator>::image() const {
   w.put(first_new_);
   w.put(skin_);
   w.put(skin_share_);
-  w.put(last_search_);
+  w.put(last_by_motion_);
   w.put(search_needed_);
   w.put(settings_.gravity_x);
   w.put(settings_.gravity_y);
@@ -243,7 +253,7 @@ void EngineLoop<Shape, Law, Integrator>::restore(const std::string& image) {
   r.get(first_new_);
   r.get(skin_);
   r.get(skin_share_);
-  r.get(last_search_);
+  r.get(last_by_motion_);
   r.get(search_needed_);
   r.get(settings_.gravity_x);
   r.get(settings_.gravity_y);

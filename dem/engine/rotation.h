@@ -21,21 +21,16 @@ inline Rotation rotation_of(double angle) {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
   const double turns = (angle * kTwoOverPi + kRound) - kRound;
   const double r = (angle - turns * kHalfPiHigh) - turns * kHalfPiLow;
-  const double q = r * r;
-  const double s =
-      r * (1 + q * (-1.0 / 6 +
-                    q * (1.0 / 120 +
-                         q * (-1.0 / 5040 +
-                              q * (1.0 / 362880 +
-                                   q * (-1.0 / 39916800 +
-                                        q * (1.0 / 6227020800 + q * (-1.0 / 1307674368000))))))));
-  const double c =
-      1 + q * (-0.5 +
-               q * (1.0 / 24 +
-                    q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800 +
-                                                              q * (1.0 / 479001600 +
-                                                                   q * (-1.0 / 87178291200 +
-                                                                        q / 20922789888000.0)))))));
+  // Estrin's scheme (short chains of dependent operations), the small terms first.
+  const double q = r * r, q2 = q * q, q4 = q2 * q2;
+  const double ps = (q * (-1.0 / 6) + q2 * (1.0 / 120 + q * (-1.0 / 5040))) +
+                    q4 * ((1.0 / 362880 + q * (-1.0 / 39916800)) +
+                          q2 * (1.0 / 6227020800 + q * (-1.0 / 1307674368000)));
+  const double pc = (q * -0.5 + q2 * (1.0 / 24 + q * (-1.0 / 720))) +
+                    q4 * (((1.0 / 40320 + q * (-1.0 / 3628800)) +
+                           q2 * (1.0 / 479001600 + q * (-1.0 / 87178291200))) +
+                          q4 * (1.0 / 20922789888000));
+  const double s = r + r * ps, c = 1 + pc;
   switch (static_cast<long long>(std::fabs(turns) < 1e15 ? turns : 0) & 3) {
     case 0:
       return {c, s};

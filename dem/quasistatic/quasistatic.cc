@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "dem/quasistatic/contact_network.h"
-#include "dem/quasistatic/newton.h"
+#include "dem/quasistatic/sparse_newton.h"
 #include "dem/study/contact_changes.h"
 
 namespace grainfield::dem {
@@ -172,7 +172,7 @@ class Relaxation {
       Eigen::VectorXd z = zero;
       problem_.enough = nullptr;
       if (free) problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
-      const NewtonReport report = solve(problem_, {wanted, limit, kMostStep}, z);
+      const NewtonReport report = newton(problem_, {wanted, limit, kMostStep}, z);
       iterations_ += report.iterations;
       const bool good = report.converged && z.cwiseAbs().maxCoeff() <= kMostStep;
       if (good) {
@@ -258,7 +258,7 @@ class Relaxation {
   Vec3 gravity_;
   std::int64_t old_grain_, new_grain_;  // indices, -1: none
   Vec3 force_;
-  NewtonProblem problem_;
+  SparseProblem problem_;
   Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness
   double share_ = 0;             // of the change that is done
   int steps_ = 0, iterations_ = 0;

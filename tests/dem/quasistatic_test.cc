@@ -9,7 +9,7 @@
 
 #include "dem/packing/packing.h"
 #include "dem/quasistatic/contact_network.h"
-#include "dem/quasistatic/newton.h"
+#include "dem/quasistatic/sparse_newton.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
 #include "dem/study/contact_changes.h"
@@ -289,7 +289,7 @@ TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
   ContactNetwork network(rest, area_law(5));
   network.set_load({0, -0.8 * kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
   network.set_scale(network.balance().mean_contact_force);
-  NewtonProblem problem;
+  SparseProblem problem;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(network.size());
   problem.residual = [&](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
     return network.residual(z, r);
@@ -297,7 +297,7 @@ TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
   problem.tangent = [&](const Eigen::VectorXd& z, const Eigen::VectorXd& r,
                         Eigen::SparseMatrix<double>& m) { network.tangent(z, r, none, m); };
   Eigen::VectorXd z = none;
-  const NewtonReport report = solve(problem, {1e-11, 20, 0.25}, z);
+  const NewtonReport report = newton(problem, {1e-11, 20, 0.25}, z);
   EXPECT_TRUE(report.converged) << report.why;
   EXPECT_LE(report.iterations, 7);
   // Order of the iterations that are past the start and above round-off: log r_{k+1} / log r_k.

@@ -1,0 +1,57 @@
+#include "dem/quasistatic/sparse_newton.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseLU>
+#include <cmath>
+
+namespace grainfield::dem {
+namespace {
+
+// A pivot off the diagonal is taken only when the diagonal one is this much smaller: the tangent is
+// dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
+constexpr double kPivotThreshold = 0.01;
+// Newton stalls, at a corner between two branches, when so many iterations have not brought the
+// residual's 2-norm below this share.
+constexpr std::size_t kPatience = 6;
+constexpr double kProgress = 0.9;
+// Slow convergence: an iteration that leaves more than this share of the residual.
+constexpr double kSlow = 0.1;
+
+}  // namespace
+
+NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings,
+                    Eigen::VectorXd& z) {
+  SparseProblem::Matrix matrix;
+  Eigen::SparseLU<SparseProblem::Matrix, Eigen::COLAMDOrdering<int>> factors;
+  factors.setPivotThreshold(kPivotThreshold);
+  double last = 0;  // 2-norm of the last iteration's residual
+
+  NewtonProblem core;
+  core.residual = problem.residual;
+  core.factorize = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& r) {
+    problem.tangent(at, r, matrix);
+    factors.compute(matrix);
+    return factors.info() == Eigen::Success;
+  };
+  core.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+    x = factors.solve(rhs);
+    const double longest = x.cwiseAbs().maxCoeff();
+    if (longest > settings.most_step) x *= settings.most_step / longest;
+  };
+  core.enough = [&](const Eigen::VectorXd& r) {
+    const double now = r.norm();
+    const bool slow = last > 0 && now > kSlow * last;
+    last = now;
+    return slow && problem.enough && problem.enough(r);
+  };
+  NewtonSettings how;
+  how.tolerance = settings.tolerance;
+  how.max_iterations = settings.max_iterations;
+  // The step's length is bounded per unknown in solve(), not as a sum over the packing.
+  how.most_norm = settings.most_step * std::sqrt(static_cast<double>(z.size())) + 1;
+  how.patience = kPatience;
+  how.progress = kProgress;
+  return newton(core, how, z);
+}
+
+}  // namespace grainfield::dem
