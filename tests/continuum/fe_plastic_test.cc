@@ -206,46 +206,59 @@ TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
                 "above phi_deg, 28"));
 }
 
-// Flow that is not associated, on ground that gives way: Newton's method alone finds no way, and
-// viscoplastic time does. Where both do they end within a per cent of each other: with such flow
-// there is more than one state of rest.
+// Flow that is not associated, on ground that gives way: viscoplastic time finds rest in every one
+// of these heaps, Newton's method alone not in all. In which it fails can hang on the last bits,
+// which differ between processors. Where both find rest they end within a per cent of each other:
+// with such flow there is more than one state of rest.
 TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
-  WedgeProblem p = heap(8, 28);
-  p.history = WedgeHistory::grow;
-  p.layers = 4;
-  p.base = WedgeBase::frictional;
-  p.base_stiffness = 0.1;
-  const WedgeResult rest = solve_wedge(p);
-  p.viscous_step = 0;
-  EXPECT_THAT(failure(p), HasSubstr("no equilibrium found beyond"));
-  int crept = 0;
-  double overstress = 0;
-  for (const auto& step : rest.steps) {
-    crept += step.viscous_steps;
-    overstress = std::max(overstress, step.overstress);
-  }
-  EXPECT_GT(crept, 0);
-  EXPECT_LE(overstress, 1e-7);
-  const plasticity::MohrCoulombLaw law({p.young, p.poisson, 28, 0, p.cohesion});
-  for (const auto& point : rest.points) EXPECT_LE(law.yield(point.stress), 1e-6);
-  // What is left of Newton's residuals: 1e-5 of a cell's weight at each of a hundred nodes.
-  EXPECT_NEAR(rest.base_force[1] / rest.weight, 1, 1e-5);
-  EXPECT_NEAR(rest.base_force[0] / rest.weight, 0, 1e-5);
+  int failures = 0;
+  for (const auto& [layers, stiffness] : {std::pair(2, 0.1), {2, 0.03}, {4, 0.03}}) {
+    WedgeProblem p = heap(16, 28);
+    p.history = WedgeHistory::grow;
+    p.layers = layers;
+    p.base = WedgeBase::frictional;
+    p.base_stiffness = stiffness;
+    const WedgeResult rest = solve_wedge(p);
+    double overstress = 0;
+    for (const auto& step : rest.steps) overstress = std::max(overstress, step.overstress);
+    EXPECT_LE(overstress, 1e-7);
+    const plasticity::MohrCoulombLaw law({p.young, p.poisson, 28, 0, p.cohesion});
+    for (const auto& point : rest.points) EXPECT_LE(law.yield(point.stress), 1e-6);
+    // What is left of Newton's residuals: 1e-5 of a cell's weight at each of hundreds of nodes.
+    EXPECT_NEAR(rest.base_force[1] / rest.weight, 1, 1e-5);
+    EXPECT_NEAR(rest.base_force[0] / rest.weight, 0, 1e-5);
 
-  // Where Newton's method needs no help, in smaller steps of the load.
-  p.cells = 16;
-  p.base = WedgeBase::rough;
-  const WedgeResult newton = solve_wedge(p);
-  p.viscous_step = 0.25;
-  const WedgeResult relaxed = solve_wedge(p);
-  crept = 0;
-  for (const auto& step : newton.steps) EXPECT_EQ(step.viscous_steps, 0);
-  for (const auto& step : relaxed.steps) crept += step.viscous_steps;
-  EXPECT_GT(crept, 0);
-  for (const double x : {0., 0.376, 0.752, 1.411}) {
-    const double reference = newton.stress_at({x, -0.999})[1];
-    EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 1e-2 * std::abs(reference)) << x;
+    p.viscous_step = 0;
+    const std::string alone = failure(p);
+    if (alone == "solved") continue;
+    EXPECT_THAT(alone, HasSubstr("no equilibrium found beyond"));
+    int crept = 0;
+    for (const auto& step : rest.steps) crept += step.viscous_steps;
+    EXPECT_GT(crept, 0);
+    ++failures;
   }
+  EXPECT_GT(failures, 0);
+}
+
+// Where Newton's method needs no help, in smaller steps of the load.
+TEST(FePlastic, RelaxationAgreesWithNewton) {
+  int crept = 0;
+  for (const int cells : {16, 24}) {
+    WedgeProblem p = heap(cells, 28);
+    p.history = WedgeHistory::grow;
+    p.layers = 4;
+    p.viscous_step = 0;
+    const WedgeResult newton = solve_wedge(p);
+    p.viscous_step = 0.25;
+    const WedgeResult relaxed = solve_wedge(p);
+    for (const auto& step : newton.steps) EXPECT_EQ(step.viscous_steps, 0);
+    for (const auto& step : relaxed.steps) crept += step.viscous_steps;
+    for (const double x : {0., 0.376, 0.752, 1.411}) {
+      const double reference = newton.stress_at({x, -0.999})[1];
+      EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 1e-2 * std::abs(reference)) << x;
+    }
+  }
+  EXPECT_GT(crept, 0);
 }
 
 // Without rest the work is bounded, and the message says so.
