@@ -207,9 +207,8 @@ TEST(FePlastic, NoEquilibriumNamesTheLastLoadAndWhatToTry) {
 }
 
 // Flow that is not associated, on ground that gives way: viscoplastic time finds rest in every one
-// of these heaps, Newton's method alone not in all. In which it fails can hang on the last bits,
-// which differ between processors. Where both find rest they end within a per cent of each other:
-// with such flow there is more than one state of rest.
+// of these heaps, Newton's method alone not in all. In which it fails hangs on the last bits, which
+// differ between BLAS libraries and processors.
 TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
   int failures = 0;
   for (const auto& [layers, stiffness] : {std::pair(2, 0.1), {2, 0.03}, {4, 0.03}}) {
@@ -240,24 +239,27 @@ TEST(FePlastic, RelaxationFindsRestWhereNewtonFails) {
   EXPECT_GT(failures, 0);
 }
 
-// Where Newton's method needs no help, in smaller steps of the load.
+// Where Newton's method needs no help, in smaller steps of the load, both end within a per cent of
+// each other: with flow that is not associated there is more than one state of rest.
 TEST(FePlastic, RelaxationAgreesWithNewton) {
-  int crept = 0;
-  for (const int cells : {16, 24}) {
+  int crept = 0, compared = 0;
+  for (const int cells : {8, 16, 24}) {
     WedgeProblem p = heap(cells, 28);
     p.history = WedgeHistory::grow;
     p.layers = 4;
-    p.viscous_step = 0;
-    const WedgeResult newton = solve_wedge(p);
-    p.viscous_step = 0.25;
     const WedgeResult relaxed = solve_wedge(p);
-    for (const auto& step : newton.steps) EXPECT_EQ(step.viscous_steps, 0);
     for (const auto& step : relaxed.steps) crept += step.viscous_steps;
+    p.viscous_step = 0;
+    if (failure(p) != "solved") continue;
+    const WedgeResult newton = solve_wedge(p);
+    for (const auto& step : newton.steps) EXPECT_EQ(step.viscous_steps, 0);
     for (const double x : {0., 0.376, 0.752, 1.411}) {
       const double reference = newton.stress_at({x, -0.999})[1];
       EXPECT_NEAR(relaxed.stress_at({x, -0.999})[1], reference, 1e-2 * std::abs(reference)) << x;
     }
+    ++compared;
   }
+  EXPECT_GT(compared, 0);
   EXPECT_GT(crept, 0);
 }
 
