@@ -10,6 +10,7 @@
 #include "continuum/closed/liffman.h"
 #include "coupling/report/lattice_pile.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/model_record.h"
 #include "coupling/run/models.h"
 #include "dem/packing/lattice_pile.h"
 
@@ -190,20 +191,8 @@ class Analysis {
                         model_label(choice),
                         family_of(choice.name),
                         {-stress.col(1), stress.col(2)}});
-      Field field;
-      field.points = points_;
-      field.add("sigma_xx", "N/m").value = stress.col(0);
-      field.add("sigma_yy", "N/m").value = stress.col(1);
-      field.add("sigma_xy", "N/m").value = stress.col(2);
-      field.attributes["model"] = choice.name;
-      for (const auto& [name, setting] : filled_settings(choice, known)) {
-        field.attributes["model." + name] = setting;
-      }
-      out.fields.emplace_back("model_" + choice.label, std::move(field));
-      const std::string prefix = "model." + choice.label + ".";
-      out.summary[prefix + "name"] = choice.name;
-      for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
-      out.summary["time.model." + choice.label + "_s"] = e.seconds;
+      out.fields.emplace_back("model_" + choice.label, model_field(choice, known, points_, stress));
+      add_model(out.summary, choice, e.figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
     const double h = heap_.height(), unit = known.numbers.at("rho_g") * h;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "coupling/averaging/average.h"
+#include "coupling/run/model_record.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -15,21 +16,6 @@ Eigen::MatrixXd in_space(const Eigen::MatrixXd& plane, int dim) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(plane.rows(), 3);
   out.col(0) = plane.col(0);
   out.col(2) = plane.col(1);
-  return out;
-}
-
-Field stress_field(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stress, int nx, int ny) {
-  Field out;
-  out.points = points;
-  out.nx = nx;
-  out.ny = ny;
-  const bool plane = stress.cols() == 3;
-  const auto names = plane ? std::vector<const char*>{"sigma_xx", "sigma_yy", "sigma_xy"}
-                           : std::vector<const char*>{"sigma_xx", "sigma_yy", "sigma_zz",
-                                                      "sigma_yz", "sigma_xz", "sigma_xy"};
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    out.add(names[c], plane ? "N/m" : "Pa").value = stress.col(static_cast<Eigen::Index>(c));
-  }
   return out;
 }
 
@@ -62,15 +48,8 @@ StudyResult compare_models(const Case& value, const std::vector<ModelChoice>& ch
   for (const auto& choice : choices) {
     const Evaluation e = evaluate_model(choice, facts, sets);
     seconds += e.seconds;
-    const std::string prefix = "model." + choice.label + ".";
-    out.summary[prefix + "name"] = choice.name;
-    for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
-    out.summary["time.model." + choice.label + "_s"] = e.seconds;
-    Field field = stress_field(grid, e.stresses.back(), kColumns, kRows);
-    field.attributes["model"] = choice.name;
-    for (const auto& [name, setting] : filled_settings(choice, facts)) {
-      field.attributes["model." + name] = setting;
-    }
+    add_model(out.summary, choice, e.figures, e.seconds);
+    Field field = model_field(choice, facts, grid, e.stresses.back(), kColumns, kRows);
     if (&choice == &choices.front()) {
       out.map = field;
       for (std::size_t d = 0; d < depths.size(); ++d) {

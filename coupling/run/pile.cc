@@ -10,6 +10,7 @@
 #include "coupling/report/pile.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/finished_runs.h"
+#include "coupling/run/model_record.h"
 #include "coupling/run/models.h"
 #include "coupling/run/pile_ensemble.h"
 #include "coupling/run/summary_keys.h"
@@ -158,23 +159,11 @@ class Analysis {
         m.values.emplace_back(-e.stresses[s].col(1));
       all.push_back(std::move(m));
       const Eigen::MatrixXd& map = e.stresses.back();
-      Field field;
-      field.points = grid;
-      field.nx = piles_.columns();
-      field.ny = piles_.rows();
-      field.add("sigma_xx", "N/m").value = map.col(0);
-      field.add("sigma_yy", "N/m").value = map.col(1);
-      field.add("sigma_xy", "N/m").value = map.col(2);
-      field.attributes["model"] = choice.name;
-      for (const auto& [name, setting] : filled_settings(choice, known)) {
-        field.attributes["model." + name] = setting;
-      }
       out.model_maps.push_back({model_label(choice), map.col(1)});
-      out.fields.emplace_back("model_" + choice.label, std::move(field));
-      const std::string prefix = "model." + choice.label + ".";
-      out.summary[prefix + "name"] = choice.name;
-      for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
-      out.summary["time.model." + choice.label + "_s"] = e.seconds;
+      out.fields.emplace_back(
+          "model_" + choice.label,
+          model_field(choice, known, grid, map, piles_.columns(), piles_.rows()));
+      add_model(out.summary, choice, e.figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
     return all;

@@ -15,6 +15,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/model_record.h"
 #include "coupling/run/models.h"
 #include "coupling/run/realization_file.h"
 
@@ -239,22 +240,9 @@ class Analysis {
       models.push_back(std::move(m));
       const Eigen::MatrixXd& map = e.stresses.back();
       out.model_maps.push_back({model_label(choice), map.col(1)});
-      Field field;
-      field.points = grid_;
-      field.nx = columns_;
-      field.ny = rows_;
-      field.add("sigma_xx", "N/m").value = map.col(0);
-      field.add("sigma_yy", "N/m").value = map.col(1);
-      field.add("sigma_xy", "N/m").value = map.col(2);
-      field.attributes["model"] = choice.name;
-      for (const auto& [name, setting] : filled_settings(choice, facts)) {
-        field.attributes["model." + name] = setting;
-      }
-      out.fields.emplace_back("model_" + choice.label, std::move(field));
-      const std::string prefix = "model." + choice.label + ".";
-      out.summary[prefix + "name"] = choice.name;
-      for (const auto& [name, figure] : e.figures) out.summary[prefix + name] = figure;
-      out.summary["time.model." + choice.label + "_s"] = e.seconds;
+      out.fields.emplace_back("model_" + choice.label,
+                              model_field(choice, facts, grid_, map, columns_, rows_));
+      add_model(out.summary, choice, e.figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
     out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);

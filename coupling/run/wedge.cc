@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "coupling/output/triangles_vtu.h"
+#include "coupling/run/model_record.h"
 #include "coupling/run/wedge_analysis.h"
 
 namespace grainfield::coupling {
@@ -68,10 +69,7 @@ void WedgeAnalysis::summarize(StudyResult& out) const {
   std::map<std::string, std::int64_t> words{{"dip", 0}, {"plateau", 0}, {"peak", 0}};
   std::string sentence;
   for (const WedgeMember& m : members_) {
-    const std::string prefix = "model." + m.choice.label + ".";
-    out.summary[prefix + "name"] = m.choice.name;
-    for (const auto& [name, figure] : m.figures) out.summary[prefix + name] = figure;
-    out.summary["time.model." + m.choice.label + "_s"] = m.seconds;
+    add_model(out.summary, m.choice, m.figures, m.seconds);
     seconds += m.seconds;
     heaps += m.heap;
     const std::string own = "wedge." + m.choice.label + ".";
@@ -119,16 +117,7 @@ void WedgeAnalysis::add_files(StudyResult& out) const {
   out.texts.emplace_back("heaps.csv", csv);
   for (const WedgeMember& m : members_) {
     if (!m.failed.empty()) continue;
-    Field field;
-    field.points = grid_;
-    field.nx = kWedgeColumns;
-    field.ny = kWedgeRows;
-    field.attributes["model"] = m.choice.name;
-    for (const auto& [name, setting] : filled_settings(m.choice, facts_))
-      field.attributes["model." + name] = setting;
-    int column = 0;
-    for (const char* name : {"sigma_xx", "sigma_yy", "sigma_xy"})
-      field.add(name, "N/m").value = m.map.col(column++);
+    Field field = model_field(m.choice, facts_, grid_, m.map, kWedgeColumns, kWedgeRows);
     for (const auto& quantity : m.quantities) {
       if (field.find(quantity.name) == nullptr)
         field.add(quantity.name, "").value = quantity.values;

@@ -76,6 +76,19 @@ void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string
       rest.max_time, when, d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy, remedy));
 }
 
+void add_engine_figures(const Engine& engine, const Diagnostics& state,
+                        std::map<std::string, double>& figures) {
+  figures["dem.grains"] = engine.grains();
+  figures["dem.contacts"] = state.contacts;
+  figures["dem.sliding_contacts"] = state.sliding;
+  figures["dem.steps"] = static_cast<double>(engine.steps());
+  figures["dem.time_step"] = engine.time_step();
+  figures["dem.unbalanced_force_ratio"] = state.unbalanced_force_ratio;
+  figures["dem.unbalanced_force_max_ratio"] = state.max_unbalanced_force / state.mean_contact_force;
+  figures["dem.kinetic_to_elastic_energy"] = state.kinetic_energy / state.elastic_energy;
+  figures["dem.max_overlap_ratio"] = state.max_overlap_ratio;
+}
+
 std::string smaller_step(const MotionSetup& m) {
   if (m.time_step > 0 || m.time_step_fraction <= 1) return "";
   return fmt::format(", or lower motion.time_step_fraction, now {:g}", m.time_step_fraction);

@@ -1,6 +1,7 @@
 // What every study of grains does alike: engine settings and their time step, the criterion of
 // rest, and checkpoints.
 #pragma once
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,10 @@ std::string smaller_step(const MotionSetup& motion);
 std::string describe(const MaterialSetup& material);
 std::string describe(const MotionSetup& motion, double time_step);
 std::string describe(const RestSetup& rest);
+
+/// Keys dem.*: grains, contacts, steps and how near the state is to rest.
+void add_engine_figures(const Engine& engine, const Diagnostics& state,
+                        std::map<std::string, double>& figures);
 
 using NamedSnapshots = std::vector<std::pair<std::string, Snapshot>>;
 /// Writes a checkpoint beside `file` and renames it: the fingerprint of the setup, the state's bits

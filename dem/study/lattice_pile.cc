@@ -117,16 +117,7 @@ RunResult LatticePileRun::result() const {
   if (!pile_) return out;
   out.snapshots = {{"pile", *pile_}};
   auto& f = out.figures;
-  const Diagnostics d = engine_->measure();
-  f["dem.grains"] = engine_->grains();
-  f["dem.contacts"] = d.contacts;
-  f["dem.sliding_contacts"] = d.sliding;
-  f["dem.steps"] = static_cast<double>(engine_->steps());
-  f["dem.time_step"] = engine_->time_step();
-  f["dem.unbalanced_force_ratio"] = d.unbalanced_force_ratio;
-  f["dem.unbalanced_force_max_ratio"] = d.max_unbalanced_force / d.mean_contact_force;
-  f["dem.kinetic_to_elastic_energy"] = d.kinetic_energy / d.elastic_energy;
-  f["dem.max_overlap_ratio"] = d.max_overlap_ratio;
+  add_engine_figures(*engine_, engine_->measure(), f);
   double weight = 0;
   for (const Grain& g : pile_->grains) weight += g.mass * setup_.material.gravity;
   f["base.weight_ratio"] = base_force(*pile_).y() / weight;

@@ -128,15 +128,7 @@ RunResult PileRun::result() const {
   if (!done()) return out;
   out.snapshots.emplace_back("pile", *pile_);
   auto& f = out.figures;
-  f["dem.grains"] = engine_->grains();
-  f["dem.contacts"] = at_pile_.contacts;
-  f["dem.sliding_contacts"] = at_pile_.sliding;
-  f["dem.steps"] = static_cast<double>(engine_->steps());
-  f["dem.time_step"] = settings_.time_step;
-  f["dem.unbalanced_force_ratio"] = at_pile_.unbalanced_force_ratio;
-  f["dem.unbalanced_force_max_ratio"] = at_pile_.max_unbalanced_force / at_pile_.mean_contact_force;
-  f["dem.kinetic_to_elastic_energy"] = at_pile_.kinetic_energy / at_pile_.elastic_energy;
-  f["dem.max_overlap_ratio"] = at_pile_.max_overlap_ratio;
+  add_engine_figures(*engine_, at_pile_, f);
   f["pile.pour_time"] = pour_time_;
   f["pile.awake_mean"] =
       awake_samples_ > 0 ? awake_sum_ / static_cast<double>(awake_samples_) : engine_->grains();

@@ -281,16 +281,7 @@ RunResult PointLoadRun::result() const {
   if (!unloaded_ || !loaded_) return out;
   out.snapshots = {{"unloaded", *unloaded_}, {"loaded", *loaded_}};
   auto& f = out.figures;
-  const Diagnostics d = engine_->measure();
-  f["dem.grains"] = engine_->grains();
-  f["dem.contacts"] = d.contacts;
-  f["dem.sliding_contacts"] = d.sliding;
-  f["dem.steps"] = static_cast<double>(engine_->steps());
-  f["dem.time_step"] = engine_->time_step();
-  f["dem.unbalanced_force_ratio"] = d.unbalanced_force_ratio;
-  f["dem.unbalanced_force_max_ratio"] = d.max_unbalanced_force / d.mean_contact_force;
-  f["dem.kinetic_to_elastic_energy"] = d.kinetic_energy / d.elastic_energy;
-  f["dem.max_overlap_ratio"] = d.max_overlap_ratio;
+  add_engine_figures(*engine_, engine_->measure(), f);
 
   double weight = 0, area = 0;
   for (const Grain& g : unloaded_->grains) {
