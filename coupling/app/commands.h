@@ -22,6 +22,7 @@ void add_compare(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
+void add_strain(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 

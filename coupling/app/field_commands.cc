@@ -8,7 +8,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/model_settings.h"
-#include "coupling/app/points_csv.h"
+#include "coupling/app/points_options.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/output/other_file.h"
 #include "coupling/run/average_files.h"
@@ -54,26 +54,6 @@ std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
   return out;
 }
 
-void parse_grid(const std::string& text, AverageRequest& request) {
-  const std::size_t x = text.find('x');
-  try {
-    std::size_t used = 0;
-    request.nx = std::stoi(text, &used);
-    if (used != x) throw std::invalid_argument("");
-    request.ny = std::stoi(text.substr(x + 1), &used);
-    if (used + x + 1 != text.size() || request.nx < 2 || request.ny < 2) {
-      throw std::invalid_argument("");
-    }
-  } catch (const std::exception&) {
-    throw std::invalid_argument(
-        fmt::format("--grid: found \"{}\", expected COLUMNSxROWS, both 2 or more", text));
-  }
-}
-
-}  // namespace
-
-namespace {
-
 // Warns of points without a value; they are nan in the file.
 void print_gaps(const Gaps& gaps, const Field& field) {
   const std::string text = gaps.text(field.points);
@@ -100,7 +80,8 @@ void add_average(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("average", "average snapshots into a field");
   struct Given {
     std::vector<std::string> snapshots;
-    std::string output, points, grid;
+    std::string output;
+    PointsOptions where;
     bool balance = false;
     AverageRequest request;
   };
@@ -117,11 +98,7 @@ void add_average(CLI::App& app, Action& action) {
       "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
   auto* width = command->add_option(
       "--width", options.width, "m; default one mean diameter (particle_centre, area_exact: 2.5)");
-  command->add_option("--frame", wanted.frame,
-                      "layer: load at 0,0, surface y = 0; heap: apex at 0,0, lengths over its "
-                      "height; packing: as it is");
-  command->add_option("--points", given->points, "CSV with columns x,y (3D: x,y,z) in the frame");
-  command->add_option("--grid", given->grid, "COLUMNSxROWS over the packing; default 81x31");
+  given->where.add_to(*command);
   command
       ->add_option("--cuts", wanted.cuts,
                    "horizontal cuts instead of a grid: shares of the height, 0 floor, 1 surface")
@@ -154,22 +131,23 @@ void add_average(CLI::App& app, Action& action) {
           throw std::invalid_argument(
               fmt::format("--cuts: found {:g}, allowed: 0 (floor) to 1 (surface)", share));
       }
-      if (!given->grid.empty()) parse_grid(given->grid, request);
       request.snapshots = parse_snapshot_names(given->snapshots);
-      std::vector<std::string> inputs{given->points};
+      std::vector<std::string> inputs{given->where.points};
       for (const SnapshotName& name : request.snapshots) inputs.push_back(name.file);
       require_other_file("-o", given->output, inputs);
-      if (!given->points.empty()) {
-        const int dim =
-            dem::read_snapshot(request.snapshots[0].file, request.snapshots[0].group).dim;
-        request.points = read_points_csv(given->points, dim);
-      }
+      request.points = given->where.read(request.snapshots[0]);
+      request.frame = given->where.frame;
+      request.nx = given->where.columns;
+      request.ny = given->where.rows;
       if (given->balance) {
         print_balance(request.snapshots, request.options, request.options.width);
       }
       if (given->output.empty()) return 0;
       Gaps gaps;
-      const NamedFields fields = average_files(request, &gaps);
+      std::vector<std::string> warnings;
+      const NamedFields fields = average_files(request, &gaps, &warnings);
+      for (const std::string& warning : warnings)
+        fmt::print(stderr, "grainfield: warning: {}\n", warning);
       write_fields(given->output, fields);
       for (const auto& [name, field] : fields) {
         fmt::print("{}: {} points, {} realization{}\n", name, field.points.rows(),

@@ -110,6 +110,12 @@ void add_model(CLI::App& app, Action& action) {
       const auto model = continuum::make_model(given->name, settings);
       const auto points = read_points_csv(given->points, continuum::dimension(info, settings));
       const auto stresses = model->stress(points);
+      Eigen::Index outside = 0;
+      for (Eigen::Index k = 0; k < stresses.rows(); ++k) outside += stresses.row(k).hasNaN();
+      if (outside > 0) {
+        fmt::print(stderr, "grainfield: {} of {} points are outside the model's domain: nan\n",
+                   outside, points.rows());
+      }
       std::string text =
           stresses_csv(points, stresses,
                        given->all ? model->quantities(points) : std::vector<continuum::Quantity>());

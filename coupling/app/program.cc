@@ -43,6 +43,7 @@ int parse_and_act(int argc, char** argv) {
   add_fit(app, action);
   add_import(app, action);
   add_reproduce(app, action);
+  add_strain(app, action);
   add_structure(app, action);
   add_info(app, action);
   if (argc > 1 && argv[1][0] != '-') {

@@ -65,6 +65,10 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
       reject(a, "quick", "found a value, expected a table of keys");
     }
   }
+  if (base.empty() && fast.empty() && overrides.empty()) {
+    throw std::invalid_argument(
+        file + ": holds no key; a case names at least its study, e.g. study = \"point-load\"");
+  }
   for (const auto& text : overrides) set.push_back(parse_override(text));
 
   Draft draft;

@@ -93,6 +93,27 @@ std::string describe(const ModelComparison& result, bool by_chi2) {
              : fmt::format("{} (relative L2 {:.1f} %)", result.label, 100 * result.overall.rel_l2);
 }
 
+// It describes nothing.
+bool misses(const ModelComparison& best) { return best.overall.rel_l2 > most_rel_l2; }
+
+// Says so when even the nearest model is not within the errors, or describes nothing.
+void add_misfit(const ModelComparison& best, bool by_chi2, std::string& sentence) {
+  if (misses(best)) {
+    sentence = fmt::format(
+        "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
+        "L2). {}",
+        100 * best.overall.rel_l2, sentence);
+    return;
+  }
+  const double excess = chi2_sigmas * std::sqrt(2 / best.overall.dof);
+  if (by_chi2 && best.overall.chi2_per_dof > 1 + excess) {
+    sentence += fmt::format(
+        " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
+        "would be chance.",
+        best.overall.chi2_per_dof, 1 + excess);
+  }
+}
+
 }  // namespace
 
 Verdict judge(const Comparison& c) {
@@ -128,6 +149,7 @@ Verdict judge(const Comparison& c) {
   if (other == order.end()) {
     v.sentence = fmt::format("Of the {} models, the grains are nearest to {}{}.", best.family,
                              describe(best, by_chi2), runner_up);
+    add_misfit(best, by_chi2, v.sentence);
     return v;
   }
   Projection p = project(c, c.models[*other], c.models[order.front()]);
@@ -136,7 +158,7 @@ Verdict judge(const Comparison& c) {
   v.position_error = p.error;
   v.distinguishable = beyond_spread(p, c.realizations);
   const ModelComparison& loser = c.results[*other];
-  const bool none = best.overall.rel_l2 > most_rel_l2;
+  const bool none = misses(best);
   if (v.distinguishable) {
     v.sentence = fmt::format(
         "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) they stand "
@@ -163,19 +185,7 @@ Verdict judge(const Comparison& c) {
                  : fmt::format("All {} realizations are equal, spread unknown", c.realizations),
         describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
   }
-  const double excess = chi2_sigmas * std::sqrt(2 / best.overall.dof);
-  if (by_chi2 && !none && best.overall.chi2_per_dof > 1 + excess) {
-    v.sentence += fmt::format(
-        " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
-        "would be chance.",
-        best.overall.chi2_per_dof, 1 + excess);
-  }
-  if (none) {
-    v.sentence = fmt::format(
-        "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
-        "L2). {}",
-        100 * best.overall.rel_l2, v.sentence);
-  }
+  add_misfit(best, by_chi2, v.sentence);
   return v;
 }
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -55,17 +57,20 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files) {
 HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) {
   HeapData out;
   DoubtList doubts;
-  double height = 0, diameter = 0;
+  double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity(), most = 0;
   const auto count = static_cast<double>(heaps.count);
   for (std::size_t k = 0; k < heaps.count; ++k) {
     out.frames.push_back(frame_of(heaps, k, doubts));
     height += out.frames.back().height / count;
+    least = std::min(least, out.frames.back().height);
+    most = std::max(most, out.frames.back().height);
     diameter += out.frames.back().diameter / count;
   }
   const HeapSlopes slopes = slopes_of(setup, out.frames);
   out.warnings = doubts.lines();
   out.width = setup.width_diameters * diameter;
-  warn_of_low_heights(setup.heights, height, out.width, out);
+  warn_of_low_heights(setup.heights, least, out.width, out);
+  warn_of_unlike_heaps(least, most, out);
   warn_of_set_slopes(setup, out);
   AverageOptions options;
   options.method = "coarse_graining";

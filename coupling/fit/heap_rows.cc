@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kLeastValues = 10;
 constexpr double kRounding = 1e-9;  // of the largest value
+constexpr double kUnlike = 1.2;     // ratio of heights that realizations of one heap do not have
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
@@ -139,6 +140,14 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       "or a smaller fit.width_diameters",
       low.size() == 1 ? "" : "s", fmt::join(low, ", "), width, width / height,
       std::ceil(100 * width / height) / 100));
+}
+
+void warn_of_unlike_heaps(double least, double most, HeapData& out) {
+  if (!(most > kUnlike * least)) return;
+  out.warnings.push_back(fmt::format(
+      "heaps {:.3g} to {:.3g} m high in one ensemble: are they realizations of one? The averaging "
+      "width, {:.3g} m, is the same for all",
+      least, most, out.width));
 }
 
 void warn_of_set_slopes(const FitSetup& setup, HeapData& out) {

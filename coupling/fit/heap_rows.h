@@ -27,10 +27,13 @@ HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames
 HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing);
 
 /// Adds a warning for heights nearer to the floor than the averaging width `width`, m, of heaps
-/// that are `height` m high: there the average mixes in the stress continued below the floor, and
-/// constants are biased.
+/// that are at least `height` m high: there the average mixes in the stress continued below the
+/// floor, and constants are biased.
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
                          HeapData& out);
+
+/// Adds a warning when the heaps' heights, `least` to `most` m, are not those of one ensemble.
+void warn_of_unlike_heaps(double least, double most, HeapData& out);
 
 /// Adds a warning for slopes of the setup that are more than 5 degrees off the heaps' own.
 void warn_of_set_slopes(const FitSetup& setup, HeapData& out);

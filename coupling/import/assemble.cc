@@ -165,7 +165,7 @@ void Assembly::complete(GrainRow& row) const {
 
 void Assembly::settle() {
   dem::Snapshot& s = out_.snapshot;
-  if (rows_.empty()) throw std::invalid_argument("there is no grain in the files");
+  if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
   settle_dimension();
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });

@@ -10,8 +10,9 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that is not at rest
-constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
+constexpr double kUnbalanced = 0.1;   // unbalanced force ratio of a packing that is not at rest
+constexpr double kSupport = 0.1;      // of the weight: missing or too much at walls
+constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
 constexpr double kLeastDiameter = 1e-7, kMostDiameter = 100;  // m
 
@@ -25,11 +26,19 @@ std::string unbalanced(const PackingCheck& check) {
 
 std::string unsupported(const PackingCheck& check) {
   if (!(std::fabs(check.support_ratio - 1) > kSupport)) return "";
+  const char* why = "gravity or masses are too small, or contacts stand there twice";
+  if (check.support_ratio < 1) {
+    why =
+        "contacts with the floor are missing (a wall: --wall, a table of walls; grains of the "
+        "floor: --fixed)";
+  }
+  if (check.wall_contacts > 0 && check.support_ratio < 0) {
+    why = "gravity points the other way (--gravity), or the forces on walls do";
+  } else if (check.wall_contacts > 0 && check.support_ratio < kOtherUnits) {
+    why = "are forces, lengths and masses all in SI units (N, m, kg)?";
+  }
   return fmt::format("walls and fixed grains carry {:.3g} of the weight: {}", check.support_ratio,
-                     check.support_ratio < 1
-                         ? "contacts with the floor are missing (a wall: --wall, a table of "
-                           "walls; grains of the floor: --fixed)"
-                         : "gravity or masses are too small, or contacts stand there twice");
+                     why);
 }
 
 std::string off_walls(const PackingCheck& check) {

@@ -117,7 +117,8 @@ void add_tables(Report& report, const PileReport& in) {
     Table distances{"Distance of the models from the grains",
                     "Relative L2: root of the sum of squared differences over that of the grains. "
                     "chi2/dof: squared differences over squared standard errors.",
-                    {"model", "relative L2", "largest difference (rho g h)", "in", "chi2/dof"},
+                    {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress),
+                     "in", "chi2/dof"},
                     {}};
     for (const ModelComparison& r : c.results) {
       distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),

@@ -14,15 +14,15 @@
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
-#include "coupling/averaging/nearest.h"
-#include "coupling/averaging/region.h"
+#include "coupling/import/doubts.h"
 #include "coupling/run/pile_frame.h"
+#include "coupling/run/placement.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 namespace {
 
-const std::vector<std::string> frames{"layer", "heap", "packing"};
+constexpr double kUnlike = 1.2;  // ratio of heights that realizations of one packing do not have
 
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
@@ -66,41 +66,33 @@ struct Extents {
   double depth = 0, left = -std::numeric_limits<double>::infinity(),
          right = std::numeric_limits<double>::infinity(), diameter = 0, load = 0;
   int dim = 2;
-  std::vector<PileFrame> heaps;  // frame "heap" only
+  std::vector<PileFrame> heaps;                                      // frame "heap" only
+  double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
 };
 
-// From the request's frame to the packing's axes, and the extents in the request's frame.
-struct Placed {
-  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> to_packing;
-  double left = 0, right = 0, depth = 0;
-  PileFrame heap = {};  // frame "heap" only
-};
-
-Placed place(const dem::Snapshot& s, const std::string& frame) {
-  if (frame == "packing" && s.dim == 3) return {[](const auto& points) { return points; }, 0, 0, 0};
-  const LayerFrame layer = layer_frame(s);
-  if (frame == "heap") {
-    const PileFrame heap = pile_frame(s);
-    const Region region(s);
-    return {[heap](const auto& points) { return heap.to_packing(points); },
-            (region.left() - heap.apex_x) / heap.height,
-            (region.right() - heap.apex_x) / heap.height, heap.height, heap};
+// What makes the averages of a state mean nothing, or something else than its user thinks.
+void doubt(const SnapshotName& name, const dem::Snapshot& s, std::vector<std::string>& warnings) {
+  std::string text;
+  if (s.contacts.empty()) {
+    text = "has no contacts: stress and fabric are 0";
+  } else {
+    text = tension_in(check_packing(s));
   }
-  if (frame == "packing")
-    return {[](const auto& points) { return points; }, layer.left, layer.right, layer.depth()};
-  const double half = std::min(layer.load_x - layer.left, layer.right - layer.load_x);
-  return {[layer](const auto& points) { return layer.to_packing(points); }, -half, half,
-          layer.depth()};
+  if (!text.empty()) warnings.push_back(fmt::format("{}:{}: {}", name.file, name.group, text));
 }
 
-Extents measure(const std::vector<Item>& items, const AverageRequest& request) {
+Extents measure(const std::vector<Item>& items, const AverageRequest& request,
+                std::vector<std::string>& warnings) {
   Extents out;
   const auto n = static_cast<double>(items.size());
   for (const auto& item : items) {
     const dem::Snapshot s = read(item.state);
     out.dim = s.dim;
-    const Placed placed = place(s, request.frame);
+    const Placement placed = place(s, request.frame);
+    doubt(item.state, s, warnings);
     out.depth += placed.depth / n;
+    out.least = std::min(out.least, placed.depth);
+    out.most = std::max(out.most, placed.depth);
     out.diameter += mean_diameter(s) / n;
     out.left = std::max(out.left, placed.left);
     out.right = std::min(out.right, placed.right);
@@ -113,6 +105,15 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request) {
     }
     out.load = &item == &items.front() || force == out.load ? force : 0;
   }
+  if (out.most > kUnlike * out.least) {
+    warnings.push_back(fmt::format(
+        "packings {:.3g} to {:.3g} m high in one average{}: are they realizations of one?",
+        out.least, out.most,
+        request.frame == "heap" ? ", one averaging width in m for all" : ", points in m"));
+  }
+  if (request.response && out.load == 0) {
+    warnings.push_back("no load is known: models of a load will want it (import --load ID=FX,FY)");
+  }
   return out;
 }
 
@@ -120,18 +121,11 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request) {
 Eigen::MatrixXd points_of(const AverageRequest& request, const Extents& all,
                           const dem::Snapshot& first) {
   if (request.points.size() != 0) return request.points;
-  if (all.dim == 3)
-    throw std::invalid_argument("the snapshot is 3D; give --points with x,y,z and --frame packing");
-  double bottom = -all.depth, top = 0;
-  if (request.frame == "heap") bottom = -1;
-  if (request.frame == "packing") {
-    bottom = layer_frame(first).floor;
-    top = bottom + all.depth;
-  }
-  if (request.cuts.empty())
-    return grid_points(all.left, all.right, request.nx, bottom, top, request.ny);
+  const Span span = span_of(first, request.frame, all.left, all.right, all.depth);
+  if (request.cuts.empty()) return span.grid(request.nx, request.ny);
   std::vector<double> heights;
-  for (const double share : request.cuts) heights.push_back(bottom + share * (top - bottom));
+  for (const double share : request.cuts)
+    heights.push_back(span.bottom + share * (span.top - span.bottom));
   return cut_points(all.left, all.right, request.nx, heights);
 }
 
@@ -172,12 +166,13 @@ std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& t
   return out;
 }
 
-NamedFields average_files(AverageRequest request, Gaps* gaps) {
+NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::string>* warnings) {
   const std::vector<Item> items = items_of(request);
   if (items.empty()) throw std::invalid_argument("no snapshot to average");
-  if (std::find(frames.begin(), frames.end(), request.frame) == frames.end())
-    throw std::invalid_argument(unknown_name("frame", request.frame, frames));
-  const Extents all = measure(items, request);
+  require_frame(request.frame);
+  std::vector<std::string> found;
+  const Extents all = measure(items, request, found);
+  if (warnings != nullptr) *warnings = found;
   AverageOptions& options = request.options;
   if (options.width == 0) {
     options.width = (options.method == "coarse_graining" ? 1.0 : 2.5) * all.diameter;
@@ -201,10 +196,7 @@ NamedFields average_files(AverageRequest request, Gaps* gaps) {
           each(all.heaps, [](const auto& f) { return f.repose_right_deg; });
     }
     if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
-    field.attributes["frame"] = request.frame == "layer" ? "models: load at (0, 0), surface y = 0"
-                                : request.frame == "heap"
-                                    ? "heap: apex at (0, 0), lengths over its height h"
-                                    : "packing";
+    field.attributes["frame"] = frame_text(request.frame);
     return field;
   };
 

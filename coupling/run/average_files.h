@@ -35,8 +35,11 @@ struct AverageRequest {
 /// realizations with the single values of the stresses. Attributes: method, kernel, width, h, F
 /// where a load is known, and of heaps, one number per realization separated by commas: heap.h (m),
 /// rho_g_h (N/m), left_deg, right_deg. `gaps` (may be null) is told which points have no
-/// value. Throws std::invalid_argument for snapshots without a partner, different loads, an unknown
-/// frame, 3D snapshots without points in the packing's frame, and what averaging throws.
-NamedFields average_files(AverageRequest request, Gaps* gaps = nullptr);
+/// value, `warnings` (may be null) of states without contacts or whose contacts pull, of packings
+/// of unlike heights, and of a response without a load. Throws std::invalid_argument for snapshots
+/// without a partner, different loads, an unknown frame, 3D snapshots without points in the
+/// packing's frame, and what averaging throws.
+NamedFields average_files(AverageRequest request, Gaps* gaps = nullptr,
+                          std::vector<std::string>* warnings = nullptr);
 
 }  // namespace grainfield::coupling

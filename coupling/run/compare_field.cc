@@ -88,14 +88,28 @@ void require_same(const SceneField& first, const SceneField& next, const std::st
   }
 }
 
-// A model that needs a load where there is none.
-void require_load(const ModelChoice& choice, const RunFacts& facts, const std::string& file) {
-  if (std::isfinite(facts.force) || choice.settings.count("F") > 0) return;
-  for (const auto& parameter : continuum::find_model(choice.name).parameters) {
-    if (parameter.name != "F") continue;
+bool has_parameter(const ModelChoice& choice, const std::string& name) {
+  const auto& all = continuum::find_model(choice.name).parameters;
+  return std::any_of(all.begin(), all.end(), [&](const auto& p) { return p.name == name; });
+}
+
+// A model that needs a load, or a weight, which the field does not tell and its user has not set.
+void require_known(const ModelChoice& choice, const RunFacts& facts, const std::string& file) {
+  const auto missing = [&](const char* name, bool known) {
+    return !known && choice.settings.count(name) == 0 && has_parameter(choice, name);
+  };
+  if (missing("F", std::isfinite(facts.force))) {
     throw std::invalid_argument(fmt::format(
-        "model {}: needs the load F, and {} holds no response to a load; average one (`grainfield "
-        "average --response`), or set it: --model {}:F=...",
+        "model {}: needs the load F, and {} holds no response to a known load; import the states "
+        "with their load (`grainfield import --load ID=FX,FY`) and average their difference "
+        "(`grainfield average --response`), or set it: --model {}:F=...",
+        choice.label, file, choice.name));
+  }
+  if (missing("rho_g", facts.numbers.count("rho_g") > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "model {}: needs rho_g, the weight per volume (N/m3, 2D: N/m2), and {} holds no heap; set "
+        "it: --model {}:rho_g=..., or average heaps in their frame (`grainfield average --frame "
+        "heap`)",
         choice.label, file, choice.name));
   }
 }
@@ -238,7 +252,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   for (const auto& choice : request.models) names.push_back(choice.name);
   const bool flanks_apart = takes_flanks_apart(names);
   for (const auto& choice : request.models) {
-    require_load(choice, facts, request.file);
+    require_known(choice, facts, request.file);
     const Evaluation e = evaluate_model(choice, facts_for(choice, facts, flanks_apart), sets);
     ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
     for (std::size_t l = 0; l < lines.size(); ++l) {

@@ -16,6 +16,7 @@ namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Output;
 using testing::program;
 
@@ -48,6 +49,33 @@ TEST(Average, MethodsCutsAndQuantities) {
     EXPECT_EQ(field.find("density"), nullptr);
     EXPECT_NEAR(field.points(13, 1), -std::stod(field.attributes.at("h")) / 2, 1e-12);
   }
+}
+
+TEST(Average, DoubtsAreNamed) {
+  const Folder folder;
+  dem::Snapshot pulled = test::layer(4), bare = test::layer(4);
+  for (dem::Contact& c : pulled.contacts) c.force = -c.force;
+  bare.contacts.clear();
+  int files = 0;
+  const auto said = [&](const dem::Snapshot& s) {
+    const std::string name = "s" + std::to_string(files++) + ".h5";
+    const Output out =
+        program("average " + written(folder, s, name) + " --cuts 0.5 -o " + (folder / "f.h5"));
+    EXPECT_EQ(out.code, 0) << out.err;
+    return out.err;
+  };
+  EXPECT_THAT(said(bare), HasSubstr("has no contacts: stress and fabric are 0"));
+  EXPECT_THAT(said(pulled), HasSubstr("the contacts pull"));
+  EXPECT_THAT(said(test::layer(4)), Not(HasSubstr("warning")));
+  // Models that need a weight are not given one.
+  const Output weightless =
+      program("compare " + (folder / "f.h5") + " --model hydrostatic -o " + (folder / "c"));
+  EXPECT_EQ(weightless.code, 2);
+  EXPECT_THAT(weightless.err, HasSubstr("model hydrostatic: needs rho_g, the weight per volume"));
+  EXPECT_EQ(program("compare " + (folder / "f.h5") + " --model hydrostatic:rho_g=1e4 -o " +
+                    (folder / "c"))
+                .code,
+            0);
 }
 
 TEST(Average, HeapsAverageInScaledCoordinates) {

@@ -354,6 +354,18 @@ TEST(CaseErrors, FilesThatCannotBeRead) {
   }
 }
 
+TEST(CaseErrors, AFileWithoutKeysIsNoCase) {
+  const Folder folder;
+  for (const char* text : {"", "# nothing\n", "\n\n"}) {
+    try {
+      read_case(folder.write("none.toml", text), false, {});
+      FAIL() << text;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_THAT(e.what(), HasSubstr("none.toml: holds no key; a case names at least its study"));
+    }
+  }
+}
+
 // Random bytes and random cuts of a valid file: always a case or one line, never anything else.
 TEST(CaseErrors, RandomDamageGivesOneLine) {
   std::mt19937 random(11);

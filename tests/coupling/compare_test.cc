@@ -308,6 +308,20 @@ TEST(Compare, VerdictWhenNoModelFits) {
                              HasSubstr("nearer to the"), Not(HasSubstr("support"))));
 }
 
+TEST(Compare, OneFamilyIsToldWhenItDoesNotFit) {
+  Scene s = scene(8, 0.92, 0.05);
+  s.models = {s.models[1]};
+  EXPECT_THAT(compared(s).verdict.sentence, Not(HasSubstr("No model agrees")));
+  Scene off = s;
+  for (auto& values : off.models[0].values) values *= 1.3;
+  EXPECT_THAT(compared(off).verdict.sentence,
+              testing::AllOf(testing::StartsWith("Of the finite layer models"),
+                             HasSubstr("No model agrees within the errors")));
+  for (auto& values : off.models[0].values) values *= 3;
+  EXPECT_THAT(compared(off).verdict.sentence,
+              testing::StartsWith("None of the models describes these grains"));
+}
+
 TEST(Compare, EqualRealizationsProveNothing) {
   Scene s = scene(4, 0.92, 0.05);
   for (Profile& p : s.profiles) {

@@ -106,6 +106,43 @@ TEST(FitDoubts, OneTableOfTheWrongSignIsNamed) {
   EXPECT_TRUE(doubts_of(check_packing(s)).empty());
 }
 
+TEST(FitDoubts, OtherUnitsAndTurnedGravityAreNotMissingContacts) {
+  const auto doubt = [](const dem::Snapshot& s) {
+    std::string all;
+    for (const std::string& text : doubts_of(check_packing(s))) all += text + "\n";
+    return all;
+  };
+  dem::Snapshot millimetres = heap();  // masses of grains a thousand times as large
+  for (dem::Grain& g : millimetres.grains) g.mass *= 1e6;
+  EXPECT_THAT(
+      doubt(millimetres),
+      HasSubstr("of the weight: are forces, lengths and masses all in SI units (N, m, kg)"));
+  dem::Snapshot up = heap();
+  up.gravity = -up.gravity;
+  EXPECT_THAT(doubt(up), HasSubstr("gravity points the other way (--gravity)"));
+}
+
+TEST(FitDoubts, HeapsOfUnlikeHeightAreNamed) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5";
+  dem::Snapshot small = heap(2);
+  for (dem::Grain& g : small.grains) {
+    g.position /= 2;
+    g.radius /= 2;
+    g.volume /= 4;
+  }
+  for (dem::Contact& c : small.contacts) c.point /= 2;
+  dem::write_snapshot(file, "/a/pile", heap(1));
+  dem::write_snapshot(file, "/b/pile", small);
+  const Output fit = program("fit " + file + " --heights 0.2,0.3" + kModels + (folder / "fit"));
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("m high in one ensemble: are they realizations of one?"));
+  const Output average =
+      program("average " + file + " --frame heap --grid 9x5 -o " + (folder / "field.h5"));
+  ASSERT_EQ(average.code, 0) << average.err;
+  EXPECT_THAT(average.err, HasSubstr("m high in one average"));
+}
+
 TEST(FitDoubts, TheImportsWarningsAreRepeated) {
   const Folder folder;
   const std::string words = "walls and fixed grains carry 0 of the weight: contacts with the floor";

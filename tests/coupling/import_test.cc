@@ -312,7 +312,7 @@ TEST(Import, MistakesInCsv) {
       {"", c, "", "no table of grains in "},
       {g, "", "", "no table of contacts in "},
       {"# nothing\n", c, "", "g.txt: is empty, expected a header line such as id,x,y,radius,mass"},
-      {"id,x,y,radius,mass\n", c, "", "there is no grain in the files"},
+      {"id,x,y,radius,mass\n", c, "", "the tables of grains hold no row"},
       {"id,x,y,radus,mass\n1,0,0,1,1\n", c, "",
        "g.txt:1: no column \"radius\"; found: id x y radus mass; nearest: radus; other names by "
        "--column radius=THEIRS"},

@@ -1,0 +1,21 @@
+// The options by which average and strain are told where.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <string>
+
+#include "coupling/run/average_files.h"
+
+namespace grainfield::coupling {
+
+struct PointsOptions {
+  std::string frame = "layer", points, grid;
+  int columns = 81, rows = 31;
+
+  void add_to(CLI::App& command);
+  /// Reads --grid, and the file of --points if one is given (else no rows), with the axes of the
+  /// snapshot. Throws std::invalid_argument.
+  Eigen::MatrixXd read(const SnapshotName& snapshot);
+};
+
+}  // namespace grainfield::coupling
