@@ -199,8 +199,11 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
   int outside = 0;
   out.model = predict(data, model, best, &outside);
   if (outside == data.values()) {
-    throw std::invalid_argument(
-        fmt::format("fit of {}: every point is outside the model's domain", model.name));
+    throw std::invalid_argument(fmt::format(
+        "fit of {}: the best constants leave every point outside the model's domain, where it "
+        "counts "
+        "as 0; the largest value to fit is {:.2g} (heaps: of rho g h; far below 1: other units?)",
+        model.name, mean.cwiseAbs().maxCoeff()));
   }
   const Eigen::VectorXd off = mean - out.model;
   out.residual = off.cwiseQuotient(covariance.of_mean.diagonal().cwiseSqrt());
