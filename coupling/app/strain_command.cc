@@ -72,7 +72,9 @@ void add_strain(CLI::App& app, Action& action) {
       write_fields(given->output, {{"strain", outcome.field}});
       fmt::print("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
                  request.options.measure, outcome.field.attributes.at("width"));
-      if (!outcome.report.empty()) fmt::print(stderr, "grainfield: {}\n", outcome.report);
+      if (!outcome.report.empty()) {
+        fmt::print(stderr, "grainfield: {} (places in the packing)\n", outcome.report);
+      }
       return 0;
     };
   });

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLeastValues = 10;
 constexpr double kRounding = 1e-9;  // of the largest value
-constexpr double kUnlike = 1.2;     // ratio of heights that realizations of one heap do not have
+constexpr double kUnlike = 1.3;     // ratio of heights that realizations of one heap do not have
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 

@@ -32,10 +32,13 @@ std::string unsupported(const PackingCheck& check) {
         "contacts with the floor are missing (a wall: --wall, a table of walls; grains of the "
         "floor: --fixed)";
   }
-  if (check.wall_contacts > 0 && check.support_ratio < 0) {
-    why = "gravity points the other way (--gravity), or the forces on walls do";
+  if (check.support_ratio < 0) {
+    why = "gravity points the other way (--gravity), or the forces from below do";
   } else if (check.wall_contacts > 0 && check.support_ratio < kOtherUnits) {
-    why = "are forces, lengths and masses all in SI units (N, m, kg)?";
+    why =
+        "contacts with the floor are missing, or forces, lengths and masses are not all in SI "
+        "units "
+        "(N, m, kg)";
   }
   return fmt::format("walls and fixed grains carry {:.3g} of the weight: {}", check.support_ratio,
                      why);
@@ -52,12 +55,14 @@ std::string off_walls(const PackingCheck& check) {
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
   double mass = 0, volume = 0;
+  bool any = false;
   for (const dem::Grain& grain : packing.grains) {
     if (grain.fixed) continue;
     mass += grain.mass;
     volume += grain.volume;
+    any = true;
   }
-  if (volume == 0) return {kNan, kNan};
+  if (!any) return {kNan, kNan};
   return {mass / volume, mean_diameter(packing)};
 }
 

@@ -22,7 +22,7 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kUnlike = 1.2;  // ratio of heights that realizations of one packing do not have
+constexpr double kUnlike = 1.3;  // ratio of heights that realizations of one packing do not have
 
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
@@ -70,26 +70,59 @@ struct Extents {
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
 };
 
-// What makes the averages of a state mean nothing, or something else than its user thinks.
-void doubt(const SnapshotName& name, const dem::Snapshot& s, std::vector<std::string>& warnings) {
-  std::string text;
-  if (s.contacts.empty()) {
-    text = "has no contacts: stress and fabric are 0";
-  } else {
-    text = tension_in(check_packing(s));
+// What makes the averages of states mean nothing, or something else than their user thinks: each
+// doubt once, with the first state that has it.
+class Doubts {
+ public:
+  explicit Doubts(const AverageOptions& options) {
+    const auto& wanted = options.quantities;
+    forces_ = wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
   }
-  if (!text.empty()) warnings.push_back(fmt::format("{}:{}: {}", name.file, name.group, text));
-}
+
+  void look_at(const SnapshotName& name, const dem::Snapshot& s) {
+    if (!forces_) return;
+    const bool bare = s.contacts.empty();
+    Doubt& doubt = bare ? bare_ : pulls_;
+    const std::string text =
+        bare ? "has no contacts: stress and fabric are 0" : tension_in(check_packing(s));
+    if (text.empty()) return;
+    if (doubt.text.empty()) {
+      doubt.text = fmt::format("{}:{}: {}", name.file, name.group, text);
+    } else {
+      ++doubt.others;
+    }
+  }
+
+  void add_to(std::vector<std::string>& warnings) const {
+    for (const Doubt& doubt : {bare_, pulls_}) {
+      if (doubt.text.empty()) continue;
+      warnings.push_back(doubt.others == 0
+                             ? doubt.text
+                             : fmt::format("{} (likewise {} other{})", doubt.text, doubt.others,
+                                           doubt.others == 1 ? "" : "s"));
+    }
+  }
+
+ private:
+  struct Doubt {
+    std::string text;
+    int others = 0;
+  };
+  bool forces_ = true;
+  Doubt bare_, pulls_;
+};
 
 Extents measure(const std::vector<Item>& items, const AverageRequest& request,
                 std::vector<std::string>& warnings) {
   Extents out;
+  Doubts doubts(request.options);
   const auto n = static_cast<double>(items.size());
   for (const auto& item : items) {
     const dem::Snapshot s = read(item.state);
     out.dim = s.dim;
     const Placement placed = place(s, request.frame);
-    doubt(item.state, s, warnings);
+    doubts.look_at(item.state, s);
+    if (request.response) doubts.look_at(item.unloaded, read(item.unloaded));
     out.depth += placed.depth / n;
     out.least = std::min(out.least, placed.depth);
     out.most = std::max(out.most, placed.depth);
@@ -105,6 +138,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     }
     out.load = &item == &items.front() || force == out.load ? force : 0;
   }
+  doubts.add_to(warnings);
   if (out.most > kUnlike * out.least) {
     warnings.push_back(fmt::format(
         "packings {:.3g} to {:.3g} m high in one average{}: are they realizations of one?",

@@ -88,15 +88,17 @@ void require_same(const SceneField& first, const SceneField& next, const std::st
   }
 }
 
-bool has_parameter(const ModelChoice& choice, const std::string& name) {
+// Whether the model has no answer without it: a weight may be 0 by default.
+bool needs(const ModelChoice& choice, const std::string& name) {
   const auto& all = continuum::find_model(choice.name).parameters;
-  return std::any_of(all.begin(), all.end(), [&](const auto& p) { return p.name == name; });
+  return std::any_of(all.begin(), all.end(),
+                     [&](const auto& p) { return p.name == name && p.value != 0; });
 }
 
 // A model that needs a load, or a weight, which the field does not tell and its user has not set.
 void require_known(const ModelChoice& choice, const RunFacts& facts, const std::string& file) {
   const auto missing = [&](const char* name, bool known) {
-    return !known && choice.settings.count(name) == 0 && has_parameter(choice, name);
+    return !known && choice.settings.count(name) == 0 && needs(choice, name);
   };
   if (missing("F", std::isfinite(facts.force))) {
     throw std::invalid_argument(fmt::format(
@@ -105,7 +107,8 @@ void require_known(const ModelChoice& choice, const RunFacts& facts, const std::
         "(`grainfield average --response`), or set it: --model {}:F=...",
         choice.label, file, choice.name));
   }
-  if (missing("rho_g", facts.numbers.count("rho_g") > 0)) {
+  const bool weighed = facts.numbers.count("rho_g") > 0 || choice.settings.count("map") > 0;
+  if (missing("rho_g", weighed)) {
     throw std::invalid_argument(fmt::format(
         "model {}: needs rho_g, the weight per volume (N/m3, 2D: N/m2), and {} holds no heap; set "
         "it: --model {}:rho_g=..., or average heaps in their frame (`grainfield average --frame "

@@ -27,9 +27,9 @@ std::string frame_text(const std::string& frame) {
   return "packing";
 }
 
-Placement place(const dem::Snapshot& s, const std::string& frame) {
+Placement place(const dem::Snapshot& s, const std::string& frame, std::int64_t loaded_grain) {
   if (frame == "packing" && s.dim == 3) return {[](const auto& points) { return points; }, 0, 0, 0};
-  const LayerFrame layer = layer_frame(s);
+  const LayerFrame layer = layer_frame(s, loaded_grain);
   if (frame == "heap") {
     const PileFrame heap = pile_frame(s);
     const Region region(s);

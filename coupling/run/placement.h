@@ -1,6 +1,7 @@
 // Where a packing lies in the frame in which fields are given.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -22,8 +23,11 @@ void require_frame(const std::string& frame);
 /// For people and for compare: what the coordinates of a field in this frame are.
 std::string frame_text(const std::string& frame);
 
-/// Throws std::invalid_argument where the packing has no layer or heap to be measured.
-Placement place(const dem::Snapshot& snapshot, const std::string& frame);
+/// `loaded_grain`: id of the grain below which x = 0 lies in frame "layer"; -1: the snapshot's own,
+/// or without one the middle. Throws std::invalid_argument where the packing has no layer or heap
+/// to be measured.
+Placement place(const dem::Snapshot& snapshot, const std::string& frame,
+                std::int64_t loaded_grain = -1);
 
 /// A rectangle over a packing, in the frame.
 struct Span {

@@ -21,7 +21,8 @@ StrainOutcome strain_files(const StrainRequest& request) {
   const dem::Snapshot after = dem::read_snapshot(request.after.file, request.after.group);
   StrainOptions options = request.options;
   if (options.width == 0) options.width = kWidth * mean_diameter(before);
-  const Placement placed = place(before, request.frame);
+  const std::int64_t loaded = before.loaded_grain >= 0 ? before.loaded_grain : after.loaded_grain;
+  const Placement placed = place(before, request.frame, loaded);
   const bool grid = request.points.size() == 0;
   const Eigen::MatrixXd points =
       grid ? span_of(before, request.frame, placed.left, placed.right, placed.depth)

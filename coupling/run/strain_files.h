@@ -12,7 +12,8 @@ namespace grainfield::coupling {
 struct StrainRequest {
   SnapshotName before, after;
   StrainOptions options;        ///< width 0: three mean diameters
-  std::string frame = "layer";  ///< as AverageRequest::frame; heights and apex are those before
+  std::string frame = "layer";  ///< as AverageRequest::frame; heights and apex are those before,
+                                ///< the load that of either state
   Eigen::MatrixXd points;       ///< in the frame; or empty
   int nx = 81, ny = 31;         ///< grid over the packing, where points are empty
 };

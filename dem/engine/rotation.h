@@ -3,7 +3,7 @@
 // The C library chooses its code by the processor (with or without fused multiply-add), so that its
 // last bits differ between machines; these are the same everywhere, and faster because they are
 // inlined and need no special cases. Argument reduction by pi/2 in two parts (Cody and Waite 1980),
-// then the Taylor series, whose first term left out is below 1e-17 for |r| <= pi/4.
+// then the Taylor series, whose first term left out is below 5e-17 for |r| <= pi/4.
 #pragma once
 #include <cmath>
 

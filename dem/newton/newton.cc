@@ -137,7 +137,10 @@ NewtonReport newton(const NewtonProblem& problem, const NewtonSettings& settings
                     Eigen::VectorXd& u) {
   NewtonReport report;
   report.converged = true;
-  if (u.size() == 0) return report;
+  if (u.size() == 0) {
+    report.history = {0};
+    return report;
+  }
   Work work;
   work.problem = &problem;
   work.settings = &settings;

@@ -17,7 +17,8 @@ struct NewtonProblem {
   std::function<bool(const Vector& u, const Vector& r)> factorize;
   /// Solves with the last factors.
   std::function<void(const Vector& rhs, Vector& x)> solve;
-  /// Asked before each iteration: leave it at the residual r; empty: never.
+  /// Asked once before each iteration, in order; true: stop at this r and count it as converged.
+  /// Empty: never.
   std::function<bool(const Vector& r)> enough;
 };
 

@@ -116,7 +116,8 @@ TEST(FitDoubts, OtherUnitsAndTurnedGravityAreNotMissingContacts) {
   for (dem::Grain& g : millimetres.grains) g.mass *= 1e6;
   EXPECT_THAT(
       doubt(millimetres),
-      HasSubstr("of the weight: are forces, lengths and masses all in SI units (N, m, kg)"));
+      HasSubstr("of the weight: contacts with the floor are missing, or forces, lengths and masses "
+                "are not all in SI units (N, m, kg)"));
   dem::Snapshot up = heap();
   up.gravity = -up.gravity;
   EXPECT_THAT(doubt(up), HasSubstr("gravity points the other way (--gravity)"));
