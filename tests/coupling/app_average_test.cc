@@ -164,6 +164,10 @@ TEST(Average, ResponseWithoutABaseHasNoBaseResponse) {
     const Output out = program("average " + file + " --response -o " + (folder / "f.h5"));
     EXPECT_EQ(out.code, 0) << out.err;
     EXPECT_EQ(out.out.find("base_response") != std::string::npos, named) << out.out;
+    // A weight that is 0 by default is not asked for.
+    const Output compare = program("compare " + (folder / "f.h5") +
+                                   " --model fe_osl_layer:cells=8 -o " + (folder / "c"));
+    EXPECT_EQ(compare.err.find("needs rho_g"), std::string::npos) << compare.err;
   }
 }
 

@@ -50,6 +50,32 @@ TEST(StrainCommand, GivesAnAffineStrainBack) {
   }
 }
 
+// x = 0 lies at the load, whichever of the states knows it.
+TEST(StrainCommand, TheLoadOfEitherStateIsTheOrigin) {
+  const testing::Folder folder;
+  dem::Snapshot before = test::layer(2), after = displaced(before);
+  std::vector<double> mean;
+  for (const bool both : {true, false}) {
+    before.loaded_grain = both ? after.loaded_grain - 3 : -1;
+    dem::Snapshot loaded = after;
+    loaded.loaded_grain = after.loaded_grain - 3;
+    const std::string file = folder / (both ? "both.h5" : "one.h5");
+    dem::write_snapshot(file, "/before", before);
+    dem::write_snapshot(file, "/after", loaded);
+    const std::string out = folder / (both ? "both_strain.h5" : "one_strain.h5");
+    ASSERT_EQ(testing::program("strain " + file + ":/before " + file + ":/after -o " + out +
+                               " --grid 9x5")
+                  .code,
+              0);
+    const Eigen::VectorXd u = read_field(out, "strain").find("u_y")->value;
+    double sum = 0;
+    for (const double value : u) sum += std::isfinite(value) ? value : 0;
+    mean.push_back(sum);
+  }
+  EXPECT_NE(mean[0], 0);
+  EXPECT_EQ(mean[0], mean[1]);
+}
+
 TEST(StrainCommand, RefusesWhatDoesNotBelongTogether) {
   const testing::Folder folder;
   const std::string file = folder / "s.h5";
