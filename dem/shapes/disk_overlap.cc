@@ -34,13 +34,13 @@ struct Edge {
   }
 };
 
-// The region's points, relative to the disk's centre; returns the area of its arcs' segments.
-double arcs_area(const Loop& loop, double arc, double radius, bool centre_inside) {
+// The region's points, relative to the disk's centre; returns its arcs' segments.
+Arcs arcs_of(const Loop& loop, double arc, double radius, bool centre_inside) {
   double size = 0;  // of the region's points
   for (int i = 1; i < loop.n; ++i) {
     size = std::max(size, std::fabs(loop.x[i] - loop.x[0]) + std::fabs(loop.y[i] - loop.y[0]));
   }
-  double area = 0;
+  Arcs arcs;
   for (int i = 0; i < loop.n; ++i) {
     if (loop.of_b[i] != arc) continue;
     const int next = i + 1 < loop.n ? i + 1 : 0;
@@ -52,10 +52,14 @@ double arcs_area(const Loop& loop, double arc, double radius, bool centre_inside
     // Of a chord that is round-off, the arc is the whole circle only if nothing else is there.
     if (half < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
     // Near a diameter the half chord alone says little about the angle.
-    area += half < 0.7 * radius ? segment_area(radius, arm, half)
-                                : radius * radius * std::atan2(half, arm) - half * arm;
+    arcs.area += half < 0.7 * radius ? segment_area(radius, arm, half)
+                                     : radius * radius * std::atan2(half, arm) - half * arm;
+    // A segment's first moment about the centre is 2/3 of its half chord cubed, away from it.
+    const double moment = half * half / 3;
+    arcs.mx += moment * dy;
+    arcs.my -= moment * dx;
   }
-  return area;
+  return arcs;
 }
 
 bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& polygon,
@@ -121,7 +125,7 @@ bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& pol
     }
   };
   return contact_of_loop(a, b, loop, disk.cx - a.cx, disk.cy - a.cy,
-                         arcs_area(loop, arc, radius, centre_inside), add_arcs, o);
+                         arcs_of(loop, arc, radius, centre_inside), add_arcs, o);
 }
 
 }  // namespace

@@ -75,11 +75,19 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
   o.depth = -deepest;
   // t = (-n_y, n_x) = (w_y, -w_x)
   o.chord = crossings > 0 ? std::max(bx * wy - by * wx, 0.0) : 0.0;
+  double sx = 0, sy = 0, weight = 0;  // the middle of the crossings, and its part
   if (crossings > 0) {
-    set_plane_contact(a, wx, wy, crossing_x / crossings, crossing_y / crossings, o);
-  } else {
-    set_plane_contact(a, wx, wy, ox + mx / area, oy + my / area, o);
+    sx = crossing_x / crossings;
+    sy = crossing_y / crossings;
+    weight = region::weight_of_chord(
+        a.radius, [&] { return region::area_of(a); }, area, o.chord * o.chord);
   }
+  if (weight < 1) {
+    const double middle_x = ox + mx / area, middle_y = oy + my / area;
+    sx = middle_x + weight * (sx - middle_x);
+    sy = middle_y + weight * (sy - middle_y);
+  }
+  set_plane_contact(a, wx, wy, sx, sy, o);
   return true;
 }
 

@@ -1,4 +1,6 @@
+#include <array>
 #include <limits>
+#include <numbers>
 
 #include "dem/shapes/overlap_region.h"
 
@@ -59,23 +61,55 @@ void set_least_penetration(const PlacedShape& a, const PlacedShape& b, double mx
   set_contact_point(a, b, mx, my, overlap);
 }
 
-void set_least_penetration(const PlacedShape& a, const PlacedShape& b, const Loop& loop, double ox,
-                           double oy, Overlap& overlap) {
+double area_of(const PlacedShape& shape) {
+  if (shape.n == 0) return std::numbers::pi * shape.radius * shape.radius;
+  double twice = 0;
+  for (int k = 0; k < shape.n; ++k) {
+    twice += (shape.x[k] - shape.cx) * (shape.y[k + 1] - shape.cy) -
+             (shape.x[k + 1] - shape.cx) * (shape.y[k] - shape.cy);
+  }
+  return 0.5 * twice;
+}
+
+void hand_over(const PlacedShape& a, const PlacedShape& b, const Loop& loop, const Arcs& arcs,
+               double ox, double oy, double weight, Overlap& o) {
+  // The region's middle, from the loop's first point.
   const double x0 = loop.x[0], y0 = loop.y[0];
-  double sum = 0, mx = 0, my = 0;
+  double area = arcs.area, mx = arcs.mx - x0 * arcs.area, my = arcs.my - y0 * arcs.area;
   for (int i = 1; i + 1 < loop.n; ++i) {
     const double px = loop.x[i] - x0, py = loop.y[i] - y0;
     const double qx = loop.x[i + 1] - x0, qy = loop.y[i + 1] - y0;
     const double cross = px * qy - qx * py;
-    sum += cross;
-    mx += cross * (px + qx);
-    my += cross * (py + qy);
+    area += cross / 2;
+    mx += cross * (px + qx) / 6;
+    my += cross * (py + qy) / 6;
   }
-  if (sum > 0) {
-    mx /= 3 * sum;
-    my /= 3 * sum;
+  if (area > 0) {
+    mx /= area;
+    my /= area;
   }
-  set_least_penetration(a, b, ox + x0 + mx, oy + y0 + my, overlap);
+  Overlap inner;
+  set_least_penetration(a, b, ox + x0 + mx, oy + y0 + my, inner);
+  if (weight > 0) {
+    const auto mix = [weight](double at_chord, double at_inner) {
+      return at_inner + weight * (at_chord - at_inner);
+    };
+    const auto point = [](const Overlap& p) {
+      return std::array{p.lever_i * p.nx - p.shift_i * p.ny, p.lever_i * p.ny + p.shift_i * p.nx};
+    };
+    const auto [sx, sy] = point(o);
+    const auto [tx, ty] = point(inner);
+    const double nx = mix(o.nx, inner.nx), ny = mix(o.ny, inner.ny), size = std::hypot(nx, ny);
+    if (size > 1e-9) {  // two opposite normals have no middle
+      inner.nx = nx / size;
+      inner.ny = ny / size;
+    }
+    inner.depth = mix(o.depth, inner.depth);
+    set_contact_point(a, b, mix(sx, tx), mix(sy, ty), inner);
+  }
+  inner.area = o.area;
+  inner.chord = o.chord;
+  o = inner;
 }
 
 }  // namespace grainfield::dem::region

@@ -130,8 +130,9 @@ inline bool all_corners(const PlacedShape& shape, int first, int last, Visit vis
 }
 
 // Contact of two outlines that cross at these edges. False when they do not (touching is not
-// crossing: then there may be two ways to name one point), when they may cross elsewhere too, or
-// when the region or its chord is too small to be sure of.
+// crossing: then there may be two ways to name one point), when they may cross elsewhere too,
+// when the region or its chord is too small to be sure of, or when one outline is all but inside
+// the other.
 inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, const Crossings& c,
                                  Overlap& o) {
   const int ea = c.enter_a, la = c.leave_a, eb = c.enter_b, lb = c.leave_b;
@@ -179,6 +180,7 @@ inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, con
   const double squared = bx * bx + by * by, reach = a.radius + b.radius;
   o.area = 0.5 * twice;
   if (!(o.area > kSureArea * reach * reach) || !(squared > kSureArea * reach * reach)) return false;
+  if (region::weight_of_chord(a, b, o.area, squared) < 1) return false;
   o.chord = std::sqrt(squared);
   const double inverse = 1 / o.chord;
   o.nx = by * inverse;
@@ -341,7 +343,7 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
     if (!inside_slab(k)) break;
   }
   return region::contact_of_loop(
-      a, b, *loop, ox - a.cx, oy - a.cy, 0.0,
+      a, b, *loop, ox - a.cx, oy - a.cy, region::Arcs{},
       [](region::Extents&, double, double, double, double) {}, o);
 }
 

@@ -1,5 +1,5 @@
 // The run of a pile: its phases are in pile.cc, its sources in pile_pour.cc, progress, checkpoints
-// and results in pile_state.cc. Internal to this folder.
+// and results in pile_state.cc. Internal to this folder, and to the benchmark of sleeping.
 #pragma once
 #include <deque>
 #include <memory>
@@ -33,6 +33,10 @@ class PileRun final : public Run {
   void save(const std::string& file) const override;
   void restore(const std::string& file) override;
   RunResult result() const override;
+
+  /// No grain sleeps from now on: what sleeping saves is measured so.
+  void keep_awake() { engine_->set_sleep(false); }
+  double time_step() const { return settings_.time_step; }
 
  private:
   // A grain out of the funnel on its way down.

@@ -44,7 +44,7 @@ TEST(PolygonOverlap, AreaChangesByChordTimesNormalAndByTheTorque) {
   for (int k = 0; k < 12000; ++k) {
     const auto [a, b] = random_pair(random, k);
     const Overlap o = overlap_of(a, b);
-    if (!(o.chord > 1e-3)) continue;
+    if (!(o.chord > 1e-3) || handed_over(a, b, o)) continue;
     const double h = 1e-7;
     const auto slope = [&](double ux, double uy, double angle, double px, double py) {
       return (overlap_of(a, b.moved(h * ux, h * uy, h * angle, px, py)).area -
@@ -277,6 +277,55 @@ TEST(PolygonOverlap, ForceAndContactPointAreContinuousOverCorners) {
   check("roll", a, roll);
   check("over the slab's end", slab, over_edge);
   check("pierce", slab, pierce);
+}
+
+// Into the other outline until it is wholly inside, and further: through a corner, nearly and
+// exactly flush with an edge, and with arcs.
+TEST(PolygonOverlap, NothingLeapsWhenAGrainIsSwallowed) {
+  const Placed large(box(6, 4), 0, 0);
+  const auto into = [](const Placed& grain) {
+    return [grain](double t) { return grain.moved(0, 2.2 - 1.9 * t); };
+  };
+  const auto check = [](const char* name, const Placed& first, const auto& path) {
+    const Jump coarse = largest_jump(first, path, 4000), fine = largest_jump(first, path, 32000);
+    EXPECT_GT(coarse.force / fine.force, 5) << name;
+    EXPECT_GT(coarse.point / fine.point, 5) << name;
+    const Overlap end = overlap_of(first, path(1));
+    EXPECT_EQ(end.chord, 0) << name;
+    EXPECT_GT(end.ny, 0.99) << name;
+  };
+  const Outline triangle = {{0, 0.5}, {-0.4, -0.4}, {0.5, -0.3}};
+  check("triangle", large, into(Placed(centred_outline(triangle), 0.3, 0, 0.1)));
+  check("tilted box", large, into(Placed(box(0.8, 0.6), -0.7, 0, 0.02)));
+  check("flush box", large, into(Placed(box(0.8, 0.6), -0.7, 0)));
+  check("disk", large, into(Placed::disk(0.4, 0.5, 0)));
+  check("heptagon into a disk", Placed::disk(3, 0, -1),
+        into(Placed(regular(7, 0.4, 0.3), 0.02, 0)));
+  // A bar slides over another's end until they cross, where the chord is 0.
+  const Placed bar(box(4, 0.5), 0, 0);
+  const auto across = [](double t) { return Placed(box(0.4, 4), 2.15 - 0.5 * t, 0.3, 0.1); };
+  EXPECT_GT(overlap_of(bar, across(0)).chord, 0.4);
+  EXPECT_LT(overlap_of(bar, across(1)).chord, 1e-9);
+  const Jump coarse = largest_jump(bar, across, 4000), fine = largest_jump(bar, across, 32000);
+  EXPECT_GT(coarse.force / fine.force, 5);
+  EXPECT_GT(coarse.point / fine.point, 5);
+
+  // The same into a half plane, whose normal does not turn.
+  for (const Outline& outline : {centred_outline(triangle), box(0.8, 0.6), regular(9, 0.4)}) {
+    const auto jump = [&](int steps) {
+      double largest = 0, before = 0;
+      for (int k = 0; k <= steps; ++k) {
+        const Placed grain(outline, 0.3, 0.3 - 1.0 * k / steps, 0.03);
+        Overlap o;
+        EXPECT_TRUE(overlap_with_half_plane(grain.shape(), 0, 0, 0, 1, o));
+        const double height = contact_point(grain, o)[1];
+        if (k > 0) largest = std::max(largest, std::fabs(height - before));
+        before = height;
+      }
+      return largest;
+    };
+    EXPECT_GT(jump(4000) / jump(32000), 5) << outline.size();
+  }
 }
 
 TEST(PolygonOverlap, DegenerateConfigurations) {

@@ -153,6 +153,11 @@ inline std::array<double, 2> contact_point(const Placed& a, const Overlap& o) {
           a.cy() + o.lever_i * o.ny + o.shift_i * o.nx};
 }
 
+/// True where normal and contact point are on their way to least penetration (polygon.h).
+inline bool handed_over(const Placed& a, const Placed& b, const Overlap& o) {
+  return o.area > 0.98 * std::min(a.area(), b.area()) || o.chord * o.chord < 0.02 * o.area;
+}
+
 /// Two random polygons so near that most pairs overlap, of every kind in turn: general ones, light
 /// contacts, ratio up to 1:100, slivers, many corners, one inside the other.
 inline std::pair<Placed, Placed> random_pair(Random& random, int kind) {
