@@ -144,15 +144,22 @@ bool overlap_of_disk_and_polygon(const PlacedShape& a, const PlacedShape& b, Pai
 bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Overlap& o) {
   const double dx = b.cx - a.cx, dy = b.cy - a.cy;
   if (!overlap_of_disks<true>(dx, dy, a.radius, b.radius, o)) return false;
-  if (o.chord > 0) {
+  o.shift_i = o.shift_j = 0;
+  const double weight = o.chord > 0 ? weight_of_chord(a, b, o.area, o.chord * o.chord) : 0;
+  if (weight == 1) {
     o.lever_i = o.arm_i;
     o.lever_j = o.arm_j;
-  } else {  // one inside the other: s is the smaller one's centre
-    const double distance = std::hypot(dx, dy);
-    o.lever_i = a.radius < b.radius ? 0 : distance;
-    o.lever_j = distance - o.lever_i;
+    return true;
   }
-  o.shift_i = o.shift_j = 0;
+  // One all but inside the other: s moves to the smaller one's centre.
+  const double distance = std::hypot(dx, dy), small = std::min(a.radius, b.radius);
+  const auto mix = [weight](double at_chord, double at_inner) {
+    return weight > 0 ? at_inner + weight * (at_chord - at_inner) : at_inner;
+  };
+  o.lever_i = mix(o.arm_i, a.radius < b.radius ? 0 : distance);
+  o.lever_j = distance - o.lever_i;
+  o.length = mix(o.length, 0.25 * small);
+  o.chord *= weight;
   return true;
 }
 

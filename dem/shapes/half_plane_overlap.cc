@@ -18,6 +18,11 @@ void set_plane_contact(const PlacedShape& a, double wx, double wy, double sx, do
   o.length = region::bounded_arm(a, o.arm_i);
 }
 
+double weight_of_chord_in_plane(const PlacedShape& a, const Overlap& o) {
+  return region::weight_of_chord(
+      a.radius, [&] { return region::area_of(a); }, o.area, o.chord * o.chord);
+}
+
 }  // namespace
 
 bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double wx, double wy,
@@ -26,7 +31,9 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
   if (centre >= a.radius) return false;
   if (a.n == 0) {
     overlap_with_plane<true>(centre, a.radius, wx, wy, o);
-    o.lever_i = o.chord > 0 ? o.arm_i : 0;  // wholly inside, s is the centre
+    const double weight = weight_of_chord_in_plane(a, o);
+    o.lever_i = weight * o.arm_i;  // wholly inside, s is the centre
+    o.chord *= weight;
     o.lever_j = o.shift_i = o.shift_j = 0;
     return true;
   }
@@ -79,8 +86,8 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
   if (crossings > 0) {
     sx = crossing_x / crossings;
     sy = crossing_y / crossings;
-    weight = region::weight_of_chord(
-        a.radius, [&] { return region::area_of(a); }, area, o.chord * o.chord);
+    weight = weight_of_chord_in_plane(a, o);
+    o.chord *= weight;
   }
   if (weight < 1) {
     const double middle_x = ox + mx / area, middle_y = oy + my / area;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numbers>
@@ -99,16 +100,17 @@ void hand_over(const PlacedShape& a, const PlacedShape& b, const Loop& loop, con
     };
     const auto [sx, sy] = point(o);
     const auto [tx, ty] = point(inner);
-    const double nx = mix(o.nx, inner.nx), ny = mix(o.ny, inner.ny), size = std::hypot(nx, ny);
-    if (size > 1e-9) {  // two opposite normals have no middle
-      inner.nx = nx / size;
-      inner.ny = ny / size;
-    }
+    const double nx = mix(o.nx, inner.nx), ny = mix(o.ny, inner.ny);
+    const double size = std::max(std::hypot(nx, ny), 1e-12);
+    inner.nx = nx / size;
+    inner.ny = ny / size;
     inner.depth = mix(o.depth, inner.depth);
     set_contact_point(a, b, mix(sx, tx), mix(sy, ty), inner);
+    // Where one normal turns into its opposite the force passes through 0.
+    inner.length /= size;
+    inner.chord = weight * size * o.chord;
   }
   inner.area = o.area;
-  inner.chord = o.chord;
   o = inner;
 }
 

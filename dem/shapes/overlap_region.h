@@ -24,11 +24,11 @@ constexpr int kMostPoints = 4 * kMostCorners;
 /// Below this part of the region's circumference |b| counts as 0.
 constexpr double kNoChord = 1e-9;
 
-/// Where the chord hands over to least penetration, so that a grain is swallowed without a leap:
-/// over the last part of the smaller outline's area, and where the chord's square is below this
-/// part of the overlap's area (bars that cross nearly symmetrically).
+/// A chord hands over to least penetration, so that a grain is swallowed without a leap, while the
+/// last kLastPart of the smaller outline's area goes in, and where the chord's square is below
+/// kLastPart of the overlap's area (bars that cross nearly symmetrically, the tip of a needle).
 constexpr double kLastPart = 0.02;
-/// Area over the square of the radius, at least: a triangle of slenderness 20 has 1/17.6.
+/// Area over the square of the radius is at least this: a triangle of slenderness 20 has 1/17.6.
 constexpr double kLeastArea = 1.0 / 40;
 
 /// The region's outline. `of_b` is 0 (1) where the side from this point to the next one is A's
@@ -92,8 +92,8 @@ struct Arcs {
 void set_least_penetration(const PlacedShape& a, const PlacedShape& b, double mx, double my,
                            Overlap& overlap);
 
-/// The same for the region of this loop, (ox, oy) its origin relative to A's centroid, where
-/// `weight` of the normal, depth and contact point that `overlap` has stays. The chord stays.
+/// Mixes `overlap` (weight) with the same for the region of this loop (1 - weight); (ox, oy) is its
+/// origin relative to A's centroid. The chord fades with the weight.
 void hand_over(const PlacedShape& a, const PlacedShape& b, const Loop& loop, const Arcs& arcs,
                double ox, double oy, double weight, Overlap& overlap);
 

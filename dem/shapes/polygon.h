@@ -16,9 +16,10 @@
 // parallel; coincident sides that face the same way count as B's). The depth is the extent of the
 // overlap along n. Where b = 0 (one outline inside the other, two bars crossing symmetrically) the
 // normal is the direction of least penetration, the depth that penetration, the chord 0 and s the
-// middle of the overlap (the inner one's centroid). Normal, depth and s go over to these smoothly
-// while the last 2 % of the smaller outline's area goes in, or while |b|^2 is below 2 % of the
-// overlap's area: there they are not the area's derivatives any more.
+// middle of the overlap (the inner one's centroid). While the last 2 % of the smaller outline's
+// area goes in, and where |b|^2 is below 2 % of the overlap's area, normal, depth and s go over to
+// these smoothly and the chord fades: there they are not the area's derivatives any more. Where the
+// normal turns into its opposite on that way, l grows and the force passes through 0.
 // l = r_i r_j / (r_i + r_j), r_i, r_j the distances of s from the centroids (arm_i, arm_j). In l,
 // and only there, an arm is at least a quarter of the centroid's distance from the nearest edge: l
 // stays positive when s comes near a centroid.

@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
@@ -21,7 +25,8 @@ using grainfield::coupling::Case;
 using grainfield::dem::PileRun;
 
 constexpr double kShares[] = {0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
-// Grains poured in a window: few awake ones cost as much at every step, sleepers by what falls.
+// Grains poured in a window. With every grain awake all steps cost the same, so few will do; with
+// sleeping the cost hangs on what a grain sets in motion.
 constexpr int kAsleepWindow = 30, kAwakeWindow = 3;
 
 PileRun run_of(const Case& value, const std::string& state) {
@@ -57,16 +62,11 @@ double seconds_per_grain(const Case& value, const std::string& state, int window
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / window;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc < 3) {
-    fmt::print(stderr, "usage: pile_sleep_benchmark CASE.toml FOLDER [rounds]\n");
-    return 2;
+void measure(const std::string& case_file, const std::filesystem::path& folder, int rounds) {
+  const Case value = grainfield::coupling::read_case(case_file, false, {});
+  if (value.study != "pile" || value.pile.source.kind != "point" || !value.pile.sleep.on) {
+    throw std::invalid_argument(case_file + ": a pile from a point source with sleep.on is needed");
   }
-  const Case value = grainfield::coupling::read_case(argv[1], false, {});
-  const std::filesystem::path folder = argv[2];
-  const int rounds = argc > 3 ? std::max(1, std::atoi(argv[3])) : 3;
   std::filesystem::create_directories(folder);
   if (std::filesystem::is_empty(folder)) pour_states(value, folder);
 
@@ -75,36 +75,56 @@ int main(int argc, char** argv) {
     std::string file;
   };
   std::vector<State> states;
+  const auto all = static_cast<int>(value.pile.source.grains);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path();
-    states.push_back({run_of(value, file).progress().grains, file});
+    const auto progress = run_of(value, file).progress();
+    if (progress.grains + kAsleepWindow + 1 > all) {
+      throw std::invalid_argument(file + ": too few grains left to pour");
+    }
+    states.push_back({progress.grains, file});
   }
   std::sort(states.begin(), states.end(),
             [](const State& p, const State& q) { return p.grains < q.grains; });
 
-  // Trapezoids over the grains poured; nothing at the beginning, the last state's to the end.
+  fmt::print("grains  CPU s per grain poured: sleeping  all awake  ratio\n");
+  // Trapezoids over the grains poured. With every grain awake the cost is in proportion to the
+  // grains before the first and after the last state; with sleeping it stays as it is there.
   double asleep_sum = 0, awake_sum = 0, last_asleep = 0, last_awake = 0;
   int last = 0;
-  const auto add = [&](int grains, double asleep, double awake) {
-    asleep_sum += 0.5 * (asleep + last_asleep) * (grains - last);
-    awake_sum += 0.5 * (awake + last_awake) * (grains - last);
-    last = grains;
+  for (const State& state : states) {
+    std::vector<double> asleeps, awakes;
+    for (int k = 0; k < rounds; ++k) {
+      asleeps.push_back(seconds_per_grain(value, state.file, kAsleepWindow, false));
+      awakes.push_back(seconds_per_grain(value, state.file, kAwakeWindow, true));
+    }
+    const double asleep = median(asleeps), awake = median(awakes);
+    fmt::print("{:6d}  {:33.4f}  {:9.4f}  {:5.2f}\n", state.grains, asleep, awake, awake / asleep);
+    std::fflush(stdout);
+    if (last == 0) last_asleep = asleep;
+    asleep_sum += 0.5 * (asleep + last_asleep) * (state.grains - last);
+    awake_sum += 0.5 * (awake + last_awake) * (state.grains - last);
+    last = state.grains;
     last_asleep = asleep;
     last_awake = awake;
-  };
-  fmt::print("grains  CPU s per grain poured: sleeping  all awake  ratio\n");
-  for (const State& state : states) {
-    std::vector<double> asleep, awake;
-    for (int k = 0; k < rounds; ++k) {
-      asleep.push_back(seconds_per_grain(value, state.file, kAsleepWindow, false));
-      awake.push_back(seconds_per_grain(value, state.file, kAwakeWindow, true));
-    }
-    add(state.grains, median(asleep), median(awake));
-    fmt::print("{:6d}  {:33.4f}  {:9.4f}  {:5.2f}\n", state.grains, last_asleep, last_awake,
-               last_awake / last_asleep);
-    std::fflush(stdout);
   }
-  add(static_cast<int>(value.pile.source.grains), last_asleep, last_awake);
+  asleep_sum += last_asleep * (all - last);
+  awake_sum += 0.5 * last_awake * (1 + static_cast<double>(all) / last) * (all - last);
   fmt::print("whole pour: sleeping {:.0f} s, all awake {:.0f} s, ratio {:.2f}\n", asleep_sum,
              awake_sum, awake_sum / asleep_sum);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    fmt::print(stderr, "usage: pile_sleep_benchmark CASE.toml FOLDER [rounds]\n");
+    return 2;
+  }
+  try {
+    measure(argv[1], argv[2], argc > 3 ? std::max(1, std::atoi(argv[3])) : 3);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "pile_sleep_benchmark: {}\n", e.what());
+    return 2;
+  }
 }

@@ -96,7 +96,7 @@ TEST(DiskPolygon, AreaChangesByChordTimesNormalAndByTheTorque) {
     if (k % 2 == 1) std::swap(a, b);
     const Overlap o = overlap_of(a, b);
     if (!(o.chord > 1e-2) || o.area < 1e-4 || a.radius() > 3 || b.radius() > 3) continue;
-    if (handed_over(a, b, o)) continue;
+    if (handed_over(a, b, o.area, o.chord)) continue;
     const double h = 1e-6;
     const auto slope = [&](double ux, double uy, double angle, double px, double py) {
       return (overlap_of(a, b.moved(h * ux, h * uy, h * angle, px, py)).area -

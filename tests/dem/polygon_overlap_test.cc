@@ -44,7 +44,7 @@ TEST(PolygonOverlap, AreaChangesByChordTimesNormalAndByTheTorque) {
   for (int k = 0; k < 12000; ++k) {
     const auto [a, b] = random_pair(random, k);
     const Overlap o = overlap_of(a, b);
-    if (!(o.chord > 1e-3) || handed_over(a, b, o)) continue;
+    if (!(o.chord > 1e-3) || handed_over(a, b, o.area, o.chord)) continue;
     const double h = 1e-7;
     const auto slope = [&](double ux, double uy, double angle, double px, double py) {
       return (overlap_of(a, b.moved(h * ux, h * uy, h * angle, px, py)).area -
@@ -227,9 +227,10 @@ TEST(PolygonOverlap, RoundOffContactsDoNotDependOnTheMemory) {
   EXPECT_GT(found_none, 200);
 }
 
-// Largest change of force E A / l n (E = 1), |b| n, contact point and depth per step of a path.
+// Largest change of force E A / l n (E = 1), chord times n, contact point and depth per step of a
+// path.
 struct Jump {
-  double force = 0, chord = 0, point = 0;
+  double force = 0, chord = 0, point = 0, depth = 0;
 };
 template <class Path>
 Jump largest_jump(const Placed& a, const Path& path, int steps) {
@@ -248,6 +249,7 @@ Jump largest_jump(const Placed& a, const Path& path, int steps) {
       jump.chord = std::max(jump.chord, std::hypot(o.chord * o.nx - last.chord * last.nx,
                                                    o.chord * o.ny - last.chord * last.ny));
       jump.point = std::max(jump.point, std::hypot(p[0] - q[0], p[1] - q[1]));
+      jump.depth = std::max(jump.depth, std::fabs(o.depth - last.depth));
     }
     last = o;
   }
@@ -286,10 +288,15 @@ TEST(PolygonOverlap, NothingLeapsWhenAGrainIsSwallowed) {
   const auto into = [](const Placed& grain) {
     return [grain](double t) { return grain.moved(0, 2.2 - 1.9 * t); };
   };
-  const auto check = [](const char* name, const Placed& first, const auto& path) {
+  const auto expect_smooth = [](const char* name, const Placed& first, const auto& path) {
     const Jump coarse = largest_jump(first, path, 4000), fine = largest_jump(first, path, 32000);
     EXPECT_GT(coarse.force / fine.force, 5) << name;
+    EXPECT_GT(coarse.chord / fine.chord, 5) << name;
     EXPECT_GT(coarse.point / fine.point, 5) << name;
+    EXPECT_GT(coarse.depth / fine.depth, 5) << name;
+  };
+  const auto check = [&](const char* name, const Placed& first, const auto& path) {
+    expect_smooth(name, first, path);
     const Overlap end = overlap_of(first, path(1));
     EXPECT_EQ(end.chord, 0) << name;
     EXPECT_GT(end.ny, 0.99) << name;
@@ -301,30 +308,70 @@ TEST(PolygonOverlap, NothingLeapsWhenAGrainIsSwallowed) {
   check("disk", large, into(Placed::disk(0.4, 0.5, 0)));
   check("heptagon into a disk", Placed::disk(3, 0, -1),
         into(Placed(regular(7, 0.4, 0.3), 0.02, 0)));
+  check("disk into a disk", Placed::disk(3, 0, -1), into(Placed::disk(0.4, 0.02, 0)));
+
   // A bar slides over another's end until they cross, where the chord is 0.
   const Placed bar(box(4, 0.5), 0, 0);
   const auto across = [](double t) { return Placed(box(0.4, 4), 2.15 - 0.5 * t, 0.3, 0.1); };
   EXPECT_GT(overlap_of(bar, across(0)).chord, 0.4);
   EXPECT_LT(overlap_of(bar, across(1)).chord, 1e-9);
-  const Jump coarse = largest_jump(bar, across, 4000), fine = largest_jump(bar, across, 32000);
-  EXPECT_GT(coarse.force / fine.force, 5);
-  EXPECT_GT(coarse.point / fine.point, 5);
-
+  expect_smooth("bar over a bar's end", bar, across);
+  // A wedge through a bar: its chord pushes it down, least penetration in the end up.
+  const Outline wedge = {{-0.28, -2}, {0.28, -2}, {0.1, 2}, {-0.1, 2}};
+  const Overlap low = overlap_of(bar, Placed(wedge, 0.1, 0.2)),
+                high = overlap_of(bar, Placed(wedge, 0.1, 0.9));
+  EXPECT_LT(low.ny * high.ny, 0);
+  expect_smooth("wedge through a bar", bar,
+                [&](double t) { return Placed(wedge, 0.1, 0.2 + 0.7 * t); });
   // The same into a half plane, whose normal does not turn.
   for (const Outline& outline : {centred_outline(triangle), box(0.8, 0.6), regular(9, 0.4)}) {
     const auto jump = [&](int steps) {
-      double largest = 0, before = 0;
+      double largest = 0;
+      std::array<double, 4> before{};
       for (int k = 0; k <= steps; ++k) {
         const Placed grain(outline, 0.3, 0.3 - 1.0 * k / steps, 0.03);
         Overlap o;
         EXPECT_TRUE(overlap_with_half_plane(grain.shape(), 0, 0, 0, 1, o));
-        const double height = contact_point(grain, o)[1];
-        if (k > 0) largest = std::max(largest, std::fabs(height - before));
-        before = height;
+        const auto s = contact_point(grain, o);
+        const std::array<double, 4> now = {s[0], s[1], o.chord, o.length};
+        for (std::size_t m = 0; m < now.size() && k > 0; ++m) {
+          largest = std::max(largest, std::fabs(now[m] - before[m]));
+        }
+        before = now;
+        if (k == steps) {
+          EXPECT_EQ(o.chord, 0);
+        }
       }
       return largest;
     };
     EXPECT_GT(jump(4000) / jump(32000), 5) << outline.size();
+  }
+}
+
+// Between chord and least penetration everything is a mixture of what is known at either end.
+TEST(PolygonOverlap, MixtureNearlyInsideInClosedForm) {
+  const double r = 0.4;
+  const Placed large(box(6, 4), 0, 0);
+  for (const double out : {0.001, 0.005, 0.01, 0.015}) {  // of the disk's area
+    const double area = std::numbers::pi * r * r;
+    double low = 0, high = r;  // how far the disk protrudes
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high), arm = r - middle;
+      (r * r * std::acos(arm / r) - arm * std::sqrt(r * r - arm * arm) < out * area ? low : high) =
+          middle;
+    }
+    const double arm = r - low, half = std::sqrt(r * r - arm * arm), y = 2 - arm;
+    const Placed disk = Placed::disk(r, 0.5, y);
+    const Overlap o = overlap_of(large, disk);
+    const double share = out / 0.02, weight = share * share * (3 - 2 * share);
+    // The centre of area of the disk without its segment of first moment 2/3 half^3.
+    const double middle = y - 2.0 / 3 * half * half * half / (area * (1 - out));
+    const auto s = contact_point(large, o);
+    EXPECT_NEAR(s[0], 0.5, 1e-12);
+    EXPECT_NEAR(s[1], middle + weight * (2 - middle), 1e-9) << out;
+    EXPECT_NEAR(o.chord, weight * 2 * half, 1e-9) << out;
+    EXPECT_NEAR(o.ny, 1, 1e-15);
+    EXPECT_NEAR(o.depth, 2 * r - low, 1e-9) << out;
   }
 }
 

@@ -154,8 +154,8 @@ inline std::array<double, 2> contact_point(const Placed& a, const Overlap& o) {
 }
 
 /// True where normal and contact point are on their way to least penetration (polygon.h).
-inline bool handed_over(const Placed& a, const Placed& b, const Overlap& o) {
-  return o.area > 0.98 * std::min(a.area(), b.area()) || o.chord * o.chord < 0.02 * o.area;
+inline bool handed_over(const Placed& a, const Placed& b, double area, double chord) {
+  return area > 0.98 * std::min(a.area(), b.area()) || chord * chord < 0.02 * area;
 }
 
 /// Two random polygons so near that most pairs overlap, of every kind in turn: general ones, light
