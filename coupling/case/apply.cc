@@ -126,11 +126,23 @@ std::string value_of(const Assignment& a) {
   return a.list ? "[" + out + "]" : out;
 }
 
-// [variant.NAME.SECTION]: kept until a sweep takes it, but checked at once.
+Variant& variant_named(Draft& draft, const std::string& name) {
+  auto& variants = draft.value.variants;
+  const auto at = std::find_if(variants.begin(), variants.end(),
+                               [&](const Variant& v) { return v.name == name; });
+  return at != variants.end() ? *at : *variants.insert(variants.end(), {name, {}});
+}
+
+// [variant.NAME.SECTION]: kept until a sweep takes it, but checked at once. An empty [variant.NAME]
+// is the case as it is.
 void keep_for_variant(Draft& draft, const Assignment& a) {
   const std::string rest = a.path.substr(std::string_view("variant.").size());
   const std::size_t dot = rest.find('.');
-  if (a.table) return;
+  const std::string name = rest.substr(0, dot);
+  if (a.table) {
+    variant_named(draft, name);
+    return;
+  }
   if (dot == std::string::npos) {
     reject(a, a.path, "found a value, expected a table [variant.NAME] of keys");
   }
@@ -142,16 +154,12 @@ void keep_for_variant(Draft& draft, const Assignment& a) {
   }
   Draft scratch = draft;
   apply(scratch, inner);
-  const std::string name = rest.substr(0, dot);
-  auto& variants = draft.value.variants;
-  auto at = std::find_if(variants.begin(), variants.end(),
-                         [&](const Variant& v) { return v.name == name; });
-  if (at == variants.end()) at = variants.insert(variants.end(), {name, {}});
+  std::vector<std::string>& kept = variant_named(draft, name).keys;
   const std::string start = inner.path + "=";
-  at->keys.erase(std::remove_if(at->keys.begin(), at->keys.end(),
-                                [&](const std::string& k) { return k.rfind(start, 0) == 0; }),
-                 at->keys.end());
-  at->keys.push_back(start + value_of(inner));
+  kept.erase(std::remove_if(kept.begin(), kept.end(),
+                            [&](const std::string& k) { return k.rfind(start, 0) == 0; }),
+             kept.end());
+  kept.push_back(start + value_of(inner));
 }
 
 // A sweep's member: the keys of the named variant.

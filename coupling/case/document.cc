@@ -58,6 +58,10 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
     // The key's line, not that of a value that may start further down.
     const unsigned line = name.source().begin.line;
     a.origin = fmt::format("{}:{}", file, line);
+    if (name.str().find('.') != std::string_view::npos) {
+      throw std::invalid_argument(
+          fmt::format("{}: \"{}\": a name in quotes cannot hold a dot", a.origin, name.str()));
+    }
     if (const auto* inner = node.as_table()) {
       if (!inner->empty()) {
         flatten(*inner, a.path + ".", file, out);

@@ -138,6 +138,19 @@ TEST(ReadCase, SweepMembers) {
             2U);
 }
 
+TEST(ReadCase, AnEmptyVariantIsTheCaseAsItIs) {
+  const Case value = accepted(
+      "[material]\nfriction = 0.4\n[sweep]\nkey = \"variant\"\nvalues = [\"base\", \"rough\"]\n"
+      "[variant.base]\n[variant.rough]\nmaterial.friction = 0.9\n");
+  const auto members = sweep_cases(value);
+  ASSERT_EQ(members.size(), 2U);
+  EXPECT_EQ(members[0].value.layer.material.friction, 0.4);
+  EXPECT_EQ(members[1].value.layer.material.friction, 0.9);
+  const Folder folder;
+  EXPECT_EQ(sweep_cases(read_case(folder.write("x.toml", write_case(value)), false, {})).size(),
+            2U);
+}
+
 TEST(CaseErrors, UnknownNames) {
   EXPECT_EQ(complaint("\n[material]\nfrction = 0.5\n"),
             "x.toml:3: material.frction: unknown key; nearest: material.friction");
@@ -145,6 +158,8 @@ TEST(CaseErrors, UnknownNames) {
             "x.toml:2: materiel: unknown section; nearest: material");
   EXPECT_EQ(complaint("[materiel]\n"), "x.toml:1: materiel: unknown section; nearest: material");
   EXPECT_EQ(complaint("tittle = \"a\"\n"), "x.toml:1: tittle: unknown key; nearest: title");
+  EXPECT_EQ(complaint("[variant.\"a.b\"]\n"),
+            "x.toml:1: \"a.b\": a name in quotes cannot hold a dot");
   // A key in the wrong section is found where it belongs.
   EXPECT_EQ(complaint("[packing]\nfriction = 0.5\n"),
             "x.toml:2: packing.friction: unknown key; nearest: material.friction");
