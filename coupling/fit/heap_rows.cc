@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kLeastValues = 10;
 constexpr double kRounding = 1e-9;  // of the largest value
-constexpr double kUnlike = 1.3;     // ratio of heights that realizations of one heap do not have
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
 const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
@@ -143,7 +142,7 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
 }
 
 void warn_of_unlike_heaps(double least, double most, HeapData& out) {
-  if (!(most > kUnlike * least)) return;
+  if (!(most > kUnlikeHeights * least)) return;
   out.warnings.push_back(fmt::format(
       "heaps {:.3g} to {:.3g} m high in one ensemble: are they realizations of one? The averaging "
       "width, {:.3g} m, is the same for all",

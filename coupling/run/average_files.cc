@@ -22,8 +22,6 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kUnlike = 1.3;  // ratio of heights that realizations of one packing do not have
-
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
   SnapshotName state, unloaded;
@@ -139,7 +137,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     out.load = &item == &items.front() || force == out.load ? force : 0;
   }
   doubts.add_to(warnings);
-  if (out.most > kUnlike * out.least) {
+  if (out.most > kUnlikeHeights * out.least) {
     warnings.push_back(fmt::format(
         "packings {:.3g} to {:.3g} m high in one average{}: are they realizations of one?",
         out.least, out.most,

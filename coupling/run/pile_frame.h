@@ -6,6 +6,9 @@
 
 namespace grainfield::coupling {
 
+/// Realizations of one packing do not differ by more than this ratio of heights.
+constexpr double kUnlikeHeights = 1.3;
+
 /// Origin at the apex, lengths in units of the height h, inside is y < 0 down to the floor y = -1.
 struct PileFrame {
   double apex_x = 0;      ///< where the flanks' lines meet, m

@@ -6,7 +6,7 @@
 
 #include "dem/packing/packing.h"
 #include "dem/study/contact_changes.h"
-#include "dem/study/run.h"
+#include "tests/dem/pile_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -22,10 +22,6 @@ PointLoadSetup small(const std::string& kind) {
   s.load.force = 5;
   s.load.ramp_time = 0.05;
   return s;
-}
-
-void finish(Run& run) {
-  while (!run.done()) run.advance(5000);
 }
 
 TEST(PointLoad, BaseCarriesWeightAndLoad) {
@@ -69,23 +65,6 @@ TEST(PointLoad, LayersOfPentagonsCarryWeightAndLoad) {
     EXPECT_GE(r.figures.at("dem.layer_height"), s.packing.depth);
     EXPECT_GT(r.figures.at("dem.volume_fraction"), 0.6);
   }
-}
-
-bool same(const Snapshot& a, const Snapshot& b) {
-  if (a.grains.size() != b.grains.size() || a.contacts.size() != b.contacts.size()) return false;
-  for (std::size_t k = 0; k < a.grains.size(); ++k) {
-    if (a.grains[k].position != b.grains[k].position || a.grains[k].angle != b.grains[k].angle ||
-        a.grains[k].velocity != b.grains[k].velocity) {
-      return false;
-    }
-  }
-  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
-    if (a.contacts[k].force != b.contacts[k].force ||
-        a.contacts[k].spring != b.contacts[k].spring) {
-      return false;
-    }
-  }
-  return true;
 }
 
 TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
