@@ -146,8 +146,15 @@ void rest(Section s) {
 void load(Section s) {
   s.number("force", "N", +IN(double, load.force), kPositive,
            "downwards on one grain of the surface; more rearranges grains", kRoul);
+  s.word("method", +IN(string, load.method), {"damped", "newton"},
+         "slow damped dynamics, or the quasi-static solver on the contact network (for small "
+         "forces: it fails where many contacts rearrange)");
+  s.number("unbalanced_force_ratio", "-", +IN(double, load.unbalanced_force_ratio), {0, 0.1, true},
+           "mean resultant over mean contact force that Newton's method must reach");
+  s.only("load.method", {"newton"});
   s.number("ramp_time", "s", +IN(double, load.ramp_time), kPositive,
            "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
+  s.only("load.method", {"damped"});
   s.number("position", "-", +IN(double, load.position), {0, 1},
            "share of the width: the top grain nearest to it carries the force");
 }

@@ -83,6 +83,7 @@ class EngineLoop final : public Engine {
     rests_.push_back({});
     touches_.push_back({});
     asleep_.push_back(g.fixed && settings_.sleep.on ? 1 : 0);
+    if (asleep_.back() != 0) sleepers_changed_ = true;
     shapes_.place(static_cast<int>(bodies_.size()) - 1, b, g.angle);
     search_needed_ = true;
     return ids_.back();

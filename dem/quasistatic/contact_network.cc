@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "dem/neighbours/hierarchical_grid.h"
@@ -216,7 +217,9 @@ void ContactNetwork::ensure_candidates(const Vector& z) {
   }
 }
 
-/// Pairs within reach of where z puts the grains, with what the old ones remember.
+/// Pairs within reach of where z puts the grains, with what the old ones remember; and those that
+/// touched in the committed state, wherever z puts them: a step that is taken back finds their
+/// springs again.
 void ContactNetwork::search(const Vector& z) {
   const int n = static_cast<int>(shapes_.size());
   std::vector<Reach> reaches(n);
@@ -240,10 +243,16 @@ void ContactNetwork::search(const Vector& z) {
     }
     for (; next < found.size() && found[next].first == i; ++next) all.push_back(found[next]);
   }
+  std::vector<std::pair<int, int>> touching, wanted;
+  for (const Pair& pair : pairs_) {
+    if (pair.touched) touching.emplace_back(pair.i, pair.j);
+  }
+  std::set_union(all.begin(), all.end(), touching.begin(), touching.end(),
+                 std::back_inserter(wanted));
   std::vector<Pair> pairs;
-  pairs.reserve(all.size());
+  pairs.reserve(wanted.size());
   auto old = pairs_.begin();
-  for (const auto& [i, j] : all) {
+  for (const auto& [i, j] : wanted) {
     while (old != pairs_.end() && (old->i != i ? old->i < i : old->j < j)) ++old;
     Pair pair;
     if (old != pairs_.end() && old->i == i && old->j == j) pair = *old;

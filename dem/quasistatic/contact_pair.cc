@@ -89,7 +89,7 @@ ContactNetwork::Force ContactNetwork::force(const Pair& pair, const Geometry& g)
   f.normal = g.normal;
   const double limit = pair.friction * g.normal;
   f.tangential = pair.spring - tangential_stiffness_ * g.slip;
-  if (std::fabs(f.tangential) > limit) {
+  if (std::fabs(f.tangential) >= limit) {  // without friction at 0 too
     f.tangential = std::copysign(limit, f.tangential);
     f.sticks = false;
   }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "dem/packing/packing.h"
+#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/common.h"
 #include "dem/study/contact_changes.h"
 #include "dem/study/run.h"
@@ -39,6 +40,9 @@ class PointLoadRun final : public Run {
  private:
   void enter(Phase phase);
   void decide();
+  void solve();
+  AppliedForce load_on(const Snapshot& s) const;
+  bool by_newton() const { return setup_.load.method == "newton"; }
   void drop_row();
   void add(const std::vector<NewGrain>& grains);
   std::string fingerprint() const;
@@ -50,11 +54,13 @@ class PointLoadRun final : public Run {
   Random random_;
   GrainSupply supply_;
   double width_ = 0;
+  EngineSettings settings_;
   std::unique_ptr<Engine> engine_;
   Phase phase_ = Phase::deposit;
   long phase_steps_ = 0;
   int rows_dropped_ = 0;
   std::optional<Snapshot> unloaded_, loaded_;
+  double solved_to_ = std::nan("");  // ratio that Newton's method reached
 };
 
 const PackingSetup& checked(const PackingSetup& packing) {
@@ -66,11 +72,10 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
     : setup_(setup), seed_(seed), random_(seed), supply_(checked(setup_.packing), random_) {
   const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
-  EngineSettings settings =
-      engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
-                      setup_.packing.shape == "irregular");
-  settings.polygons = setup_.packing.shape != "disk";
-  engine_ = make_engine(settings);
+  settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
+                              setup_.packing.shape == "irregular");
+  settings_.polygons = setup_.packing.shape != "disk";
+  engine_ = make_engine(settings_);
   for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
   add(floor_grains(setup_.packing, supply_, density, random_));
   if (setup_.packing.kind == "layered") {
@@ -101,6 +106,7 @@ void PointLoadRun::enter(Phase phase) {
 
 void PointLoadRun::advance(long steps) {
   while (steps > 0 && phase_ != Phase::done) {
+    if (phase_ == Phase::load && by_newton()) return solve();
     const long chunk = std::min(steps, kCheckEvery - phase_steps_ % kCheckEvery);
     engine_->step(chunk);
     phase_steps_ += chunk;
@@ -138,13 +144,12 @@ void PointLoadRun::decide() {
           return;
         }
         unloaded_ = take_snapshot("unloaded");
-        AppliedForce force;
-        force.id = choose_loaded_grain(*unloaded_);
-        force.fy = -setup_.load.force;
+        enter(Phase::load);
+        if (by_newton()) return;
+        AppliedForce force = load_on(*unloaded_);
         force.start = engine_->time();
         force.ramp = setup_.load.ramp_time;
         engine_->apply(force);
-        enter(Phase::load);
       } else if (in_phase > setup_.rest.max_time) {
         fail_to_rest(d, setup_.rest, phase_ == Phase::hold ? "after the load" : "before the load",
                      ", or lower load.force");
@@ -155,6 +160,41 @@ void PointLoadRun::decide() {
       return;
     case Phase::done:
       return;
+  }
+}
+
+AppliedForce PointLoadRun::load_on(const Snapshot& s) const {
+  AppliedForce force;
+  force.id = choose_loaded_grain(s);
+  force.fy = -setup_.load.force;
+  return force;
+}
+
+// The load by Newton's method. Told to stop it leaves the run as it was.
+void PointLoadRun::solve() {
+  QuasistaticSettings settings;
+  settings.unbalanced_force_ratio = setup_.load.unbalanced_force_ratio;
+  if (watch_) {
+    settings.go_on = [this](double share) {
+      Progress now = progress();
+      now.phase = "load";
+      now.fraction += (1 - now.fraction) * share;
+      return watch_(now);
+    };
+  }
+  try {
+    QuasistaticResult r =
+        relax(*unloaded_, settings_, unloaded_->gravity, load_on(*unloaded_), settings);
+    solved_to_ = r.unbalanced_force_ratio;
+    loaded_ = std::move(r.state);
+    loaded_->attributes["state"] = "loaded";
+    phase_ = Phase::done;
+  } catch (const RelaxationStopped&) {
+    return;
+  } catch (const ComputationFailed& failure) {
+    throw ComputationFailed(
+        fmt::format("load.force = {:g}: {}; or set load.method = damped, or a smaller load.force",
+                    setup_.load.force, failure.what()));
   }
 }
 
@@ -233,11 +273,12 @@ Progress PointLoadRun::progress() const {
 std::string PointLoadRun::fingerprint() const {
   const PackingSetup& p = setup_.packing;
   return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} | {} | {} | {} {} {} | {}", p.kind,
-      p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max, p.columns,
-      p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, p.shape, p.side,
-      describe(setup_.material), describe(setup_.motion, engine_->time_step()),
-      describe(setup_.rest), setup_.load.force, setup_.load.ramp_time, setup_.load.position, seed_);
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} | {} | {} | {} {} {} {} {} | {}",
+      p.kind, p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max,
+      p.columns, p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, p.shape,
+      p.side, describe(setup_.material), describe(setup_.motion, engine_->time_step()),
+      describe(setup_.rest), setup_.load.force, setup_.load.method,
+      setup_.load.unbalanced_force_ratio, setup_.load.ramp_time, setup_.load.position, seed_);
 }
 
 void PointLoadRun::save(const std::string& file) const {
@@ -247,6 +288,7 @@ void PointLoadRun::save(const std::string& file) const {
   w.put(rows_dropped_);
   w.put(random_.state());
   w.put(supply_.taken());
+  w.put(solved_to_);
   w.put(engine_->image());
   NamedSnapshots snapshots;
   if (unloaded_) snapshots.emplace_back("unloaded", *unloaded_);
@@ -265,6 +307,7 @@ void PointLoadRun::restore(const std::string& file) {
   r.get(rows_dropped_);
   r.get(random_state);
   r.get(taken);
+  r.get(solved_to_);
   r.get(image);
   r.finish();
   random_.set_state(random_state);
@@ -301,6 +344,7 @@ RunResult PointLoadRun::result() const {
   f["load.x"] = grain.position.x();
   f["load.y"] = grain.position.y();
 
+  if (!std::isnan(solved_to_)) f["load.unbalanced_force_ratio"] = solved_to_;
   const ContactChanges c = compare_contacts(*unloaded_, *loaded_);
   f["load.contacts_gained"] = c.gained;
   f["load.contacts_lost"] = c.lost;

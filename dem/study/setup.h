@@ -71,9 +71,11 @@ struct RestSetup {
 };
 
 struct LoadSetup {
-  double force = 300;      ///< N, downwards on one grain
-  double ramp_time = 0.5;  ///< s from 0 to the full force (smooth ramp)
-  double position = 0.5;   ///< of the width: the top grain nearest to it carries the force
+  double force = 300;             ///< N, downwards on one grain
+  std::string method = "damped";  ///< damped: slow damped dynamics | newton: quasi-static solver
+  double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
+  double ramp_time = 0.5;                ///< s from 0 to the full force (smooth ramp); damped
+  double position = 0.5;  ///< of the width: the top grain nearest to it carries the force
 };
 
 /// How a pile is poured (Roul 3.1, 3.11, table 2).

@@ -109,6 +109,54 @@ TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
   std::filesystem::remove(file);
 }
 
+// A small force: both ways to apply it move the grains alike, and Newton's is exact to its ratio.
+TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
+  for (const bool disks : {true, false}) {
+    PointLoadSetup s = disks ? small("layered") : pentagons();
+    s.packing.width = 0.05;
+    s.rest.unbalanced_force_ratio = 1e-7;
+    s.rest.kinetic_to_elastic_energy = 1e-12;
+    s.load.force = 0.2;
+    const auto damped = make_point_load_run(s, 5, 1);
+    finish(*damped);
+    s.load.method = "newton";
+    const auto newton = make_point_load_run(s, 5, 1), stopped = make_point_load_run(s, 5, 1);
+    finish(*newton);
+    const RunResult a = damped->result(), b = newton->result();
+    ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
+    ASSERT_EQ(a.figures.at("load.no_rearrangement"), 1) << disks;
+    EXPECT_EQ(b.figures.at("load.no_rearrangement"), 1) << disks;
+    EXPECT_LE(b.figures.at("load.unbalanced_force_ratio"), 1e-8);
+    EXPECT_NEAR(b.figures.at("base.response_over_load"), 1, 1e-4) << disks;
+    EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "loaded");
+    EXPECT_EQ(b.snapshots[1].second.loaded_grain, a.snapshots[1].second.loaded_grain);
+    EXPECT_EQ(b.snapshots[1].second.applied_force.y(), -0.2);
+    double moved = 0, difference = 0;
+    for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
+      const Vec3 from = a.snapshots[0].second.grains[k].position,
+                 to = a.snapshots[1].second.grains[k].position;
+      moved += (to - from).squaredNorm();
+      difference += (to - b.snapshots[1].second.grains[k].position).squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(difference / moved), 0.01) << disks;
+
+    // Told to stop it stays as it was; and so it goes on from a checkpoint.
+    stopped->set_watch([](const Progress& p) { return p.phase != "load"; });
+    for (int k = 0; k < 10000 && stopped->progress().phase != "load"; ++k) stopped->advance(1000);
+    stopped->advance(1000);
+    ASSERT_FALSE(stopped->done());
+    const std::string file = (std::filesystem::temp_directory_path() /
+                              ("grainfield_newton_" + std::to_string(getpid()) + ".h5"))
+                                 .string();
+    stopped->save(file);
+    const auto resumed = make_point_load_run(s, 5, 1);
+    resumed->restore(file);
+    std::filesystem::remove(file);
+    finish(*resumed);
+    EXPECT_TRUE(same(resumed->result().snapshots[1].second, b.snapshots[1].second));
+  }
+}
+
 std::string refusal(const PointLoadSetup& s) {
   try {
     make_point_load_run(s, 1, 1);

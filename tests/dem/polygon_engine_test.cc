@@ -173,5 +173,55 @@ TEST(PolygonEngine, SameBitsOnAnyNumberOfThreadsAndCuts) {
   EXPECT_TRUE(state(8, 3000) == one);
 }
 
+// A loaded tangential spring goes with the contact while corners pass: a heavy box is pulled around
+// a corner of a fixed octagon so tightly that nothing slides, the crossed edges and the normal
+// change.
+TEST(PolygonEngine, TheSpringOutlivesAChangeOfFeatures) {
+  EngineSettings settings = polygon_settings();
+  settings.law = OverlapAreaLaw{1e6, 0};  // its dashpot would cut the force off on the way out
+  settings.friction = 1e6;
+  settings.gravity_y = 0;
+  settings.time_step = 1e-6;
+  const auto engine = make_engine(settings);
+  NewGrain octagon;
+  octagon.density = 5000;
+  octagon.fixed = true;
+  for (int k = 0; k < 8; ++k) {
+    const double angle = std::numbers::pi * (k / 4.0);  // a corner at the top
+    octagon.outline.push_back({0.02 * std::cos(angle), 0.02 * std::sin(angle)});
+  }
+  engine->add(octagon);
+  NewGrain box;
+  box.outline = {{-0.004, -0.002}, {0.004, -0.002}, {0.004, 0.002}, {-0.004, 0.002}};
+  box.density = 1e9;  // so heavy that the contact hardly turns it
+  box.x = -0.0075;
+  box.y = 0.0210;
+  box.angle = 0.2;
+  box.vx = 1;
+  engine->add(box);
+  const double stiffness =
+      std::visit([](const auto& l) { return l.tangential_stiffness(); }, settings.law);
+  double spring = 0, largest = 0, first_angle = 0, last_angle = 0;
+  int steps = 0;
+  for (int k = 0; k < 10500; ++k) {
+    engine->step(1);
+    const Snapshot s = engine->snapshot();
+    if (s.contacts.empty() && steps == 0) continue;
+    ASSERT_EQ(s.contacts.size(), 1u) << k;
+    const Contact& c = s.contacts[0];
+    if (steps > 50) {  // a first touch has no strength, and slides
+      ASSERT_FALSE(c.sliding) << k;
+      // The slip of one step at most.
+      ASSERT_NEAR(c.spring, spring, 1.5 * stiffness * settings.time_step) << k;
+    }
+    spring = c.spring;
+    largest = std::max(largest, std::fabs(spring));
+    last_angle = std::atan2(c.normal.y(), c.normal.x());
+    if (steps++ == 0) first_angle = last_angle;
+  }
+  EXPECT_GT(std::fabs(last_angle - first_angle), 0.3);
+  EXPECT_GT(largest, 1000 * stiffness * settings.time_step);
+}
+
 }  // namespace
 }  // namespace grainfield::dem

@@ -37,6 +37,16 @@ TEST(Sleep, SettledBoxFallsAsleepAndKeepsItsForces) {
   engine->set_background_damping(20);
   engine->step(1);
   EXPECT_EQ(engine->measure().awake, 48);
+  const Snapshot awake = engine->snapshot();
+  double largest = 0;
+  for (const Contact& c : after.contacts) largest = std::max(largest, std::fabs(c.spring));
+  EXPECT_GT(largest, 0.1);  // N
+  ASSERT_EQ(awake.contacts.size(), after.contacts.size());
+  for (std::size_t k = 0; k < after.contacts.size(); ++k) {
+    ASSERT_EQ(awake.contacts[k].i, after.contacts[k].i);
+    ASSERT_EQ(awake.contacts[k].j, after.contacts[k].j);
+    EXPECT_NEAR(awake.contacts[k].spring, after.contacts[k].spring, 0.01 * largest) << k;
+  }
   EXPECT_NEAR(ground_force(engine->snapshot()), ground_force(after), 0.05 * weight(after));
   engine->step(30000);
   EXPECT_LT(engine->measure().unbalanced_force_ratio, 1e-6);
@@ -141,6 +151,27 @@ TEST(Sleep, AnImpactMovesSleepersAsItMovesTheAwake) {
   RecordProperty("awake", fmt::format("{:.3g}", awake));
   RecordProperty("asleep", fmt::format("{:.3g}", asleep));
   RecordProperty("rigid", fmt::format("{:.3g}", rigid));
+}
+
+// Fixed grains lie among the sleepers: one that comes later must be found as well.
+TEST(Sleep, AFixedGrainThatComesLateHolds) {
+  const auto engine = polygon_box(polygon_settings(1, true), 4, 2);
+  engine->step(60000);
+  NewGrain falls;
+  falls.x = 0.05;
+  falls.y = 0.14;
+  falls.density = 5000;
+  falls.outline = {{-0.005, -0.005}, {0.005, -0.005}, {0.005, 0.005}, {-0.005, 0.005}};
+  engine->add(falls);
+  engine->step(10);
+  NewGrain shelf = falls;
+  shelf.y = 0.12;
+  shelf.fixed = true;
+  shelf.outline = {{-0.05, -0.005}, {0.05, -0.005}, {0.05, 0.005}, {-0.05, 0.005}};
+  engine->add(shelf);
+  engine->step(10000);
+  const Snapshot s = engine->snapshot();
+  EXPECT_NEAR(s.grains[8].position.y(), 0.13, 1e-3);
 }
 
 TEST(Sleep, GravityWakesAll) {
