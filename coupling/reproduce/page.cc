@@ -14,6 +14,7 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr const char* kNotRun = "not run";
+constexpr const char* kNoCommand = "run before commands were stored: see the case's page";
 
 std::string with_error(const SourceFigure& figure, const Measured& m) {
   const int digits = figure.unit == "deg" ? 1 : 3;
@@ -107,7 +108,9 @@ std::string reproduction_page(const Results& results) {
       "or, for the ratios of volume fraction and coordination, of the effect that the source "
       "reports "
       "(0.09, 0.08, 0.04). The steeper flank is the one with the larger mean, whichever side it "
-      "is: the study's page says which was meant. Errors of fitted constants: the larger of the "
+      "is: the study's page says which was meant. The error of a ratio of two ensembles is that of "
+      "the one minus the source's ratio times the other. Errors of fitted constants: the larger of "
+      "the "
       "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
       "exceeds what a true model's does by chance (1.35 of 1000). A "
       "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
@@ -142,23 +145,21 @@ std::string reproduction_page(const Results& results) {
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const std::string& study : studies) {
     if (!results.has(study)) {
-      out += fmt::format("| `{}` | {} | | | | | | | | | | `grainfield run cases/{}.toml` |\n",
-                         study, kNotRun, study);
+      out += fmt::format("| `{}` | {} | | | | | | | | | | |\n", study, kNotRun);
       continue;
     }
     const auto value = [&](const char* key, const char* format) {
       return optional_number(results, study, key, format);
     };
+    const auto command = results.text(study, "case.command");
     out += fmt::format(
-        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | `{}` |\n", study,
+        "| `{}` | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", study,
         value("dem.grains", "{:.0f}"), value("ensemble.realizations", "{:g}"),
         value("source.interval", "{:g}"), value("sleep.wake_reach", "{:g}"),
         value("dem.time_step", "{:.3g}"), value("dem.steps", "{:.4g}"),
         value("dem.grain_steps", "{:.3g}"), grain_seconds(results, study),
         value("base.weight_ratio", "{:.6f}"), results.text(study, "version").value_or(""),
-        boost::replace_all_copy(
-            results.text(study, "case.command").value_or("grainfield run cases/" + study + ".toml"),
-            "|", "\\|"));
+        command ? fmt::format("`{}`", boost::replace_all_copy(*command, "|", "\\|")) : kNoCommand);
   }
   out +=
       "\n## Misprints and inconsistencies of the sources\n\n"

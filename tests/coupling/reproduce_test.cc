@@ -93,6 +93,18 @@ TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
               HasSubstr("| 1.08-1.10 | 1.020 ± 0.004 | differs by 0.06 (15.0 standard errors) |"));
   EXPECT_THAT(page, HasSubstr("| `pile-point-source` | 6500 | 8 | 0.03 |"));
   EXPECT_THAT(page, HasSubstr("| asymmetric line source, steeper flank | 31 deg | not run |"));
+  // No command is made up where none was stored.
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("grainfield run cases/pile-point-source.toml")));
+  EXPECT_THAT(page, HasSubstr("run before commands were stored"));
+}
+
+// -0.04 +- 0.03 over 0.05 +- 0.02 against 1.5: -0.115 off with an error of 0.03 sqrt 2.
+TEST(Reproduce, ARatioIsJudgedByItsNumeratorWhereTheDenominatorIsUncertain) {
+  const Folder folder;
+  folder.write("pile-point-source.json", R"({"dip.difference": 0.05, "dip.standard_error": 0.02})");
+  folder.write("pile-elliptic.json", R"({"dip.difference": -0.04, "dip.standard_error": 0.03})");
+  EXPECT_THAT(reproduction_page(Results(folder.path())),
+              HasSubstr("| about 2 | -0.800 ± 0.849 | differs by 2.3 (2.7 standard errors) |"));
 }
 
 TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
