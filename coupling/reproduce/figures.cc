@@ -111,6 +111,10 @@ std::string tail_word(double p) {
                      p);
 }
 
+std::string within_word(double largest) {
+  return fmt::format("{} 1 %: {:.2g} %", largest <= 0.01 ? "within" : "beyond", 100 * largest);
+}
+
 std::string slope_word(double ratio) {
   return fmt::format("{}: slope at high over slope at low strain {:.2f}",
                      std::fabs(std::log(ratio)) > std::log(1.25) ? "nonlinear" : "linear", ratio);
@@ -128,7 +132,8 @@ const std::vector<SourceFigure>& source_figures() {
                        *kElliptic = "pile-elliptic", *kAsymmetricLine = "pile-asymmetric-line",
                        *kAsymmetricPoint = "pile-asymmetric-point",
                        *kGravity = "pile-gravity-levels", *kFields = "pile-fields",
-                       *kFieldsLine = "pile-fields-line", *kFieldsElliptic = "pile-fields-elliptic";
+                       *kFieldsLine = "pile-fields-line", *kFieldsElliptic = "pile-fields-elliptic",
+                       *kLattice = "liffman-lattice";
   // Of a point source over the surface; a flat fraction is one without it.
   constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
@@ -158,6 +163,10 @@ const std::vector<SourceFigure>& source_figures() {
              1.01, of(kLine, "density.ratio"), kDenserMiddle),
       number("Roul 3.4", "volume fraction, point source, middle over near the surface", "", kPoint,
              "1.08-1.10", 1.08, 1.10, of(kPoint, "density.ratio"), kDenserMiddle),
+      word("Liffman 42", "N below 45 layers, largest difference from the closed form", kLattice,
+           "0 (within 1 %)", {"within 1 %"}, "liffman.normal_max_error.slope_deg_60", within_word),
+      word("Liffman 44", "H below 45 layers, likewise", kLattice, "0 (within 1 %)", {"within 1 %"},
+           "liffman.horizontal_max_error.slope_deg_60", within_word),
       number("Roul 3.9", "coordination at a tenth of gravity over that at gravity", "", kGravity,
              "0.92", 0.91, 0.93, of(kGravity, "change.gravity_0.98.coordination_ratio"), 0.08),
       number("Roul 3.9", "coordination at 1.9 times gravity over that at gravity", "", kGravity,

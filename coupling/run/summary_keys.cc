@@ -270,6 +270,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"load.newly_sliding", "-", "contacts that the load brought to the Coulomb limit"},
       {"load.max_displacement_over_radius", "-",
        "largest displacement by the load over the radius"},
+      {"load.unbalanced_force_ratio", "-",
+       "mean resultant over mean contact force under the load, where Newton's method applied it"},
       {"load.no_rearrangement", "-", "share of realizations without a gained or lost contact"},
       {"layer.depth", "m", "h of the models: mean over realizations"},
       {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},

@@ -143,6 +143,8 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "elastic.bulk_fabric_correlation",
                                    "elastic.young_fabric_correlation",
                                    "elastic.shear_fabric_correlation",
+                                   "liffman.normal_max_error.slope_deg_60",
+                                   "liffman.horizontal_max_error.slope_deg_60",
                                    "fit.cantelaube.a1",
                                    "fit.cantelaube.a2",
                                    "fit.cantelaube.b1",
