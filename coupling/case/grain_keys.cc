@@ -110,7 +110,9 @@ void material(Section s) {
       "one",
       kBoth);
   s.number("floor_friction", "-", +SHARED(double, material.floor_friction), {0, 10},
-           "Coulomb coefficient grain on flat floor", kBoth);
+           "Coulomb coefficient grain on flat floor; the fixed grains of a rough one have "
+           "material.friction",
+           kBoth);
   s.number("wall_friction", "-", +SHARED(double, material.wall_friction), {0, 10},
            "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
   s.number("gravity", "m/s2", +SHARED(double, material.gravity), kPositive, "downwards", kBoth);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <tuple>
 
 namespace grainfield::coupling {
@@ -111,6 +112,14 @@ void add_maps(Report& report, const PileReport& in) {
   report.sections.emplace_back(std::move(stress));
 }
 
+// How far the errors themselves are to be trusted: of n values their own is 1/sqrt(2 (n - 1)).
+std::string error_note(int realizations) {
+  if (realizations < 2) return "One pile: no errors.";
+  return fmt::format(
+      "Means over {} piles +- standard errors, which are themselves uncertain by {:.0f} %.",
+      realizations, 100 / std::sqrt(2.0 * (realizations - 1)));
+}
+
 void add_tables(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   if (!c.results.empty()) {
@@ -129,10 +138,11 @@ void add_tables(Report& report, const PileReport& in) {
     report.sections.emplace_back(std::move(distances));
   }
   if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
-  for (const auto& [title, rows] :
-       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
+  for (const auto& [title, note, rows] :
+       {std::tuple{"Figures", error_note(c.realizations), in.figures},
+        {"How it was made", std::string(), in.made}}) {
     if (rows.empty()) continue;
-    Table table{title, "", {}, {}};
+    Table table{title, note, {}, {}};
     for (const auto& [key, value] : rows) table.rows.push_back({key, value});
     report.sections.emplace_back(std::move(table));
   }

@@ -46,10 +46,15 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double 
   picture.height = plot_height_ + above + below;
 }
 
-// The largest group of grains without a gap in x.
+// The largest group of grains without a gap in x. Fixed ones (a rough floor) do not count where
+// others are.
 void Scene::find_bulk(double gap) {
   std::vector<std::pair<double, double>> spans;
-  for (const dem::Grain& g : snapshot_.grains) spans.emplace_back(left_of(g), right_of(g));
+  const bool all_fixed = std::all_of(snapshot_.grains.begin(), snapshot_.grains.end(),
+                                     [](const dem::Grain& g) { return g.fixed; });
+  for (const dem::Grain& g : snapshot_.grains) {
+    if (all_fixed || !g.fixed) spans.emplace_back(left_of(g), right_of(g));
+  }
   std::sort(spans.begin(), spans.end());
   std::size_t best = 0, begin = 0;
   double right = spans.front().second;

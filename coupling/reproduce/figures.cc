@@ -71,7 +71,8 @@ SourceFigure dip(const char* source, const char* what, const char* study, const 
             const auto centre = r.plain(name, "dip.ratio");
             if (!verdict || !difference || !p || !centre) return std::nullopt;
             return fmt::format(
-                "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} of no {}; centre over "
+                "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} if there were no {}; "
+                "centre over "
                 "largest {:.2f}",
                 *verdict, difference->value, difference->error, *verdict == "peak" ? 1 - *p : *p,
                 *verdict == "peak" ? "peak" : "dip", *centre);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include "coupling/compare/significance.h"
 #include "coupling/report/pile.h"
@@ -259,19 +260,23 @@ class Analysis {
     out.summary["verdict.sentence"] = sentence;
   }
 
-  // A row for every changed gravity.
+  // A row for every changed gravity, from the least one.
   static Table changes_of(const Summary& summary) {
     Table table{
         "Changed gravity",
         "Means over the piles with standard errors; against each pile under its own gravity.",
-        {"state", "contacts per grain, ratio", "contacts opened", "closed", "brought to sliding",
+        {"gravity", "contacts per grain, ratio", "contacts opened", "closed", "brought to sliding",
          "largest displacement / r", "dip's change (rho g h)"},
         {}};
+    const std::string first = "change.gravity_", last = ".coordination_ratio";
+    std::map<double, std::string> changes;
     for (const auto& [key, unused] : summary) {
-      const std::string first = "change.", last = ".coordination_ratio";
       if (!key.starts_with(first) || !key.ends_with(last)) continue;
       const std::string name = key.substr(0, key.size() - last.size());
-      std::vector<std::string> row{name.substr(first.size())};
+      changes[std::stod(name.substr(first.size()))] = name;
+    }
+    for (const auto& [gravity, name] : changes) {
+      std::vector<std::string> row{fmt::format("{:g} m/s2", gravity)};
       for (const char* what :
            {".coordination_ratio", ".contacts_lost", ".contacts_gained", ".newly_sliding",
             ".max_displacement_over_radius", ".dip_difference_change"}) {
@@ -286,9 +291,13 @@ class Analysis {
                      const std::string& averaged) {
     PileReport in;
     in.title = result.value.title.empty() ? result.value.name : result.value.title;
-    in.subtitle =
-        fmt::format("{} pile{}, {} grains each", result.realizations.size(),
-                    result.realizations.size() == 1 ? "" : "s", result.value.pile.source.grains);
+    // What stands, which is not what the case says where piles are taken from files.
+    double grains = result.value.pile.source.grains;
+    if (const auto standing = result.summary.find("dem.grains"); standing != result.summary.end()) {
+      if (const auto* mean = std::get_if<double>(&standing->second)) grains = *mean;
+    }
+    in.subtitle = fmt::format("{} pile{}, {:.0f} grains each", result.realizations.size(),
+                              result.realizations.size() == 1 ? "" : "s", grains);
     in.sentence = result.comparison.verdict.sentence;
     if (first != nullptr) {
       in.pile = first->find("pile");
@@ -302,6 +311,7 @@ class Analysis {
     in.averaged = averaged;
     in.figures = figure_rows(result.summary, {"dem.grains",
                                               "dem.contacts",
+                                              "repose.mean_deg",
                                               "dem.repose_angle_left_deg",
                                               "dem.repose_angle_right_deg",
                                               "pile.height",
@@ -313,11 +323,13 @@ class Analysis {
                                               "density.ratio",
                                               "density.p_value",
                                               "base.weight_ratio",
-                                              "dip.ratio",
                                               "dip.window_ratio",
                                               "dip.difference",
                                               "dip.standard_error",
                                               "dip.p_value",
+                                              "source.interval",
+                                              "dem.time_step",
+                                              "time.dem_cpu_s",
                                               "dem.max_overlap_ratio",
                                               "dem.unbalanced_force_ratio",
                                               "average.coarse_graining.balance_rms",

@@ -57,10 +57,10 @@ std::string dip_sentence(const Dip& dip) {
   }
   const bool peak = dip.verdict == "peak";
   const double p = dip.difference.p_value;
-  const std::string spread =
-      fmt::format("{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} of no {}",
-                  numbers, dip.difference.mean, dip.difference.standard_error,
-                  dip.difference.values, peak ? 1 - p : p, peak ? "peak" : "dip");
+  const std::string spread = fmt::format(
+      "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} if there were no {}",
+      numbers, dip.difference.mean, dip.difference.standard_error, dip.difference.values,
+      peak ? 1 - p : p, peak ? "peak" : "dip");
   if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
   if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);
   return fmt::format("No dip and no peak beyond the spread: {}.", spread);

@@ -129,8 +129,11 @@ bool EngineLoop<Shape, Law, Integrator>::wake_sleepers() {
   gather_touches();
   const double share = touch_steps_ > 0 ? 1.0 / static_cast<double>(touch_steps_) : 0.0;
   for (int j = awake_; j < n; ++j) {
-    if (bodies_[j].inverse_mass == 0) continue;
     Sum& touch = touches_[j];
+    if (bodies_[j].inverse_mass == 0) {
+      touch = Sum{};
+      continue;
+    }
     const Sum& rest = rests_[j];
     const double fx = rest.fx + share * touch.fx, fy = rest.fy + share * touch.fy;
     const double torque = rest.torque + share * touch.torque;

@@ -128,15 +128,28 @@ TEST(PileRun, LeavesEverything) {
 TEST(PileRun, ReportTellsWhatChangedGravityDid) {
   const Folder folder;
   const std::string file = folder.write("x.toml", tiny_pile());
-  const Output run = program("run " + file + " -o " + (folder / "out") +
-                             " --resume --set change.gravity=[8.829,5.0] --set source.grains=25");
+  const Output run =
+      program("run " + file + " -o " + (folder / "out") +
+              " --resume --set change.gravity=[8.829,20.0,5.0] --set source.grains=25");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out + run.err, HasSubstr("nothing to resume in"));
   const std::string page = testing::read_text(folder / "out/report.html");
   EXPECT_THAT(page, HasSubstr("<h2>Changed gravity</h2>"));
-  EXPECT_THAT(page, HasSubstr("gravity_8.829"));
-  EXPECT_THAT(page, HasSubstr("gravity_5"));
+  const auto row = [&](const char* gravity) { return page.find(std::string("<td>") + gravity); };
+  ASSERT_NE(row("20 m/s2"), std::string::npos);
+  EXPECT_LT(row("5 m/s2"), row("8.829 m/s2"));
+  EXPECT_LT(row("8.829 m/s2"), row("20 m/s2"));
   EXPECT_THAT(page, HasSubstr("contacts opened"));
+  EXPECT_THAT(page, HasSubstr("2 piles, 25 grains each"));
+  EXPECT_THAT(page, HasSubstr("themselves uncertain by 71 %"));
+  EXPECT_THAT(page, HasSubstr("(repose.mean_deg)"));
+  // Of piles from files what stands counts, not what the case would pour.
+  const Output again =
+      program("run " + file + " -o " + (folder / "again") + " --set source.grains=30" +
+              " --set 'grains.files=[\"" + (folder / "out/snapshots.h5") + "\"]'");
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(testing::read_text(folder / "again/report.html"),
+              HasSubstr("2 piles, 25 grains each"));
 }
 
 TEST(PileRun, ARoughFloorLiesAtTheTopsOfItsGrains) {
