@@ -116,6 +116,10 @@ std::string within_word(double largest) {
   return fmt::format("{} 1 %: {:.2g} %", largest <= 0.01 ? "within" : "beyond", 100 * largest);
 }
 
+std::string peaks_word(double peaks) {
+  return peaks == 1 ? "one peak" : fmt::format("{:.0f} peaks", peaks);
+}
+
 std::string slope_word(double ratio) {
   return fmt::format("{}: slope at high over slope at low strain {:.2f}",
                      std::fabs(std::log(ratio)) > std::log(1.25) ? "nonlinear" : "linear", ratio);
@@ -134,7 +138,7 @@ const std::vector<SourceFigure>& source_figures() {
                        *kAsymmetricPoint = "pile-asymmetric-point",
                        *kGravity = "pile-gravity-levels", *kFields = "pile-fields",
                        *kFieldsLine = "pile-fields-line", *kFieldsElliptic = "pile-fields-elliptic",
-                       *kLattice = "liffman-lattice";
+                       *kLattice = "liffman-lattice", *kPentagons = "point-load-pentagons";
   // Of a point source over the surface; a flat fraction is one without it.
   constexpr double kDenserMiddle = 0.09;
   // Angles are read to 1 degree, fractions to 0.01.
@@ -164,6 +168,8 @@ const std::vector<SourceFigure>& source_figures() {
              1.01, of(kLine, "density.ratio"), kDenserMiddle),
       number("Roul 3.4", "volume fraction, point source, middle over near the surface", "", kPoint,
              "1.08-1.10", 1.08, 1.10, of(kPoint, "density.ratio"), kDenserMiddle),
+      word("Roul 5.3", "response on the base, irregular pentagons", kPentagons, "one peak",
+           {"one peak"}, "response.peaks", peaks_word),
       word("Liffman 42", "N below 45 layers, largest difference from the closed form", kLattice,
            "0 (within 1 %)", {"within 1 %"}, "liffman.normal_max_error.slope_deg_60", within_word),
       word("Liffman 44", "H below 45 layers, likewise", kLattice, "0 (within 1 %)", {"within 1 %"},

@@ -146,6 +146,7 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "elastic.bulk_fabric_correlation",
                                    "elastic.young_fabric_correlation",
                                    "elastic.shear_fabric_correlation",
+                                   "response.peaks",
                                    "liffman.normal_max_error.slope_deg_60",
                                    "liffman.horizontal_max_error.slope_deg_60",
                                    "fit.cantelaube.a1",
