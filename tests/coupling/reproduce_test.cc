@@ -172,7 +172,8 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
   }
   std::string text = "{\"dip.verdict\": \"dip\", \"fit.cantelaube.branch\": \"zero\"";
   for (const std::string& key : all) {
-    EXPECT_NE(find_summary_key(key), nullptr) << key;
+    // Of a sweep's member.
+    EXPECT_NE(find_summary_key(key.substr(0, key.find(".slope_deg_"))), nullptr) << key;
     text += ", \"" + key + "\": 1.5";
   }
   for (const SourceFigure& f : source_figures()) folder.write(f.study + ".json", text + "}");
