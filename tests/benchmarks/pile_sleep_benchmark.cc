@@ -1,9 +1,9 @@
 // What sleeping saves while a pile of a point source is poured:
-//   pile_sleep_benchmark CASE.toml FOLDER [rounds]
+//   pile_sleep_benchmark CASE.toml FOLDER [rounds [realization]]
 // Times how long the pile takes for the next grains, with sleeping and with every grain awake, from
 // the same states on the way to the full pile, and integrates both over the pour. FOLDER holds the
-// states: checkpoints of realization 0 (of a run of the case under way, copied), or none: then the
-// pile is poured first, with sleeping, and they are left there.
+// states: checkpoints of the realization, 0 (of a run of the case under way, copied), or none: then
+// the pile is poured first, with sleeping, and they are left there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ constexpr double kShares[] = {0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
 // sleeping the cost hangs on what a grain sets in motion.
 constexpr int kAsleepWindow = 30, kAwakeWindow = 3;
 
-PileRun run_of(const Case& value, const std::string& state) {
-  PileRun run(value.pile, grainfield::coupling::realization_seed(value, 0), 1);
+PileRun run_of(const Case& value, int realization, const std::string& state) {
+  PileRun run(value.pile, grainfield::coupling::realization_seed(value, realization), 1);
   if (!state.empty()) run.restore(state);
   return run;
 }
@@ -41,8 +41,8 @@ double median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-void pour_states(const Case& value, const std::filesystem::path& folder) {
-  PileRun run = run_of(value, "");
+void pour_states(const Case& value, int realization, const std::filesystem::path& folder) {
+  PileRun run = run_of(value, realization, "");
   for (const double share : kShares) {
     const int grains = static_cast<int>(share * static_cast<double>(value.pile.source.grains));
     while (run.progress().grains < grains) run.advance(10000);
@@ -52,8 +52,9 @@ void pour_states(const Case& value, const std::filesystem::path& folder) {
 }
 
 // CPU seconds per grain of the next `window` grains.
-double seconds_per_grain(const Case& value, const std::string& state, int window, bool awake) {
-  PileRun run = run_of(value, state);
+double seconds_per_grain(const Case& value, int realization, const std::string& state, int window,
+                         bool awake) {
+  PileRun run = run_of(value, realization, state);
   if (awake) run.keep_awake();
   const double steps = value.pile.source.interval / run.time_step();
   run.advance(static_cast<long>(steps));  // until the neighbour list has its margin
@@ -62,13 +63,14 @@ double seconds_per_grain(const Case& value, const std::string& state, int window
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / window;
 }
 
-void measure(const std::string& case_file, const std::filesystem::path& folder, int rounds) {
+void measure(const std::string& case_file, const std::filesystem::path& folder, int rounds,
+             int realization) {
   const Case value = grainfield::coupling::read_case(case_file, false, {});
   if (value.study != "pile" || value.pile.source.kind != "point" || !value.pile.sleep.on) {
     throw std::invalid_argument(case_file + ": a pile from a point source with sleep.on is needed");
   }
   std::filesystem::create_directories(folder);
-  if (std::filesystem::is_empty(folder)) pour_states(value, folder);
+  if (std::filesystem::is_empty(folder)) pour_states(value, realization, folder);
 
   struct State {
     int grains = 0;
@@ -78,7 +80,7 @@ void measure(const std::string& case_file, const std::filesystem::path& folder, 
   const auto all = static_cast<int>(value.pile.source.grains);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path();
-    const auto progress = run_of(value, file).progress();
+    const auto progress = run_of(value, realization, file).progress();
     if (progress.grains + kAsleepWindow + 1 > all) {
       throw std::invalid_argument(file + ": too few grains left to pour");
     }
@@ -95,8 +97,8 @@ void measure(const std::string& case_file, const std::filesystem::path& folder, 
   for (const State& state : states) {
     std::vector<double> asleeps, awakes;
     for (int k = 0; k < rounds; ++k) {
-      asleeps.push_back(seconds_per_grain(value, state.file, kAsleepWindow, false));
-      awakes.push_back(seconds_per_grain(value, state.file, kAwakeWindow, true));
+      asleeps.push_back(seconds_per_grain(value, realization, state.file, kAsleepWindow, false));
+      awakes.push_back(seconds_per_grain(value, realization, state.file, kAwakeWindow, true));
     }
     const double asleep = median(asleeps), awake = median(awakes);
     fmt::print("{:6d}  {:33.4f}  {:9.4f}  {:5.2f}\n", state.grains, asleep, awake, awake / asleep);
@@ -118,11 +120,12 @@ void measure(const std::string& case_file, const std::filesystem::path& folder, 
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "usage: pile_sleep_benchmark CASE.toml FOLDER [rounds]\n");
+    fmt::print(stderr, "usage: pile_sleep_benchmark CASE.toml FOLDER [rounds [realization]]\n");
     return 2;
   }
   try {
-    measure(argv[1], argv[2], argc > 3 ? std::max(1, std::atoi(argv[3])) : 3);
+    measure(argv[1], argv[2], argc > 3 ? std::max(1, std::atoi(argv[3])) : 3,
+            argc > 4 ? std::max(0, std::atoi(argv[4])) : 0);
   } catch (const std::exception& e) {
     fmt::print(stderr, "pile_sleep_benchmark: {}\n", e.what());
     return 2;
