@@ -2,7 +2,9 @@
 
 namespace grainfield::dem {
 
-ThreadTeam::ThreadTeam(int size) : size_(size < 1 ? 1 : size) {
+ThreadTeam::ThreadTeam(int size)
+    : size_(size < 1 ? 1 : size),
+      spins_(size_ <= static_cast<int>(std::thread::hardware_concurrency()) ? 60000 : 1000) {
   for (int rank = 1; rank < size_; ++rank) threads_.emplace_back([this, rank] { serve(rank); });
 }
 
@@ -30,10 +32,11 @@ void ThreadTeam::run(const std::function<void(int)>& work) {
   }
 }
 
-// A step of a few thousand grains takes some 100 us: waiting threads spin for about as long as the
-// others may lag, and only then sleep (more threads than cores, a busy machine).
+// A step of a few thousand grains takes some 100 us. Waiting threads spin for about as long as the
+// others may lag, some 50 us, and only then sleep (a busy machine): to be woken takes as long
+// again. With 4,000 spins two threads made 1.58 times the steps of one with 5,000 heptagons, with
+// 60,000 1.82 times. More threads than cores must not spin away what the others need.
 void ThreadTeam::wait_for_all() {
-  constexpr int kSpins = 4000;
   const int round = round_.load(std::memory_order_relaxed);
   if (arrived_.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
     arrived_.store(0, std::memory_order_relaxed);
@@ -41,7 +44,7 @@ void ThreadTeam::wait_for_all() {
     round_.notify_all();
     return;
   }
-  for (int spin = 0; spin < kSpins; ++spin) {
+  for (int spin = 0; spin < spins_; ++spin) {
     if (round_.load(std::memory_order_acquire) != round) return;
   }
   round_.wait(round, std::memory_order_acquire);

@@ -30,6 +30,7 @@ class ThreadTeam {
   void wait_for_all();
 
   int size_;
+  int spins_;  // at a barrier, before it sleeps
   std::atomic<int> arrived_{0};
   std::atomic<int> round_{0};  // wraps around harmlessly
   std::mutex mutex_;
