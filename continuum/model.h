@@ -91,6 +91,8 @@ const ModelInfo& find_model(const std::string& name);
 std::string allowed(const Parameter& parameter);
 /// The one of the names with the fewest differing letters; empty when there are none.
 std::string nearest(const std::string& name, const std::vector<std::string>& names);
+/// The same when it differs in at most a third of the letters: a misspelling; otherwise empty.
+std::string misspelt(const std::string& name, const std::vector<std::string>& names);
 /// The dimension of the points of this model with these settings: 2 or 3.
 int dimension(const ModelInfo& info, const Settings& settings);
 /// A model ready to evaluate. Every setting must be a known parameter within its range (throws

@@ -57,6 +57,11 @@ std::string nearest(const std::string& name, const std::vector<std::string>& nam
   return best == names.end() ? std::string() : *best;
 }
 
+std::string misspelt(const std::string& name, const std::vector<std::string>& names) {
+  const std::string best = nearest(name, names);
+  return 3 * edits(name, best) <= name.size() ? best : std::string();
+}
+
 std::string allowed(const Parameter& parameter) {
   if (!parameter.choices.empty()) return fmt::format("{}", fmt::join(parameter.choices, ", "));
   if (is_text(parameter)) return "any text";

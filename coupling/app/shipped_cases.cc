@@ -64,9 +64,10 @@ std::string find_case(const std::string& name) {
     throw std::invalid_argument(name + ": is a folder, expected a case file");
   }
   if (names.empty()) throw std::invalid_argument(name + ": no such file");
+  const std::string near = continuum::misspelt(wanted, names);
   throw std::invalid_argument(
-      fmt::format("{}: no such file, and no shipped case; nearest: {} (grainfield cases)", name,
-                  continuum::nearest(wanted, names)));
+      fmt::format("{}: no such file, and no shipped case{} (grainfield cases)", name,
+                  near.empty() ? "" : "; nearest: " + near));
 }
 
 }  // namespace grainfield::coupling

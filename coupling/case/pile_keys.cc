@@ -62,6 +62,10 @@ void source(Section s) {
   s.number("spread", "-", +IN(double, pile.source.spread), {0, 1000},
            "grains start within +- this many mean radii of the funnel's axis");
   s.only("source.kind", {"point"});
+  s.number("opening", "m", +IN(double, pile.source.opening), kNotNegative,
+           "width of the funnel's mouth between two immobile plates at 60 degrees, down which the "
+           "grains come; 0: no plates, they fall freely from the mouth (and cost less)");
+  s.only("source.kind", {"point"});
   s.number("move", "m", +IN(double, pile.source.move), {},
            "the funnel moves this far to the right while it pours; an asymmetric pile",
            "Roul 3.11");

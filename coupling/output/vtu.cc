@@ -152,6 +152,10 @@ void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot) 
   Grid grid;
   for (const dem::Contact& c : contacts)
     grid.add_cell({grain(snapshot, c.i).position, branch_end(snapshot, c)}, vtk_line);
+  grid.add_integer("i", [&](std::size_t k) { return grain(snapshot, contacts[k].i).id; });
+  grid.add_integer("j", [&](std::size_t k) {
+    return contacts[k].j < 0 ? -1 : grain(snapshot, contacts[k].j).id;
+  });
   grid.add_vector("force", [&](std::size_t k) { return contacts[k].force; });
   grid.add_number("normal_force", [&](std::size_t k) { return contacts[k].normal_force; });
   grid.add_number("tangential_force", [&](std::size_t k) { return contacts[k].tangential_force; });

@@ -18,7 +18,8 @@ std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides = 32);
 void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
                       const dem::Snapshot* reference = nullptr);
 /// One line from centre to centre (centre to contact point for walls) per contact. Cell data:
-/// force, normal_force, tangential_force, sliding, wall (-1: a pair).
+/// i, j (ids of the two grains; j is -1 for a wall), force (on grain i), normal_force,
+/// tangential_force, sliding, wall (-1: a pair).
 void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot);
 /// One quadrilateral per contact along the branch whose width grows with the normal force (that of
 /// the largest force is the smaller grain's radius). Cell data: normal_force, relative_force.

@@ -27,11 +27,17 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double 
     : picture_(picture), snapshot_(snapshot), above_(above) {
   std::vector<double> lefts;
   double bottom = 0, top = 1, diameter = 0;
+  // A funnel's plates hang above the picture.
+  const bool free = std::any_of(snapshot.grains.begin(), snapshot.grains.end(),
+                                [](const dem::Grain& g) { return !g.fixed; });
+  bool any = false;
   for (const dem::Grain& g : snapshot.grains) {
     bottom = lefts.empty() ? bottom_of(g) : std::min(bottom, bottom_of(g));
-    top = lefts.empty() ? top_of(g) : std::max(top, top_of(g));
     lefts.push_back(left_of(g));
+    if (free && g.fixed) continue;
+    top = any ? std::max(top, top_of(g)) : top_of(g);
     diameter = std::max(diameter, 2 * g.radius);
+    any = true;
   }
   if (!lefts.empty()) find_bulk(stray_gap * diameter);
   const double margin = 0.01 * (right_ - left_);

@@ -289,6 +289,10 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
         options.note(fmt::format("nothing to resume in {}{}: starting anew", options.folder,
                                  place.finished() ? ", whose run is finished" : ""));
       }
+      if (!options.resume && place.finished()) {
+        options.note(
+            fmt::format("{} holds a finished run; this one will take its place", options.folder));
+      }
       place.open(value, options.resume);
     });
     opened = true;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/heap/funnel.h"
+
 namespace grainfield::dem {
 
 PointSource::PointSource(const SourceSetup& source, double gravity, double time_step)
@@ -13,7 +15,7 @@ long PointSource::release_step(int k) const {
 }
 
 long PointSource::arrival_step(int k, double y) const {
-  const double fall = source_.height - y;
+  const double fall = start_height() - y;
   if (fall <= 0) return release_step(k);
   return release_step(k) +
          static_cast<long>(least_interval(source_.speed, gravity_, fall) / time_step_);
@@ -21,9 +23,11 @@ long PointSource::arrival_step(int k, double y) const {
 
 void PointSource::place(NewGrain& grain, int k, long step) const {
   const double t = static_cast<double>(step - release_step(k)) * time_step_;
-  grain.y = source_.height - source_.speed * t - 0.5 * gravity_ * t * t;
+  grain.y = start_height() - source_.speed * t - 0.5 * gravity_ * t * t;
   grain.vy = -source_.speed - gravity_ * t;
 }
+
+double PointSource::start_height() const { return source_.height + funnel_rise(source_); }
 
 double PointSource::axis(int k) const {
   return source_.move * (static_cast<double>(k) / (source_.grains - 1) - 0.5);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/heap/funnel.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/pile_run.h"
 
@@ -26,12 +27,15 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
       engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
                       threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
   check_source(setup_, grains_);
-  settings_.polygons = setup_.shape.kind != "disk";
+  settings_.polygons = setup_.shape.kind != "disk" || setup_.source.opening > 0;
   const SleepSetup& s = setup_.sleep;
   settings_.sleep = {s.on,         s.quiet_time, s.quiet_move, s.quiet_force,
                      s.wake_force, s.wake_speed, s.wake_reach};
   engine_ = empty_engine();
   add_floor_grains();
+  for (const NewGrain& plate : funnel_plates(setup_.source, setup_.material.density)) {
+    engine_->add(plate);
+  }
   point_.emplace(setup_.source, setup_.material.gravity, settings_.time_step);
   line_ = {-0.5 * setup_.source.length, 0.5 * setup_.source.length};
   changes_.emplace(setup_.change, setup_.rest, settings_, smaller_step(setup_.motion));

@@ -47,7 +47,8 @@ void PileRun::release_grain() {
   f.grain = poured_;
   f.x =
       point_->axis(poured_) + setup_.source.spread * 0.5 * mean_diameter_ * random_.uniform(-1, 1);
-  const double entry = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
+  const double near = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
+  const double entry = setup_.source.opening > 0 ? point_->start_height() : near;
   f.step = point_->arrival_step(poured_, entry);
   // One after the other, and not before those that are to join at this very step.
   if (!in_flight_.empty()) f.step = std::max(f.step, in_flight_.back().step + 1);
@@ -60,9 +61,12 @@ void PileRun::release_grain() {
 bool PileRun::join(const Flight& f) {
   const ShapedGrain& shaped = grains_[f.grain];
   NewGrain g = shaped.at(f.x, 0, setup_.material.density);
-  point_->place(g, f.grain, phase_steps_);
+  // Between plates it waits at the top for its turn; free flight goes on.
+  const bool waits = setup_.source.opening > 0;
+  point_->place(g, f.grain, waits ? point_->release_step(f.grain) : phase_steps_);
   const Snapshot now = engine_->snapshot();
   for (const Grain& other : now.grains) {
+    if (other.fixed) continue;
     if (std::hypot(other.position.x() - g.x, other.position.y() - g.y) < other.radius + g.radius) {
       return false;
     }
@@ -133,7 +137,9 @@ void PileRun::settle() {
   const double fall = std::sqrt(2 * kEntryMargin * mean_diameter_ / setup_.material.gravity);
   if (in_phase() < 2 * fall) return;
   if (!settled(1) && in_phase() < kMaxSettleTime) return;
-  check_walls_free(setup_, engine_->snapshot(), largest_diameter_, 1);
+  const Snapshot now = engine_->snapshot();
+  check_walls_free(setup_, now, largest_diameter_, 1);
+  check_funnel_empty(setup_, now);
   engine_->set_sleep(false);
   enter(PilePhase::rest);
 }

@@ -52,18 +52,25 @@ Progress PileRun::progress() const {
   return p;
 }
 
+Outlook PileRun::outlook() const {
+  // Nobody knows how long the layers of a line take to settle.
+  const double pour = setup_.source.grains * setup_.source.interval;
+  return {setup_.source.grains, settings_.time_step, setup_.source.kind == "point" ? pour : 0};
+}
+
 std::string PileRun::fingerprint() const {
   const ShapeSetup& h = setup_.shape;
   const SourceSetup& o = setup_.source;
   const SleepSetup& s = setup_.sleep;
   return fmt::format(
-      "pile {} {} {} {} {} {} {} [{}] | {} {} {} {} {} {} {} {} {} {} | {} {} | {} {} {} {} {} {} "
+      "pile {} {} {} {} {} {} {} [{}] | {} {} {} {} {} {} {} {} {} {} {} | {} {} | {} {} {} {} {} "
+      "{} "
       "{} | {} | {} | {} | {} | {}",
       h.kind, h.radius, h.polydispersity, h.corners_min, h.corners_max, h.axis_ratio, h.side,
-      fmt::join(h.outline, " "), o.kind, o.grains, o.speed, o.height, o.interval, o.spread, o.move,
-      o.clearance, o.length, o.shift, setup_.floor.kind, setup_.floor.length, s.on, s.quiet_time,
-      s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach, changes_->describe(),
-      describe(setup_.material), describe(setup_.motion, settings_.time_step),
+      fmt::join(h.outline, " "), o.kind, o.grains, o.speed, o.height, o.interval, o.spread,
+      o.opening, o.move, o.clearance, o.length, o.shift, setup_.floor.kind, setup_.floor.length,
+      s.on, s.quiet_time, s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach,
+      changes_->describe(), describe(setup_.material), describe(setup_.motion, settings_.time_step),
       describe(setup_.rest), seed_);
 }
 

@@ -33,6 +33,7 @@ class PointLoadRun final : public Run {
   void advance(long steps) override;
   bool done() const override { return phase_ == Phase::done; }
   Progress progress() const override;
+  Outlook outlook() const override { return {engine_->grains(), engine_->time_step(), 0}; }
   void save(const std::string& file) const override;
   void restore(const std::string& file) override;
   RunResult result() const override;

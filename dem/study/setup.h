@@ -86,6 +86,8 @@ struct SourceSetup {
   double height = 0.5;         ///< m above the floor; point: of the funnel's mouth
   double interval = 0.1;       ///< s from one grain to the next; point
   double spread = 0.5;  ///< mean radii; point: grains start within +- this from the funnel's axis
+  double opening = 0;   ///< m; point: width of the mouth between two immobile plates; 0: no plates,
+                        ///< grains fall freely from the mouth (dem/heap/funnel.h)
   double move = 0;      ///< m; point: the funnel moves this far to the right while it pours,
                         ///< from -move/2 to move/2 (asymmetric piles)
   double clearance = 0.008;  ///< m above the pile from which a layer falls; line

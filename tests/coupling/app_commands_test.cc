@@ -59,6 +59,8 @@ TEST(Commands, CasesAreFoundByTheirNames) {
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("fit-ols-point: no such file, and no shipped case; nearest: "
                                      "fit-osl-point (grainfield cases)"));
+  EXPECT_THAT(program("run nofile.toml", there).err,
+              HasSubstr("nofile.toml: no such file, and no shipped case (grainfield cases)"));
   // A path is meant as it stands.
   EXPECT_EQ(program("check nowhere/fit-osl-point.toml", there).code, 2);
   // A folder of results does not hide the case, a file does.

@@ -1,0 +1,160 @@
+// A point source between immobile plates.
+#include "dem/heap/funnel.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "dem/heap/grain_family.h"
+#include "dem/random/random.h"
+#include "dem/shapes/polygon.h"
+#include "dem/study/pile_checks.h"
+#include "tests/dem/pile_scene.h"
+
+namespace grainfield::dem {
+namespace {
+
+PileSetup funnel_pile(double opening) {
+  PileSetup s = small_pile("point", "rand1");
+  s.source.grains = 30;
+  s.source.interval = 0.2;
+  s.source.spread = 2;
+  s.source.opening = opening;
+  return s;
+}
+
+TEST(Funnel, PlatesLeaveTheMouthOpen) {
+  SourceSetup s;
+  EXPECT_TRUE(funnel_plates(s, 1).empty());
+  s.height = 2;
+  s.opening = 0.3;
+  const std::vector<NewGrain> plates = funnel_plates(s, 1);
+  ASSERT_EQ(plates.size(), 2u);
+  for (const double side : {-1.0, 1.0}) {
+    const NewGrain& p = plates[side < 0 ? 0 : 1];
+    EXPECT_TRUE(p.fixed);
+    EXPECT_GT(area_of(p.outline), 0);  // counter-clockwise
+    const auto [cx, cy] = centroid_of(p.outline);
+    EXPECT_NEAR(cx, 0, 1e-15);
+    EXPECT_NEAR(cy, 0, 1e-15);
+    // The corner nearest the axis is the mouth's edge, the face above it rises at 60 degrees.
+    double inner = 1e9, low = 1e9, high = -1e9;
+    for (const auto& [x, y] : p.outline) {
+      inner = std::min(inner, side * (p.x + x));
+      low = std::min(low, p.y + y);
+      high = std::max(high, p.y + y);
+      EXPECT_GE(side * (p.x + x) + 1e-12, 0.15 + (p.y + y - 2) / std::sqrt(3));
+    }
+    EXPECT_NEAR(inner, 0.15, 1e-15);
+    EXPECT_NEAR(low, 2, 1e-15);
+    EXPECT_NEAR(high, 2 + funnel_rise(s), 1e-15);
+  }
+  EXPECT_NEAR(funnel_half_width(s), 0.15 + funnel_rise(s) / std::sqrt(3), 1e-15);
+}
+
+// Grains that start beside the mouth come down through it, with a push from the plates, and the
+// pile stands on the floor alone.
+TEST(Funnel, GrainsComeDownThroughTheMouth) {
+  const auto run = make_pile_run(funnel_pile(0.12), 3, 1);
+  finish(*run);
+  const RunResult r = run->result();
+  const Snapshot& pile = r.snapshots[0].second;
+  int plates = 0;
+  for (const Grain& g : pile.grains) {
+    plates += g.fixed ? 1 : 0;
+    if (g.fixed) continue;
+    EXPECT_LT(g.position.y(), 0.6);
+  }
+  EXPECT_EQ(plates, 2);
+  EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3);
+  for (const Contact& c : pile.contacts) {
+    EXPECT_FALSE(pile.grains[c.i].fixed);
+    EXPECT_TRUE(c.j < 0 || !pile.grains[c.j].fixed);
+  }
+}
+
+// Wherever a grain starts between the plates, it leaves by the mouth.
+TEST(Funnel, EveryGrainLeavesByTheMouth) {
+  SourceSetup source;
+  source.opening = 0.12;
+  source.height = 1;
+  ShapeSetup shape;
+  shape.radius = 0.0275;
+  Random random(7);
+  for (int k = 0; k < 60; ++k) {
+    EngineSettings settings;
+    settings.friction = 0.54;
+    settings.polygons = true;
+    const auto engine = make_engine(settings);
+    for (const NewGrain& plate : funnel_plates(source, 5000)) engine->add(plate);
+    const ShapedGrain grain = draw_grain(shape, random);
+    const double room = funnel_half_width(source) - grain.radius;
+    engine->add(grain.at(random.uniform(-room, room), source.height + funnel_rise(source), 5000));
+    double mouth = 1e9;
+    for (int chunk = 0; chunk < 2000 && engine->snapshot().grains[2].position.y() > 0.9; ++chunk) {
+      engine->step(100);
+      const Snapshot now = engine->snapshot();
+      if (now.grains[2].position.y() < source.height) {
+        mouth = std::min(mouth, std::fabs(now.grains[2].position.x()));
+      }
+    }
+    EXPECT_LT(mouth, 0.5 * source.opening) << k;
+  }
+}
+
+TEST(Funnel, RefusesWhatCannotBe) {
+  const auto refusal = [](const PileSetup& s) -> std::string {
+    try {
+      make_pile_run(s, 1, 1);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal(funnel_pile(0.12)), "accepted");
+  EXPECT_THAT(refusal(funnel_pile(-1)), testing::HasSubstr("source.opening: found -1, allowed: 0"));
+  EXPECT_THAT(
+      refusal(funnel_pile(0.06)),
+      testing::HasSubstr("source.opening: found 0.06, allowed: 0 (no funnel) or at least "));
+  PileSetup s = funnel_pile(0.12);
+  s.source.move = 0.1;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("source.move: found 0.1, allowed: 0 with a funnel"));
+  s = funnel_pile(0.12);
+  s.source.spread = 1e-3;
+  EXPECT_EQ(refusal(s), "accepted");
+  s.source.spread = 100;
+  const std::string text = refusal(s);
+  EXPECT_THAT(text, testing::HasSubstr("source.spread: found 100, allowed: at most "));
+  s.source.spread = std::stod(text.substr(text.find("at most ") + 8));
+  EXPECT_EQ(refusal(s), "accepted");
+  s = small_pile("line", "disk");
+  s.source.opening = 0.1;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("source.opening: found 0.1, allowed: 0 with source"));
+}
+
+TEST(Funnel, SaysWhenGrainsAreStuck) {
+  const PileSetup s = funnel_pile(0.12);
+  Snapshot now;
+  now.grains.resize(2);
+  now.grains[0].fixed = true;  // a plate
+  now.grains[0].position.y() = 1.2;
+  now.grains[1].position.y() = 0.99;
+  EXPECT_NO_THROW(check_funnel_empty(s, now));
+  now.grains[1].position.y() = 1.01;
+  try {
+    check_funnel_empty(s, now);
+    FAIL();
+  } catch (const ComputationFailed& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("1 grain is stuck in the funnel after the pour; "
+                                                 "raise source.opening, now 0.12 m"));
+  }
+  // A slow grain on a plate is not the pile's top.
+  Contact c;
+  c.i = 1;
+  c.j = 0;
+  now.contacts.push_back(c);
+  EXPECT_EQ(resting_top(now), 0);
+}
+
+}  // namespace
+}  // namespace grainfield::dem
