@@ -14,7 +14,18 @@ namespace {
 
 constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
-constexpr double stray_gap = 3;                                             // largest diameters
+constexpr double label_height = 30;  // pixels of a mark on the y axis
+constexpr double stray_gap = 3;      // largest diameters
+
+// A round step (1, 2 or 5 times a power of ten) that gives at most so many marks on a span.
+double round_step(double span, double marks) {
+  const double least = span / std::max(marks, 1.0);
+  const double unit = std::pow(10, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * unit >= least) return factor * unit;
+  }
+  return 10 * unit;
+}
 
 bool any_outline(const dem::Snapshot& snapshot) {
   return std::any_of(snapshot.grains.begin(), snapshot.grains.end(),
@@ -109,10 +120,10 @@ void Scene::set_axes() {
   picture_.program += fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
       "set tmargin at screen {:.4f}\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
-      "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
+      "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nset ytics {:g}\nunset key\n"
       "set xlabel 'x (m)'\nset ylabel 'y (m)' offset 1,0\n",
       side / width, 1 - right_side / width, below / height, 1 - above_ / height, left_, right_,
-      bottom_, top_);
+      bottom_, top_, round_step(top_ - bottom_, plot_height_ / label_height));
 }
 
 void Scene::plot_grains(const char* edge) {

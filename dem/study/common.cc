@@ -76,6 +76,16 @@ void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string
       rest.max_time, when, d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy, remedy));
 }
 
+void add_reached(const std::string& prefix, const Reached& reached,
+                 std::map<std::string, double>& figures) {
+  const auto add = [&](const char* name, double value) {
+    if (!std::isnan(value)) figures[prefix + name] = value;
+  };
+  add(".unbalanced_force_ratio", reached.unbalanced_force_ratio);
+  add(".load_steps", reached.load_steps);
+  add(".iterations", reached.iterations);
+}
+
 void add_engine_figures(const Engine& engine, const Diagnostics& state,
                         std::map<std::string, double>& figures) {
   figures["dem.grains"] = engine.grains();

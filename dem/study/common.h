@@ -1,6 +1,7 @@
 // What every study of grains does alike: engine settings and their time step, the criterion of
 // rest, and checkpoints.
 #pragma once
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -11,6 +12,16 @@
 #include "dem/study/setup.h"
 
 namespace grainfield::dem {
+
+/// How a slow change came to rest; nan: it was not made here, or not by Newton's method.
+struct Reached {
+  double unbalanced_force_ratio = std::numeric_limits<double>::quiet_NaN();
+  double load_steps = std::numeric_limits<double>::quiet_NaN();  ///< of Newton's method
+  double iterations = std::numeric_limits<double>::quiet_NaN();  ///< its steps in all load steps
+};
+/// Those that are known, as PREFIX.unbalanced_force_ratio, .load_steps and .iterations.
+void add_reached(const std::string& prefix, const Reached& reached,
+                 std::map<std::string, double>& figures);
 
 /// Settings of the engine, without polygons and sleeping. Throws std::invalid_argument naming the
 /// key when there is no gravity or the time step is above the stable limit of these grains;

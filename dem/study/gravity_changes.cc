@@ -30,7 +30,7 @@ GravityChanges::GravityChanges(const ChangeSetup& change, const RestSetup& rest,
       remedy_(std::move(remedy)),
       where_(std::move(where)),
       changed_(change.gravity.size()),
-      ratio_(change.gravity.size(), std::nan("")) {
+      reached_(change.gravity.size()) {
   settings_.sleep.on = false;
 }
 
@@ -76,7 +76,9 @@ void GravityChanges::solve(std::size_t k, const std::function<bool(double)>& wat
   try {
     QuasistaticResult r =
         relax(packing_, settings_, Vec3(0, -gravity, 0), AppliedForce{}, settings);
-    keep(k, std::move(r.state), r.unbalanced_force_ratio);
+    keep(k, std::move(r.state),
+         {r.unbalanced_force_ratio, static_cast<double>(r.steps),
+          static_cast<double>(r.iterations)});
   } catch (const RelaxationStopped&) {
     return;
   } catch (const ComputationFailed& failure) {
@@ -110,7 +112,9 @@ void GravityChanges::move(std::size_t k, long steps) {
     }
     const Diagnostics d = engine_->measure();
     if (at_rest(d, rest_)) {
-      keep(k, engine_->snapshot(), d.unbalanced_force_ratio);
+      Reached reached;
+      reached.unbalanced_force_ratio = d.unbalanced_force_ratio;
+      keep(k, engine_->snapshot(), reached);
       engine_.reset();
       return;
     }
@@ -120,11 +124,11 @@ void GravityChanges::move(std::size_t k, long steps) {
   }
 }
 
-void GravityChanges::keep(std::size_t k, Snapshot state, double unbalanced_force_ratio) {
+void GravityChanges::keep(std::size_t k, Snapshot state, const Reached& reached) {
   state.attributes = packing_.attributes;
   state.attributes["state"] = name(k);
   changed_[k] = std::move(state);
-  ratio_[k] = unbalanced_force_ratio;
+  reached_[k] = reached;
 }
 
 void GravityChanges::save(ImageWriter& image, NamedSnapshots& snapshots) const {
@@ -134,7 +138,7 @@ void GravityChanges::save(ImageWriter& image, NamedSnapshots& snapshots) const {
     if (changed_[k]) snapshots.emplace_back(name(k), *changed_[k]);
   }
   image.put(there);
-  image.put(ratio_);
+  image.put(reached_);
   image.put(steps_);
   image.put(engine_ ? engine_->image() : std::string());
 }
@@ -143,10 +147,10 @@ void GravityChanges::restore(ImageReader& image, const std::string& file) {
   std::vector<int> there;
   std::string moving;
   image.get(there);
-  image.get(ratio_);
+  image.get(reached_);
   image.get(steps_);
   image.get(moving);
-  image.require(there.size() == changed_.size() && ratio_.size() == changed_.size());
+  image.require(there.size() == changed_.size() && reached_.size() == changed_.size());
   for (std::size_t k = 0; k < changed_.size(); ++k) {
     changed_[k].reset();
     if (there[k] != 0) changed_[k] = read_snapshot(file, fmt::format("/{}", name(k)));
@@ -163,9 +167,7 @@ void GravityChanges::add_to(RunResult& result) const {
     if (!changed_[k]) continue;
     result.snapshots.emplace_back(name(k), *changed_[k]);
     add_change_figures(packing_, *changed_[k], name(k), result.figures);
-    if (!std::isnan(ratio_[k])) {
-      result.figures[fmt::format("change.{}.unbalanced_force_ratio", name(k))] = ratio_[k];
-    }
+    add_reached("change." + name(k), reached_[k], result.figures);
   }
 }
 

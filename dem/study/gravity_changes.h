@@ -54,7 +54,7 @@ class GravityChanges {
   std::string name(std::size_t k) const;
   void solve(std::size_t k, const std::function<bool(double)>& watch);
   void move(std::size_t k, long steps);
-  void keep(std::size_t k, Snapshot state, double unbalanced_force_ratio);
+  void keep(std::size_t k, Snapshot state, const Reached& reached);
 
   ChangeSetup change_;
   RestSetup rest_;
@@ -62,9 +62,9 @@ class GravityChanges {
   std::string remedy_, where_;
   Snapshot packing_;
   std::vector<std::optional<Snapshot>> changed_;  // one per change.gravity, in its order
-  std::vector<double> ratio_;                     // unbalanced force ratio; nan: was known already
-  std::unique_ptr<Engine> engine_;                // of the damped change at work
-  long steps_ = 0;                                // of it
+  std::vector<Reached> reached_;
+  std::unique_ptr<Engine> engine_;  // of the damped change at work
+  long steps_ = 0;                  // of it
 };
 
 }  // namespace grainfield::dem

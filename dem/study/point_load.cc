@@ -61,7 +61,7 @@ class PointLoadRun final : public Run {
   long phase_steps_ = 0;
   int rows_dropped_ = 0;
   std::optional<Snapshot> unloaded_, loaded_;
-  double solved_to_ = std::nan("");  // ratio that Newton's method reached
+  Reached reached_;  // by Newton's method
 };
 
 const PackingSetup& checked(const PackingSetup& packing) {
@@ -186,7 +186,8 @@ void PointLoadRun::solve() {
   try {
     QuasistaticResult r =
         relax(*unloaded_, settings_, unloaded_->gravity, load_on(*unloaded_), settings);
-    solved_to_ = r.unbalanced_force_ratio;
+    reached_ = {r.unbalanced_force_ratio, static_cast<double>(r.steps),
+                static_cast<double>(r.iterations)};
     loaded_ = std::move(r.state);
     loaded_->attributes["state"] = "loaded";
     phase_ = Phase::done;
@@ -289,7 +290,7 @@ void PointLoadRun::save(const std::string& file) const {
   w.put(rows_dropped_);
   w.put(random_.state());
   w.put(supply_.taken());
-  w.put(solved_to_);
+  w.put(reached_);
   w.put(engine_->image());
   NamedSnapshots snapshots;
   if (unloaded_) snapshots.emplace_back("unloaded", *unloaded_);
@@ -308,7 +309,7 @@ void PointLoadRun::restore(const std::string& file) {
   r.get(rows_dropped_);
   r.get(random_state);
   r.get(taken);
-  r.get(solved_to_);
+  r.get(reached_);
   r.get(image);
   r.finish();
   random_.set_state(random_state);
@@ -345,7 +346,7 @@ RunResult PointLoadRun::result() const {
   f["load.x"] = grain.position.x();
   f["load.y"] = grain.position.y();
 
-  if (!std::isnan(solved_to_)) f["load.unbalanced_force_ratio"] = solved_to_;
+  add_reached("load", reached_, f);
   const ContactChanges c = compare_contacts(*unloaded_, *loaded_);
   f["load.contacts_gained"] = c.gained;
   f["load.contacts_lost"] = c.lost;

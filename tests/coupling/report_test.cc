@@ -145,6 +145,36 @@ TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   EXPECT_EQ(packing("t", heap).caption.find("rolled"), std::string::npos);
 }
 
+// A rough floor that reaches far beyond the heap, and a funnel's plates above it, do not shrink it.
+TEST_F(ReportTest, FixedGrainsBesideAndAboveTheHeapAreLeftOut) {
+  const dem::Snapshot heap = test::lattice_heap(12);
+  const Picture plain = packing("t", heap);
+  dem::Snapshot with = heap;
+  double left = 1e9, right = -1e9, top = -1e9;
+  for (const dem::Grain& g : heap.grains) {
+    left = std::min(left, g.position.x() - g.radius);
+    right = std::max(right, g.position.x() + g.radius);
+    top = std::max(top, g.position.y() + g.radius);
+  }
+  for (const double x : {left - 1, left - 0.02, right + 0.02, right + 1}) {
+    dem::Grain fixed = heap.grains[0];
+    fixed.id = static_cast<std::int64_t>(with.grains.size());
+    fixed.fixed = true;
+    fixed.position.x() = x;
+    with.grains.push_back(fixed);
+  }
+  with.grains.back().position = {0, 10 * top, 0};
+  const Picture cropped = packing("t", with);
+  EXPECT_EQ(cropped.height, plain.height);
+  EXPECT_EQ(cropped.caption.find("rolled"), std::string::npos);
+  // The same frame, to the letter.
+  const auto frame = [](const Picture& picture) {
+    const auto at = picture.program.find("set xrange");
+    return picture.program.substr(at, picture.program.find("set border") - at);
+  };
+  EXPECT_EQ(frame(cropped), frame(plain));
+}
+
 TEST_F(ReportTest, WithoutGnuplotKeepsItsTablesAndSaysWhatToInstall) {
   setenv("PATH", folder_.c_str(), 1);
   const dem::Snapshot before = test::layer(1), after = test::layer(1, 12, 6, false, 2);

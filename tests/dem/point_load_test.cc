@@ -127,6 +127,9 @@ TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
     ASSERT_EQ(a.figures.at("load.no_rearrangement"), 1) << disks;
     EXPECT_EQ(b.figures.at("load.no_rearrangement"), 1) << disks;
     EXPECT_LE(b.figures.at("load.unbalanced_force_ratio"), 1e-8);
+    EXPECT_GE(b.figures.at("load.load_steps"), 1);
+    EXPECT_GE(b.figures.at("load.iterations"), b.figures.at("load.load_steps"));
+    EXPECT_EQ(a.figures.count("load.iterations"), 0u);
     EXPECT_NEAR(b.figures.at("base.response_over_load"), 1, 1e-4) << disks;
     EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "loaded");
     EXPECT_EQ(b.snapshots[1].second.loaded_grain, a.snapshots[1].second.loaded_grain);

@@ -1,4 +1,4 @@
-// Quasi-static relaxation against closed forms, and the properties of its tangent.
+// Quasi-static relaxation against closed forms.
 #include "dem/quasistatic/quasistatic.h"
 
 #include <gmock/gmock.h>
@@ -13,74 +13,10 @@
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
 #include "dem/study/contact_changes.h"
+#include "tests/dem/quasistatic_scene.h"
 
 namespace grainfield::dem {
 namespace {
-
-constexpr double kG = 9.81;
-
-EngineSettings area_law(double friction) {
-  EngineSettings e;
-  e.law = OverlapAreaLaw{1e7, 0.75};
-  e.friction = friction;
-  return e;
-}
-
-NewGrain disk(double x, double y, double r = 0.01) {
-  NewGrain g;
-  g.x = x;
-  g.y = y;
-  g.radius = r;
-  g.density = 1000;
-  return g;
-}
-
-NewGrain polygon(double x, double y, const Outline& outline) {
-  NewGrain g;
-  g.x = x;
-  g.y = y;
-  g.outline = centred_outline(outline);
-  g.radius = circumradius_of(g.outline);
-  g.density = 1000;
-  return g;
-}
-
-Wall wall(const char* name, double x, double y, double nx, double ny, double mu) {
-  return {name, {x, y, 0}, {nx, ny, 0}, mu};
-}
-
-/// The grains where they are put, without contacts.
-Snapshot put(const std::vector<NewGrain>& grains, const std::vector<Wall>& walls) {
-  EngineSettings e;
-  e.polygons = true;
-  e.time_step = 1e-7;
-  const auto engine = make_engine(e);
-  for (const NewGrain& g : grains) engine->add(g);
-  for (const Wall& w : walls) engine->add_wall(w);
-  Snapshot s = engine->snapshot();
-  s.gravity = Vec3(0, -kG, 0);
-  return s;
-}
-
-/// A block of touching disks on a triangular lattice, with radii jittered (each one smaller, so
-/// that some contacts open), between walls.
-Snapshot block(int columns, int rows, double friction) {
-  PackingSetup p;
-  p.kind = "triangular";
-  p.sizes = "mono";
-  p.columns = columns;
-  p.rows = rows;
-  Random random(1);
-  std::vector<Wall> walls = layer_walls(p, MaterialSetup{});
-  for (Wall& w : walls) w.friction = friction;
-  return put(lattice_grains(p, 1000, random), walls);
-}
-
-double weight(const Snapshot& s) {
-  double w = 0;
-  for (const Grain& g : s.grains) w += g.fixed ? 0 : g.mass * s.gravity.norm();
-  return w;
-}
 
 TEST(Quasistatic, TwoDisksUnderWeightOverlapAsTheLawsSay) {
   const double r = 0.01, m = 1000 * std::numbers::pi * r * r;
@@ -165,147 +101,6 @@ TEST(Quasistatic, RelaxingARelaxedStateChangesNothing) {
     EXPECT_NEAR(again.state.contacts[k].spring, once.contacts[k].spring, 1e-6);
     EXPECT_EQ(again.state.contacts[k].sliding, once.contacts[k].sliding);
   }
-}
-
-/// Random grains, overlapping a little, some with springs.
-Snapshot cluster(Random& random, bool polygons) {
-  std::vector<NewGrain> grains;
-  for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 3; ++x) {
-      const double r = 0.01 * random.uniform(0.9, 1.1);
-      const double px = 0.0195 * x + 0.001 * random.uniform(),
-                   py = 0.0095 + 0.0195 * y + 0.001 * random.uniform();
-      if (!polygons || random.uniform() < 0.2) {
-        grains.push_back(disk(px, py, r));
-        continue;
-      }
-      Outline o;
-      const int n = 3 + static_cast<int>(random.uniform() * 6);
-      for (int k = 0; k < n; ++k) {
-        const double angle = 2 * std::numbers::pi * (k + 0.4 * random.uniform()) / n;
-        o.push_back({1.1 * r * std::cos(angle), 1.1 * r * std::sin(angle)});
-      }
-      grains.push_back(polygon(px, py, o));
-      grains.back().angle = random.uniform(0, 6);
-      grains.back().fixed = random.uniform() < 0.1;
-    }
-  }
-  return put(grains, {wall("floor", 0, 0, 0.1 / std::hypot(0.1, 1), 1 / std::hypot(0.1, 1), 0.4)});
-}
-
-TEST(Quasistatic, TangentIsTheDerivativeOfTheResidual) {
-  Random random(7);
-  int wrong = 0, columns = 0;
-  for (int trial = 0; trial < 60; ++trial) {
-    Snapshot s = cluster(random, trial % 2 == 1);
-    EngineSettings e = area_law(0.4);
-    if (trial % 3 == 0) e.law = LinearLaw{1e6, 4e5, 0, 0};
-    const bool frictionless = trial % 5 == 0;  // and without slip: nothing sticks all the same
-    if (frictionless) {
-      e.friction = 0;
-      for (Wall& w : s.walls) w.friction = 0;
-    }
-    ContactNetwork network(s, e);
-    network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
-    network.set_scale(100);
-    const int n = network.size();
-    Eigen::VectorXd z(n), r, plus, minus;
-    for (int k = 0; k < n; ++k) z[k] = (frictionless ? 0 : 1e-3) * random.uniform(-1, 1);
-    ASSERT_TRUE(network.residual(z, r));
-    // Without the part that the residual adds to the diagonal.
-    Eigen::SparseMatrix<double> matrix;
-    network.tangent(z, Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), matrix);
-    const double h = 1e-8;
-    for (int k = 0; k < n; ++k) {
-      Eigen::VectorXd p = z, m = z;
-      p[k] += h;
-      m[k] -= h;
-      ASSERT_TRUE(network.residual(p, plus) && network.residual(m, minus));
-      const Eigen::VectorXd exact = matrix.col(k);
-      const double error = ((plus - minus) / (2 * h) - exact).cwiseAbs().maxCoeff();
-      // Differences across h, and the stiffness on the diagonal that holds loose grains (1e-6 of
-      // E r / scale = 1e-3). A few columns may straddle a corner of the law or of an outline.
-      ++columns;
-      if (error > 2e-3 + 1e-4 * exact.cwiseAbs().maxCoeff()) ++wrong;
-    }
-  }
-  EXPECT_GT(columns, 1000);
-  EXPECT_LE(wrong, columns / 200);
-}
-
-// A trial that carries grains out of each other's reach and is taken back leaves no trace.
-TEST(Quasistatic, ATrialThatIsTakenBackLeavesNoTrace) {
-  Random random(11);
-  for (int trial = 0; trial < 20; ++trial) {
-    Snapshot s = cluster(random, trial % 2 == 1);
-    ContactNetwork network(s, area_law(0.4));
-    network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
-    Eigen::VectorXd z(network.size()), before, after;
-    for (int k = 0; k < network.size(); ++k) z[k] = 1e-3 * random.uniform(-1, 1);
-    network.commit(z);  // with loaded springs
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network.size());
-    ASSERT_TRUE(network.residual(zero, before));
-    for (int k = 0; k < network.size(); ++k) z[k] = 0.49 * (random.uniform() < 0.5 ? -1 : 1);
-    ASSERT_TRUE(network.residual(z, after));
-    ASSERT_TRUE(network.residual(zero, after));
-    EXPECT_TRUE((before.array() == after.array()).all()) << trial;
-  }
-}
-
-TEST(Quasistatic, InternalForcesSumToZero) {
-  Random random(3);
-  for (int trial = 0; trial < 20; ++trial) {
-    Snapshot s = cluster(random, true);
-    s.walls.clear();
-    for (Grain& g : s.grains) g.fixed = false;
-    ContactNetwork network(s, area_law(0.4));
-    Eigen::VectorXd z(network.size()), r;
-    for (int k = 0; k < network.size(); ++k) z[k] = 1e-2 * random.uniform(-1, 1);
-    ASSERT_TRUE(network.residual(z, r));
-    double fx = 0, fy = 0, torque = 0;
-    for (std::size_t k = 0; k < s.grains.size(); ++k) {
-      const Grain& g = s.grains[k];
-      const auto u = static_cast<Eigen::Index>(3 * k);
-      fx += r[u];
-      fy += r[u + 1];
-      torque += r[u + 2] * g.radius + (g.position.x() + g.radius * z[u]) * r[u + 1] -
-                (g.position.y() + g.radius * z[u + 1]) * r[u];
-    }
-    EXPECT_NEAR(fx, 0, 1e-9 * r.cwiseAbs().maxCoeff());
-    EXPECT_NEAR(fy, 0, 1e-9 * r.cwiseAbs().maxCoeff());
-    EXPECT_NEAR(torque, 0, 1e-9 * r.cwiseAbs().maxCoeff());
-  }
-}
-
-TEST(Quasistatic, ARigidRotationLeavesTheForces) {
-  Random random(5);
-  Snapshot s = cluster(random, false);
-  s.walls.clear();
-  ContactNetwork network(s, area_law(0.4));
-  const int n = network.size();
-  Eigen::VectorXd z(n), before, after;
-  for (int k = 0; k < n; ++k) z[k] = 1e-3 * random.uniform(-1, 1);
-  network.commit(z);  // springs
-  z.setZero();
-  ASSERT_TRUE(network.residual(z, before));
-  const double a = 1e-3;
-  for (std::size_t k = 0; k < s.grains.size(); ++k) {
-    // About the first grain's committed centre, which `displacements` of order 1e-5 r ignore.
-    const Grain& g = s.grains[k];
-    const double x = g.position.x(), y = g.position.y();
-    z[3 * k] = (std::cos(a) * x - std::sin(a) * y - x) / g.radius;
-    z[3 * k + 1] = (std::sin(a) * x + std::cos(a) * y - y) / g.radius;
-    z[3 * k + 2] = a;
-  }
-  ASSERT_TRUE(network.residual(z, after));
-  for (int k = 0; k < n; k += 3) {
-    // Forces turn by a, torques stay. The committed centres are 1e-3 r off those that z rotates:
-    // relative motions of a 1e-3 r = 1e-8 m, forces of E times that.
-    EXPECT_NEAR(after[k], std::cos(a) * before[k] - std::sin(a) * before[k + 1], 0.5);
-    EXPECT_NEAR(after[k + 1], std::sin(a) * before[k] + std::cos(a) * before[k + 1], 0.5);
-    EXPECT_NEAR(after[k + 2], before[k + 2], 0.5);
-  }
-  EXPECT_GT(before.cwiseAbs().maxCoeff(), 50);
 }
 
 TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
