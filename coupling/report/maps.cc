@@ -31,6 +31,9 @@ std::pair<double, double> colour_range(const std::vector<Map>& maps, bool diverg
   return high > low ? std::pair(low, high) : std::pair(low - 0.5, low + 0.5);
 }
 
+// Pixels: the y axis with its label, the space between maps, and the colour box with its label.
+constexpr double left_side = 96, between = 70, right_side = 85;
+
 }  // namespace
 
 Picture maps(const std::string& title, const std::string& x_label, const std::string& y_label,
@@ -47,7 +50,8 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   }
   const int columns = aspect > 0.6 ? std::min<int>(3, static_cast<int>(all.size())) : 1;
   const int rows = (static_cast<int>(all.size()) + columns - 1) / std::max(1, columns);
-  const int plot_width = (picture.width - 130) / std::max(1, columns) - 70;
+  const double plot_width =
+      (picture.width - right_side - left_side) / std::max(1, columns) - between;
   const int row_height = static_cast<int>(plot_width * aspect) + 112;
   picture.height = std::max(1, rows) * row_height + 10;
   std::string& p = picture.program;
@@ -75,12 +79,12 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   p += diverging ? style::diverging : style::sequential_palette;
   p += fmt::format(
       "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel {} offset 0,0.2\nset ylabel {}\nset cblabel {}\nset multiplot\n",
+      "set xlabel {} offset 0,0.2\nset ylabel {} offset 1,0\nset cblabel {}\nset multiplot\n",
       low_limit, high_limit, style::quoted(x_label), style::quoted(y_label),
       style::quoted(value_label));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
-    const double left = 80.0 + column * (plot_width + 70.0);
+    const double left = left_side + column * (plot_width + between);
     const double top = row * static_cast<double>(row_height) + 36;
     const double w = picture.width, h = picture.height;
     const bool last = k + 1 == all.size();
@@ -93,7 +97,7 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
     p += last ? fmt::format(
                     "set colorbox user origin screen {:.4f}, screen 0.12 size screen 0.018, screen "
                     "0.76\n",
-                    (80.0 + columns * (plot_width + 70.0) - 45) / w)
+                    (left_side + columns * (plot_width + between) - 45) / w)
               : "unset colorbox\n";
     const Eigen::RowVector2d low = all[k].points.colwise().minCoeff();
     const Eigen::RowVector2d high = all[k].points.colwise().maxCoeff();

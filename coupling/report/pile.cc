@@ -101,7 +101,10 @@ void add_maps(Report& report, const PileReport& in) {
   const std::string averaged = "Averaged by " + in.averaged + ". ";
   Picture density = maps("Volume fraction", "x / h", "y / h", "volume fraction",
                          {map("", "volume_fraction", 1)}, false);
-  density.caption = averaged + "Over the part of the kernel that lies inside the heap.";
+  density.caption =
+      averaged +
+      "Area of the grains over the area of the kernel that lies inside the heap; white: no "
+      "grains. In units of the height h.";
   report.sections.emplace_back(std::move(density));
   const double unit = 1 / c.unit();
   Picture stress = maps(

@@ -38,8 +38,6 @@ inline constexpr int kAhead = 16;
 // A grain that moves further than this share of its radius in one step has diverged: a contact
 // would be crossed before it is seen.
 inline constexpr double kMaxMoveShare = 0.5;
-// A contact counts as sliding when its tangential force is within this share of the Coulomb limit.
-inline constexpr double kSlidingMargin = 1e-6;
 
 enum class SweepKind {
   start,    ///< only the acceleration of new grains
@@ -133,7 +131,7 @@ class EngineLoop final : public Engine {
   };
   struct alignas(32) Sum {
     double fx = 0, fy = 0, torque = 0;
-    double press = 0;  // sum of |fx| + |fy|; of sleepers only
+    double press = 0;  // sum of |fx| + |fy|; where sleeping is judged
   };
   struct Inertia {
     double mass = 0, polar = 0, area = 0;  // kg, kg m2, m2; of fixed grains too
@@ -223,7 +221,7 @@ class EngineLoop final : public Engine {
   std::vector<Sum> rests_;    // of sleepers: weight and forces of the frozen contacts
   std::vector<Sum> touches_;  // of sleepers: forces of awake neighbours, summed over the steps
   long touch_steps_ = 0;      // ... since the last review
-  std::vector<ContactForce> felt_;  // the same by pair, since the last search
+  std::vector<Sum> felt_;     // the same by pair, since the last search
   std::unordered_map<Key, Frozen> frozen_;
   bool sleepers_changed_ = true;
 

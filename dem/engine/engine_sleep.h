@@ -46,13 +46,13 @@ void EngineLoop<Shape, Law, Integrator>::gather_touches() {
   if (awake_ == static_cast<int>(asleep_.size()) || pair_start_.empty()) return;
   for (int i = 0; i + 1 < static_cast<int>(pair_start_.size()); ++i) {
     for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
-      const ContactForce& f = felt_[k];
-      if (f.torque_i == 0) continue;
+      const Sum& f = felt_[k];
+      if (f.press == 0) continue;
       Sum& touch = touches_[pairs_[k].j];
       touch.fx -= f.fx;
       touch.fy -= f.fy;
-      touch.torque += f.torque_j;
-      touch.press += f.torque_i;
+      touch.torque += f.torque;
+      touch.press += f.press;
       felt_[k] = {};
     }
   }
@@ -121,7 +121,7 @@ bool EngineLoop<Shape, Law, Integrator>::wake_sleepers() {
     }
     for (int k = pair_start_[i]; k < pair_start_[i + 1]; ++k) {
       const int j = pairs_[k].j;
-      if (j < awake_ || felt_[k].torque_i == 0) continue;
+      if (j < awake_ || felt_[k].press == 0) continue;
       const double limit = sleep.wake_speed * sleep.wake_speed * g * 2 * bodies_[j].radius;
       if (speed2 > limit) wake(j);
     }

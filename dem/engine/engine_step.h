@@ -144,8 +144,8 @@ void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double
         if constexpr (kind != SweepKind::start) {
           felt_[k].fx += f.fx;
           felt_[k].fy += f.fy;
-          felt_[k].torque_j += f.torque_j;
-          felt_[k].torque_i += std::fabs(f.fx) + std::fabs(f.fy);
+          felt_[k].torque += f.torque_j;
+          felt_[k].press += std::fabs(f.fx) + std::fabs(f.fy);
         }
       } else if (j >= last) {
         f = pair_forces_[k];  // the block of j has evaluated it

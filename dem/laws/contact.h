@@ -21,6 +21,9 @@ struct LawForce {
   double tangential = 0;
 };
 
+/// A contact counts as sliding when its tangential force is within this share of the Coulomb limit.
+inline constexpr double kSlidingMargin = 1e-6;
+
 /// Cundall-Strack friction. The spring (the contact's memory, in N, as a force on i) advances by
 /// -stiffness * slip * dt; the dashpot acts beside it and never accumulates in it; the sum is
 /// capped at mu * normal, and then the spring is what the cap leaves for it, itself within the cap.

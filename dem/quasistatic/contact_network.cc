@@ -16,9 +16,6 @@ constexpr double kSkinShare = 0.2;
 // Stiffness, as a share of a contact's, that holds grains which roll or slide freely in the matrix
 // (not in the residual). Well below the softest mode of a packing of 1e4 grains, 1e-4.
 constexpr double kFloor = 1e-6;
-// A contact counts as sliding when its tangential force is within this share of the Coulomb limit
-// (the engine's margin).
-constexpr double kSlidingMargin = 1e-6;
 
 }  // namespace
 
