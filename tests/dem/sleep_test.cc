@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/dem/polygon_engine_scene.h"
 
 namespace grainfield::dem {
@@ -154,6 +157,49 @@ TEST(Sleep, AnImpactMovesSleepersAsItMovesTheAwake) {
 }
 
 // Fixed grains lie among the sleepers: one that comes later must be found as well.
+// With every grain awake a packing rings on long after an impact: its slow common swings, in which
+// neighbours hardly move against each other, pass the dashpots by. Sleepers do not ring.
+TEST(Sleep, AwakePackingsRingOnAfterAnImpact) {
+  const auto packing = polygon_box(polygon_settings(), 24, 12);
+  packing->set_background_damping(50);
+  packing->step(40000);
+  const Snapshot box = packing->snapshot();
+  // Median speed (m/s) of the box in the k-th hundredth of a second after the grain is dropped.
+  const auto ringing = [&](bool sleep) {
+    const EngineSettings settings = polygon_settings(1, sleep);
+    const auto engine = make_engine(settings, box);
+    engine->step(1000);
+    Random random(5);
+    NewGrain g = polygon_grain(random, 0.25, 0.32);
+    g.vy = -2;
+    engine->add(g);
+    std::vector<double> medians;
+    for (int k = 0; k < 36; ++k) {
+      std::vector<double> speeds(box.grains.size(), 0.0);
+      for (int sample = 0; sample < 10; ++sample) {
+        engine->step(25);
+        const Snapshot now = engine->snapshot();
+        for (std::size_t i = 0; i < speeds.size(); ++i) {
+          speeds[i] += now.grains[i].velocity.norm() / 10;
+        }
+      }
+      std::nth_element(speeds.begin(), speeds.begin() + speeds.size() / 2, speeds.end());
+      medians.push_back(speeds[speeds.size() / 2]);
+    }
+    return medians;
+  };
+  const std::vector<double> awake = ringing(false), asleep = ringing(true);
+  const auto peak = std::max_element(awake.begin(), awake.end());
+  const auto at = static_cast<std::size_t>(peak - awake.begin());
+  ASSERT_GT(at, 5u);  // at first the grain falls, and the box is still
+  ASSERT_LT(at + 20, awake.size());
+  EXPECT_LT(awake[0], 0.05 * *peak);
+  EXPECT_GT(awake[at + 20], 0.25 * *peak);  // 0.2 s later
+  EXPECT_LT(asleep[at + 20], 0.1 * awake[at + 20]);
+  RecordProperty("peak", fmt::format("{:.3g}", *peak));
+  RecordProperty("later", fmt::format("{:.3g}", awake[at + 20]));
+}
+
 TEST(Sleep, AFixedGrainThatComesLateHolds) {
   const auto engine = polygon_box(polygon_settings(1, true), 4, 2);
   engine->step(60000);
