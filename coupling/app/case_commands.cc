@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,12 @@ namespace {
 // Grain-steps per CPU second of settled polygons, all awake (docs/benchmarks.md): an estimate.
 constexpr double kRate = 5e6;
 
+std::string duration(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", std::max(1.0, seconds));
+  if (seconds < 5400) return fmt::format("{:.0f} minutes", seconds / 60);
+  return fmt::format("{:.1f} hours", seconds / 3600);
+}
+
 /// The size of a case before it runs: members, realizations, time step, steps, cost.
 std::string outlook_text(const Case& value) {
   const Study& study = study_of(value);
@@ -41,13 +48,11 @@ std::string outlook_text(const Case& value) {
   if (o.time == 0) return out + "\n";
   const double steps = o.time / o.time_step;
   // Grain by grain: half of them on average.
-  const double hours = 0.5 * o.grains * steps / kRate / 3600;
+  const double seconds = 0.5 * o.grains * steps / kRate;
   return out + fmt::format(
-                   "\n  pouring takes {:.4g} s, {:.2g} million steps: with every grain awake "
+                   "\n  pouring takes {:.1f} s, {:.1f} million steps: with every grain awake "
                    "about {} a realization on one core{}\n",
-                   o.time, 1e-6 * steps,
-                   hours >= 1 ? fmt::format("{:.2g} hours", hours)
-                              : fmt::format("{:.2g} minutes", 60 * hours),
+                   o.time, 1e-6 * steps, duration(seconds),
                    value.pile.sleep.on ? "; sleeping makes it less, several times when a "
                                          "pile is large and poured slowly"
                                        : "");

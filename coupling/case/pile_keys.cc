@@ -60,11 +60,13 @@ void source(Section s) {
            kRoul);
   s.only("source.kind", {"point"});
   s.number("spread", "-", +IN(double, pile.source.spread), {0, 1000},
-           "grains start within +- this many mean radii of the funnel's axis");
+           "without a funnel of plates: grains start within +- this many mean radii of the axis");
   s.only("source.kind", {"point"});
-  s.number("opening", "m", +IN(double, pile.source.opening), kNotNegative,
-           "width of the funnel's mouth between two immobile plates at 60 degrees, down which the "
-           "grains come; 0: no plates, they fall freely from the mouth (and cost less)");
+  s.number(
+      "opening", "m", +IN(double, pile.source.opening), kNotNegative,
+      "width of the funnel's mouth between two immobile plates at 60 degrees, down which the "
+      "grains come from anywhere between their upper ends; 0: no plates, they fall freely from "
+      "the mouth (and cost less)");
   s.only("source.kind", {"point"});
   s.number("move", "m", +IN(double, pile.source.move), {},
            "the funnel moves this far to the right while it pours; an asymmetric pile",

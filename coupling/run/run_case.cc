@@ -289,7 +289,7 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
         options.note(fmt::format("nothing to resume in {}{}: starting anew", options.folder,
                                  place.finished() ? ", whose run is finished" : ""));
       }
-      if (!options.resume && place.finished()) {
+      if (!options.resume && place.finished() && !place.unfinished()) {
         options.note(
             fmt::format("{} holds a finished run; this one will take its place", options.folder));
       }

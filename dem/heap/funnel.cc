@@ -1,5 +1,6 @@
 #include "dem/heap/funnel.h"
 
+#include <cmath>
 #include <numbers>
 
 namespace grainfield::dem {
@@ -15,6 +16,14 @@ double funnel_rise(const SourceSetup& source) { return kRise * source.opening; }
 
 double funnel_half_width(const SourceSetup& source) {
   return 0.5 * source.opening + funnel_rise(source) / kSlope;
+}
+
+double funnel_room(const SourceSetup& source, double radius) {
+  return funnel_half_width(source) - radius * std::sqrt(1 + 1 / (kSlope * kSlope));  // r/sin 60
+}
+
+double funnel_half_span(const SourceSetup& source) {
+  return funnel_half_width(source) + kThickness * source.opening;
 }
 
 std::vector<NewGrain> funnel_plates(const SourceSetup& source, double density) {

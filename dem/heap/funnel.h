@@ -14,6 +14,10 @@ inline constexpr double kLeastOpening = 1.5;
 double funnel_rise(const SourceSetup& source);
 /// Half the width between the plates' upper ends, m; 0 without a funnel.
 double funnel_half_width(const SourceSetup& source);
+/// How far from the axis a grain of this radius may start between the upper ends, m.
+double funnel_room(const SourceSetup& source, double radius);
+/// Half the width of the whole funnel with its plates, m; 0 without one.
+double funnel_half_span(const SourceSetup& source);
 /// The left and the right plate, fixed: parallelograms at 60 degrees whose inner faces leave
 /// source.opening free at source.height. Empty without a funnel.
 std::vector<NewGrain> funnel_plates(const SourceSetup& source, double density);

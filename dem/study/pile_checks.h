@@ -22,12 +22,15 @@ void check_pile(const PileSetup& setup);
 /// value allowed.
 void check_source(const PileSetup& setup, const std::vector<ShapedGrain>& grains);
 
-/// Top of the grains at rest on others or on the floor, m; 0 without any. Grains in flight or on a
-/// funnel's plates do not count.
-double resting_top(const Snapshot& snapshot);
+/// Top of the grains at rest on others or on the floor, m; 0 without any. Grains in flight, above
+/// the mouth or on a funnel's plates do not count.
+double resting_top(const Snapshot& snapshot, double mouth);
 /// Throws ComputationFailed naming source.height when grains at rest come within two of the
 /// largest diameters of the mouth.
 void check_mouth(const PileSetup& setup, double resting_top, double diameter);
+/// Throws ComputationFailed naming source.opening when a grain has waited so long, s, for its place
+/// at the top of a funnel that those before it must be stuck.
+void check_not_waiting(const PileSetup& setup, double waited);
 /// Throws ComputationFailed naming source.opening when a grain has not left the funnel.
 void check_funnel_empty(const PileSetup& setup, const Snapshot& snapshot);
 /// Throws ComputationFailed naming floor.length when the pile stands at a side wall: a grain there
@@ -35,7 +38,7 @@ void check_funnel_empty(const PileSetup& setup, const Snapshot& snapshot);
 void check_walls_free(const PileSetup& setup, const Snapshot& snapshot, double diameter,
                       double share);
 /// The same for a pile at rest that leans on the side walls with more than 1e-3 of its weight and
-/// what three stray grains weigh.
+/// what three stray grains weigh, at most 5e-3 together.
 void check_not_leaning(const PileSetup& setup, const Snapshot& snapshot);
 /// Throws ComputationFailed naming source.length when more than a tenth of the grains found no room
 /// on the pile's plateau.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/heap/funnel.h"
 #include "dem/heap/surface.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/pile_run.h"
@@ -29,6 +30,9 @@ void PileRun::pour_point() {
       in_flight_.pop_front();
     } else {
       in_flight_.front().step = phase_steps_ + kRetryEvery;
+      check_not_waiting(setup_, static_cast<double>(
+                                    phase_steps_ - point_->release_step(in_flight_.front().grain)) *
+                                    engine_->time_step());
     }
   }
   if (poured_ < setup_.source.grains && point_->release_step(poured_) == phase_steps_) {
@@ -45,10 +49,13 @@ void PileRun::release_grain() {
   check_mouth(setup_, top_, largest_diameter_);
   Flight f;
   f.grain = poured_;
-  f.x =
-      point_->axis(poured_) + setup_.source.spread * 0.5 * mean_diameter_ * random_.uniform(-1, 1);
+  // Between plates anywhere, else near the axis.
+  const bool funnel = setup_.source.opening > 0;
+  const double half_width = funnel ? funnel_room(setup_.source, grains_[poured_].radius)
+                                   : setup_.source.spread * 0.5 * mean_diameter_;
+  f.x = point_->axis(poured_) + half_width * random_.uniform(-1, 1);
   const double near = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
-  const double entry = setup_.source.opening > 0 ? point_->start_height() : near;
+  const double entry = funnel ? point_->start_height() : near;
   f.step = point_->arrival_step(poured_, entry);
   // One after the other, and not before those that are to join at this very step.
   if (!in_flight_.empty()) f.step = std::max(f.step, in_flight_.back().step + 1);
@@ -71,7 +78,7 @@ bool PileRun::join(const Flight& f) {
       return false;
     }
   }
-  top_ = resting_top(now);
+  top_ = resting_top(now, setup_.source.height);
   check_walls_free(setup_, now, largest_diameter_,
                    static_cast<double>(f.grain + 1) / setup_.source.grains);
   engine_->add(g);

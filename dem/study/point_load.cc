@@ -33,7 +33,10 @@ class PointLoadRun final : public Run {
   void advance(long steps) override;
   bool done() const override { return phase_ == Phase::done; }
   Progress progress() const override;
-  Outlook outlook() const override { return {engine_->grains(), engine_->time_step(), 0}; }
+  Outlook outlook() const override {
+    const bool whole = setup_.packing.kind != "layered";  // else only the first row is there
+    return {whole ? engine_->grains() : 0, engine_->time_step(), 0};
+  }
   void save(const std::string& file) const override;
   void restore(const std::string& file) override;
   RunResult result() const override;

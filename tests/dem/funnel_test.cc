@@ -18,7 +18,6 @@ PileSetup funnel_pile(double opening) {
   PileSetup s = small_pile("point", "rand1");
   s.source.grains = 30;
   s.source.interval = 0.2;
-  s.source.spread = 2;
   s.source.opening = opening;
   return s;
 }
@@ -55,7 +54,7 @@ TEST(Funnel, PlatesLeaveTheMouthOpen) {
 // Grains that start beside the mouth come down through it, with a push from the plates, and the
 // pile stands on the floor alone.
 TEST(Funnel, GrainsComeDownThroughTheMouth) {
-  const auto run = make_pile_run(funnel_pile(0.12), 3, 1);
+  const auto run = make_pile_run(funnel_pile(0.14), 3, 1);
   finish(*run);
   const RunResult r = run->result();
   const Snapshot& pile = r.snapshots[0].second;
@@ -73,10 +72,30 @@ TEST(Funnel, GrainsComeDownThroughTheMouth) {
   }
 }
 
+// More grains than the mouth lets through fill the funnel, and the run says so.
+TEST(Funnel, AnOverfilledFunnelEndsTheRun) {
+  PileSetup s = funnel_pile(0.14);
+  s.source.grains = 400;
+  s.source.height = 2;
+  s.floor.length = 6;
+  s.source.interval = 0.02;
+  s.source.speed = 4;
+  s.material.friction = 2;
+  const auto run = make_pile_run(s, 3, 1);
+  std::string said = "finished";
+  try {
+    finish(*run);
+  } catch (const ComputationFailed& error) {
+    said = error.what();
+  }
+  EXPECT_THAT(said, testing::HasSubstr("stuck in the funnel"));
+  EXPECT_THAT(said, testing::HasSubstr("raise source.opening, now 0.14 m"));
+}
+
 // Wherever a grain starts between the plates, it leaves by the mouth.
 TEST(Funnel, EveryGrainLeavesByTheMouth) {
   SourceSetup source;
-  source.opening = 0.12;
+  source.opening = 0.14;
   source.height = 1;
   ShapeSetup shape;
   shape.radius = 0.0275;
@@ -88,8 +107,12 @@ TEST(Funnel, EveryGrainLeavesByTheMouth) {
     const auto engine = make_engine(settings);
     for (const NewGrain& plate : funnel_plates(source, 5000)) engine->add(plate);
     const ShapedGrain grain = draw_grain(shape, random);
-    const double room = funnel_half_width(source) - grain.radius;
-    engine->add(grain.at(random.uniform(-room, room), source.height + funnel_rise(source), 5000));
+    const double room = funnel_room(source, grain.radius);
+    // The first at the limits on either side.
+    const double x = k < 2 ? (2 * k - 1) * room : random.uniform(-room, room);
+    engine->add(grain.at(x, source.height + funnel_rise(source), 5000));
+    engine->step(1);
+    EXPECT_EQ(engine->measure().contacts, 0) << k;
     double mouth = 1e9;
     for (int chunk = 0; chunk < 2000 && engine->snapshot().grains[2].position.y() > 0.9; ++chunk) {
       engine->step(100);
@@ -111,29 +134,25 @@ TEST(Funnel, RefusesWhatCannotBe) {
     }
     return "accepted";
   };
-  EXPECT_EQ(refusal(funnel_pile(0.12)), "accepted");
+  EXPECT_EQ(refusal(funnel_pile(0.14)), "accepted");
   EXPECT_THAT(refusal(funnel_pile(-1)), testing::HasSubstr("source.opening: found -1, allowed: 0"));
   EXPECT_THAT(
       refusal(funnel_pile(0.06)),
       testing::HasSubstr("source.opening: found 0.06, allowed: 0 (no funnel) or at least "));
-  PileSetup s = funnel_pile(0.12);
+  PileSetup s = funnel_pile(0.14);
   s.source.move = 0.1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("source.move: found 0.1, allowed: 0 with a funnel"));
-  s = funnel_pile(0.12);
-  s.source.spread = 1e-3;
-  EXPECT_EQ(refusal(s), "accepted");
-  s.source.spread = 100;
-  const std::string text = refusal(s);
-  EXPECT_THAT(text, testing::HasSubstr("source.spread: found 100, allowed: at most "));
-  s.source.spread = std::stod(text.substr(text.find("at most ") + 8));
-  EXPECT_EQ(refusal(s), "accepted");
+  s = funnel_pile(0.14);
+  s.floor.length = 0.6;
+  s.source.grains = 3;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("source.opening: found 0.14, allowed: a funnel ("));
   s = small_pile("line", "disk");
   s.source.opening = 0.1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("source.opening: found 0.1, allowed: 0 with source"));
 }
 
 TEST(Funnel, SaysWhenGrainsAreStuck) {
-  const PileSetup s = funnel_pile(0.12);
+  const PileSetup s = funnel_pile(0.14);
   Snapshot now;
   now.grains.resize(2);
   now.grains[0].fixed = true;  // a plate
@@ -146,14 +165,22 @@ TEST(Funnel, SaysWhenGrainsAreStuck) {
     FAIL();
   } catch (const ComputationFailed& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("1 grain is stuck in the funnel after the pour; "
-                                                 "raise source.opening, now 0.12 m"));
+                                                 "raise source.opening, now 0.14 m"));
   }
   // A slow grain on a plate is not the pile's top.
   Contact c;
   c.i = 1;
   c.j = 0;
   now.contacts.push_back(c);
-  EXPECT_EQ(resting_top(now), 0);
+  EXPECT_EQ(resting_top(now, 10), 0);
+  // Nor is one that lies on another above the mouth.
+  now.grains.push_back(now.grains[1]);
+  now.contacts[0].j = 2;
+  EXPECT_GT(resting_top(now, 10), 1);
+  EXPECT_EQ(resting_top(now, 1), 0);
+  EXPECT_NO_THROW(check_not_waiting(s, 1.9));
+  EXPECT_NO_THROW(check_not_waiting(small_pile("point", "disk"), 100));
+  EXPECT_THROW(check_not_waiting(s, 2.1), ComputationFailed);
 }
 
 }  // namespace

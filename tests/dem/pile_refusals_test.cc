@@ -222,6 +222,26 @@ TEST(PileChecks, WhileThePileGrows) {
                                  "least 9.6 m"));
 }
 
+// A share of the weight, and strays; of few grains not more than five thousandths.
+TEST(PileChecks, LeaningIsMoreThanStrays) {
+  for (const int n : {100, 3000}) {
+    Snapshot s;
+    s.gravity = Vec3(0, -10, 0);
+    s.walls.push_back({"left", Vec3(0, 0, 0), Vec3(1, 0, 0), 0});
+    s.grains.resize(n);
+    for (Grain& g : s.grains) g.mass = 1;
+    s.contacts.resize(1);
+    s.contacts[0].j = -1;
+    const double allowed = n == 100 ? 5e-3 : 2e-3;
+    const PileSetup setup = small_pile("point", "disk");
+    s.contacts[0].force = Vec3(0.99 * allowed * 10 * n, 0, 0);
+    EXPECT_EQ(failed_check([&] { check_not_leaning(setup, s); }), "passed");
+    s.contacts[0].force = Vec3(1.01 * allowed * 10 * n, 0, 0);
+    EXPECT_THAT(failed_check([&] { check_not_leaning(setup, s); }),
+                testing::HasSubstr("leans on the side walls with"));
+  }
+}
+
 TEST(PileChecks, RestingTopLeavesOutWhatFlies) {
   Snapshot s;
   s.gravity = Vec3(0, -9.81, 0);
@@ -238,8 +258,8 @@ TEST(PileChecks, RestingTopLeavesOutWhatFlies) {
   c.i = 2;
   s.contacts.push_back(c);
   s.grains[2].velocity = Vec3(0, 2, 0);  // bounces off
-  EXPECT_DOUBLE_EQ(resting_top(s), 0.04);
-  EXPECT_EQ(resting_top(Snapshot{}), 0);
+  EXPECT_DOUBLE_EQ(resting_top(s, 1), 0.04);
+  EXPECT_EQ(resting_top(Snapshot{}, 1), 0);
 }
 
 }  // namespace
