@@ -138,7 +138,7 @@ std::string reproduction_page(const Results& results) {
       "\n## How they were run\n\n"
       "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step "
       "2e-6 s. Without a reach of waking, grains at rest gave way only where another touched them, "
-      "and piles came out denser than with all grains awake; with it they do by "
+      "and piles came out denser than with all grains awake; with it small piles do by "
       "0.3 % from a line source, by 1 % from a funnel at 0.1 s ([what sleeping "
       "changes](cases/pile-rest-detection.md)).\n\n"
       "| study | grains | realizations | interval (s) | reach of waking | time step (s) | steps | "
