@@ -107,6 +107,11 @@ void check_pile(const PileSetup& s) {
   require(s.source.clearance > 0, "source.clearance", s.source.clearance, "above 0");
   require(std::isfinite(s.source.move), "source.move", s.source.move, "a finite number");
   require(s.source.opening >= 0, "source.opening", s.source.opening, "0 (no funnel) or above");
+  const double usual = SourceSetup{}.spread;
+  require(s.source.opening == 0 || s.source.spread == usual, "source.spread", s.source.spread,
+          fmt::format("{:g} with a funnel of plates (source.opening), between which grains start "
+                      "anywhere",
+                      usual));
   require(s.source.opening == 0 || s.source.move == 0, "source.move", s.source.move,
           "0 with a funnel of plates (source.opening), which cannot move");
   require(std::isfinite(s.source.shift), "source.shift", s.source.shift, "a finite number");

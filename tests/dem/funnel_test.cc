@@ -143,6 +143,9 @@ TEST(Funnel, RefusesWhatCannotBe) {
   s.source.move = 0.1;
   EXPECT_THAT(refusal(s), testing::HasSubstr("source.move: found 0.1, allowed: 0 with a funnel"));
   s = funnel_pile(0.14);
+  s.source.spread = 2;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("source.spread: found 2, allowed: 0.5 with a funnel"));
+  s.source.spread = 0.5;
   s.floor.length = 0.6;
   s.source.grains = 3;
   EXPECT_THAT(refusal(s), testing::HasSubstr("source.opening: found 0.14, allowed: a funnel ("));
