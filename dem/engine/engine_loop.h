@@ -12,6 +12,7 @@
 #include "dem/engine/engine.h"
 #include "dem/engine/image.h"
 #include "dem/engine/thread_team.h"
+#include "dem/neighbours/bounding_rectangle.h"
 #include "dem/neighbours/hierarchical_grid.h"
 #include "dem/shapes/disk_store.h"
 #include "dem/shapes/polygon_store.h"
@@ -136,9 +137,11 @@ class EngineLoop final : public Engine {
   struct Inertia {
     double mass = 0, polar = 0, area = 0;  // kg, kg m2, m2; of fixed grains too
   };
-  /// Where a grain was at the last search and how far it may go, squared.
+  /// Where a grain was at the last search, and how far any of its points may go.
   struct Reference {
-    double x = 0, y = 0, limit = 0;
+    double x = 0, y = 0, angle = 0;
+    double turning = 0;  // m/rad: how far turning carries a point; 0 where only the circle counts
+    double way = 0;      // m
   };
   /// Since when, and from where, a grain has hardly moved.
   struct Quiet {
@@ -155,6 +158,10 @@ class EngineLoop final : public Engine {
 
   void wake_all();
   void search(bool by_motion);
+  double way_of(int i) const;
+  double turning_of(int i) const;
+  void find_bounds(int first, int last);
+  bool out_of_reach(int i, int j) const;
   void build_sleepers_grid();
   void part_sleepers();
   void swap_bodies(int i, int j);
@@ -234,6 +241,7 @@ class EngineLoop final : public Engine {
   std::vector<std::vector<std::pair<int, int>>> incoming_;  // per block: (i, pair)
   HierarchicalGrid grid_, sleepers_grid_;
   std::vector<Reach> reaches_;
+  std::vector<BoundingRectangle> bounds_;  // while some grain is slender
 };
 
 }  // namespace grainfield::dem

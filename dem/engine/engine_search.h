@@ -124,6 +124,44 @@ auto EngineLoop<Shape, Law, Integrator>::recalled(int i, int j, bool wall,
   return pair;
 }
 
+/// How far turning by one radian carries a point of the grain, m; 0 where its circle is what the
+/// search goes by.
+template <class Shape, class Law, class Integrator>
+double EngineLoop<Shape, Law, Integrator>::turning_of(int i) const {
+  if constexpr (Shape::outlines) return shapes_.slender(i) ? bodies_[i].radius : 0;
+  return 0;
+}
+
+/// How far any point of the grain may go until the next search, m.
+template <class Shape, class Law, class Integrator>
+double EngineLoop<Shape, Law, Integrator>::way_of(int i) const {
+  const Body& b = bodies_[i];
+  const double speed = std::hypot(b.vx, b.vy) + turning_of(i) * std::fabs(b.spin);
+  const double ahead = kStepsAhead * settings_.time_step;
+  return 0.5 * skin_ + std::min(ahead * speed, kMostAhead * b.radius);
+}
+
+/// The bounds of these bodies: of those awake with the way that they may go.
+template <class Shape, class Law, class Integrator>
+void EngineLoop<Shape, Law, Integrator>::find_bounds(int first, int last) {
+  if constexpr (Shape::outlines) {
+    if (!shapes_.any_slender()) return;
+    bounds_.resize(bodies_.size());
+    for (int i = first; i < last; ++i) {
+      const double gap = i < awake_ ? reaches_[i].reach - bodies_[i].radius : 0;
+      bounds_[i] = shapes_.bound(i, bodies_[i], memory_[i].angle, gap);
+    }
+  }
+}
+
+/// True when the two, whose circles meet, cannot touch until the next search: one of them is
+/// slender and lies beside the other.
+template <class Shape, class Law, class Integrator>
+bool EngineLoop<Shape, Law, Integrator>::out_of_reach(int i, int j) const {
+  if constexpr (Shape::outlines) return shapes_.any_slender() && apart(bounds_[i], bounds_[j]);
+  return false;
+}
+
 /// Of the bodies from awake_ on.
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::build_sleepers_grid() {
@@ -134,6 +172,7 @@ void EngineLoop<Shape, Law, Integrator>::build_sleepers_grid() {
     still.push_back({b.x, b.y, b.radius, b.inverse_mass == 0});
   }
   sleepers_grid_.build(still);
+  find_bounds(awake_, static_cast<int>(bodies_.size()));
   sleepers_changed_ = false;
 }
 
@@ -162,12 +201,9 @@ void EngineLoop<Shape, Law, Integrator>::search(bool by_motion) {
   part_sleepers();
   adapt_skin(by_motion);
   const int n = awake_, all = static_cast<int>(bodies_.size());
-  const double ahead = kStepsAhead * settings_.time_step;
   const auto reach_of = [&](int i) {
     const Body& b = bodies_[i];
-    const double way =
-        0.5 * skin_ + std::min(ahead * std::hypot(b.vx, b.vy), kMostAhead * b.radius);
-    return Reach{b.x, b.y, b.radius + way, b.inverse_mass == 0};
+    return Reach{b.x, b.y, b.radius + way_of(i), b.inverse_mass == 0};
   };
   reaches_.resize(n);
   for (int i = 0; i < n; ++i) reaches_[i] = reach_of(i);
@@ -179,6 +215,7 @@ void EngineLoop<Shape, Law, Integrator>::search(bool by_motion) {
   }
   locate_applied();
   if (sleepers_changed_) build_sleepers_grid();
+  find_bounds(0, n);
 
   std::vector<std::pair<int, int>> found;
   grid_.pairs(found);
@@ -188,12 +225,15 @@ void EngineLoop<Shape, Law, Integrator>::search(bool by_motion) {
   std::size_t next = 0;
   for (int i = 0; i < n; ++i) {
     for (; next < found.size() && found[next].first == i; ++next) {
+      if (out_of_reach(i, found[next].second)) continue;
       pairs_.push_back(recalled(i, found[next].second, false, kept));
     }
     if (all > n) {
       near.clear();
       sleepers_grid_.near(reaches_[i], near);
-      for (const int j : near) pairs_.push_back(recalled(i, n + j, false, kept));
+      for (const int j : near) {
+        if (!out_of_reach(i, n + j)) pairs_.push_back(recalled(i, n + j, false, kept));
+      }
     }
     pair_start_[i + 1] = static_cast<int>(pairs_.size());
   }
@@ -218,7 +258,7 @@ void EngineLoop<Shape, Law, Integrator>::search(bool by_motion) {
   reference_.resize(n);
   for (int i = 0; i < n; ++i) {
     const double way = reaches_[i].reach - bodies_[i].radius;
-    reference_[i] = {bodies_[i].x, bodies_[i].y, way * way};
+    reference_[i] = {bodies_[i].x, bodies_[i].y, memory_[i].angle, turning_of(i), way};
   }
   search_needed_ = false;
 }

@@ -19,7 +19,9 @@ inline void EngineLoop<Shape, Law, Integrator>::begin(int i, bool& moved) {
   if constexpr (Shape::outlines) shapes_.place(i, b, memory_[i].angle);
   const Reference& r = reference_[i];
   const double dx = b.x - r.x, dy = b.y - r.y;
-  moved |= !(dx * dx + dy * dy <= r.limit);  // also true for nan
+  double left = r.way;
+  if constexpr (Shape::outlines) left -= r.turning * std::fabs(memory_[i].angle - r.angle);
+  moved |= !(left >= 0 && dx * dx + dy * dy <= left * left);  // also true for nan
 }
 
 template <class Shape, class Law, class Integrator>

@@ -8,6 +8,7 @@
 #include "dem/engine/body.h"
 #include "dem/engine/image.h"
 #include "dem/engine/rotation.h"
+#include "dem/neighbours/bounding_rectangle.h"
 #include "dem/shapes/polygon.h"
 
 namespace grainfield::dem {
@@ -20,6 +21,8 @@ class PolygonStore {
     const int n = static_cast<int>(outline.size());
     if (outline.size() + 1 > stride_) widen(n + 1);
     count_.push_back(n);
+    long_axis_.push_back(long_axis_of(outline));
+    any_slender_ |= slender(static_cast<int>(count_.size()) - 1);
     corners_.resize(corners_.size() + kBlocks * stride_, 0.0);
     double* block = block_of(static_cast<int>(count_.size()) - 1);
     for (int k = 0; k <= n && n > 0; ++k) {
@@ -44,6 +47,7 @@ class PolygonStore {
 
   void swap(int i, int j) {
     std::swap(count_[i], count_[j]);
+    std::swap(long_axis_[i], long_axis_[j]);
     std::swap_ranges(block_of(i), block_of(i) + kBlocks * stride_, block_of(j));
   }
   /// The first order.size() grains in this order.
@@ -51,13 +55,16 @@ class PolygonStore {
     const std::size_t size = kBlocks * stride_;
     scratch_.resize(order.size() * size);
     counts_.resize(order.size());
+    axes_.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       const double* from = block_of(order[k]);
       std::copy(from, from + size, scratch_.begin() + static_cast<std::ptrdiff_t>(k * size));
       counts_[k] = count_[order[k]];
+      axes_[k] = long_axis_[order[k]];
     }
     std::copy(scratch_.begin(), scratch_.end(), corners_.begin());
     std::copy(counts_.begin(), counts_.end(), count_.begin());
+    std::copy(axes_.begin(), axes_.end(), long_axis_.begin());
   }
 
   Outline outline(int i) const {
@@ -71,6 +78,15 @@ class PolygonStore {
     const double* block = block_of(i);
     return {block + 2 * stride_, block + 3 * stride_, count_[i], b.x, b.y, b.radius};
   }
+  bool slender(int i) const { return long_axis_[i][0] != 0 || long_axis_[i][1] != 0; }
+  bool any_slender() const { return any_slender_; }
+  /// Where a slender grain's rectangle lies, or another's circle, with `gap` all round.
+  BoundingRectangle bound(int i, const Body& b, double angle, double gap) const {
+    const auto [c, s] = rotation_of(angle);
+    const auto [ux, uy] = long_axis_[i];
+    return bounding_rectangle(placed(i, b), c * ux - s * uy, s * ux + c * uy, gap);
+  }
+
   template <bool>
   bool overlap(int i, const Body& a, int j, const Body& b, PairFeature& feature, Overlap& o) const {
     const double dx = b.x - a.x, dy = b.y - a.y, reach = a.radius + b.radius;
@@ -95,6 +111,12 @@ class PolygonStore {
     r.get(corners_);
     r.require(count_.size() == grains && corners_.size() == grains * kBlocks * stride_);
     for (const int n : count_) r.require(n >= 0 && static_cast<std::size_t>(n) < stride_);
+    long_axis_.clear();
+    any_slender_ = false;
+    for (int i = 0; i < static_cast<int>(grains); ++i) {
+      long_axis_.push_back(long_axis_of(outline(i)));
+      any_slender_ |= slender(i);
+    }
   }
 
  private:
@@ -119,6 +141,8 @@ class PolygonStore {
 
   std::size_t stride_ = 4;
   std::vector<int> count_, counts_;
+  std::vector<std::array<double, 2>> long_axis_, axes_;  // in the body frame (long_axis_of)
+  bool any_slender_ = false;
   std::vector<double> corners_, scratch_;
 };
 

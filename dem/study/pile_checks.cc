@@ -21,7 +21,7 @@ constexpr double kFloorReserve = 1.25;
 // A line holds the grains of the expected heap on its length and this much more, because grains
 // that roll off its ends widen the heap.
 constexpr double kLineReserve = 2.5;
-constexpr double kMostNotPoured = 0.1;
+constexpr double kMostNotPoured = 0.2;
 // s; a free fall through the largest funnel that makes sense takes a part of it.
 constexpr double kMostWaiting = 2;
 // Of the pile's weight, and what a few strays that rolled to the wall may press on it besides.

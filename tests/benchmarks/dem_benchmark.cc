@@ -1,5 +1,5 @@
 // Grain-steps per second on settled packings with friction memory, every grain awake: disks, and
-// polygons with seven corners.
+// polygons with seven corners, round and on ellipses twice to ten times as long as wide.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -31,22 +31,25 @@ void disks_10k(benchmark::State& s) { disks(s, "packing_discs_10k.csv", 2, 1); }
 void disks_30k(benchmark::State& s) { disks(s, "packing_discs_10k.csv", 2, 3); }
 void disks_100k(benchmark::State& s) { disks(s, "packing_discs_10k.csv", 2, 10); }
 
-void heptagons(benchmark::State& s, int columns, int rows, int tiles) {
+void heptagons(benchmark::State& s, int columns, int rows, int tiles, double aspect = 1) {
   struct Box {
     grainfield::dem::Snapshot grains;
     double width = 0;
   };
-  static std::map<int, Box> boxes;  // settling takes longer than measuring
-  Box& box = boxes[columns];
+  static std::map<std::pair<int, double>, Box> boxes;  // settling takes longer than measuring
+  Box& box = boxes[{columns, aspect}];
   if (box.grains.grains.empty()) {
-    box.grains = grainfield::benchmarks::settled_heptagons(columns, rows, box.width);
+    box.grains = grainfield::benchmarks::settled_heptagons(columns, rows, box.width, aspect);
   }
   run(s, grainfield::benchmarks::heptagon_scene(box.grains, box.width, tiles,
-                                                static_cast<int>(s.range(0))));
+                                                static_cast<int>(s.range(0)), aspect));
 }
 void heptagons_500(benchmark::State& s) { heptagons(s, 25, 20, 1); }
 void heptagons_5k(benchmark::State& s) { heptagons(s, 100, 50, 1); }
 void heptagons_50k(benchmark::State& s) { heptagons(s, 100, 50, 10); }
+void slender_1_to_2(benchmark::State& s) { heptagons(s, 40, 25, 5, 2); }
+void slender_1_to_5(benchmark::State& s) { heptagons(s, 40, 25, 5, 5); }
+void slender_1_to_10(benchmark::State& s) { heptagons(s, 40, 25, 5, 10); }
 
 BENCHMARK(disks_1k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(disks_10k)->Arg(1)->Arg(2)->UseRealTime();
@@ -55,5 +58,8 @@ BENCHMARK(disks_100k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(heptagons_500)->Arg(1)->UseRealTime();
 BENCHMARK(heptagons_5k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(heptagons_50k)->Arg(1)->UseRealTime();
+BENCHMARK(slender_1_to_2)->Arg(1)->UseRealTime();
+BENCHMARK(slender_1_to_5)->Arg(1)->UseRealTime();
+BENCHMARK(slender_1_to_10)->Arg(1)->UseRealTime();
 
 }  // namespace
