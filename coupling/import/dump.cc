@@ -141,4 +141,27 @@ class DumpScan {
 
 std::vector<ForeignTable> scan_dump(const std::string& file) { return DumpScan(file).tables(); }
 
+std::vector<std::pair<std::string, std::string>> dump_columns(
+    const std::vector<std::pair<std::string, std::string>>& contact) {
+  std::vector<std::pair<std::string, std::string>> columns = {
+      {"id", "id"},
+      {"x", "x"},
+      {"x", "xu"},
+      {"y", "y"},
+      {"y", "yu"},
+      {"z", "z"},
+      {"z", "zu"},
+      {"vx", "vx"},
+      {"vy", "vy"},
+      {"vz", "vz"},
+      {"spin", "omegaz"},
+      {"radius", "radius"},
+      {"diameter", "diameter"},
+      {"mass", "mass"},
+      {"density", "density"},
+  };
+  columns.insert(columns.end(), contact.begin(), contact.end());
+  return columns;
+}
+
 }  // namespace grainfield::coupling

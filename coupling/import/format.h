@@ -32,5 +32,8 @@ ImportFormat csv_format();
 
 /// Tables of a LAMMPS or LIGGGHTS dump file.
 std::vector<ForeignTable> scan_dump(const std::string& file);
+/// What both call the columns of a grain, and after them these of a contact: (ours, theirs).
+std::vector<std::pair<std::string, std::string>> dump_columns(
+    const std::vector<std::pair<std::string, std::string>>& contact);
 
 }  // namespace grainfield::coupling

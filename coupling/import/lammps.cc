@@ -10,22 +10,7 @@ ImportFormat lammps_format() {
   format.name = "lammps";
   format.summary = "dump custom of the atoms, dump local of their pairs";
   format.scan = scan_dump;
-  format.columns = {
-      {"id", "id"},
-      {"x", "x"},
-      {"x", "xu"},
-      {"y", "y"},
-      {"y", "yu"},
-      {"z", "z"},
-      {"z", "zu"},
-      {"vx", "vx"},
-      {"vy", "vy"},
-      {"vz", "vz"},
-      {"spin", "omegaz"},
-      {"radius", "radius"},
-      {"diameter", "diameter"},
-      {"mass", "mass"},
-      {"density", "density"},
+  format.columns = dump_columns({
       {"i", "patom1"},
       {"i", "id1"},
       {"j", "patom2"},
@@ -36,7 +21,7 @@ ImportFormat lammps_format() {
       {"ftx", "p1"},
       {"fty", "p2"},
       {"ftz", "p3"},
-  };
+  });
   return format;
 }
 

@@ -9,22 +9,7 @@ ImportFormat liggghts_format() {
   format.name = "liggghts";
   format.summary = "dump custom of the atoms, dump local of pair/gran/local and wall/gran/local";
   format.scan = scan_dump;
-  format.columns = {
-      {"id", "id"},
-      {"x", "x"},
-      {"x", "xu"},
-      {"y", "y"},
-      {"y", "yu"},
-      {"z", "z"},
-      {"z", "zu"},
-      {"vx", "vx"},
-      {"vy", "vy"},
-      {"vz", "vz"},
-      {"spin", "omegaz"},
-      {"radius", "radius"},
-      {"diameter", "diameter"},
-      {"mass", "mass"},
-      {"density", "density"},
+  format.columns = dump_columns({
       {"i", "id1"},
       {"j", "id2"},
       {"fx", "fx"},
@@ -33,7 +18,7 @@ ImportFormat liggghts_format() {
       {"px", "px"},
       {"py", "py"},
       {"pz", "pz"},
-  };
+  });
   return format;
 }
 

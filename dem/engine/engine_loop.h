@@ -194,6 +194,8 @@ class EngineLoop final : public Engine {
   static std::array<double, 2> point_of(const Body& a, const Overlap& o);
   template <class Visit>
   void visit_contacts(Visit visit) const;
+  template <class Loop, class Each>
+  static void visit_state(Loop& loop, Each each);
   std::vector<Frozen> sorted_frozen() const;
   [[noreturn]] void report_divergence() const;
 

@@ -205,39 +205,46 @@ void EngineLoop<Shape, Law, Integrator>::remember(const std::vector<Contact>& co
   search_needed_ = true;
 }
 
+/// each(value) for all that an image holds but the frozen contacts and the shapes, in its order.
+template <class Shape, class Law, class Integrator>
+template <class Loop, class Each>
+void EngineLoop<Shape, Law, Integrator>::visit_state(Loop& loop, Each each) {
+  each(loop.background_);
+  each(loop.applied_);
+  each(loop.steps_);
+  each(loop.free_);
+  each(loop.first_new_);
+  each(loop.skin_);
+  each(loop.skin_share_);
+  each(loop.last_by_motion_);
+  each(loop.search_needed_);
+  each(loop.settings_.gravity_x);
+  each(loop.settings_.gravity_y);
+  each(loop.settings_.sleep.on);
+  each(loop.awake_);
+  each(loop.sleepers_changed_);
+  each(loop.bodies_);
+  each(loop.memory_);
+  each(loop.inertias_);
+  each(loop.ids_);
+  each(loop.reference_);
+  each(loop.asleep_);
+  each(loop.quiet_);
+  each(loop.rests_);
+  each(loop.touches_);
+  each(loop.pair_start_);
+  each(loop.wall_start_);
+  each(loop.pairs_);
+  each(loop.wall_pairs_);
+  each(loop.pair_forces_);
+  each(loop.wall_forces_);
+  each(loop.felt_);
+}
+
 template <class Shape, class Law, class Integrator>
 std::string EngineLoop<Shape, Law, Integrator>::image() const {
   ImageWriter w;
-  w.put(background_);
-  w.put(applied_);
-  w.put(steps_);
-  w.put(free_);
-  w.put(first_new_);
-  w.put(skin_);
-  w.put(skin_share_);
-  w.put(last_by_motion_);
-  w.put(search_needed_);
-  w.put(settings_.gravity_x);
-  w.put(settings_.gravity_y);
-  w.put(settings_.sleep.on);
-  w.put(awake_);
-  w.put(sleepers_changed_);
-  w.put(bodies_);
-  w.put(memory_);
-  w.put(inertias_);
-  w.put(ids_);
-  w.put(reference_);
-  w.put(asleep_);
-  w.put(quiet_);
-  w.put(rests_);
-  w.put(touches_);
-  w.put(pair_start_);
-  w.put(wall_start_);
-  w.put(pairs_);
-  w.put(wall_pairs_);
-  w.put(pair_forces_);
-  w.put(wall_forces_);
-  w.put(felt_);
+  visit_state(*this, [&w](const auto& value) { w.put(value); });
   w.put(sorted_frozen());
   shapes_.write(w);
   return w.bytes();
@@ -246,36 +253,7 @@ std::string EngineLoop<Shape, Law, Integrator>::image() const {
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::restore(const std::string& image) {
   ImageReader r(image);
-  r.get(background_);
-  r.get(applied_);
-  r.get(steps_);
-  r.get(free_);
-  r.get(first_new_);
-  r.get(skin_);
-  r.get(skin_share_);
-  r.get(last_by_motion_);
-  r.get(search_needed_);
-  r.get(settings_.gravity_x);
-  r.get(settings_.gravity_y);
-  r.get(settings_.sleep.on);
-  r.get(awake_);
-  r.get(sleepers_changed_);
-  r.get(bodies_);
-  r.get(memory_);
-  r.get(inertias_);
-  r.get(ids_);
-  r.get(reference_);
-  r.get(asleep_);
-  r.get(quiet_);
-  r.get(rests_);
-  r.get(touches_);
-  r.get(pair_start_);
-  r.get(wall_start_);
-  r.get(pairs_);
-  r.get(wall_pairs_);
-  r.get(pair_forces_);
-  r.get(wall_forces_);
-  r.get(felt_);
+  visit_state(*this, [&r](auto& value) { r.get(value); });
   std::vector<Frozen> frozen;
   r.get(frozen);
   frozen_.clear();

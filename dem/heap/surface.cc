@@ -1,6 +1,7 @@
 #include "dem/heap/surface.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,6 +9,8 @@
 
 namespace grainfield::dem {
 namespace {
+
+using boost::math::statistics::median;  // reorders what it is given
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFlankLow = 0.15, kFlankHigh = 0.85;
@@ -18,14 +21,6 @@ constexpr int kRounds = 10;
 // Standard deviation of a normal distribution over its median absolute deviation.
 constexpr double kNormalMad = 1.4826;
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-double median(std::vector<double> values) {
-  const std::size_t half = values.size() / 2;
-  std::nth_element(values.begin(), values.begin() + half, values.end());
-  const double upper = values[half];
-  if (values.size() % 2 == 1) return upper;
-  return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
-}
 
 // Highest point of a convex polygon between x = left and x = right; -infinity if it has none there.
 double top_between(const Outline& corners, double left, double right) {
@@ -66,7 +61,7 @@ FlankLine theil_sen(const std::vector<Point>& points) {
       slopes.push_back((points[j].y - points[i].y) / (points[j].x - points[i].x));
     }
   }
-  line.slope = median(std::move(slopes));
+  line.slope = median(slopes);
   double mean = 0, square = 0;
   for (const Point& p : points) {
     offsets.push_back(p.y - line.slope * p.x);
@@ -77,7 +72,7 @@ FlankLine theil_sen(const std::vector<Point>& points) {
     residuals.push_back(std::fabs(p.y - line.at_zero - line.slope * p.x));
     square += (p.x - mean) * (p.x - mean);
   }
-  line.slope_error = kNormalMad * median(std::move(residuals)) / std::sqrt(square);
+  line.slope_error = kNormalMad * median(residuals) / std::sqrt(square);
   return line;
 }
 

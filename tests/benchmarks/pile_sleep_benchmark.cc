@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -33,12 +34,6 @@ PileRun run_of(const Case& value, int realization, const std::string& state) {
   PileRun run(value.pile, grainfield::coupling::realization_seed(value, realization), 1);
   if (!state.empty()) run.restore(state);
   return run;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 void pour_states(const Case& value, int realization, const std::filesystem::path& folder) {
@@ -100,7 +95,8 @@ void measure(const std::string& case_file, const std::filesystem::path& folder, 
       asleeps.push_back(seconds_per_grain(value, realization, state.file, kAsleepWindow, false));
       awakes.push_back(seconds_per_grain(value, realization, state.file, kAwakeWindow, true));
     }
-    const double asleep = median(asleeps), awake = median(awakes);
+    const double asleep = boost::math::statistics::median(asleeps);
+    const double awake = boost::math::statistics::median(awakes);
     fmt::print("{:6d}  {:33.4f}  {:9.4f}  {:5.2f}\n", state.grains, asleep, awake, awake / asleep);
     std::fflush(stdout);
     if (last == 0) last_asleep = asleep;
