@@ -31,6 +31,7 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
   const char* article = type == "integer" ? "an" : "a";
   const char* example = type == "list of numbers" ? " [0.2, 0.4]"
                         : type == "list of words" ? " [\"one\", \"two\"]"
+                        : type == "boolean"       ? " true or false"
                                                   : "";
   reject(a, key.path(),
          fmt::format("found {}, expected {} {}{}{}", describe(a), article, type,
@@ -102,15 +103,22 @@ void set(const Key& key, const Assignment& a, Case& value) {
   if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
     reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
   }
-  // A name that exists in another section is nearer than any misspelling; else names of this one.
+  if (!a.table && a.path.find('.') == std::string::npos &&
+      std::find(names.begin(), names.end(), a.path) != names.end()) {
+    reject(a, a.path, fmt::format("is a section; its keys: grainfield keys {}", a.path));
+  }
+  // SECTION.NAME may be SECTION_NAME elsewhere; a name that exists in another section is nearer
+  // than any misspelling; else names of this one.
   const std::string name = a.path.substr(a.path.rfind('.') + 1);
   std::vector<std::string> here, everywhere;
-  std::string near;
+  std::string near, joined;
   for (const Key& key : keys()) {
     everywhere.push_back(key.path());
     if (sectioned && key.section == section) here.push_back(key.path());
     if (key.name == name && near.empty()) near = key.path();
+    if (sectioned && key.name == section + "_" + name) joined = key.path();
   }
+  if (!joined.empty()) near = joined;
   if (near.empty()) near = continuum::nearest(a.path, here.empty() ? everywhere : here);
   reject(a, a.path, "unknown key; nearest: " + near);
 }

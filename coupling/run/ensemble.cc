@@ -39,6 +39,8 @@ std::string cpu_file(const std::string& file) { return file + ".cpu"; }
 
 // A slice is long enough to cost nothing and short enough to stop at once.
 constexpr double kSliceSeconds = 0.05;
+// How far a realization is at most until its file is written: only then it counts as done.
+constexpr double kAlmost = 0.999;
 constexpr auto kReportEvery = std::chrono::milliseconds(200);
 
 // HDF5 is not built for threads: one file at a time.
@@ -104,10 +106,11 @@ class Worker {
   }
 
  private:
-  void note(std::size_t task, const dem::Progress& progress) {
+  void note(std::size_t task, const dem::Progress& progress, bool finished = false) {
     const std::lock_guard lock(mutex_);
     if (states_[task].phase.empty()) begun_at_[task] = progress.fraction;
     states_[task] = progress;
+    states_[task].fraction = finished ? 1 : std::min(progress.fraction, kAlmost);
   }
 
   Outcome simulate(std::size_t index, int engine_threads) {
@@ -168,9 +171,7 @@ class Worker {
       write_realization(task.file, run->result());
     }
     fs::remove(checkpoint);
-    dem::Progress done = run->progress();
-    done.fraction = 1;
-    note(index, done);
+    note(index, run->progress(), true);
     return Outcome::finished;
   }
 

@@ -11,6 +11,13 @@ namespace {
 
 constexpr double kLevel = 0.05;
 
+// Of so few normal numbers the standard error itself is uncertain by 1/sqrt(2 (n - 1)).
+std::string few_realizations(int n) {
+  if (n >= 5) return "";
+  return fmt::format("; of {} realizations that error itself is uncertain by {:.0f} %", n,
+                     100 / std::sqrt(2.0 * (n - 1)));
+}
+
 }  // namespace
 
 BaseWindows base_windows(const dem::Snapshot& pile, const PileFrame& frame,
@@ -57,10 +64,12 @@ std::string dip_sentence(const Dip& dip) {
   }
   const bool peak = dip.verdict == "peak";
   const double p = dip.difference.p_value;
-  const std::string spread = fmt::format(
-      "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} if there were no {}",
-      numbers, dip.difference.mean, dip.difference.standard_error, dip.difference.values,
-      peak ? 1 - p : p, peak ? "peak" : "dip");
+  const std::string spread =
+      fmt::format(
+          "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} if there were no {}",
+          numbers, dip.difference.mean, dip.difference.standard_error, dip.difference.values,
+          peak ? 1 - p : p, peak ? "peak" : "dip") +
+      few_realizations(dip.difference.values);
   if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
   if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);
   return fmt::format("No dip and no peak beyond the spread: {}.", spread);

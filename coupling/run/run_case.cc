@@ -286,8 +286,16 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
   try {
     on_first_rank(ranks, [&] {
       if (options.resume && !place.unfinished()) {
-        options.note(fmt::format("nothing to resume in {}{}: starting anew", options.folder,
-                                 place.finished() ? ", whose run is finished" : ""));
+        if (place.finished()) {
+          const std::string again = fmt::format(
+              ", or analyse its piles again in another folder: --set "
+              "'grains.files=[\"{}/snapshots.h5\"]'",
+              options.folder);
+          throw std::invalid_argument(fmt::format(
+              "--resume: the run in {} is finished; leave --resume out to run anew in its place{}",
+              options.folder, value.study.starts_with("pile") ? again : ""));
+        }
+        options.note(fmt::format("nothing to resume in {}: starting anew", options.folder));
       }
       if (!options.resume && place.finished() && !place.unfinished()) {
         options.note(

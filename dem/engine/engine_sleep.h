@@ -4,8 +4,9 @@
 //   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours since
 //          the last review leave more than wake_force of the forces on it unbalanced; that an
 //          awake neighbour touches at more than wake_speed sqrt(g d); or that lies within
-//          wake_reach d v / sqrt(g d) of a grain that comes near sleepers at such a speed v: the
-//          grains on which it falls must give way, and what they pass on moves those behind;
+//          wake_reach d v / sqrt(g d) of a grain that comes near sleepers (has one among its
+//          candidate pairs) at such a speed v: the grains on which it falls must give way, and what
+//          they pass on moves those behind;
 //   sleep  a grain that has moved and turned by less than quiet_move of its diameter during
 //          quiet_time, when its contacts' forces at zero velocity balance to quiet_force.
 // A contact between two sleepers, or of a sleeper with a wall, is frozen: it keeps its spring and

@@ -8,7 +8,7 @@
 #include "dem/engine/body.h"
 #include "dem/engine/image.h"
 #include "dem/engine/rotation.h"
-#include "dem/neighbours/bounding_rectangle.h"
+#include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/polygon.h"
 
 namespace grainfield::dem {

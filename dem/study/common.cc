@@ -40,8 +40,8 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
     const std::string who =
         beyond ? "for irregular polygons of this material"
                : fmt::format(
-                     "(the stable limit) for {} with this material; only irregular polygons "
-                     "(rand1, irregular) with verlet may go above it",
+                     "(the stable limit) for grains of this shape and material with {}; only "
+                     "shape.kind = \"rand1\" or \"irregular\" with verlet may go above it",
                      motion.integrator);
     throw std::invalid_argument(
         motion.time_step > 0
@@ -63,9 +63,12 @@ bool at_rest(const Diagnostics& d, const RestSetup& rest) {
 }
 
 double rest_progress(const Diagnostics& d, const RestSetup& rest) {
-  return std::clamp(
-      std::log(std::max(d.unbalanced_force_ratio, 1e-300)) / std::log(rest.unbalanced_force_ratio),
-      0.0, 1.0);
+  const auto share = [](double value, double goal) {
+    return std::clamp(std::log(std::max(value, 1e-300)) / std::log(goal), 0.0, 1.0);
+  };
+  const double swinging = d.elastic_energy > 0 ? d.kinetic_energy / d.elastic_energy : 1.0;
+  return std::min(share(d.unbalanced_force_ratio, rest.unbalanced_force_ratio),
+                  share(swinging, rest.kinetic_to_elastic_energy));
 }
 
 void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string& when,

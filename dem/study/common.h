@@ -31,7 +31,8 @@ EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup&
                                const GrainExtremes& extremes, int threads, bool irregular = false);
 
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
-/// How far a rest has come, in [0, 1], on the logarithm of the unbalanced force ratio.
+/// How far a rest has come, in [0, 1]: on the logarithms of the unbalanced force ratio and of
+/// kinetic over elastic energy, whichever is further from its goal.
 double rest_progress(const Diagnostics& state, const RestSetup& rest);
 /// Throws ComputationFailed: no rest within rest.max_time; `when` completes "(...)", `remedy`
 /// completes "raise rest.max_time or rest.background_damping".

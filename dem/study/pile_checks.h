@@ -40,7 +40,7 @@ void check_walls_free(const PileSetup& setup, const Snapshot& snapshot, double d
 /// The same for a pile at rest that leans on the side walls with more than 1e-3 of its weight and
 /// what three stray grains weigh, at most 5e-3 together.
 void check_not_leaning(const PileSetup& setup, const Snapshot& snapshot);
-/// Throws ComputationFailed naming source.length when more than a tenth of the grains found no room
+/// Throws ComputationFailed naming source.length when more than a fifth of the grains found no room
 /// on the pile's plateau.
 void check_line_long_enough(const PileSetup& setup, int poured);
 

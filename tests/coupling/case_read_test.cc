@@ -184,14 +184,15 @@ TEST(CaseErrors, WrongTypes) {
   EXPECT_EQ(complaint("[packing]\nrows = 2.5\n"),
             "x.toml:2: packing.rows: found 2.5 (number), expected an integer");
   EXPECT_EQ(complaint("[output]\nvtu = 1\n"),
-            "x.toml:2: output.vtu: found 1 (integer), expected a boolean");
+            "x.toml:2: output.vtu: found 1 (integer), expected a boolean, written true or false");
   EXPECT_EQ(complaint("[packing]\nfloor = true\n"),
             "x.toml:2: packing.floor: found true (boolean), expected a word");
   EXPECT_EQ(complaint("[packing]\nradius = [1, 2]\n"),
             "x.toml:2: packing.radius: found a list [1, 2], expected a number");
   EXPECT_EQ(complaint("[packing]\nradius = 1979-05-27\n"),
             "x.toml:2: packing.radius: found a date or time, expected a number");
-  EXPECT_EQ(complaint("material = 3\n"), "x.toml:1: material: unknown key; nearest: material.law");
+  EXPECT_EQ(complaint("material = 3\n"),
+            "x.toml:1: material: is a section; its keys: grainfield keys material");
 }
 
 TEST(CaseErrors, OutOfRange) {
@@ -224,7 +225,8 @@ TEST(CaseErrors, BetweenKeys) {
 TEST(CaseErrors, TimeStepAboveTheStableLimitNamesTheLimit) {
   const std::string what = complaint("[motion]\n\ntime_step = 0.1\n");
   EXPECT_THAT(what, HasSubstr("x.toml:3: motion.time_step: found 0.1 s, allowed: at most"));
-  EXPECT_THAT(what, HasSubstr("(the stable limit) for verlet"));
+  EXPECT_THAT(what,
+              HasSubstr("(the stable limit) for grains of this shape and material with verlet"));
 }
 
 TEST(CaseErrors, Piles) {
@@ -249,7 +251,9 @@ TEST(CaseErrors, Piles) {
   EXPECT_THAT(pile("[floor]\nlength = -1.0\n"),
               HasSubstr("floor.length: found -1, allowed: above 0"));
   EXPECT_THAT(pile("[sleep]\non = 1\n"),
-              HasSubstr("sleep.on: found 1 (integer), expected a boolean"));
+              HasSubstr("sleep.on: found 1 (integer), expected a boolean, written true or false"));
+  EXPECT_THAT(pile("[floor]\nfriction = 0.5\n"),
+              HasSubstr("floor.friction: unknown key; nearest: material.floor_friction"));
   EXPECT_THAT(pile("[change]\ngravity = [0.0]\n"),
               HasSubstr("change.gravity: found 0, allowed: above 0"));
   EXPECT_THAT(pile("[change]\nmethod = \"newtons\"\n"), HasSubstr("nearest: newton"));

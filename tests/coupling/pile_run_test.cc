@@ -207,7 +207,10 @@ TEST(PileRun, SameBitsAfterKills) {
                      "timeout -s KILL " + std::to_string(seconds));
     kills += output.code == 137;
   } while (output.code == 137 && kills < 200);
-  ASSERT_EQ(output.code, 0) << output.err;
+  // The last kill may have come between the run's end and the program's.
+  if (output.err.find("is finished") == std::string::npos) {
+    ASSERT_EQ(output.code, 0) << output.err;
+  }
   EXPECT_GT(kills, 2);
   EXPECT_GT(resumed, 1);
   const auto pieces = testing::contents(folder / "killed");

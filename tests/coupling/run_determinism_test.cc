@@ -137,6 +137,9 @@ TEST(Resume, RefusesAnotherCaseAndSaysWhatDiffers) {
   EXPECT_EQ(forgotten.code, 2);
   EXPECT_THAT(forgotten.err, HasSubstr("holds an unfinished run; continue it with --resume"));
   EXPECT_EQ(program(run + " --resume").code, 0);
+  const Output finished = program(run + " --resume");
+  EXPECT_EQ(finished.code, 2);
+  EXPECT_THAT(finished.err, HasSubstr("is finished; leave --resume out to run anew"));
 }
 
 TEST(Resume, RepeatsAFailedAnalysisWithoutTheGrains) {

@@ -1,4 +1,4 @@
-#include "dem/neighbours/bounding_rectangle.h"
+#include "dem/shapes/bounding_rectangle.h"
 
 #include <algorithm>
 #include <limits>
@@ -21,8 +21,12 @@ struct Range {
 std::array<double, 2> long_axis_of(const Outline& outline) {
   if (outline.empty()) return {0, 0};
   const auto [xx, yy, xy] = second_moments_of(outline);
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);  // where the integral of u u is largest
-  const double ux = std::cos(angle), uy = std::sin(angle);
+  // Half the angle of (xx - yy, 2 xy), by square roots alone: the same bits on every machine.
+  const double size = std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy);
+  if (size == 0) return {0, 0};
+  const double twice = (xx - yy) / size;
+  const double ux = std::sqrt(0.5 * std::max(0.0, 1 + twice));
+  const double uy = std::copysign(std::sqrt(0.5 * std::max(0.0, 1 - twice)), xy);
   Range along, across;
   for (const auto& [x, y] : outline) {
     along.include(x * ux + y * uy);
