@@ -151,6 +151,35 @@ TEST(BoundingRectangle, EngineSeesABarThatTurnsInPlace) {
   }
 }
 
+// Two bars fly at each other, side to side or end to end, from distances about the way that the
+// search allows: half of it would miss their first steps of contact.
+TEST(BoundingRectangle, EngineSeesFastBarsFromAnyDistance) {
+  for (const bool ends : {false, true}) {
+    for (int k = 1; k <= 60; ++k) {
+      EngineSettings settings = lively_settings(1);
+      settings.gravity_y = 0;
+      auto engine = make_engine(settings);
+      NewGrain bar;
+      bar.density = 5000;
+      bar.outline = box(0.02, 0.002);
+      for (const double side : {-1.0, 1.0}) {
+        const double away = 1e-4 * k;  // in 100 steps they come 2e-3 nearer
+        bar.x = ends ? side * (0.01 + away / 2) : 0;
+        bar.y = ends ? 0 : side * (0.001 + away / 2);
+        (ends ? bar.vx : bar.vy) = -side;
+        engine->add(bar);
+      }
+      std::size_t contacts = 0;
+      for (int look = 0; look < 400; ++look) {
+        engine->step(1);
+        contacts += expect_all_contacts(engine->snapshot());
+        ASSERT_FALSE(HasFailure()) << "from " << k;
+      }
+      EXPECT_GT(contacts, 0U);
+    }
+  }
+}
+
 // A lively crowd of bars, disks and round polygons between walls, a fixed plate among them.
 std::unique_ptr<Engine> crowd(const EngineSettings& settings) {
   auto engine = make_engine(settings);
