@@ -114,7 +114,8 @@ std::string reproduction_page(const Results& results) {
       "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
       "exceeds what a true model's does by chance (1.35 of 1000). A "
       "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
-      "beside the apex minus that under it). Nothing was tuned to agree.\n\n"
+      "beside the apex minus that under it); a peak meets \"no dip\" too. Nothing was tuned to "
+      "agree.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"
       "|---|---|---|---|---|---|---|\n",
       100 * kTooWide);
