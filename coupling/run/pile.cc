@@ -246,7 +246,20 @@ class Analysis {
     summary["dem.grain_steps"] = sum;
   }
 
-  static void add_dip(StudyResult& out, const Dip& dip) {
+  /// Of piles on which no line fits a flank; empty when there are none.
+  std::string flat_piles() const {
+    const auto &left = piles_.figures().at("dem.repose_angle_left_deg"),
+               &right = piles_.figures().at("dem.repose_angle_right_deg");
+    int flat = 0;
+    for (std::size_t r = 0; r < left.size(); ++r) flat += std::isnan(left[r] + right[r]) ? 1 : 0;
+    if (flat == 0) return "";
+    return fmt::format(
+        "{} of {} piles {} a flank on which no line fits (too flat, or too few grains): apex and "
+        "shoulders mean little. ",
+        flat, left.size(), flat == 1 ? "has" : "have");
+  }
+
+  void add_dip(StudyResult& out, const Dip& dip) const {
     out.summary["dip.centre"] = dip.centre;
     out.summary["dip.shoulder"] = dip.shoulder;
     out.summary["dip.window_ratio"] = dip.window_ratio;
@@ -254,7 +267,7 @@ class Analysis {
     out.summary["dip.standard_error"] = dip.difference.standard_error;
     out.summary["dip.p_value"] = dip.difference.p_value;
     out.summary["dip.verdict"] = dip.verdict;
-    std::string sentence = dip_sentence(dip);
+    std::string sentence = flat_piles() + dip_sentence(dip);
     if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
     out.comparison.verdict.sentence = sentence;
     out.summary["verdict.sentence"] = sentence;

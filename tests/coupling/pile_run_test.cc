@@ -169,6 +169,14 @@ TEST(PileRun, ARoughFloorLiesAtTheTopsOfItsGrains) {
   EXPECT_NEAR(figure("base.weight_ratio"), 1, 2e-3);
 }
 
+TEST(PileRun, AFlatPileIsSaidToHaveNoApex) {
+  const Folder folder;
+  const std::string run = "run " + folder.write("x.toml", tiny_pile()) + " -o " + (folder / "out");
+  const Output flat = program(run + " --set source.grains=4");
+  ASSERT_EQ(flat.code, 0) << flat.err;
+  EXPECT_THAT(testing::read_text(folder / "out/summary.json"), HasSubstr("on which no line fits"));
+}
+
 TEST(PileRun, SameBitsOnAnyThreadsAndAfterAStop) {
   const Folder folder;
   const auto one = results_of(folder, "one", "--threads 1");
