@@ -97,15 +97,17 @@ void set(const Key& key, const Assignment& a, Case& value) {
 
 [[noreturn]] void unknown(const Assignment& a) {
   const std::string section = a.path.substr(0, a.path.find('.'));
-  auto names = sections();
+  const auto with_keys = sections();
+  auto names = with_keys;
   names.insert(names.end(), {"model", "variant", "quick"});
   const bool sectioned = a.table || section.size() < a.path.size();
   if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
     reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
   }
-  if (!a.table && a.path.find('.') == std::string::npos &&
-      std::find(names.begin(), names.end(), a.path) != names.end()) {
-    reject(a, a.path, fmt::format("is a section; its keys: grainfield keys {}", a.path));
+  if (!a.table && std::find(with_keys.begin(), with_keys.end(), a.path) != with_keys.end()) {
+    reject(a, a.path,
+           fmt::format("found {}, expected a section [{}] (its keys: grainfield keys {})",
+                       describe(a), a.path, a.path));
   }
   // SECTION.NAME may be SECTION_NAME elsewhere; a name that exists in another section is nearer
   // than any misspelling; else names of this one.

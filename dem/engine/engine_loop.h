@@ -12,8 +12,8 @@
 #include "dem/engine/engine.h"
 #include "dem/engine/image.h"
 #include "dem/engine/thread_team.h"
-#include "dem/shapes/bounding_rectangle.h"
 #include "dem/neighbours/hierarchical_grid.h"
+#include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/disk_store.h"
 #include "dem/shapes/polygon_store.h"
 

@@ -192,7 +192,8 @@ TEST(CaseErrors, WrongTypes) {
   EXPECT_EQ(complaint("[packing]\nradius = 1979-05-27\n"),
             "x.toml:2: packing.radius: found a date or time, expected a number");
   EXPECT_EQ(complaint("material = 3\n"),
-            "x.toml:1: material: is a section; its keys: grainfield keys material");
+            "x.toml:1: material: found 3 (integer), expected a section [material] (its keys: "
+            "grainfield keys material)");
 }
 
 TEST(CaseErrors, OutOfRange) {

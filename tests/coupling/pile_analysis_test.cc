@@ -215,6 +215,12 @@ TEST(PileAnalysis, FewRealizationsGiveNoVerdict) {
   EXPECT_EQ(std::get<std::string>(two.summary.at("dip.verdict")), "undecided");
   EXPECT_TRUE(std::isnan(number(two, "dip.p_value")));
   EXPECT_THAT(two.comparison.verdict.sentence, HasSubstr("needs at least 3 that differ"));
+  // 1/sqrt(2 (n - 1)) = 0.5 of three, 0.41 of four; with eight nothing is said.
+  EXPECT_THAT(planted(0.4, 3, 7).comparison.verdict.sentence,
+              HasSubstr("; of 3 realizations that error itself is uncertain by 50 %"));
+  EXPECT_THAT(planted(0.4, 4, 7).comparison.verdict.sentence, HasSubstr("uncertain by 41 %"));
+  EXPECT_THAT(planted(0.4, 8, 100).comparison.verdict.sentence,
+              ::testing::Not(HasSubstr("uncertain")));
 }
 
 TEST(PileAnalysis, WithoutADipFewEnsemblesShowOne) {

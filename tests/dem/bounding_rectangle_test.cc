@@ -124,16 +124,21 @@ EngineSettings lively_settings(int threads) {
   return settings;
 }
 
+NewGrain bar_of(double length, double width) {
+  NewGrain bar;
+  bar.density = 5000;
+  bar.outline = box(length, width);
+  return bar;
+}
+
 // Only turning brings them together: no centroid moves before they touch.
 TEST(BoundingRectangle, EngineSeesABarThatTurnsInPlace) {
+  EngineSettings weightless = lively_settings(1);
+  weightless.gravity_y = 0;
   for (const double spin : {0.7, 5.0, 20.0, -60.0, 300.0}) {
     for (const bool fixed : {false, true}) {
-      EngineSettings settings = lively_settings(1);
-      settings.gravity_y = 0;
-      auto engine = make_engine(settings);
-      NewGrain bar;
-      bar.density = 5000;
-      bar.outline = box(0.02, 0.002);
+      auto engine = make_engine(weightless);
+      NewGrain bar = bar_of(0.02, 0.002);
       bar.fixed = fixed;
       engine->add(bar);
       bar.fixed = false;
@@ -154,14 +159,12 @@ TEST(BoundingRectangle, EngineSeesABarThatTurnsInPlace) {
 // Two bars fly at each other, side to side or end to end, from distances about the way that the
 // search allows: half of it would miss their first steps of contact.
 TEST(BoundingRectangle, EngineSeesFastBarsFromAnyDistance) {
+  EngineSettings weightless = lively_settings(1);
+  weightless.gravity_y = 0;
   for (const bool ends : {false, true}) {
     for (int k = 1; k <= 60; ++k) {
-      EngineSettings settings = lively_settings(1);
-      settings.gravity_y = 0;
-      auto engine = make_engine(settings);
-      NewGrain bar;
-      bar.density = 5000;
-      bar.outline = box(0.02, 0.002);
+      auto engine = make_engine(weightless);
+      NewGrain bar = bar_of(0.02, 0.002);
       for (const double side : {-1.0, 1.0}) {
         const double away = 1e-4 * k;  // in 100 steps they come 2e-3 nearer
         bar.x = ends ? side * (0.01 + away / 2) : 0;
@@ -188,10 +191,8 @@ std::unique_ptr<Engine> crowd(const EngineSettings& settings) {
   engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
   engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
   engine->add_wall({"right", {width, 0, 0}, {-1, 0, 0}, 0.2});
-  NewGrain plate;
+  NewGrain plate = bar_of(0.08, 0.005);
   plate.fixed = true;
-  plate.density = 5000;
-  plate.outline = box(0.08, 0.005);
   plate.x = 0.5 * width;
   plate.y = 0.004;
   plate.angle = 0.2;

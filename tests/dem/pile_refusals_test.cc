@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "dem/study/common.h"
 #include "dem/study/pile_checks.h"
 #include "tests/dem/pile_scene.h"
 
@@ -197,6 +198,23 @@ std::string failed_check(Check check) {
     return error.what();
   }
   return "passed";
+}
+
+TEST(PileChecks, RestHasComeAsFarAsTheMeasureThatLags) {
+  RestSetup rest;
+  rest.unbalanced_force_ratio = 1e-6;
+  rest.kinetic_to_elastic_energy = 1e-10;
+  Diagnostics d;
+  d.elastic_energy = 1;
+  const auto progress = [&](double force, double energy) {
+    d.unbalanced_force_ratio = force;
+    d.kinetic_energy = energy;
+    return rest_progress(d, rest);
+  };
+  EXPECT_NEAR(progress(1e-3, 1e-12), 0.5, 1e-12);
+  EXPECT_NEAR(progress(1e-7, 1e-4), 0.4, 1e-12);  // forces balance, grains still swing
+  EXPECT_EQ(progress(1e-7, 1e-12), 1);
+  EXPECT_EQ(progress(10, 10), 0);
 }
 
 TEST(PileChecks, WhileThePileGrows) {
