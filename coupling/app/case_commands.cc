@@ -8,6 +8,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/shipped_cases.h"
+#include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
 #include "coupling/case/keys.h"
 #include "coupling/run/studies.h"
@@ -17,7 +18,7 @@ namespace grainfield::coupling {
 
 void warn_of_idle_keys(const Case& value) {
   for (const std::string& text : value.idle) {
-    fmt::print(stderr, "grainfield: warning: {}\n", text);
+    note("warning: {}", text);
   }
 }
 
@@ -73,9 +74,9 @@ void add_check(CLI::App& app, Action& action) {
       *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
       warn_of_idle_keys(value);
-      fmt::print("{}: ok ({}, {} model{})\n", *file, value.study, value.models.size(),
-                 value.models.size() == 1 ? "" : "s");
-      fmt::print("{}", outlook_text(value));
+      say("{}: ok ({}, {} model{})\n", *file, value.study, value.models.size(),
+          value.models.size() == 1 ? "" : "s");
+      say("{}", outlook_text(value));
       return 0;
     };
   });
@@ -94,14 +95,13 @@ void add_keys(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       if (*summary) {
-        fmt::print("{}", *markdown ? summary_keys_markdown() : summary_keys_text());
+        say("{}", *markdown ? summary_keys_markdown() : summary_keys_text());
       } else if (*markdown) {
-        fmt::print("{}", keys_markdown());
+        say("{}", keys_markdown());
       } else {
         std::vector<std::string> texts;
         for (const std::string& section : *sections) texts.push_back(keys_text(section));
-        fmt::print("{}",
-                   sections->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
+        say("{}", sections->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
       }
       return 0;
     };
@@ -113,9 +113,9 @@ void add_cases(CLI::App& app, Action& action) {
   command->callback([&action] {
     action = [] {
       for (const auto& file : shipped_cases()) {
-        fmt::print("{:<28} {}\n", file.filename().string(), case_title(file.string()));
+        say("{:<28} {}\n", file.filename().string(), case_title(file.string()));
       }
-      fmt::print("in {}; grainfield run NAME\n", cases_folder().string());
+      say("in {}; grainfield run NAME\n", cases_folder().string());
       return 0;
     };
   });

@@ -9,6 +9,7 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_options.h"
+#include "coupling/app/terminal.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/output/other_file.h"
 #include "coupling/run/average_files.h"
@@ -57,7 +58,7 @@ std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
 // Warns of points without a value; they are nan in the file.
 void print_gaps(const Gaps& gaps, const Field& field) {
   const std::string text = gaps.text(field.points);
-  if (!text.empty()) fmt::print(stderr, "grainfield: {}\n", text);
+  if (!text.empty()) note("{}", text);
 }
 
 // Every averaging on each snapshot, side by side.
@@ -66,8 +67,7 @@ void print_balance(const std::vector<SnapshotName>& names, AverageOptions option
     const dem::Snapshot snapshot = dem::read_snapshot(name.file, name.group);
     const double diameter = mean_diameter(snapshot);
     options.width = width > 0 ? width / diameter : 1;
-    fmt::print(
-        "{}:{}: {} grains, {} contacts, mean diameter {:.4g} m; residual of div sigma + rho "
+    say("{}:{}: {} grains, {} contacts, mean diameter {:.4g} m; residual of div sigma + rho "
         "g over rho g\n{}",
         name.file, name.group, snapshot.grains.size(), snapshot.contacts.size(), diameter,
         balance_markdown(balance_table(snapshot, options)));
@@ -146,12 +146,11 @@ void add_average(CLI::App& app, Action& action) {
       Gaps gaps;
       std::vector<std::string> warnings;
       const NamedFields fields = average_files(request, &gaps, &warnings);
-      for (const std::string& warning : warnings)
-        fmt::print(stderr, "grainfield: warning: {}\n", warning);
+      for (const std::string& warning : warnings) note("warning: {}", warning);
       write_fields(given->output, fields);
       for (const auto& [name, field] : fields) {
-        fmt::print("{}: {} points, {} realization{}\n", name, field.points.rows(),
-                   field.realizations, field.realizations == 1 ? "" : "s");
+        say("{}: {} points, {} realization{}\n", name, field.points.rows(), field.realizations,
+            field.realizations == 1 ? "" : "s");
       }
       print_gaps(gaps, fields.front().second);
       return 0;
@@ -194,9 +193,9 @@ void add_compare(CLI::App& app, Action& action) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
       const CompareOutcome outcome = compare_field(*request);
-      if (!outcome.note.empty()) fmt::print("{}\n", outcome.note);
-      fmt::print("{}\n", outcome.verdict);
-      fmt::print("report: {}/report.html\n", request->folder);
+      if (!outcome.note.empty()) say("{}\n", outcome.note);
+      say("{}\n", outcome.verdict);
+      say("report: {}/report.html\n", request->folder);
       return 0;
     };
   });

@@ -7,6 +7,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/shipped_cases.h"
+#include "coupling/app/terminal.h"
 #include "coupling/fit/fit_files.h"
 
 namespace grainfield::coupling {
@@ -81,10 +82,10 @@ void add_fit(CLI::App& app, Action& action) {
       }
       const FitOutcome outcome = fit_files(wanted);
       for (const std::string& text : outcome.warnings) {
-        fmt::print(stderr, "grainfield: warning: {}\n", text);
+        note("warning: {}", text);
       }
-      fmt::print("fitted to {}\n", shown(outcome.packings));
-      fmt::print("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
+      say("fitted to {}\n", shown(outcome.packings));
+      say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
       return 0;
     };
   });

@@ -8,11 +8,13 @@
 #include <set>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/terminal.h"
 #include "coupling/import/doubts.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/other_file.h"
+#include "coupling/system/file_lock.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -115,30 +117,25 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
   for (const auto& c : s.contacts) at_walls += c.j < 0 ? 1 : 0;
-  fmt::print("{}: {}D, {} grains ({} fixed), {} contacts ({} with walls), {} walls\n",
-             imported.group, s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls,
-             s.walls.size());
+  say("{}: {}D, {} grains ({} fixed), {} contacts ({} with walls), {} walls\n", imported.group,
+      s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls, s.walls.size());
   const GrainSizes sizes = grain_sizes(s);
-  fmt::print("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as SI)\n",
-             sizes.diameter, sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
-  const auto warn = [&](const std::string& text) {
-    fmt::print(stderr, "grainfield: warning: {}: {}\n", imported.group, text);
-  };
+  say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as SI)\n", sizes.diameter,
+      sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
+  const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   if (imported.left_out > 0)
-    fmt::print("  left out: {} contacts across periodic boundaries\n", imported.left_out);
-  fmt::print("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
-             default_gravity ? " (default; --gravity changes it)" : "");
+    say("  left out: {} contacts across periodic boundaries\n", imported.left_out);
+  say("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
+      default_gravity ? " (default; --gravity changes it)" : "");
   if (s.contacts.empty()) return;
   const PackingCheck check = check_packing(s);
-  fmt::print("  stress x volume (N m, tension positive), pairs:{}\n",
-             tensor_text(check.pairs, s.dim));
+  say("  stress x volume (N m, tension positive), pairs:{}\n", tensor_text(check.pairs, s.dim));
   if (at_walls > 0)
-    fmt::print("  stress x volume (N m, tension positive), walls:{}\n",
-               tensor_text(check.walls, s.dim));
-  fmt::print("  unbalanced force ratio: {:.3g}\n", check.unbalanced_force_ratio);
+    say("  stress x volume (N m, tension positive), walls:{}\n", tensor_text(check.walls, s.dim));
+  say("  unbalanced force ratio: {:.3g}\n", check.unbalanced_force_ratio);
   if (std::isfinite(check.support_ratio))
-    fmt::print("  weight carried by walls and fixed grains: {:.3g}\n", check.support_ratio);
+    say("  weight carried by walls and fixed grains: {:.3g}\n", check.support_ratio);
   std::vector<std::string> warnings;
   if (const std::string text = tension_in(check); !text.empty()) {
     warnings = {text};  // all else follows from it
@@ -146,6 +143,14 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
     warnings = doubts_of(check);
   }
   for (const std::string& text : warnings) warn(text);
+}
+
+std::unique_ptr<FileLock> lock_for_adding(const std::string& output) {
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(output, error);
+  return std::make_unique<FileLock>(
+      (path.parent_path() / ("." + path.filename().string() + ".lock")).string(), output,
+      "wait for it", "grainfield import --add");
 }
 
 }  // namespace
@@ -188,6 +193,9 @@ void add_import(CLI::App& app, Action& action) {
       parse(*given);
       const ImportOptions& options = given->options;
       require_other_file("-o", given->output, options.files);
+      // Who adds reads first what is there: two of them at once would each lose the other's.
+      std::unique_ptr<FileLock> lock;
+      if (given->add) lock = lock_for_adding(given->output);
       AtomicFile file(given->output);
       if (given->add && fs::exists(given->output)) {
         dem::list_snapshots(given->output);  // an HDF5 file of ours, or a clear refusal

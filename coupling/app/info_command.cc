@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/terminal.h"
 #include "coupling/output/field_io.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -14,25 +15,25 @@ void show_snapshot(const std::string& file, const std::string& group) {
   const dem::Snapshot s = dem::read_snapshot(file, group);
   std::size_t fixed = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
-  fmt::print("snapshot {}: {}D, {} grains ({} fixed), {} contacts, {} walls, time {:g} s\n", group,
-             s.dim, s.grains.size(), fixed, s.contacts.size(), s.walls.size(), s.time);
-  fmt::print("  units: m, s, kg, N, rad{}\n", s.dim == 2 ? "; volume m2" : "; volume m3");
+  say("snapshot {}: {}D, {} grains ({} fixed), {} contacts, {} walls, time {:g} s\n", group, s.dim,
+      s.grains.size(), fixed, s.contacts.size(), s.walls.size(), s.time);
+  say("  units: m, s, kg, N, rad{}\n", s.dim == 2 ? "; volume m2" : "; volume m3");
   if (s.loaded_grain >= 0) {
-    fmt::print("  load on grain {}: {:g} {:g} {:g} N\n", s.loaded_grain, s.applied_force.x(),
-               s.applied_force.y(), s.applied_force.z());
+    say("  load on grain {}: {:g} {:g} {:g} N\n", s.loaded_grain, s.applied_force.x(),
+        s.applied_force.y(), s.applied_force.z());
   }
   for (const auto& [name, value] : s.attributes) {
-    if (name.compare(0, 7, "figure:") != 0) fmt::print("  {}: {}\n", name, value);
+    if (name.compare(0, 7, "figure:") != 0) say("  {}: {}\n", name, value);
   }
 }
 
 void show_field(const std::string& file, const std::string& name) {
   const Field f = read_field(file, name);
-  fmt::print("field {}: {} points in {}D{}, {} realization{}\n", name, f.points.rows(),
-             f.points.cols(), f.nx > 0 ? fmt::format(" (grid {} x {})", f.nx, f.ny) : "",
-             f.realizations, f.realizations == 1 ? "" : "s");
-  for (const auto& column : f.columns) fmt::print("  {} ({})\n", column.name, column.unit);
-  for (const auto& [key, value] : f.attributes) fmt::print("  {}: {}\n", key, value);
+  say("field {}: {} points in {}D{}, {} realization{}\n", name, f.points.rows(), f.points.cols(),
+      f.nx > 0 ? fmt::format(" (grid {} x {})", f.nx, f.ny) : "", f.realizations,
+      f.realizations == 1 ? "" : "s");
+  for (const auto& column : f.columns) say("  {} ({})\n", column.name, column.unit);
+  for (const auto& [key, value] : f.attributes) say("  {}: {}\n", key, value);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
+#include "coupling/app/terminal.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/other_file.h"
 
@@ -34,25 +35,25 @@ std::string range_of(const continuum::Parameter& p) {
 
 void list_models() {
   for (const auto& info : continuum::registry()) {
-    fmt::print("{:<24} {}  {}\n", info.name,
-               info.dim == 0   ? "2D or 3D"
-               : info.dim == 2 ? "2D      "
-                               : "3D      ",
-               info.summary);
+    say("{:<24} {}  {}\n", info.name,
+        info.dim == 0   ? "2D or 3D"
+        : info.dim == 2 ? "2D      "
+                        : "3D      ",
+        info.summary);
   }
-  fmt::print("grainfield model NAME --list shows a model's parameters\n");
+  say("grainfield model NAME --list shows a model's parameters\n");
 }
 
 void list_parameters(const continuum::ModelInfo& info) {
-  fmt::print("{}: {}\n", info.name, info.summary);
+  say("{}: {}\n", info.name, info.summary);
   for (const auto& p : info.parameters) {
-    fmt::print("  {} = {}  ({}; {})\n      {}{}\n", p.name,
-               !p.choices.empty()      ? p.choices.front()
-               : continuum::is_text(p) ? "\"\""
-               : std::isnan(p.value)   ? "(unset)"
-                                       : fmt::format("{:g}", p.value),
-               p.unit.empty() || p.unit == "-" ? "no unit" : p.unit, range_of(p), p.meaning,
-               p.source.empty() ? "" : " [" + p.source + "]");
+    say("  {} = {}  ({}; {})\n      {}{}\n", p.name,
+        !p.choices.empty()      ? p.choices.front()
+        : continuum::is_text(p) ? "\"\""
+        : std::isnan(p.value)   ? "(unset)"
+                                : fmt::format("{:g}", p.value),
+        p.unit.empty() || p.unit == "-" ? "no unit" : p.unit, range_of(p), p.meaning,
+        p.source.empty() ? "" : " [" + p.source + "]");
   }
 }
 
@@ -113,8 +114,7 @@ void add_model(CLI::App& app, Action& action) {
       Eigen::Index outside = 0;
       for (Eigen::Index k = 0; k < stresses.rows(); ++k) outside += stresses.row(k).hasNaN();
       if (outside > 0) {
-        fmt::print(stderr, "grainfield: {} of {} points are outside the model's domain: nan\n",
-                   outside, points.rows());
+        note("{} of {} points are outside the model's domain: nan", outside, points.rows());
       }
       std::string text =
           stresses_csv(points, stresses,
@@ -126,7 +126,7 @@ void add_model(CLI::App& app, Action& action) {
         text.insert(0, lines);
       }
       if (given->output.empty()) {
-        fmt::print("{}", text);
+        say("{}", text);
       } else {
         write_text_file(given->output, text);
       }

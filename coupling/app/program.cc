@@ -3,28 +3,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cerrno>
 #include <exception>
-#include <filesystem>
 #include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
-#include "coupling/run/interrupt.h"
+#include "coupling/app/terminal.h"
+#include "coupling/system/signals.h"
 #include "coupling/version.h"
+#include "dem/storage_failed.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
 namespace {
 
 int complain(int code, const std::string& what) {
-  // One line, whatever a library put into its message.
-  std::string line = what;
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  fmt::print(stderr, "grainfield: {}\n", line);
+  wait_if_stopping();
+  note("{}", what);
   return code;
+}
+
+// Full disks and failing ones, as the operating system names them.
+bool is_storage(const std::error_code& error) {
+  for (const std::errc kind : {std::errc::no_space_on_device, std::errc::file_too_large,
+                               std::errc::io_error, std::errc::read_only_file_system}) {
+    if (error == kind) return true;
+  }
+  return error == std::error_code(EDQUOT, std::generic_category());
 }
 
 int parse_and_act(int argc, char** argv) {
@@ -57,7 +67,12 @@ int parse_and_act(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    if (e.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text;
+      app.exit(e, text, text);
+      put(text.str());
+      return 0;
+    }
     std::string who;
     for (const auto* chosen : app.get_subcommands()) who = chosen->get_name() + ": ";
     return complain(2, fmt::format("{}{} (grainfield {}--help)", who, e.what(),
@@ -66,24 +81,35 @@ int parse_and_act(int argc, char** argv) {
   return action();
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv) {
+int act(int argc, char** argv) {
   try {
     return parse_and_act(argc, argv);
   } catch (const Interrupted& e) {
-    return complain(130, e.what());
+    return complain(kExitInterrupted, e.what());
   } catch (const std::invalid_argument& e) {
     return complain(2, e.what());
   } catch (const dem::ComputationFailed& e) {
     return complain(3, e.what());
   } catch (const continuum::ComputationFailed& e) {
     return complain(3, e.what());
+  } catch (const dem::StorageFailed& e) {
+    return complain(kExitStorage, e.what());
+  } catch (const std::system_error& e) {
+    return complain(is_storage(e.code()) ? kExitStorage : 1, e.what());
   } catch (const std::bad_alloc&) {
     return complain(1, "out of memory");
   } catch (const std::exception& e) {
     return complain(1, e.what());
   }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  watch_signals();
+  const int code = act(argc, argv);
+  const int written = finish_output();
+  return code != 0 ? code : written;
 }
 
 }  // namespace grainfield::coupling

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/terminal.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/reproduce/page.h"
 #include "coupling/reproduce/record.h"
@@ -28,14 +29,14 @@ void add_reproduce(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       for (const std::string& run : *add) {
-        for (const std::string& file : record_run(run, *folder)) fmt::print("{}\n", file);
+        for (const std::string& file : record_run(run, *folder)) say("{}\n", file);
       }
       const std::string page = reproduction_page(Results(*folder));
       if (output->empty()) {
-        fmt::print("{}", page);
+        say("{}", page);
       } else {
         write_text_file(*output, page);
-        fmt::print("{}\n", *output);
+        say("{}\n", *output);
       }
       return 0;
     };

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -11,9 +10,9 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/progress_text.h"
 #include "coupling/app/shipped_cases.h"
+#include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
 #include "coupling/output/tables.h"
-#include "coupling/run/interrupt.h"
 #include "coupling/run/run_case.h"
 
 namespace grainfield::coupling {
@@ -32,23 +31,21 @@ class ProgressLine {
     last_ = now;
     const std::string line = progress_text(p);
     if (terminal_) {
-      fmt::print(stderr, "\r\033[K{}", line);
+      put_progress(line);
       open_ = true;
     } else {
-      fmt::print(stderr, "{}\n", line);
+      put_log(line);
     }
-    std::fflush(stderr);
   }
 
   void note(const std::string& text) {
     if (quiet_) return;
     end();
-    fmt::print(stderr, "{}\n", text);
-    std::fflush(stderr);
+    put_log(text);
   }
 
   void end() {
-    if (open_) fmt::print(stderr, "\n");
+    if (open_) put_log("");
     open_ = false;
   }
 
@@ -92,19 +89,19 @@ std::string command_of(const Given& given) {
 void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
   const auto sentence = summary.find("verdict.sentence");
-  if (sentence != summary.end()) fmt::print("{}\n", std::get<std::string>(sentence->second));
+  if (sentence != summary.end()) say("{}\n", std::get<std::string>(sentence->second));
   const auto differences = summary.find("sweep.sentence");
-  if (differences != summary.end()) fmt::print("{}\n", std::get<std::string>(differences->second));
+  if (differences != summary.end()) say("{}\n", std::get<std::string>(differences->second));
   const auto at = summary.find("dem.max_overlap_ratio");
   const double* overlap = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
   if (overlap != nullptr && *overlap > kDeepOverlap) {
-    fmt::print(stderr,
-               "grainfield: warning: grains overlap by up to {:.0f} % of a radius, too soft for a "
-               "contact law of small overlaps; raise material.young\n",
-               100 * *overlap);
+    note(
+        "warning: grains overlap by up to {:.0f} % of a radius, too soft for a "
+        "contact law of small overlaps; raise material.young",
+        100 * *overlap);
   }
-  fmt::print("results: {}\n", folder);
-  if (value.output.report) fmt::print("report: {}/report.html\n", folder);
+  say("results: {}\n", folder);
+  if (value.output.report) say("report: {}/report.html\n", folder);
 }
 
 int run(const Given& given) {

@@ -7,6 +7,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/points_options.h"
+#include "coupling/app/terminal.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/other_file.h"
 #include "coupling/run/strain_files.h"
@@ -70,10 +71,10 @@ void add_strain(CLI::App& app, Action& action) {
       request.ny = given->where.rows;
       const StrainOutcome outcome = strain_files(request);
       write_fields(given->output, {{"strain", outcome.field}});
-      fmt::print("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
-                 request.options.measure, outcome.field.attributes.at("width"));
+      say("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
+          request.options.measure, outcome.field.attributes.at("width"));
       if (!outcome.report.empty()) {
-        fmt::print(stderr, "grainfield: {} (places in the packing)\n", outcome.report);
+        note("{} (places in the packing)", outcome.report);
       }
       return 0;
     };

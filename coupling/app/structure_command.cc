@@ -2,12 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/terminal.h"
 #include "coupling/averaging/grain_facts.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/output_folder.h"
 #include "coupling/run/average_files.h"
 #include "coupling/statistics/exponential_tail.h"
 #include "coupling/structure/base_forces.h"
@@ -61,38 +62,38 @@ void show(const std::string& title, const dem::Snapshot& s, const std::string& f
   const CoordinationCounts counts = coordination_counts(s);
   const SizeFactor size = size_factor(s);
   const ForceChains chains = force_chains(s);
-  fmt::print("{}: {} free grains, {} rattlers\n", title, counts.grains, counts.rattlers);
-  fmt::print("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
-  fmt::print("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n",
-             size.measured, size.theory);
-  fmt::print("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
-             chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
+  say("{}: {} free grains, {} rattlers\n", title, counts.grains, counts.rattlers);
+  say("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
+  say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", size.measured,
+      size.theory);
+  say("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
+      chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
   if (s.dim == 2) {
     const GrainAxes axes = grain_axes(s);
     if (std::isnan(axes.order))
-      fmt::print("  orientation: none (disks)\n");
+      say("  orientation: none (disks)\n");
     else
-      fmt::print("  orientation: order {:.3f} along {:.1f} degrees from x\n", axes.order,
-                 axes.director_deg);
+      say("  orientation: order {:.3f} along {:.1f} degrees from x\n", axes.order,
+          axes.director_deg);
   }
   std::string base_text;
   try {
     const BaseForces base = base_forces(s);
     const ExponentialTail tail = exponential_tail(base.normalised, 1);
-    fmt::print("  base: {} grains, mean vertical force {:.4g} N; ", base.force.size(), base.mean);
+    say("  base: {} grains, mean vertical force {:.4g} N; ", base.force.size(), base.mean);
     if (std::isnan(tail.rate))
-      fmt::print("{} of them above the mean, too few for a tail\n", tail.count);
+      say("{} of them above the mean, too few for a tail\n", tail.count);
     else
-      fmt::print("P(n) for n > 1 falls as exp(-{:.3g} n) ({:.3g} to {:.3g}), p = {:.2g}\n",
-                 tail.rate, tail.low, tail.high, tail.p_value);
+      say("P(n) for n > 1 falls as exp(-{:.3g} n) ({:.3g} to {:.3g}), p = {:.2g}\n", tail.rate,
+          tail.low, tail.high, tail.p_value);
     base_text = base_csv(base);
   } catch (const std::invalid_argument& e) {
-    fmt::print("  base: {}\n", e.what());
+    say("  base: {}\n", e.what());
   }
   if (folder.empty()) return;
-  write_text_file(folder + "/grains.csv", grains_csv(s, chains));
-  write_text_file(folder + "/coordination.csv", counts_csv(counts));
-  if (!base_text.empty()) write_text_file(folder + "/base_forces.csv", base_text);
+  write_text_file(folder + "grains.csv", grains_csv(s, chains));
+  write_text_file(folder + "coordination.csv", counts_csv(counts));
+  if (!base_text.empty()) write_text_file(folder + "base_forces.csv", base_text);
 }
 
 }  // namespace
@@ -109,19 +110,21 @@ void add_structure(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       const auto snapshots = parse_snapshot_names(*names);
+      std::unique_ptr<OutputFolder> results;
+      if (!folder->empty()) {
+        results = std::make_unique<OutputFolder>(*folder, "grainfield structure " + names->front());
+        std::vector<std::string> inputs;
+        for (const auto& name : snapshots) inputs.push_back(name.file);
+        results->require_other_than(inputs);
+      }
       int number = 0;
       for (const auto& name : snapshots) {
-        std::string where = *folder;
-        if (!where.empty()) {
-          if (snapshots.size() > 1) where += fmt::format("/snapshot_{:03}", number++);
-          std::error_code error;
-          std::filesystem::create_directories(where, error);
-          if (error)
-            throw std::invalid_argument(
-                fmt::format("{}: cannot be made a folder: {}", where, error.message()));
-        }
-        show(name.file + ":" + name.group, dem::read_snapshot(name.file, name.group), where);
+        const std::string inner =
+            snapshots.size() > 1 ? fmt::format("snapshot_{:03}/", number++) : "";
+        show(name.file + ":" + name.group, dem::read_snapshot(name.file, name.group),
+             results ? results->staging(inner) + (inner.empty() ? "/" : "") : "");
       }
+      if (results) results->publish();
       return 0;
     };
   });

@@ -15,6 +15,7 @@
 #include "coupling/fit/heap_result.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
+#include "coupling/output/output_folder.h"
 #include "coupling/run/average_files.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/version.h"
@@ -134,14 +135,6 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
   return out;
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder, error.message()));
-  }
-}
-
 }  // namespace
 
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
@@ -167,6 +160,10 @@ FitOutcome fit_files(const FitRequest& request) {
   value.study = "pile-fit";
   value.fit = read_fit_setup(request.case_file, request.overrides);
   const Chosen chosen = choose(request.inputs);
+  OutputFolder results(request.folder, "grainfield fit " + request.inputs.front());
+  std::vector<std::string> inputs{chosen.field_file};
+  for (const SnapshotName& heap : chosen.heaps) inputs.push_back(heap.file);
+  results.require_other_than(inputs);
   FitOutcome out;
   HeapData data;
   std::function<dem::Snapshot()> drawn;
@@ -192,12 +189,12 @@ FitOutcome fit_files(const FitRequest& request) {
   const std::string settings = fit_text(value, out.packings);
   result.summary["case.hash"] = hash_text(settings);
 
-  make_folder(request.folder);
-  write_profiles(request.folder, result.comparison);
-  for (const auto& [name, text] : result.texts) write_text_file(request.folder + "/" + name, text);
-  write_text_file(request.folder + "/fit.toml", settings);
-  write_report(request.folder + "/report.html", result.page(result, nullptr));
-  write_summary(request.folder + "/summary.json", result.summary);
+  write_profiles(results.staging(), result.comparison);
+  for (const auto& [name, text] : result.texts) write_text_file(results.staging(name), text);
+  write_text_file(results.staging("fit.toml"), settings);
+  write_report(results.staging("report.html"), result.page(result, nullptr));
+  write_summary(results.staging("summary.json"), result.summary);
+  results.publish();
   return out;
 }
 

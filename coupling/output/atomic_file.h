@@ -1,12 +1,20 @@
 // Files as whole texts; one that is written appears complete or not at all.
 #pragma once
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "coupling/system/signals.h"
 
 namespace grainfield::coupling {
 
 /// Gives a temporary name beside `path`; commit() renames it to `path`; without commit() the
-/// destructor removes it. The folder must exist. Throws std::invalid_argument naming the path when
-/// the folder is missing or cannot be written, std::runtime_error when renaming fails.
+/// destructor removes it, and so does a signal that ends the program. Where `path` is a link, what
+/// it leads to is written. A file that is replaced hands on its permissions. The folder must exist.
+/// Throws std::invalid_argument naming the path when the folder is missing or cannot be written, or
+/// something stands there that is no regular file (a folder, a device, a pipe); dem::StorageFailed
+/// when renaming fails.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -15,15 +23,22 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   const std::string& path() const { return path_; }
   const std::string& temporary() const { return temporary_; }
+  /// All of the temporary file. Throws dem::StorageFailed.
+  void write(const std::string& text) const;
   void commit();
 
  private:
-  std::string path_, temporary_;
+  std::string path_, target_, temporary_;
+  std::unique_ptr<OnSignal> undo_;
   bool committed_ = false;
 };
 
-/// Writes text through an AtomicFile. Throws also when the disk is full.
+/// Writes text through an AtomicFile. Throws dem::StorageFailed when it cannot be written to its
+/// end.
 void write_text_file(const std::string& path, const std::string& text);
+/// The same for files that belong together, as pairs of path and text: all are written before the
+/// first appears.
+void write_text_files(const std::vector<std::pair<std::string, std::string>>& files);
 /// All of a file; empty when it cannot be read.
 std::string read_text_file(const std::string& path);
 

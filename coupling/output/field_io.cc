@@ -163,8 +163,11 @@ void write_fields(const std::string& file, const NamedFields& fields) {
   const std::filesystem::path path(file);
   std::filesystem::path description = path;
   description.replace_extension(".xdmf");
+  AtomicFile described(description.string());
+  described.write(xdmf(path.filename().string(), fields));
+  const HeldSignals held;
   target.commit();
-  write_text_file(description.string(), xdmf(path.filename().string(), fields));
+  described.commit();
 }
 
 Field read_field(const std::string& file, const std::string& name) {

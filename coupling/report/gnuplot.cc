@@ -3,20 +3,21 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
-#include "coupling/output/atomic_file.h"
+#include "coupling/system/signals.h"
 
 extern char** environ;
 
@@ -26,41 +27,80 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// A folder that goes with its object.
-class Folder {
+/// A file in memory without a name: what a child reads or writes, and nobody else finds.
+class MemoryFile {
  public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "grainfield-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-      throw std::runtime_error(fmt::format("cannot make a temporary folder {}", name));
-    path_ = name;
+  explicit MemoryFile(const char* what) : descriptor_(memfd_create(what, MFD_CLOEXEC)) {
+    if (descriptor_ < 0) {
+      throw std::runtime_error(fmt::format("cannot pass on {}: {}", what, std::strerror(errno)));
+    }
   }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  int descriptor() const { return descriptor_; }
+
+  void put(const std::string& text) {
+    std::size_t done = 0;
+    while (done < text.size()) {
+      const ssize_t n = write(descriptor_, text.data() + done, text.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw std::runtime_error("cannot pass on a plot program: out of memory?");
+      done += static_cast<std::size_t>(n);
+    }
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string text() const {
+    std::string out;
+    char block[65536];
+    for (off_t at = 0;;) {
+      const ssize_t n = pread(descriptor_, block, sizeof block, at);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) return out;
+      out.append(block, static_cast<std::size_t>(n));
+      at += n;
+    }
+  }
 
  private:
-  fs::path path_;
+  int descriptor_;
 };
 
-// Exit status, or -1 after the time limit.
-int run(const std::string& program, const std::string& script, const std::string& messages,
-        double seconds) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 2, messages.c_str(), O_WRONLY | O_CREAT, 0600);
-  std::string path = program, argument = script;
+// gnuplot in a process group of its own: Ctrl-C on the terminal is meant for us, who decide what
+// becomes of the picture. It starts with the signals as they are by default.
+pid_t start(const std::string& program, const MemoryFile& script, const MemoryFile& picture,
+            const MemoryFile& messages) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, script.descriptor(), 0);
+  posix_spawn_file_actions_adddup2(&files, picture.descriptor(), 1);
+  posix_spawn_file_actions_adddup2(&files, messages.descriptor(), 2);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none, standard;
+  sigemptyset(&none);
+  sigemptyset(&standard);
+  for (const int number : {SIGPIPE, SIGXFSZ}) sigaddset(&standard, number);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &standard);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  // /dev/stdin as a file to load: an error ends gnuplot, as it would not in a dialogue.
+  std::string path = program, argument = "/dev/stdin";
   char* arguments[] = {path.data(), argument.data(), nullptr};
   pid_t child = -1;
-  const int failed = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error(fmt::format("cannot start {}", program));
+  const int failed = posix_spawn(&child, program.c_str(), &files, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) {
+    throw std::runtime_error(fmt::format("cannot start {}: {}", program, std::strerror(failed)));
+  }
+  return child;
+}
+
+// Exit status, or -1 after the time limit.
+int wait_for(pid_t child, double seconds) {
+  const OnSignal end_it([child] { kill(child, SIGKILL); });
   const auto limit = Clock::now() + std::chrono::duration<double>(seconds);
   int status = 0;
   while (waitpid(child, &status, WNOHANG) == 0) {
@@ -71,7 +111,7 @@ int run(const std::string& program, const std::string& script, const std::string
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 }  // namespace
@@ -91,27 +131,21 @@ std::optional<std::string> find_gnuplot() {
 
 Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
              double seconds) {
-  const Folder folder;
-  const std::string script = folder.file("picture.gp"), output = folder.file("picture"),
-                    messages = folder.file("messages");
-  {
-    std::ofstream out(script);
-    out << "set terminal " << terminal << "\nset output '" << output << "'\n"
-        << program << "\nunset output\n";
-    if (!out.flush()) throw std::runtime_error("cannot write the plot program: disk full?");
-  }
-  const int status = run(gnuplot, script, messages, seconds);
+  MemoryFile script("a plot program");
+  const MemoryFile picture("a picture"), messages("gnuplot's messages");
+  script.put("set terminal " + terminal + "\nset output\n" + program + "\nunset output\n");
+  const int status = wait_for(start(gnuplot, script, picture, messages), seconds);
   Drawing result;
-  if (status == 0) result.bytes = read_text_file(output);
+  if (status == 0) result.bytes = picture.text();
   if (!result.bytes.empty()) return result;
   if (status == -1) {
     result.error = fmt::format("gnuplot took longer than {:g} s", seconds);
     return result;
   }
   // gnuplot shows the line, a caret, and then the message.
-  std::istringstream lines(read_text_file(messages));
+  std::istringstream lines(messages.text());
   for (std::string line; std::getline(lines, line);)
-    if (line.find("picture.gp") != std::string::npos && line.find("line ") != std::string::npos)
+    if (line.find("/dev/stdin") != std::string::npos && line.find("line ") != std::string::npos)
       result.error = line.substr(line.find("line "));
   if (result.error.empty()) result.error = fmt::format("gnuplot ended with status {}", status);
   return result;

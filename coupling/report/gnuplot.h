@@ -13,9 +13,9 @@ struct Drawing {
   std::string error;  ///< why it failed: gnuplot's own first line, or the time limit
 };
 
-/// Runs gnuplot on the program in a private temporary folder, without a shell, and kills it after
-/// `seconds`. `terminal`: e.g. "svg size 900,500". Throws std::runtime_error only when no temporary
-/// folder or process can be made.
+/// Runs gnuplot on the program, without a shell or any file, and kills it after `seconds`. A signal
+/// to our process group does not reach it. `terminal`: e.g. "svg size 900,500". Throws
+/// std::runtime_error only when no process can be made.
 Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
              double seconds = 60);
 

@@ -39,10 +39,9 @@ std::vector<std::string> record_run(const std::string& run, const std::string& r
   const auto at = summary.find("case.name");
   const auto* name = at == summary.end() ? nullptr : std::get_if<std::string>(&at->second);
   if (name == nullptr) throw std::invalid_argument(run + "/summary.json: no case.name");
-  std::vector<std::string> written;
+  std::vector<std::pair<std::string, std::string>> files;
   const auto write = [&](const std::string& suffix, const std::string& text) {
-    written.push_back((to / fmt::format("{}{}", *name, suffix)).string());
-    write_text_file(written.back(), text);
+    files.emplace_back((to / fmt::format("{}{}", *name, suffix)).string(), text);
   };
   write(".json", read_text_file(from / "summary.json"));
   if (fs::exists(from / "profiles.md")) write(".profiles.md", read_text_file(from / "profiles.md"));
@@ -58,6 +57,9 @@ std::vector<std::string> record_run(const std::string& run, const std::string& r
     write(fmt::format(".{}.{}", kept.name, svg ? "svg" : "png"),
           decoded(report.substr(data, end - data)));
   }
+  write_text_files(files);
+  std::vector<std::string> written;
+  for (const auto& [file, text] : files) written.push_back(file);
   return written;
 }
 

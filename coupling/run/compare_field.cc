@@ -14,6 +14,7 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/heap_data.h"
 #include "coupling/output/field_io.h"
+#include "coupling/output/output_folder.h"
 #include "coupling/output/tables.h"
 #include "coupling/report/pile.h"
 #include "coupling/report/point_load.h"
@@ -204,17 +205,11 @@ Report page_of(const CompareRequest& request, const SceneField& scene, const Com
   return pile_report(page);
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder, error.message()));
-  }
-}
-
 }  // namespace
 
 CompareOutcome compare_field(const CompareRequest& request) {
+  OutputFolder results(request.folder, "grainfield compare " + request.file);
+  results.require_other_than({request.file});
   std::vector<SceneField> scenes;
   std::vector<FieldLine> lines;
   Field map;
@@ -282,14 +277,14 @@ CompareOutcome compare_field(const CompareRequest& request) {
         "{}",
         fmt::join(seen, "; "));
   }
-  make_folder(request.folder);
   const ReportRows made{{"fields", request.file},
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
                         {"version", version_and_commit()}};
-  write_profiles(request.folder, comparison);
-  write_report(request.folder + "/report.html",
+  write_profiles(results.staging(), comparison);
+  write_report(results.staging("report.html"),
                page_of(request, scene, comparison, map, model_maps, made));
-  write_summary(request.folder + "/summary.json", summary);
+  write_summary(results.staging("summary.json"), summary);
+  results.publish();
   return out;
 }
 

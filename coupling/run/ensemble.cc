@@ -14,8 +14,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "coupling/run/interrupt.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/system/signals.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -64,7 +64,7 @@ class Worker {
       if (at >= mine.size()) return;
       const std::size_t task = mine[at];
       try {
-        if (simulate(task, engine_threads) == Outcome::stopped) stopped_ = halt_ = true;
+        if (simulate(task, engine_threads) == Outcome::stopped) stop();
       } catch (...) {
         errors_[task] = std::current_exception();
         halt_ = true;
@@ -97,11 +97,18 @@ class Worker {
     return out;
   }
 
+  // As a signal does.
+  void stop() {
+    stopped_ = true;  // first: who sees halt_ alone believes in a failure, and saves nothing
+    halt_ = true;
+  }
   bool stopped() const { return stopped_; }
-  std::exception_ptr first_error() const {
+  // What became of the tasks: the first failure, an Interrupted, or null.
+  std::exception_ptr outcome() const {
     for (const auto& error : errors_) {
       if (error) return error;
     }
+    if (stopped_ || interrupted()) return std::make_exception_ptr(Interrupted("stopped"));
     return nullptr;
   }
 
@@ -185,35 +192,6 @@ class Worker {
   std::atomic<bool> halt_ = false, stopped_ = false;
 };
 
-// What became of a rank's tasks, as text that other ranks read: "ok", "stopped", "2 what", "3
-// what".
-std::string describe(const Worker& worker) {
-  const auto error = worker.first_error();
-  if (!error) return worker.stopped() ? "stopped" : "ok";
-  try {
-    std::rethrow_exception(error);
-  } catch (const std::invalid_argument& e) {
-    return std::string("2") + e.what();
-  } catch (const dem::ComputationFailed& e) {
-    return std::string("3") + e.what();
-  } catch (const std::exception& e) {
-    return std::string("1") + e.what();
-  }
-}
-
-void throw_first(const std::vector<std::string>& outcomes) {
-  for (const auto& text : outcomes) {
-    if (text == "ok" || text == "stopped") continue;
-    const std::string what = text.substr(1);
-    if (text[0] == '2') throw std::invalid_argument(what);
-    if (text[0] == '3') throw dem::ComputationFailed(what);
-    throw std::runtime_error(what);
-  }
-  if (std::find(outcomes.begin(), outcomes.end(), "stopped") != outcomes.end()) {
-    throw Interrupted("stopped");
-  }
-}
-
 }  // namespace
 
 std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index) {
@@ -249,8 +227,14 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
       });
     }
     const auto start = Clock::now();
+    bool told = false;
     while (running > 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      if (ranks.stopped_elsewhere()) worker.stop();
+      if (!told && (worker.stopped() || interrupted())) {
+        ranks.tell_stop();
+        told = true;
+      }
       static thread_local Clock::time_point reported;
       if (options.progress && Clock::now() - reported > kReportEvery) {
         reported = Clock::now();
@@ -260,7 +244,7 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
     for (auto& thread : pool) thread.join();
     if (options.progress) options.progress(worker.progress(mine, seconds_since(start)));
   }
-  throw_first(ranks.gather(describe(worker)));
+  throw_together(ranks, worker.outcome());
 }
 
 double cpu_seconds(const std::string& file) {

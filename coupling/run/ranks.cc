@@ -2,9 +2,16 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <stdexcept>
 #include <thread>
+
+#include "continuum/model.h"
+#include "coupling/system/signals.h"
+#include "dem/storage_failed.h"
+#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -18,6 +25,7 @@ bool under_mpirun() {
 
 bool started_here = false;
 MPI_Comm at_the_end = MPI_COMM_NULL;  // of its own: the others may wait in a collective call
+MPI_Comm stops = MPI_COMM_NULL;       // carries nothing but empty messages: "I was asked to stop"
 constexpr std::chrono::seconds kPatience{10};
 
 }  // namespace
@@ -32,6 +40,7 @@ Ranks::Ranks() {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     started_here = true;
     MPI_Comm_dup(MPI_COMM_WORLD, &at_the_end);
+    MPI_Comm_dup(MPI_COMM_WORLD, &stops);
   }
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
@@ -60,6 +69,84 @@ std::vector<std::string> Ranks::gather(const std::string& text) const {
     out[r] = all.substr(static_cast<std::size_t>(starts[r]), static_cast<std::size_t>(sizes[r]));
   }
   return out;
+}
+
+void Ranks::tell_stop() const {
+  for (int other = 0; other < size_; ++other) {
+    if (other == rank_) continue;
+    MPI_Request sent = MPI_REQUEST_NULL;
+    MPI_Isend(nullptr, 0, MPI_CHAR, other, 0, stops, &sent);
+    MPI_Request_free(&sent);
+  }
+}
+
+bool Ranks::stopped_elsewhere() const {
+  if (size_ == 1) return false;
+  bool stopped = false;
+  for (int there = 1; there != 0;) {
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, 0, stops, &there, &status);
+    if (there == 0) break;
+    MPI_Recv(nullptr, 0, MPI_CHAR, status.MPI_SOURCE, 0, stops, MPI_STATUS_IGNORE);
+    stopped = true;
+  }
+  return stopped;
+}
+
+namespace {
+
+// What became of a rank's work as a text: its kind in the first letter, then what it says.
+std::string described(const std::exception_ptr& error) {
+  if (!error) return "+";
+  try {
+    std::rethrow_exception(error);
+  } catch (const Interrupted& e) {
+    return std::string("i") + e.what();
+  } catch (const std::invalid_argument& e) {
+    return std::string("2") + e.what();
+  } catch (const dem::ComputationFailed& e) {
+    return std::string("d") + e.what();
+  } catch (const continuum::ComputationFailed& e) {
+    return std::string("c") + e.what();
+  } catch (const dem::StorageFailed& e) {
+    return std::string("s") + e.what();
+  } catch (const std::exception& e) {
+    return std::string("1") + e.what();
+  }
+}
+
+[[noreturn]] void throw_described(const std::string& text) {
+  const std::string what = text.substr(1);
+  switch (text[0]) {
+    case 'i':
+      throw Interrupted(what);
+    case '2':
+      throw std::invalid_argument(what);
+    case 'd':
+      throw dem::ComputationFailed(what);
+    case 'c':
+      throw continuum::ComputationFailed(what);
+    case 's':
+      throw dem::StorageFailed(what);
+    default:
+      throw std::runtime_error(what);
+  }
+}
+
+}  // namespace
+
+void throw_together(const Ranks& ranks, const std::exception_ptr& own) {
+  const std::vector<std::string> all = ranks.gather(described(own));
+  const auto find = [&](bool interruption) {
+    return std::find_if(all.begin(), all.end(), [&](const std::string& text) {
+      return text[0] != '+' && (text[0] == 'i') == interruption;
+    });
+  };
+  auto first = find(false);
+  if (first == all.end()) first = find(true);
+  if (first == all.end()) return;
+  if (own && ranks.rank() == static_cast<int>(first - all.begin())) std::rethrow_exception(own);
+  throw_described(*first);
 }
 
 void finish_ranks() {

@@ -1,5 +1,6 @@
 // MPI ranks, started only where the program runs under mpirun.
 #pragma once
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,20 @@ class Ranks {
   /// Every rank's text, in the order of ranks, on every rank.
   std::vector<std::string> gather(const std::string& text) const;
 
+  /// Tells all others that this rank was asked to stop; stopped_elsewhere() is then true there,
+  /// soon. Neither waits. Only the main thread may call them.
+  void tell_stop() const;
+  bool stopped_elsewhere() const;
+
  private:
   int rank_ = 0, size_ = 1;
 };
+
+/// Waits until every rank is here with what became of its work, null for success. Where any failed,
+/// all throw what the first of them (by number) failed with; a failure counts before an
+/// interruption. Throws std::invalid_argument, dem::ComputationFailed,
+/// continuum::ComputationFailed, dem::StorageFailed, Interrupted or std::runtime_error.
+void throw_together(const Ranks& ranks, const std::exception_ptr& own);
 
 /// Ends MPI if Ranks started it; the program calls it once, at its end.
 void finish_ranks();

@@ -2,22 +2,25 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "continuum/fe/elastic.h"
 #include "coupling/output/atomic_file.h"
-#include "coupling/run/interrupt.h"
+#include "coupling/output/output_folder.h"
 #include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
+#include "coupling/system/signals.h"
 #include "coupling/version.h"
+#include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -29,8 +32,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+constexpr std::string_view kEnd = "# end\n";  // of an identity: one without it was cut
+
 std::string identity(const Case& value) {
-  return "# grainfield " + version() + "\n" + grain_keys_text(value);
+  return "# grainfield " + version() + "\n" + grain_keys_text(value) + std::string(kEnd);
 }
 
 // "friction = 0.3 there, friction = 0.5 here": the first line in which two written cases differ.
@@ -45,44 +50,27 @@ std::string first_difference(const std::string& there, const std::string& here) 
   }
 }
 
-// The folder of a run with its staging area and checkpoints. Rank 0 makes and removes them.
+// The folder of a run with its checkpoint. Rank 0 makes and removes what is in it.
 class Workplace {
  public:
   explicit Workplace(const std::string& folder)
-      : folder_(folder), partial_(folder_ / ".partial"), checkpoint_(folder_ / "checkpoint") {}
+      : folder_(folder), checkpoint_(folder_ / "checkpoint") {}
 
-  void open(const Case& value, bool resume) {
+  void open(const Case& value, const RunOptions& options) {
+    results_ = std::make_unique<OutputFolder>(
+        folder_.string(), value.command.empty() ? "grainfield run" : value.command);
+    results_->require_other_than(value.grains.files);
+    if (holds_work()) take_up(value, options);
     std::error_code error;
-    // The topmost folder that this run makes goes again if nothing comes of it.
-    for (fs::path p = fs::absolute(folder_); !fs::exists(p, error); p = p.parent_path()) made_ = p;
-    fs::create_directories(folder_, error);
-    if (error) throw_unwritable(error.message());
-    if (!fs::is_directory(folder_)) throw_unwritable("it is a file");
-    if (access(folder_.c_str(), W_OK | X_OK) != 0) throw_unwritable("no write permission");
-    if (fs::exists(checkpoint_)) {
-      if (!resume) {
-        throw std::invalid_argument(fmt::format(
-            "{}: holds an unfinished run; continue it with --resume, or remove that folder",
-            checkpoint_.string()));
-      }
-      const std::string there = read_text_file(checkpoint_ / "grains.txt");
-      const std::string here = identity(value);
-      if (there != here) {
-        throw std::invalid_argument(
-            fmt::format("{}: is of another case: {}; remove that folder to start over",
-                        checkpoint_.string(), first_difference(there, here)));
-      }
-    }
-    fs::remove_all(partial_, error);
-    fs::create_directories(partial_, error);
-    if (error) throw_unwritable(error.message());
     fs::create_directories(checkpoint_, error);
-    if (error) throw_unwritable(error.message());
+    if (error) {
+      throw std::invalid_argument(
+          fmt::format("{}: cannot write there: {}", checkpoint_.string(), error.message()));
+    }
     write_text_file((checkpoint_ / "case.toml").string(), write_case(value));
-    write_text_file((checkpoint_ / "grains.txt").string(), identity(value));
+    write_text_file((checkpoint_ / kIdentity).string(), identity(value));
   }
 
-  bool unfinished() const { return fs::exists(checkpoint_); }
   bool finished() const { return fs::exists(folder_ / "summary.json"); }
 
   // Finished or half-done realizations that --resume could go on from.
@@ -96,73 +84,76 @@ class Workplace {
     return false;
   }
 
-  // Moves everything that is complete to its place. An earlier run's results go first, its
-  // summary.json before all: a summary never stands beside another run's data.
   void publish() {
-    fs::remove(folder_ / "summary.json");
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-      const std::string name = entry.path().filename().string();
-      const bool ours = name == "report.html" || name == "snapshots.h5" || name == "fields.h5" ||
-                        name == "fields.xdmf" || name == "elastic_map.csv" ||
-                        name.starts_with("profiles.") || name.starts_with("fits.") ||
-                        name.ends_with(".vtu");
-      if (ours && entry.is_regular_file()) fs::remove(entry.path());
-    }
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
-      if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), partial_));
-    }
-    const auto last = [](const fs::path& file) { return file.filename() == "summary.json"; };
-    std::sort(files.begin(), files.end());
-    std::stable_partition(files.begin(), files.end(), [&](const fs::path& f) { return !last(f); });
-    for (const auto& file : files) {
-      fs::create_directories((folder_ / file).parent_path());
-      fs::rename(partial_ / file, folder_ / file);
-    }
-    fs::remove_all(partial_);
-    fs::remove_all(checkpoint_);
-  }
-
-  // After an interrupt what --resume needs stays.
-  void abandon(bool keep_checkpoint) noexcept {
+    results_->publish();
     std::error_code error;
-    fs::remove_all(partial_, error);
-    if (keep_checkpoint) return;
     fs::remove_all(checkpoint_, error);
-    if (made_.empty()) return;
-    for (fs::path p = fs::absolute(folder_);; p = p.parent_path()) {
-      if (!fs::is_empty(p, error) || error) return;
-      fs::remove(p, error);
-      if (p == made_) return;
-    }
+    close();
   }
 
-  std::string partial(const std::string& inner = "") const { return (partial_ / inner).string(); }
+  // What --resume needs stays.
+  void abandon(bool keep_checkpoint) noexcept {
+    wait_if_stopping();
+    std::error_code error;
+    if (!keep_checkpoint) fs::remove_all(checkpoint_, error);
+    close();
+  }
+
+  // Where results are written before they are moved.
+  std::string staging(const std::string& inner = "") const { return results_->staging(inner); }
   std::string checkpoint(const std::string& inner) const { return (checkpoint_ / inner).string(); }
 
  private:
-  [[noreturn]] void throw_unwritable(const std::string& why) const {
-    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder_.string(), why));
+  static constexpr const char* kIdentity = "grains.txt";
+
+  void close() noexcept { results_.reset(); }
+
+  // A checkpoint is there: whether it is this run's.
+  void take_up(const Case& value, const RunOptions& options) const {
+    if (!options.resume) {
+      throw std::invalid_argument(fmt::format(
+          "{}: holds an unfinished run; continue it with --resume, or remove that folder",
+          checkpoint_.string()));
+    }
+    const std::string there = read_text_file((checkpoint_ / kIdentity).string());
+    const std::string here = identity(value);
+    if (there == here) return;
+    if (!there.ends_with(kEnd)) {
+      const fs::path aside = unused_name();
+      fs::rename(checkpoint_, aside);
+      options.note(
+          fmt::format("{}: {} is missing or cut, so nobody can tell which case it is of: starting "
+                      "anew; what was there is kept in {}",
+                      checkpoint_.string(), kIdentity, aside.string()));
+      return;
+    }
+    throw std::invalid_argument(
+        fmt::format("{}: is of another case: {}; remove that folder to start over",
+                    checkpoint_.string(), first_difference(there, here)));
   }
 
-  fs::path folder_, partial_, checkpoint_, made_;
+  fs::path unused_name() const {
+    for (int k = 1;; ++k) {
+      const fs::path name = folder_ / fmt::format("checkpoint-unknown-{}", k);
+      if (!fs::exists(name)) return name;
+    }
+  }
+
+  fs::path folder_, checkpoint_;
+  std::unique_ptr<OutputFolder> results_;
 };
 
 // Work of rank 0 alone whose failure all ranks must learn of.
 void on_first_rank(const Ranks& ranks, const std::function<void()>& work) {
   std::exception_ptr error;
-  std::string report = "ok";
   if (ranks.first()) {
     try {
       work();
-    } catch (const std::exception& e) {
+    } catch (...) {
       error = std::current_exception();
-      report = e.what();
     }
   }
-  const auto reports = ranks.gather(report);
-  if (error) std::rethrow_exception(error);
-  if (reports.front() != "ok") throw std::invalid_argument(reports.front());
+  throw_together(ranks, error);
 }
 
 std::string member_file(const Workplace& place, const std::string& suffix, std::int64_t index) {
@@ -224,31 +215,39 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
                    "alone, also with other keys of analysis and output",
                    options.folder)
              : "";
+  std::vector<StudyResult> results;
+  std::exception_ptr error;
   try {
-    std::vector<StudyResult> results;
     for (const auto& member : members) {
-      if (interrupted()) throw Interrupted("stopped");
       options.note(fmt::format("models and comparison{}{}", member.suffix.empty() ? "" : " of ",
                                member.suffix));
       results.push_back(analyse(member, place, options.threads));
     }
+  } catch (...) {
+    error = std::current_exception();
+    // The others wait for this rank inside a common solution and cannot be told (ranks.h).
+    if (!grains) throw;
+  }
+  try {
+    throw_together(ranks, error);
     options.note("outputs");
     on_first_rank(ranks, [&] {
       for (std::size_t m = 0; m < members.size(); ++m) {
-        fs::create_directories(place.partial(members[m].suffix));
+        const std::string folder = place.staging(members[m].suffix);
+        fs::create_directories(folder);
         times(m, results[m].summary);
-        write_study(place.partial(members[m].suffix), results[m]);
+        write_study(folder, results[m]);
       }
-      if (!value.sweep.key.empty()) write_sweep(place.partial(), value, members, results);
+      if (!value.sweep.key.empty()) write_sweep(place.staging(), value, members, results);
     });
-  } catch (const Interrupted&) {
-    throw;
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(e.what() + kept);
   } catch (const continuum::ComputationFailed& e) {
     throw continuum::ComputationFailed(e.what() + kept);
   } catch (const dem::ComputationFailed& e) {
     throw dem::ComputationFailed(e.what() + kept);
+  } catch (const dem::StorageFailed& e) {
+    throw dem::StorageFailed(e.what() + kept);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(e.what() + kept);
   }
@@ -261,11 +260,21 @@ double peak_memory() {
   return static_cast<double>(usage.ru_maxrss) * 1024e-6;
 }
 
+std::string how_to_go_on(const RunOptions& options) {
+  return fmt::format(
+      "stopped; {}/checkpoint holds the state: continue with the same command and --resume",
+      options.folder);
+}
+
 void compute(const Case& value, const Workplace& place, const Ranks& ranks,
              const RunOptions& options) {
   const auto start = Clock::now();
   const std::vector<SweepCase> members = sweep_cases(value);
-  const double dem_seconds = simulate(members, place, ranks, options);
+  double dem_seconds = 0;
+  {
+    const PolledSignals polled;  // checkpoints first
+    dem_seconds = simulate(members, place, ranks, options);
+  }
   analyse_all(value, members, place, ranks, options, [&](std::size_t m, Summary& summary) {
     if (study_of(members[m].value).has_grains()) {
       double cpu = 0;
@@ -285,8 +294,9 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
   bool opened = false;
   try {
     on_first_rank(ranks, [&] {
-      if (options.resume && !place.unfinished()) {
-        if (place.finished()) {
+      const bool unfinished = place.holds_work(), finished = place.finished();
+      if (options.resume && !unfinished) {
+        if (finished) {
           const std::string again = fmt::format(
               ", or analyse its piles again in another folder: --set "
               "'grains.files=[\"{}/snapshots.h5\"]'",
@@ -297,25 +307,22 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
         }
         options.note(fmt::format("nothing to resume in {}: starting anew", options.folder));
       }
-      if (!options.resume && place.finished() && !place.unfinished()) {
+      if (!options.resume && finished && !unfinished) {
         options.note(
             fmt::format("{} holds a finished run; this one will take its place", options.folder));
       }
-      place.open(value, options.resume);
+      place.open(value, options);
+      opened = true;
     });
-    opened = true;
-    const InterruptGuard guard;
+    if (ranks.first()) say_when_stopped(how_to_go_on(options));
     compute(value, place, ranks, options);
     on_first_rank(ranks, [&] { place.publish(); });
+    say_when_stopped(fmt::format("stopped; the results in {} are complete", options.folder));
   } catch (const Interrupted&) {
-    ranks.barrier();
-    if (ranks.first()) place.abandon(true);
-    throw Interrupted(
-        fmt::format("stopped; {}/checkpoint holds the state: continue with the same "
-                    "command and --resume",
-                    options.folder));
+    if (opened) place.abandon(true);
+    throw Interrupted(how_to_go_on(options));
   } catch (...) {
-    if (ranks.first() && opened) place.abandon(place.holds_work());
+    if (opened) place.abandon(place.holds_work());
     throw;
   }
 }

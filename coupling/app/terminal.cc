@@ -1,0 +1,84 @@
+#include "coupling/app/terminal.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "coupling/system/printable.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr std::size_t kLongestLine = 1500;  // bytes
+
+std::string kept;
+int failure = 0;  // errno of standard output; afterwards nothing more is written to it
+
+/// errno, or 0. `done` counts the bytes.
+int write_all(int stream, const std::string& text, std::size_t& done) {
+  for (done = 0; done < text.size();) {
+    const ssize_t n = write(stream, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    done += static_cast<std::size_t>(n);
+  }
+  return 0;
+}
+
+void put_error(const std::string& text) {
+  std::size_t done = 0;
+  if (write_all(STDERR_FILENO, text, done) != 0) {
+    // What goes to standard error is no result.
+  }
+}
+
+// Where the next byte goes, of a regular file; -1 elsewhere.
+off_t end_of_file() {
+  struct stat is = {};
+  if (fstat(STDOUT_FILENO, &is) != 0 || !S_ISREG(is.st_mode)) return -1;
+  const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+  return (flags & O_APPEND) != 0 ? is.st_size : lseek(STDOUT_FILENO, 0, SEEK_CUR);
+}
+
+// Takes half a text back, where nobody has written behind it.
+void cut_back(off_t start, std::size_t written) {
+  struct stat is = {};
+  if (start < 0 || written == 0 || fstat(STDOUT_FILENO, &is) != 0) return;
+  if (is.st_size != start + static_cast<off_t>(written)) return;
+  if (ftruncate(STDOUT_FILENO, start) == 0) lseek(STDOUT_FILENO, start, SEEK_SET);
+}
+
+void flush() {
+  if (failure == 0 && !kept.empty()) {
+    const off_t start = end_of_file();
+    std::size_t written = 0;
+    failure = write_all(STDOUT_FILENO, kept, written);
+    if (failure != 0) cut_back(start, written);
+  }
+  kept.clear();
+}
+
+}  // namespace
+
+void put(const std::string& text) {
+  kept += printable(text);
+  static const bool terminal = isatty(STDOUT_FILENO) != 0;
+  if (terminal) flush();
+}
+
+void put_log(const std::string& line) { put_error(one_line(line, kLongestLine) + "\n"); }
+
+void put_progress(const std::string& line) { put_error("\r\033[K" + one_line(line, kLongestLine)); }
+
+int finish_output() {
+  flush();
+  if (failure == 0) return 0;
+  if (failure == EPIPE) return kExitPipe;
+  note("standard output cannot be written: {}", std::strerror(failure));
+  return kExitStorage;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,178 @@
+#include "coupling/output/output_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "coupling/output/atomic_file.h"
+#include "dem/storage_failed.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSummary = "summary.json";
+constexpr const char* kList = ".results";
+
+// What versions without a list of results left at the top of the folder.
+bool left_by_older_version(const std::string& name) {
+  constexpr std::array<std::string_view, 7> whole{"report.html", "snapshots.h5",    "fields.h5",
+                                                  "fields.xdmf", "elastic_map.csv", "heaps.csv",
+                                                  kSummary};
+  return std::find(whole.begin(), whole.end(), name) != whole.end() ||
+         name.starts_with("profiles.") || name.starts_with("fits.") || name.ends_with(".vtu");
+}
+
+// A list may have been edited: nothing outside the folder is ever meant.
+bool inside(const fs::path& name) {
+  return !name.empty() && name.is_relative() &&
+         std::none_of(name.begin(), name.end(), [](const fs::path& part) { return part == ".."; });
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::error_code& error) {
+  throw dem::StorageFailed(fmt::format("{}: {}", file.string(), error.message()));
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::string& folder, const std::string& command)
+    : folder_(folder), partial_(folder_ / ".partial") {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder_.string(), why));
+  };
+  std::error_code error;
+  // The topmost folder that we make goes again if nothing comes of it.
+  for (fs::path p = fs::absolute(folder_, error);
+       !error && !fs::exists(p, error) && !error && p.has_relative_path(); p = p.parent_path()) {
+    made_ = p;
+  }
+  fs::create_directories(folder_, error);
+  const bool is_folder = fs::is_directory(folder_);
+  if (error && !is_folder) refuse(error.message());
+  if (!is_folder) refuse("it is a file");
+  if (access(folder_.c_str(), W_OK | X_OK) != 0) refuse("no write permission");
+  lock_ = std::make_unique<FileLock>((folder_ / ".lock").string(), folder_.string(),
+                                     "wait for it, or name another folder with -o", command);
+  undo_ = std::make_unique<OnSignal>([this] { abandon(); });
+  fs::remove_all(partial_, error);
+  if (!error) fs::create_directories(partial_, error);
+  if (error) refuse(error.message());
+}
+
+OutputFolder::~OutputFolder() {
+  undo_.reset();
+  abandon();
+}
+
+void OutputFolder::require_other_than(const std::vector<std::string>& inputs) const {
+  std::error_code unknown;  // what is not there is no input
+  for (const fs::path& result : earlier_results()) {
+    for (const std::string& input : inputs) {
+      if (fs::equivalent(folder_ / result, input, unknown)) {
+        throw std::invalid_argument(
+            fmt::format("{}: its result {} is an input and would be replaced; name another folder "
+                        "with -o",
+                        folder_.string(), result.string()));
+      }
+    }
+  }
+}
+
+std::string OutputFolder::staging(const std::string& inner) const {
+  const fs::path file = partial_ / inner;
+  std::error_code error;
+  fs::create_directories(inner.empty() ? partial_ : file.parent_path(), error);
+  if (error) fail(file.parent_path(), error);
+  return inner.empty() ? partial_.string() : file.string();
+}
+
+std::vector<fs::path> OutputFolder::earlier_results() const {
+  std::vector<fs::path> out;
+  std::error_code error;
+  if (fs::exists(folder_ / kList, error)) {
+    std::istringstream lines(read_text_file((folder_ / kList).string()));
+    for (std::string line; std::getline(lines, line);) {
+      if (inside(line)) out.emplace_back(line);
+    }
+    return out;
+  }
+  // Only where a run left its results: a folder of other things is none of ours.
+  if (!fs::exists(folder_ / kSummary, error) || !fs::exists(folder_ / "case.toml", error))
+    return out;
+  for (const auto& entry : fs::directory_iterator(folder_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (left_by_older_version(name)) out.emplace_back(name);
+  }
+  return out;
+}
+
+void OutputFolder::publish() {
+  const HeldSignals held;
+  std::vector<fs::path> results;
+  for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
+    if (entry.is_regular_file()) results.push_back(entry.path().lexically_relative(partial_));
+  }
+  std::sort(results.begin(), results.end());
+  std::stable_partition(results.begin(), results.end(),
+                        [](const fs::path& file) { return file.filename() != kSummary; });
+  // Where we are killed in between, the list names what is left of both.
+  const std::vector<fs::path> earlier = earlier_results();
+  const auto list = [&](const std::set<fs::path>& names) {
+    std::string text;
+    for (const fs::path& name : names) text += name.string() + "\n";
+    write_text_file((folder_ / kList).string(), text);
+  };
+  std::set<fs::path> both(results.begin(), results.end());
+  both.insert(earlier.begin(), earlier.end());
+  list(both);
+
+  std::error_code error;
+  fs::remove(folder_ / kSummary, error);
+  for (const fs::path& name : earlier) {
+    const fs::path file = folder_ / name;
+    if (!fs::is_regular_file(fs::symlink_status(file, error))) continue;
+    fs::remove(file, error);
+    if (error) fail(file, error);
+    for (fs::path up = file.parent_path(); up != folder_ && fs::is_empty(up, error) && !error;
+         up = up.parent_path()) {
+      fs::remove(up, error);
+    }
+  }
+  for (const fs::path& name : results) {
+    fs::create_directories((folder_ / name).parent_path(), error);
+    fs::rename(partial_ / name, folder_ / name, error);
+    if (error) fail(folder_ / name, error);
+  }
+  list({results.begin(), results.end()});
+  fs::remove_all(partial_, error);
+  made_.clear();
+}
+
+void OutputFolder::abandon() noexcept {
+  std::error_code error;
+  // Under another name first: whoever still writes there meets a missing folder.
+  const fs::path gone = folder_ / ".partial-gone";
+  fs::rename(partial_, gone, error);
+  fs::remove_all(gone, error);
+  lock_.reset();
+  if (made_.empty()) return;
+  for (fs::path p = fs::absolute(folder_, error);; p = p.parent_path()) {
+    if (!fs::is_empty(p, error) || error) return;
+    fs::remove(p, error);
+    if (p == made_) return;
+  }
+}
+
+bool is_reserved_name(const std::string& name) {
+  return name.empty() || name.front() == '.' || name == "checkpoint" || name == "case.toml" ||
+         left_by_older_version(name);
+}
+
+}  // namespace grainfield::coupling

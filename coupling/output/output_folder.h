@@ -1,0 +1,52 @@
+// The folder of a command's results: complete or not at all.
+//
+// FOLDER/.partial  what is being written; moved when all of it is there
+// FOLDER/.lock     who works here (coupling/system/file_lock.h)
+// FOLDER/.results  the results that stand here, a name a line: the next ones replace these and no
+//                  other file
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/system/file_lock.h"
+#include "coupling/system/signals.h"
+
+namespace grainfield::coupling {
+
+class OutputFolder {
+ public:
+  /// Makes the folder where it is missing, locks it and empties the staging area. `command` is what
+  /// the lock tells others. Throws std::invalid_argument naming the folder: it cannot be made or
+  /// written, or another process works there.
+  OutputFolder(const std::string& folder, const std::string& command);
+  /// Without publish(): the staging area goes, and the folder if this object made it and it is
+  /// empty. A signal that ends the program does the same.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Throws std::invalid_argument when one of these files is a result that publish() would replace.
+  void require_other_than(const std::vector<std::string>& inputs) const;
+  /// Path of a file to be written: staging area / inner. Folders on the way are made.
+  std::string staging(const std::string& inner = "") const;
+  /// Removes the results of an earlier command, summary.json before all, and moves everything from
+  /// the staging area to its place, summary.json last: a summary never stands beside another run's
+  /// data. Whatever else is in the folder stays. Throws dem::StorageFailed.
+  void publish();
+  const std::filesystem::path& path() const { return folder_; }
+
+ private:
+  void abandon() noexcept;
+  std::vector<std::filesystem::path> earlier_results() const;
+
+  std::filesystem::path folder_, partial_, made_;
+  std::unique_ptr<FileLock> lock_;
+  std::unique_ptr<OnSignal> undo_;
+};
+
+/// Whether a command keeps this name, directly below its folder, for itself.
+bool is_reserved_name(const std::string& name);
+
+}  // namespace grainfield::coupling

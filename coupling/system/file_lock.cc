@@ -1,0 +1,108 @@
+#include "coupling/system/file_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+
+#include "coupling/system/printable.h"
+#include "dem/storage_failed.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr std::size_t kLongestCommand = 200;  // bytes of it that the file keeps
+constexpr int kTries =
+    100;  // a holder that ends between our open and our lock takes its file along
+
+struct Holder {
+  long process = 0;
+  std::string host, command;
+};
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+// "PROCESS HOST COMMAND"; process 0 where the file says nothing.
+Holder read_holder(int descriptor) {
+  std::array<char, 1024> text{};
+  const ssize_t n = pread(descriptor, text.data(), text.size() - 1, 0);
+  std::istringstream in(std::string(text.data(), n > 0 ? static_cast<std::size_t>(n) : 0));
+  Holder out;
+  if (in >> out.process >> out.host) std::getline(in >> std::ws, out.command);
+  return out;
+}
+
+bool lives(const Holder& holder) {
+  if (holder.process <= 0) return false;
+  if (holder.host != host_name()) return true;
+  return kill(static_cast<pid_t>(holder.process), 0) == 0 || errno == EPERM;
+}
+
+// Whether the open file is still the one of this name.
+bool same_file(int descriptor, const std::string& file) {
+  struct stat open_one = {}, named = {};
+  return fstat(descriptor, &open_one) == 0 && stat(file.c_str(), &named) == 0 &&
+         open_one.st_dev == named.st_dev && open_one.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+FileLock::FileLock(const std::string& file, const std::string& what, const std::string& hint,
+                   const std::string& command)
+    : file_(file) {
+  for (int k = 0; k < kTries && descriptor_ < 0; ++k) {
+    const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (descriptor < 0) {
+      throw std::invalid_argument(
+          fmt::format("{}: cannot write {}: {}", what, file, std::strerror(errno)));
+    }
+    const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+    const bool known = locked || errno == EWOULDBLOCK;
+    if (locked && !same_file(descriptor, file)) {
+      close(descriptor);
+      continue;
+    }
+    const Holder holder = read_holder(descriptor);
+    if (known ? !locked : lives(holder)) {
+      close(descriptor);
+      throw std::invalid_argument(fmt::format(
+          "{}: in use by {}; {}", what,
+          holder.process > 0 ? fmt::format("process {} on {} ({})", holder.process, holder.host,
+                                           one_line(holder.command, kLongestCommand))
+                             : "another process",
+          hint));
+    }
+    descriptor_ = descriptor;
+  }
+  if (descriptor_ < 0) {
+    throw std::invalid_argument(fmt::format("{}: in use; {}", what, hint));
+  }
+  const std::string text =
+      fmt::format("{} {} {}\n", getpid(), host_name(), one_line(command, kLongestCommand));
+  if (ftruncate(descriptor_, 0) != 0 ||
+      pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    const std::string why = std::strerror(errno);
+    unlink(file_.c_str());
+    close(descriptor_);
+    throw dem::StorageFailed(fmt::format("{}: cannot write {}: {}", what, file, why));
+  }
+}
+
+FileLock::~FileLock() {
+  // First the name, then the lock: whoever opens the name in between finds that it is another file.
+  unlink(file_.c_str());
+  close(descriptor_);
+}
+
+}  // namespace grainfield::coupling
