@@ -106,6 +106,7 @@ int act(int argc, char** argv) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  hold_standard_streams();
   watch_signals();
   const int code = act(argc, argv);
   const int written = finish_output();

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "coupling/system/printable.h"
 
@@ -62,6 +63,16 @@ void flush() {
 }
 
 }  // namespace
+
+void hold_standard_streams() {
+  // Standard output for reading: what is written to it fails, as it would when closed.
+  for (const auto& [stream, mode] :
+       {std::pair{STDIN_FILENO, O_RDONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free number is this one.
+    if (open("/dev/null", mode) < 0) return;
+  }
+}
 
 void put(const std::string& text) {
   kept += printable(text);

@@ -68,7 +68,7 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   }
   if (fs::exists(there) && !fs::is_regular_file(there)) {
     throw std::invalid_argument(
-        fmt::format("cannot write {}: it is {}, not a file", path_, kind_of(there.type())));
+        fmt::format("cannot write {}: it is {}", path_, kind_of(there.type())));
   }
   const fs::path target = behind_links(path_, path_);
   target_ = target.string();

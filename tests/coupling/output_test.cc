@@ -1,6 +1,7 @@
 // Files: complete or not at all, read back as written, well-formed, and their error texts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -91,6 +92,54 @@ TEST_F(Output, AtomicFileRefusesWhereItCannotWrite) {
     EXPECT_THAT(refusal([&] { write_text_file(at("a.txt"), ""); }), HasSubstr("no permission"));
     fs::permissions(folder_, fs::perms::owner_all);
   }
+}
+
+TEST_F(Output, LinksAreFollowed) {
+  write_text_file(at("real.txt"), "old");
+  fs::create_symlink("real.txt", at("link"));
+  fs::create_symlink(at("link"), at("link-to-link"));
+  write_text_file(at("link-to-link"), "new");
+  EXPECT_EQ(text(at("real.txt")), "new");
+  EXPECT_TRUE(fs::is_symlink(at("link")));
+  EXPECT_TRUE(fs::is_symlink(at("link-to-link")));
+  fs::create_symlink("later.txt", at("dangling"));
+  write_text_file(at("dangling"), "there");
+  EXPECT_EQ(text(at("later.txt")), "there");
+  fs::create_symlink("circle", at("circle"));
+  EXPECT_THAT(refusal([&] { write_text_file(at("circle"), ""); }),
+              HasSubstr("cannot write " + at("circle") + ": "));
+}
+
+TEST_F(Output, WhatIsNoFileIsNotReplaced) {
+  EXPECT_EQ(refusal([&] { write_text_file("/dev/null", ""); }),
+            "cannot write /dev/null: it is a device");
+  fs::create_symlink("/dev/full", at("link"));
+  EXPECT_THAT(refusal([&] { write_text_file(at("link"), ""); }), HasSubstr("it is a device"));
+  ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
+  EXPECT_THAT(refusal([&] { write_text_file(at("pipe"), ""); }), HasSubstr("it is a pipe"));
+  EXPECT_TRUE(fs::is_fifo(at("pipe")));
+}
+
+TEST_F(Output, AReplacedFileHandsOnItsPermissions) {
+  write_text_file(at("a.txt"), "old");
+  const auto only_mine = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(at("a.txt"), only_mine);
+  write_text_file(at("a.txt"), "new");
+  EXPECT_EQ(fs::status(at("a.txt")).permissions(), only_mine);
+}
+
+TEST_F(Output, LongNamesHaveRoomForATemporaryOne) {
+  const std::string name(250, 'n');
+  write_text_file(at(name), "x");
+  EXPECT_EQ(text(at(name)), "x");
+  EXPECT_THAT(refusal([&] { write_text_file(at(std::string(300, 'n')), "x"); }),
+              HasSubstr("File name too long"));
+}
+
+TEST_F(Output, FilesThatBelongTogetherAppearTogether) {
+  EXPECT_THROW(write_text_files({{at("a.txt"), "a"}, {at("no/b.txt"), "b"}}),
+               std::invalid_argument);
+  EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(Output, FieldsComeBackBitForBit) {

@@ -3,13 +3,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "averaging_scene.h"
 #include "coupling/averaging/average.h"
@@ -212,6 +216,40 @@ TEST_F(ReportTest, BrokenAndEndlessProgramsAreReported) {
   EXPECT_THAT(draw(gnuplot, "svg", "plot nonsense(x)").error, HasSubstr("undefined function"));
   EXPECT_EQ(draw(gnuplot, "svg", "while (1) { a = 1 }", 0.3).error,
             "gnuplot took longer than 0.3 s");
+}
+
+TEST_F(ReportTest, PicturesNeedNoTemporaryFolder) {
+  need_gnuplot();
+  const char* before = getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  for (const char* folder : {"/no/such/folder", "/tmp/it's", "/tmp/'`touch x`'"}) {
+    setenv("TMPDIR", folder, 1);
+    EXPECT_FALSE(draw(*find_gnuplot(), "svg", "plot x").bytes.empty()) << folder;
+  }
+  before != nullptr ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+}
+
+TEST_F(ReportTest, ASignalToTheGroupDoesNotReachThePicture) {
+  need_gnuplot();
+  // The child leads a group, survives the signal itself and draws while the group is sent it.
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);
+    signal(SIGTERM, [](int) {});  // what is ignored would be ignored by gnuplot as well
+    std::thread shooter([] {
+      for (int k = 0; k < 20; ++k) {
+        kill(0, SIGTERM);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    });
+    const bool drawn =
+        !draw(*find_gnuplot(), "svg", "do for [k=1:200000] { a = sin(k) }\nplot x").bytes.empty();
+    shooter.join();
+    _exit(drawn ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 TEST_F(ReportTest, ContactAnglesAreRelativeToIsotropic) {

@@ -1,0 +1,148 @@
+// Folders of results: complete or not at all, one writer at a time, nothing of the user's touched.
+#include "coupling/output/output_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "coupling/output/atomic_file.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::fs::exists;
+
+template <class Work>
+std::string refusal(Work work) {
+  try {
+    work();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Name and text of what stands in the folder, without the list of results.
+std::map<std::string, std::string> found(const testing::Folder& folder,
+                                         const std::string& inner = "out") {
+  auto all = testing::contents(folder / inner);
+  all.erase(".results");
+  return all;
+}
+
+void publish(const testing::Folder& folder, const std::map<std::string, std::string>& files) {
+  OutputFolder out(folder / "out", "grainfield test");
+  for (const auto& [name, text] : files) write_text_file(out.staging(name), text);
+  out.publish();
+}
+
+using Files = std::map<std::string, std::string>;
+
+TEST(OutputFolder, NothingStaysOfWorkThatFailed) {
+  const testing::Folder folder;
+  {
+    OutputFolder out(folder / "a/b/out", "grainfield test");
+    write_text_file(out.staging("inner/x.csv"), "1");
+  }
+  EXPECT_FALSE(exists(folder / "a"));
+  testing::fs::create_directory(folder / "kept");
+  { OutputFolder out(folder / "kept", "grainfield test"); }
+  EXPECT_TRUE(testing::fs::is_empty(folder / "kept"));
+}
+
+TEST(OutputFolder, ResultsOfAnotherStudyGo) {
+  const testing::Folder folder;
+  publish(folder, {{"heaps.csv", "old"},
+                   {"summary.json", "old"},
+                   {"friction_0.3/summary.json", "old"},
+                   {"friction_0.3/deep/x.csv", "old"}});
+  folder.write("out/heaps-of-mine.csv", "mine");
+  testing::fs::create_directory(folder / "out/friction_0.3/mine");
+  folder.write("out/friction_0.3/mine/note.txt", "mine");
+  publish(folder, {{"summary.json", "new"}, {"profiles.csv", "new"}});
+  EXPECT_EQ(found(folder), (Files{{"summary.json", "new\n"},
+                                  {"profiles.csv", "new"},
+                                  {"heaps-of-mine.csv", "mine"},
+                                  {"friction_0.3/mine/note.txt", "mine"}}));
+  EXPECT_FALSE(exists(folder / "out/friction_0.3/deep"));
+}
+
+TEST(OutputFolder, ResultsOfVersionsWithoutAListGo) {
+  const testing::Folder folder;
+  testing::fs::create_directory(folder / "out");
+  for (const std::string name : {"summary.json", "case.toml", "heaps.csv", "grains_pile.vtu"}) {
+    folder.write("out/" + name, "old");
+  }
+  folder.write("out/notes.txt", "mine");
+  publish(folder, {{"summary.json", "new"}});
+  EXPECT_EQ(found(folder),
+            (Files{{"summary.json", "new\n"}, {"notes.txt", "mine"}, {"case.toml", "old"}}));
+}
+
+TEST(OutputFolder, AFolderThatHoldsNoResultsLosesNothing) {
+  const testing::Folder folder;
+  testing::fs::create_directory(folder / "out");
+  folder.write("out/mine.vtu", "mine");
+  folder.write("out/report.html", "mine");
+  publish(folder, {{"profiles.csv", "new"}});
+  EXPECT_EQ(found(folder),
+            (Files{{"mine.vtu", "mine"}, {"report.html", "mine"}, {"profiles.csv", "new"}}));
+}
+
+TEST(OutputFolder, AListThatPointsElsewhereHarmsNobody) {
+  const testing::Folder folder;
+  publish(folder, {{"x.csv", "old"}});
+  folder.write("out/.results", "../victim\n" + (folder / "victim") + "\na/../../victim\n\nx.csv\n");
+  folder.write("victim", "alive");
+  publish(folder, {{"y.csv", "new"}});
+  EXPECT_EQ(testing::read_text(folder / "victim"), "alive");
+  EXPECT_EQ(found(folder), (Files{{"y.csv", "new"}}));
+}
+
+TEST(OutputFolder, ResultsThatAreInputsAreNotReplaced) {
+  const testing::Folder folder;
+  publish(folder, {{"snapshots.h5", "grains"}});
+  OutputFolder out(folder / "out", "grainfield test");
+  EXPECT_THAT(refusal([&] { out.require_other_than({folder / "out/../out/snapshots.h5"}); }),
+              HasSubstr("its result snapshots.h5 is an input and would be replaced"));
+  EXPECT_EQ(refusal([&] { out.require_other_than({folder / "elsewhere.h5"}); }), "");
+}
+
+TEST(OutputFolder, TwoWritersAreOneTooMany) {
+  const testing::Folder folder;
+  const OutputFolder out(folder / "out", "grainfield run \x1b[2Jcase.toml");
+  const std::string why =
+      refusal([&] { const OutputFolder other(folder / "out", "grainfield fit"); });
+  EXPECT_THAT(why, AllOf(HasSubstr("out: in use by process " + std::to_string(getpid()) + " on "),
+                         HasSubstr("(grainfield run \\x1b[2Jcase.toml); wait for it")));
+}
+
+TEST(OutputFolder, ALockOutlivesNobody) {
+  const testing::Folder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    const OutputFolder out(folder / "out", "grainfield test");
+    write_text_file(out.staging("half.csv"), "half");
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(exists(folder / "out/.lock"));
+  publish(folder, {{"x.csv", "new"}});
+  EXPECT_EQ(found(folder), (Files{{"x.csv", "new"}}));
+}
+
+TEST(OutputFolder, ReservedNames) {
+  for (const std::string name : {"checkpoint", "report.html", "case.toml", ".results", ".x", "",
+                                 "summary.json", "profiles.csv"}) {
+    EXPECT_TRUE(is_reserved_name(name)) << name;
+  }
+  EXPECT_FALSE(is_reserved_name("friction_0.3"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
