@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <sstream>
 #include <string>
@@ -35,6 +36,21 @@ bool is_storage(const std::error_code& error) {
     if (error == kind) return true;
   }
   return error == std::error_code(EDQUOT, std::generic_category());
+}
+
+// What the name of a file that the user gave can be wrong by.
+bool is_name(const std::error_code& error) {
+  for (const std::errc kind :
+       {std::errc::filename_too_long, std::errc::not_a_directory, std::errc::permission_denied,
+        std::errc::too_many_symbolic_link_levels, std::errc::no_such_file_or_directory,
+        std::errc::is_a_directory}) {
+    if (error == kind) return true;
+  }
+  return false;
+}
+
+int code_of(const std::error_code& error) {
+  return is_storage(error) ? kExitStorage : is_name(error) ? 2 : 1;
 }
 
 int parse_and_act(int argc, char** argv) {
@@ -94,8 +110,10 @@ int act(int argc, char** argv) {
     return complain(3, e.what());
   } catch (const dem::StorageFailed& e) {
     return complain(kExitStorage, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    return complain(code_of(e.code()), e.path1().string() + ": " + e.code().message());
   } catch (const std::system_error& e) {
-    return complain(is_storage(e.code()) ? kExitStorage : 1, e.what());
+    return complain(code_of(e.code()), e.what());
   } catch (const std::bad_alloc&) {
     return complain(1, "out of memory");
   } catch (const std::exception& e) {

@@ -77,8 +77,14 @@ std::string join(const std::vector<std::string>& cells, const Style& style) {
 std::string escape_latex(const std::string& text) {
   std::string out;
   for (char c : text) {
-    if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
-    out += c;
+    if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else if (c == '^' || c == '~') {
+      out += fmt::format("\\{}{{}}", c);
+    } else {
+      if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
+      out += c;
+    }
   }
   return out;
 }

@@ -39,6 +39,10 @@ std::vector<std::string> record_run(const std::string& run, const std::string& r
   const auto at = summary.find("case.name");
   const auto* name = at == summary.end() ? nullptr : std::get_if<std::string>(&at->second);
   if (name == nullptr) throw std::invalid_argument(run + "/summary.json: no case.name");
+  if (name->empty() || name->front() == '.' || fs::path(*name).filename() != *name) {
+    throw std::invalid_argument(fmt::format(
+        "{}/summary.json: case.name: found \"{}\", which is no name of a file", run, *name));
+  }
   std::vector<std::pair<std::string, std::string>> files;
   const auto write = [&](const std::string& suffix, const std::string& text) {
     files.emplace_back((to / fmt::format("{}{}", *name, suffix)).string(), text);

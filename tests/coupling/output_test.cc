@@ -334,6 +334,13 @@ TEST_F(Output, LatexTablesOfManyModelsFitAPage) {
   EXPECT_THAT(tex, HasSubstr("$F/h$, continued}"));
 }
 
+TEST_F(Output, LabelsAreNoCommandsOfLatex) {
+  const Profile p = small().profiles.front();
+  const std::string tex = profiles_latex(
+      compare({p}, {{"m", "\\input{x}^2~", "f", {Eigen::Vector3d(1, 3, 2)}}}, 2, 0.5));
+  EXPECT_THAT(tex, HasSubstr("\\centering \\textbackslash{}input\\{x\\}\\^{}2\\~{}}"));
+}
+
 TEST_F(Output, ProfilesHaveUnitsDifferencesAndNormalisation) {
   const std::string csv = profiles_csv(small());
   EXPECT_THAT(csv, testing::StartsWith("# F = 2 N, h = 0.5 m, F/h = 4 N/m"));

@@ -225,6 +225,17 @@ TEST(Reproduce, TakesAFinishedRunIn) {
   EXPECT_EQ(program("reproduce " + results.path() + " --add " + results.path()).code, 2);
 }
 
+TEST(Reproduce, ANameThatLeadsElsewhereIsRefused) {
+  const Folder run, results;
+  for (const std::string name : {"../escaped", "/tmp/escaped", "a/b", "..", ".hidden", ""}) {
+    run.write("summary.json", "{\"case.name\": \"" + name + "\"}");
+    const auto output = program("reproduce " + results.path() + " --add " + run.path());
+    EXPECT_EQ(output.code, 2) << name;
+    EXPECT_THAT(output.err, HasSubstr("case.name: found \"" + name + "\""));
+  }
+  EXPECT_TRUE(testing::fs::is_empty(results.path()));
+}
+
 TEST(Reproduce, RefusesFoldersAndFilesThatAreNone) {
   const Folder folder;
   const auto missing = program("reproduce " + (folder / "none"));
