@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/engine/rotation.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
+#include "dem/space/rotation.h"
 
 namespace grainfield::dem::bits {
 
