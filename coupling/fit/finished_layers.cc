@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "coupling/run/finished_runs.h"
+#include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/contact_changes.h"
 
 namespace grainfield::coupling {
 namespace {

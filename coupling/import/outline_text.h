@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "dem/shapes/outline.h"
+#include "dem/space/outline.h"
 
 namespace grainfield::coupling {
 

@@ -11,8 +11,8 @@
 #include "dem/engine/engine_sleep.h"
 #include "dem/engine/engine_state.h"
 #include "dem/engine/engine_step.h"
-#include "dem/integrators/gear.h"
-#include "dem/integrators/verlet.h"
+#include "dem/motion/gear.h"
+#include "dem/motion/verlet.h"
 
 namespace grainfield::dem {
 namespace {

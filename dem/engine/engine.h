@@ -9,23 +9,17 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "dem/engine/body.h"
+#include "dem/computation_failed.h"
 #include "dem/laws/linear.h"
 #include "dem/laws/overlap_area.h"
+#include "dem/motion/applied_force.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
-
-/// A simulation that failed (diverged, never came to rest): says when, where and what to change.
-class ComputationFailed : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class IntegratorKind { verlet, gear };
 
@@ -62,14 +56,6 @@ struct NewGrain {
   bool fixed = false;
   bool rotates = true;  ///< false: a block that slides but never spins
   Outline outline;      ///< body frame (polygon.h: centred); empty: a disk of `radius`
-};
-
-/// A force on one grain that rises from 0 to its full value along a smooth ramp (3 s^2 - 2 s^3).
-struct AppliedForce {
-  std::int64_t id = -1;   ///< grain, -1: none
-  double fx = 0, fy = 0;  ///< full force, N
-  double start = 0;       ///< s
-  double ramp = 0;        ///< s; 0: at once
 };
 
 /// State of rest and energy, from the forces of the last step.

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/engine/image.h"
 #include "dem/engine/thread_team.h"
+#include "dem/image/image.h"
 #include "dem/neighbours/hierarchical_grid.h"
 #include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/disk_store.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/study/setup.h"
+#include "dem/heap/source_setup.h"
 
 namespace grainfield::dem {
 

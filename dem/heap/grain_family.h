@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
+#include "dem/heap/shape_setup.h"
 #include "dem/random/random.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::dem {
 

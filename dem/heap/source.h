@@ -1,6 +1,7 @@
 // Where the grains of a pile come from: one by one out of a funnel, or in layers on its top.
 #pragma once
 #include "dem/heap/grain_family.h"
+#include "dem/heap/source_setup.h"
 #include "dem/heap/surface.h"
 
 namespace grainfield::dem {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/shapes/disk.h"
+#include "dem/space/overlap.h"
 
 namespace grainfield::dem {
 

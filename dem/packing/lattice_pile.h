@@ -3,9 +3,18 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::dem {
+
+/// A pile of equal disks on the triangular lattice (Liffman et al. 1992): rows that shrink upwards
+/// so that the outline follows the slope, on a floor whose friction holds the lowest row.
+struct LatticeSetup {
+  int base_grains = 45;    ///< disks in the lowest row; at 60 degrees also the number of rows
+  double slope_deg = 60;   ///< of the outline, up to 60
+  double radius = 0.0045;  ///< m
+  double gap = 5e-4;       ///< between neighbours of a row / diameter; 0: they may touch, and carry
+                           ///< force where the pile's own weight pushes them together
+};
 
 /// Throws std::invalid_argument naming the key ("lattice.slope_deg"), the value and what is
 /// allowed.

@@ -1,14 +1,36 @@
 // Where grains and walls of a layer start: lattices, and rows to be dropped one after the other.
 // The floor's surface is y = 0; the layer spans x in [-width/2, width/2] between side walls.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "dem/engine/engine.h"
 #include "dem/heap/grain_family.h"
+#include "dem/laws/material_setup.h"
 #include "dem/random/random.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::dem {
+
+struct PackingSetup {
+  std::string kind = "layered";   ///< triangular | sqrt3 | layered
+  std::string sizes = "uniform";  ///< mono | bidisperse | uniform
+  double radius = 0.0045;         ///< m; mono, and the larger of bidisperse
+  double radius_small = 0.0035;   ///< m; the smaller of bidisperse
+  double fraction_small = 0.5;    ///< share by number of the smaller grains
+  double radius_min = 0.0036;     ///< m; uniform
+  double radius_max = 0.0054;     ///< m; uniform
+  int columns = 64;               ///< lattices: grains in a row
+  int rows = 16;                  ///< lattices: rows
+  double spacing = 1;             ///< sqrt3: spacing in a row / (sqrt(3) d), up to 1; below 1 rows
+                                  ///< two apart do not touch, and a grain has four contacts
+  double width = 0.6;             ///< m; layered
+  double depth = 0.15;            ///< m; layered: rows are dropped until this height is reached
+  double drop_height = 0.008;     ///< m above the surface from which a row is dropped
+  std::string floor = "smooth";   ///< smooth (flat wall with friction) | rough (fixed grains)
+  double jitter = 0;              ///< lattices: relative spread of radii, uniform +- (0 = perfect)
+  std::string shape = "disk";     ///< layered: disk | irregular (pentagons; `sizes` is not used)
+  double side = 0.009;            ///< m; irregular: mean length of a side (Roul 5.1)
+};
 
 /// Throws std::invalid_argument naming the key ("packing.radius_max"), the value and what is
 /// allowed.

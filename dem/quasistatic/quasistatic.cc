@@ -13,7 +13,7 @@
 
 #include "dem/quasistatic/contact_network.h"
 #include "dem/quasistatic/sparse_newton.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {
 namespace {

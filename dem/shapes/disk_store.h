@@ -3,10 +3,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/engine/body.h"
-#include "dem/engine/image.h"
+#include "dem/image/image.h"
 #include "dem/shapes/disk.h"
 #include "dem/shapes/polygon.h"
+#include "dem/space/body.h"
 
 namespace grainfield::dem {
 

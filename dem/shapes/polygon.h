@@ -27,7 +27,7 @@
 #include <cstdint>
 
 #include "dem/shapes/disk.h"
-#include "dem/shapes/outline.h"
+#include "dem/space/outline.h"
 
 namespace grainfield::dem {
 

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "dem/engine/body.h"
-#include "dem/engine/image.h"
-#include "dem/engine/rotation.h"
+#include "dem/image/image.h"
 #include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/polygon.h"
+#include "dem/space/body.h"
+#include "dem/space/rotation.h"
 
 namespace grainfield::dem {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/shapes/outline.h"
+#include "dem/space/outline.h"
 
 namespace grainfield::dem {
 

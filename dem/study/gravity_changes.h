@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/engine/image.h"
+#include "dem/image/image.h"
 #include "dem/study/common.h"
 #include "dem/study/run.h"
 #include "dem/study/setup.h"

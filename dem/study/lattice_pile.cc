@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "dem/snapshot/contact_changes.h"
 #include "dem/study/common.h"
-#include "dem/study/contact_changes.h"
 #include "dem/study/run.h"
 
 namespace grainfield::dem {

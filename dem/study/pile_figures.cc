@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "dem/heap/volume_fraction.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {
 

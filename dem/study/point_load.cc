@@ -9,8 +9,8 @@
 
 #include "dem/packing/packing.h"
 #include "dem/quasistatic/quasistatic.h"
+#include "dem/snapshot/contact_changes.h"
 #include "dem/study/common.h"
-#include "dem/study/contact_changes.h"
 #include "dem/study/run.h"
 
 namespace grainfield::dem {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/engine/engine.h"  // ComputationFailed
+#include "dem/computation_failed.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/study/setup.h"
 

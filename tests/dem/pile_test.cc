@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "dem/random/random.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 #include "tests/dem/pile_scene.h"
 
 namespace grainfield::dem {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "dem/packing/packing.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 #include "tests/dem/pile_scene.h"
 
 namespace grainfield::dem {

@@ -7,7 +7,7 @@
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {
 namespace {

@@ -12,7 +12,7 @@
 #include "dem/quasistatic/sparse_newton.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 #include "tests/dem/quasistatic_scene.h"
 
 namespace grainfield::dem {

@@ -1,5 +1,5 @@
 // Sine and cosine of the engine against the library's.
-#include "dem/engine/rotation.h"
+#include "dem/space/rotation.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "dem/study/contact_changes.h"
+#include "dem/snapshot/contact_changes.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -5,7 +5,7 @@
 // e = dt^2/2 a(predicted) - x_2(predicted), x_n += c_n e, c = (3/16, 251/360, 1, 11/18, 1/6, 1/60);
 // c_0 = 3/16 because the forces depend on the velocity (3/20 when they do not).
 #pragma once
-#include "dem/engine/body.h"
+#include "dem/space/body.h"
 
 namespace grainfield::dem {
 

@@ -1,7 +1,7 @@
 // Velocity Verlet (Roul 2.19 as corrected): half kick, drift, forces, half kick. Forces see the
 // velocity at the half step.
 #pragma once
-#include "dem/engine/body.h"
+#include "dem/space/body.h"
 
 namespace grainfield::dem {
 

@@ -1,0 +1,13 @@
+// How motion is integrated.
+#pragma once
+#include <string>
+
+namespace grainfield::dem {
+
+struct MotionSetup {
+  std::string integrator = "verlet";  ///< verlet | gear (same results, ten times shorter steps)
+  double time_step = 0;               ///< s; 0 = time_step_fraction of the stable limit
+  double time_step_fraction = 0.8;    ///< of the stable limit (engine.h: stable_time_step)
+};
+
+}  // namespace grainfield::dem

@@ -1,0 +1,19 @@
+// What two shapes in contact say of their overlap, and laws read.
+#pragma once
+
+namespace grainfield::dem {
+
+/// Geometry of one contact, as seen by the laws. With the tangent t = (-ny, nx) and the contact
+/// point s: s - x_i = lever_i n + shift_i t, s - x_j = -lever_j n + shift_j t.
+struct Overlap {
+  double nx = 0, ny = 0;            ///< unit normal from the first towards the second
+  double depth = 0;                 ///< penetration along the normal, m
+  double area = 0;                  ///< overlap area, m2 (only when asked for)
+  double chord = 0;                 ///< length of the contact line, m (only when asked for)
+  double arm_i = 0, arm_j = 0;      ///< distance of the contact point from the centroids, m
+  double length = 0;                ///< characteristic length l, m (only when asked for)
+  double lever_i = 0, lever_j = 0;  ///< polygons only; of disks lever = arm
+  double shift_i = 0, shift_j = 0;  ///< polygons only; of disks 0
+};
+
+}  // namespace grainfield::dem
