@@ -138,6 +138,11 @@ void OutputFolder::publish() {
   for (const fs::path& name : earlier) {
     const fs::path file = folder_ / name;
     if (!fs::is_regular_file(fs::symlink_status(file, error))) continue;
+    // A folder of results that has become a link is somebody else's.
+    if (fs::canonical(file.parent_path(), error) !=
+        (fs::canonical(folder_) / name).parent_path().lexically_normal()) {
+      continue;
+    }
     fs::remove(file, error);
     if (error) fail(file, error);
     for (fs::path up = file.parent_path(); up != folder_ && fs::is_empty(up, error) && !error;

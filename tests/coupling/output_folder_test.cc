@@ -104,6 +104,15 @@ TEST(OutputFolder, AListThatPointsElsewhereHarmsNobody) {
   EXPECT_EQ(found(folder), (Files{{"y.csv", "new"}}));
 }
 
+TEST(OutputFolder, AFolderThatHasBecomeALinkIsLeftAlone) {
+  const testing::Folder folder;
+  publish(folder, {{"member/x.csv", "old"}});
+  testing::fs::rename(folder / "out/member", folder / "elsewhere");
+  testing::fs::create_directory_symlink(folder / "elsewhere", folder / "out/member");
+  publish(folder, {{"y.csv", "new"}});
+  EXPECT_EQ(testing::read_text(folder / "elsewhere/x.csv"), "old");
+}
+
 TEST(OutputFolder, ResultsThatAreInputsAreNotReplaced) {
   const testing::Folder folder;
   publish(folder, {{"snapshots.h5", "grains"}});
