@@ -10,6 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dem/snapshot/replace_file.h"
+#include "dem/storage_failed.h"
+
 namespace grainfield::coupling {
 
 namespace fs = std::filesystem;
@@ -38,10 +41,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error)
-    throw std::runtime_error(fmt::format("cannot rename to {}: {}", path_, error.message()));
+  dem::replace_file(temporary_, path_);
   committed_ = true;
 }
 
@@ -50,7 +50,7 @@ void write_text_file(const std::string& path, const std::string& text) {
   std::ofstream out(file.temporary(), std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error(fmt::format("cannot write {}: disk full?", path));
+  if (!out) throw dem::StorageFailed(fmt::format("cannot write {}: disk full?", path));
   file.commit();
 }
 

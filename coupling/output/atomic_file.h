@@ -6,7 +6,8 @@ namespace grainfield::coupling {
 
 /// Gives a temporary name beside `path`; commit() renames it to `path`; without commit() the
 /// destructor removes it. The folder must exist. Throws std::invalid_argument naming the path when
-/// the folder is missing or cannot be written, std::runtime_error when renaming fails.
+/// the folder is missing or cannot be written; commit() throws dem::StorageFailed when it cannot
+/// take its place on the disk.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -22,7 +23,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes text through an AtomicFile. Throws also when the disk is full.
+/// Writes text through an AtomicFile. Throws dem::StorageFailed, too, when the disk is full.
 void write_text_file(const std::string& path, const std::string& text);
 /// All of a file; empty when it cannot be read.
 std::string read_text_file(const std::string& path);
