@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -29,15 +28,6 @@ int complain(int code, const std::string& what) {
   return code;
 }
 
-// Full disks and failing ones, as the operating system names them.
-bool is_storage(const std::error_code& error) {
-  for (const std::errc kind : {std::errc::no_space_on_device, std::errc::file_too_large,
-                               std::errc::io_error, std::errc::read_only_file_system}) {
-    if (error == kind) return true;
-  }
-  return error == std::error_code(EDQUOT, std::generic_category());
-}
-
 // What the name of a file that the user gave can be wrong by.
 bool is_name(const std::error_code& error) {
   for (const std::errc kind :
@@ -50,7 +40,7 @@ bool is_name(const std::error_code& error) {
 }
 
 int code_of(const std::error_code& error) {
-  return is_storage(error) ? kExitStorage : is_name(error) ? 2 : 1;
+  return dem::means_storage_failed(error) ? kExitStorage : is_name(error) ? 2 : 1;
 }
 
 int parse_and_act(int argc, char** argv) {

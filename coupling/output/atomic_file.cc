@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dem/snapshot/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -109,9 +110,7 @@ void AtomicFile::commit() {
   std::error_code error;
   const fs::file_status there = fs::status(target_, error);
   if (fs::exists(there)) fs::permissions(temporary_, there.permissions(), error);
-  fs::rename(temporary_, target_, error);
-  if (error)
-    throw dem::StorageFailed(fmt::format("cannot rename to {}: {}", path_, error.message()));
+  dem::replace_file(temporary_, target_);
   committed_ = true;
 }
 

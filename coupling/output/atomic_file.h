@@ -14,7 +14,7 @@ namespace grainfield::coupling {
 /// it leads to is written. A file that is replaced hands on its permissions. The folder must exist.
 /// Throws std::invalid_argument naming the path when the folder is missing or cannot be written, or
 /// something stands there that is no regular file (a folder, a device, a pipe); dem::StorageFailed
-/// when renaming fails.
+/// when it cannot take its place on the disk.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -20,18 +21,11 @@ namespace grainfield::coupling {
 namespace {
 
 namespace h5 = dem::hdf5;
+constexpr std::size_t kMostListed = 30;  // names in a message
 constexpr const char* format_version = "1";
 constexpr const char* user_attribute = "attribute.";  // prefix of Field::attributes in the file
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-h5::Handle create_group(hid_t parent, const std::string& name, const std::string& file) {
-  h5::Handle group(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Gclose);
-  if (!group.valid())
-    throw std::runtime_error(fmt::format("{}: cannot write group \"{}\"", file, name));
-  return group;
-}
 
 void check_name(const std::string& name) {
   const bool good = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
@@ -73,8 +67,8 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
-void write_one(hid_t root, const std::string& name, const Field& field, const std::string& file) {
-  const h5::Handle group = create_group(root, name, file);
+void write_one(hid_t root, const std::string& name, const Field& field) {
+  const h5::Handle group = h5::create_group(root, name);
   const int dim = static_cast<int>(field.points.cols());
   std::vector<double> points;
   for (Eigen::Index p = 0; p < field.points.rows(); ++p)
@@ -88,8 +82,8 @@ void write_one(hid_t root, const std::string& name, const Field& field, const st
   for (const auto& [key, value] : field.attributes)
     h5::write_attribute(group, user_attribute + key, value);
   std::vector<std::string> names;
-  const h5::Handle values = create_group(group, "value", file);
-  const h5::Handle errors = create_group(group, "error", file);
+  const h5::Handle values = h5::create_group(group, "value");
+  const h5::Handle errors = h5::create_group(group, "error");
   for (const Column& column : field.columns) {
     names.push_back(column.name);
     h5::write(values, column.name, to_vector(column.value), 1, column.unit);
@@ -98,7 +92,7 @@ void write_one(hid_t root, const std::string& name, const Field& field, const st
   }
   if (std::any_of(field.columns.begin(), field.columns.end(),
                   [](const Column& column) { return column.samples.size() != 0; })) {
-    const h5::Handle samples = create_group(group, "samples", file);
+    const h5::Handle samples = h5::create_group(group, "samples");
     for (const Column& column : field.columns)
       if (column.samples.size() != 0) {
         const RowMajor rows = column.samples;
@@ -109,17 +103,8 @@ void write_one(hid_t root, const std::string& name, const Field& field, const st
   h5::write_attribute(group, "columns", fmt::format("{}", fmt::join(names, ",")));
 }
 
-h5::Handle open_group(hid_t parent, const std::string& name, const std::string& where) {
-  h5::Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid())
-    throw std::invalid_argument(fmt::format("{}: group \"{}\" is missing or broken", where, name));
-  return group;
-}
-
 bool is_field(hid_t root, const std::string& name) {
-  const h5::Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
-  return group.valid() && h5::has_attribute(group, "kind") &&
-         h5::read_text_attribute(group, "kind") == "field";
+  return h5::attribute_is(h5::open_group(root, name), "kind", "field");
 }
 
 std::vector<std::string> fields_of(hid_t root) {
@@ -129,16 +114,13 @@ std::vector<std::string> fields_of(hid_t root) {
   return names;
 }
 
-std::string text_of(hid_t group, const std::string& name, const std::string& where) {
-  if (!h5::has_attribute(group, name))
-    throw std::invalid_argument(fmt::format("{}: attribute \"{}\" is missing", where, name));
-  return h5::read_text_attribute(group, name);
-}
-
-int number_of(hid_t group, const std::string& name, const std::string& where) {
-  if (!h5::has_attribute(group, name))
-    throw std::invalid_argument(fmt::format("{}: attribute \"{}\" is missing", where, name));
-  return static_cast<int>(h5::read_number_attribute(group, name));
+// In [least, the largest int].
+int number_of(hid_t group, const std::string& name, int least, const std::string& where) {
+  const long long value = h5::read_integer_attribute(group, name);
+  if (value < least || value > std::numeric_limits<int>::max())
+    throw std::invalid_argument(fmt::format("{}: attribute \"{}\" is {}; allowed are {} and above",
+                                            where, name, value, least));
+  return static_cast<int>(value);
 }
 
 std::string unit_of(hid_t group, const std::string& dataset) {
@@ -157,7 +139,7 @@ void write_fields(const std::string& file, const NamedFields& fields) {
     h5::write_attribute(out, "program", "grainfield");
     h5::write_attribute(out, "version", version_and_commit());
     h5::write_attribute(out, "field_format", format_version);
-    for (const auto& [name, field] : fields) write_one(out, name, field, file);
+    for (const auto& [name, field] : fields) write_one(out, name, field);
     h5::finish(std::move(out), file);
   }
   const std::filesystem::path path(file);
@@ -173,37 +155,44 @@ void write_fields(const std::string& file, const NamedFields& fields) {
 Field read_field(const std::string& file, const std::string& name) {
   const h5::Handle in = h5::open_for_reading(file);
   const std::vector<std::string> known = fields_of(in);
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw std::invalid_argument(file + ": " + unknown_name("field", name, known));
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    std::vector<std::string> listed;
+    for (std::size_t k = 0; k < std::min(known.size(), kMostListed); ++k)
+      listed.push_back(h5::shown(known[k]));
+    throw std::invalid_argument(file + ": " + unknown_name("field", h5::shown(name), listed));
+  }
   const std::string where = file + ":/" + name;
-  const h5::Handle group = open_group(in, name, file);
+  const h5::Handle group = h5::open_group(in, name);
   Field field;
-  const int dim = number_of(group, "dim", where);
+  const int dim = number_of(group, "dim", 0, where);
   if (dim != 2 && dim != 3)
     throw std::invalid_argument(fmt::format("{}: dim is {}; allowed are 2 and 3", where, dim));
   const std::vector<double> points = h5::read_doubles(group, "points", dim, where);
   field.points = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
       points.data(), static_cast<Eigen::Index>(points.size()) / dim, dim);
-  field.nx = number_of(group, "nx", where);
-  field.ny = number_of(group, "ny", where);
-  field.realizations = number_of(group, "realizations", where);
+  field.nx = number_of(group, "nx", 0, where);
+  field.ny = number_of(group, "ny", 0, where);
+  field.realizations = number_of(group, "realizations", 1, where);
   for (const std::string& key : h5::text_attributes(group))
     if (key.rfind(user_attribute, 0) == 0)
       field.attributes[key.substr(std::string(user_attribute).size())] =
           h5::read_text_attribute(group, key);
-  const h5::Handle values = open_group(group, "value", where);
-  const h5::Handle errors = open_group(group, "error", where);
-  std::istringstream names(text_of(group, "columns", where));
+  const h5::Handle values = h5::open_group(group, "value");
+  const h5::Handle errors = h5::open_group(group, "error");
+  std::istringstream names(h5::read_text_attribute(group, "columns"));
   for (std::string column_name; std::getline(names, column_name, ',');) {
+    if (field.find(column_name) != nullptr)
+      throw std::invalid_argument(
+          fmt::format("{}: column \"{}\" is named twice", where, h5::shown(column_name)));
     Column& column = field.add(column_name, unit_of(values, column_name));
     column.value = to_eigen(h5::read_doubles(values, column_name, 1, where + "/value"));
-    if (H5Lexists(errors, column_name.c_str(), H5P_DEFAULT) > 0)
+    if (h5::has_link(errors, column_name))
       column.error = to_eigen(h5::read_doubles(errors, column_name, 1, where + "/error"));
   }
-  if (H5Lexists(group, "samples", H5P_DEFAULT) > 0) {
-    const h5::Handle samples = open_group(group, "samples", where);
+  if (h5::has_link(group, "samples")) {
+    const h5::Handle samples = h5::open_group(group, "samples");
     for (Column& column : field.columns) {
-      if (H5Lexists(samples, column.name.c_str(), H5P_DEFAULT) <= 0) continue;
+      if (!h5::has_link(samples, column.name)) continue;
       const std::vector<double> all =
           h5::read_doubles(samples, column.name, field.realizations, where + "/samples");
       column.samples = Eigen::Map<const RowMajor>(

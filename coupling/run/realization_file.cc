@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <stdexcept>
+
+#include "dem/snapshot/replace_file.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -48,21 +49,20 @@ const dem::Snapshot& Realization::operator[](const std::string& name) const {
 }
 
 void write_realization(const std::string& file, const dem::RunResult& result) {
-  const std::string beside = file + ".part";
-  std::filesystem::remove(beside);
-  std::size_t order = 0;
-  for (const auto& [name, snapshot] : result.snapshots) {
-    dem::Snapshot copy = snapshot;
-    copy.attributes[kOrder] = std::to_string(order);
-    if (order == 0) {
-      for (const auto& [key, value] : result.figures) {
-        copy.attributes[std::string(kFigure) + key] = fmt::format("{:.17g}", value);
+  dem::write_in_place_of(file, [&](const std::string& beside) {
+    std::size_t order = 0;
+    for (const auto& [name, snapshot] : result.snapshots) {
+      dem::Snapshot copy = snapshot;
+      copy.attributes[kOrder] = std::to_string(order);
+      if (order == 0) {
+        for (const auto& [key, value] : result.figures) {
+          copy.attributes[std::string(kFigure) + key] = fmt::format("{:.17g}", value);
+        }
       }
+      dem::write_snapshot(beside, "/" + name, copy);
+      ++order;
     }
-    dem::write_snapshot(beside, "/" + name, copy);
-    ++order;
-  }
-  std::filesystem::rename(beside, file);
+  });
 }
 
 Realization read_realization(const std::string& file) {

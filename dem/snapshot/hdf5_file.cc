@@ -1,26 +1,61 @@
 #include "dem/snapshot/hdf5_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
-#include <mutex>
 #include <stdexcept>
+
+#include "dem/snapshot/hdf5_crc.h"
+#include "dem/snapshot/hdf5_damage.h"
+#include "dem/snapshot/hdf5_probe.h"
+#include "dem/storage_failed.h"
 
 namespace grainfield::dem::hdf5 {
 namespace {
 
-// HDF5 prints its own error stack; ours is one line. And we close what we open: at the program's
-// end HDF5 would write once more to files that could not be closed on a full disk, and crash.
-void prepare() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  });
+// Bytes of a chunk at most: larger ones need more memory when written and read.
+constexpr std::size_t kChunk = 4 << 20;
+
+// The formats of HDF5 1.8: its metadata have checksums, those of 1.6 have none.
+Handle access() {
+  Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(properties, H5F_LIBVER_V18, H5F_LIBVER_V18);
+  return properties;
 }
 
-[[noreturn]] void fail_write(const std::string& name) {
-  throw std::runtime_error(fmt::format("cannot write the HDF5 dataset or attribute '{}'", name));
+Handle create(const std::string& file) {
+  const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  Handle handle(H5Fcreate(file.c_str(), H5F_ACC_EXCL, properties, access()), H5Fclose);
+  if (!handle.valid()) throw StorageFailed(fmt::format("{}: cannot be written", file));
+  return handle;
+}
+
+std::string file_name(hid_t object) {
+  const ssize_t length = H5Fget_name(object, nullptr, 0);
+  std::string name(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
+  if (length > 0) H5Fget_name(object, name.data(), name.size() + 1);
+  return name;
+}
+
+[[noreturn]] void fail_write(hid_t object, const std::string& name) {
+  throw StorageFailed(
+      fmt::format("{}: cannot write the dataset, group or attribute '{}'; is the disk full?",
+                  file_name(object), shown(name)));
+}
+
+// In chunks with a checksum each; without the time of writing.
+Handle properties_of_dataset(hsize_t rows, hsize_t columns, std::size_t size) {
+  Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  if (rows == 0) return properties;
+  const hsize_t chunks = (rows * columns * size + kChunk - 1) / kChunk;
+  const hsize_t shape[2] = {(rows + chunks - 1) / chunks, columns};
+  H5Pset_chunk(properties, columns == 1 ? 1 : 2, shape);
+  H5Pset_fletcher32(properties);
+  H5Pset_fill_time(properties, H5D_FILL_TIME_ALLOC);  // behind the last row: zeros
+  return properties;
 }
 
 template <class T>
@@ -29,39 +64,26 @@ void write_any(hid_t group, const std::string& name, const std::vector<T>& value
   const hsize_t rows = values.size() / static_cast<std::size_t>(columns);
   const hsize_t shape[2] = {rows, static_cast<hsize_t>(columns)};
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, shape, nullptr), H5Sclose);
-  // Without the time of writing: the same data give the same bits.
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties, false);
-  const Handle set(
-      H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) fail_write(name);
+  const Handle properties = properties_of_dataset(rows, static_cast<hsize_t>(columns), sizeof(T));
+  Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+             H5Dclose);
+  if (!set.valid()) fail_write(group, name);
   if (rows > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    fail_write(name);
+    fail_write(group, name);
   }
   if (!unit.empty()) write_attribute(set, "unit", unit);
+  if (rows > 0) write_attribute(set, kCrc, crc_of(values));
+  // The last chunk is written now.
+  if (H5Dflush(set) < 0 || !set.close_now()) fail_write(group, name);
 }
 
-template <class T>
-std::vector<T> read_any(hid_t group, const std::string& name, int columns, const std::string& where,
-                        hid_t type) {
-  const Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) {
-    throw std::invalid_argument(fmt::format("{}: no dataset '{}'", where, name));
+void write_scalar(hid_t object, const std::string& name, hid_t type, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Aclose);
+  if (!attribute.valid() || H5Awrite(attribute, type, value) < 0 || !attribute.close_now()) {
+    fail_write(object, name);
   }
-  const Handle space(H5Dget_space(set), H5Sclose);
-  hsize_t shape[2] = {0, 1};
-  const int rank = H5Sget_simple_extent_ndims(space);
-  if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, nullptr) < 0 ||
-      shape[1] != static_cast<hsize_t>(columns)) {
-    throw std::invalid_argument(
-        fmt::format("{}: dataset '{}' does not have {} column(s)", where, name, columns));
-  }
-  std::vector<T> values(shape[0] * shape[1]);
-  if (!values.empty() && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    throw std::invalid_argument(fmt::format(
-        "{}: dataset '{}' cannot be read: the file is truncated or broken", where, name));
-  }
-  return values;
 }
 
 }  // namespace
@@ -76,13 +98,22 @@ Handle open_for_reading(const std::string& file) {
     throw std::invalid_argument(
         fmt::format("{0}: a folder; name its file, such as {0}/snapshots.h5", file));
   }
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw std::invalid_argument(fmt::format("{}: not a regular file", file));
+  }
+  if (::access(file.c_str(), R_OK) != 0) {
+    throw std::invalid_argument(fmt::format("{}: no permission to read it", file));
+  }
   if (H5Fis_hdf5(file.c_str()) <= 0) {
     throw std::invalid_argument(
         fmt::format("{}: not an HDF5 file, or its beginning is broken", file));
   }
+  probe(file);
   Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) {
-    throw std::invalid_argument(fmt::format("{}: the HDF5 file is truncated or broken", file));
+    const char* checksum = checksum_failed() ? " (its checksum does not fit)" : "";
+    throw std::invalid_argument(
+        fmt::format("{}: the HDF5 file is truncated or broken{}", file, checksum));
   }
   return handle;
 }
@@ -90,20 +121,43 @@ Handle open_for_reading(const std::string& file) {
 Handle open_for_adding(const std::string& file) {
   prepare();
   std::error_code error;
-  const bool there = std::filesystem::exists(file, error);
-  Handle handle(there ? H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)
-                      : H5Fcreate(file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT),
-                H5Fclose);
-  if (!handle.valid()) throw std::runtime_error(fmt::format("{}: cannot be written", file));
-  return handle;
+  if (!std::filesystem::exists(file, error)) return create(file);
+  probe(file);
+  Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDWR, access()), H5Fclose);
+  if (handle.valid()) return handle;
+  // What cannot be read either is said as such.
+  open_for_reading(file);
+  throw StorageFailed(fmt::format("{}: cannot be written", file));
 }
 
 void finish(Handle file, const std::string& name) {
+  const std::string own_name = file_name(file);
   const bool flushed = H5Fflush(file, H5F_SCOPE_LOCAL) >= 0;
   if (!file.close_now() || !flushed) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written to its end; is the disk full?", name));
+    throw StorageFailed(fmt::format("{}: cannot be written to its end; is the disk full?", name));
   }
+  trust(own_name);
+}
+
+Handle create_group(hid_t parent, const std::string& path) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  // The groups on its way one by one: those that HDF5 makes by itself keep the time.
+  std::size_t end = path.find('/', 1);
+  for (; end != std::string::npos; end = path.find('/', end + 1)) {
+    const std::string above = path.substr(0, end);
+    if (has_link(parent, above)) continue;
+    const Handle made(H5Gcreate2(parent, above.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT),
+                      H5Gclose);
+    if (!made.valid()) fail_write(parent, above);
+  }
+  if (has_link(parent, path)) {
+    throw std::invalid_argument(
+        fmt::format("{}: has a group '{}' already", file_name(parent), shown(path)));
+  }
+  Handle group(H5Gcreate2(parent, path.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) fail_write(parent, path);
+  return group;
 }
 
 void write(hid_t group, const std::string& name, const std::vector<double>& values, int columns,
@@ -114,95 +168,17 @@ void write(hid_t group, const std::string& name, const std::vector<long long>& v
            const std::string& unit) {
   write_any(group, name, values, columns, unit, H5T_NATIVE_LLONG);
 }
+void write_bytes(hid_t group, const std::string& name, const std::string& bytes) {
+  write_any(group, name, std::vector<char>(bytes.begin(), bytes.end()), 1, "", H5T_NATIVE_CHAR);
+}
 
 void write_attribute(hid_t object, const std::string& name, const std::string& value) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, value.empty() ? 1 : value.size());
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose);
-  if (!attribute.valid() || H5Awrite(attribute, type, value.empty() ? "" : value.data()) < 0) {
-    fail_write(name);
-  }
+  write_scalar(object, name, type, value.empty() ? "" : value.data());
 }
 void write_attribute(hid_t object, const std::string& name, double value) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(
-      H5Acreate2(object, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose);
-  if (!attribute.valid() || H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) < 0) fail_write(name);
-}
-
-std::vector<double> read_doubles(hid_t group, const std::string& name, int columns,
-                                 const std::string& where) {
-  return read_any<double>(group, name, columns, where, H5T_NATIVE_DOUBLE);
-}
-std::vector<long long> read_integers(hid_t group, const std::string& name, int columns,
-                                     const std::string& where) {
-  return read_any<long long>(group, name, columns, where, H5T_NATIVE_LLONG);
-}
-
-void write_bytes(hid_t group, const std::string& name, const std::string& bytes) {
-  write_any(group, name, std::vector<char>(bytes.begin(), bytes.end()), 1, "", H5T_NATIVE_CHAR);
-}
-std::string read_bytes(hid_t group, const std::string& name, const std::string& where) {
-  const auto values = read_any<char>(group, name, 1, where, H5T_NATIVE_CHAR);
-  return std::string(values.begin(), values.end());
-}
-
-bool has_attribute(hid_t object, const std::string& name) {
-  return H5Aexists(object, name.c_str()) > 0;
-}
-
-std::string read_text_attribute(hid_t object, const std::string& name) {
-  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (!attribute.valid()) throw std::invalid_argument(fmt::format("no attribute '{}'", name));
-  const Handle type(H5Aget_type(attribute), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) {
-    throw std::invalid_argument(fmt::format("attribute '{}' is not a text of fixed length", name));
-  }
-  std::string value(H5Tget_size(type), '\0');
-  H5Aread(attribute, type, value.data());
-  while (!value.empty() && value.back() == '\0') value.pop_back();
-  return value;
-}
-
-double read_number_attribute(hid_t object, const std::string& name) {
-  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
-  double value = 0;
-  if (!attribute.valid() || H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0) {
-    throw std::invalid_argument(fmt::format("no number attribute '{}'", name));
-  }
-  return value;
-}
-
-std::vector<std::string> text_attributes(hid_t object) {
-  std::vector<std::string> names;
-  H5Aiterate2(
-      object, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t location, const char* name, const H5A_info_t*, void* data) -> herr_t {
-        const Handle attribute(H5Aopen(location, name, H5P_DEFAULT), H5Aclose);
-        const Handle type(H5Aget_type(attribute), H5Tclose);
-        if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) <= 0) {
-          static_cast<std::vector<std::string>*>(data)->emplace_back(name);
-        }
-        return 0;
-      },
-      &names);
-  return names;
-}
-
-std::vector<std::string> groups(hid_t object) {
-  std::vector<std::string> names;
-  H5Literate(
-      object, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t location, const char* name, const H5L_info_t*, void* data) -> herr_t {
-        const Handle child(H5Gopen2(location, name, H5P_DEFAULT), H5Gclose);
-        if (child.valid()) static_cast<std::vector<std::string>*>(data)->emplace_back(name);
-        return 0;
-      },
-      &names);
-  return names;
+  write_scalar(object, name, H5T_NATIVE_DOUBLE, &value);
 }
 
 }  // namespace grainfield::dem::hdf5

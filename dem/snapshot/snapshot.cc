@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
@@ -13,6 +14,10 @@ namespace grainfield::dem {
 namespace {
 
 constexpr const char* kFormat = "grainfield-snapshot-1";
+// Groups in groups that are searched for snapshots.
+constexpr int kDeepest = 64;
+// Bytes of names of snapshots in a message.
+constexpr std::size_t kMostListed = 1000;
 
 template <class Items, class Get>
 std::vector<double> gather(const Items& items, Get get) {
@@ -43,32 +48,33 @@ Vec3 vector_at(const std::vector<double>& values, std::size_t row) {
   return Vec3(values[3 * row], values[3 * row + 1], values[3 * row + 2]);
 }
 
-hdf5::Handle create_group(hid_t file, const std::string& path) {
-  const hdf5::Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
-  hdf5::Handle group(H5Gcreate2(file, path.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) {
-    throw std::runtime_error(
-        fmt::format("cannot create the HDF5 group '{}' (is it there already?)", path));
-  }
-  return group;
-}
+bool is_snapshot(hid_t group) { return hdf5::attribute_is(group, "format", kFormat); }
 
-void collect(hid_t object, const std::string& path, std::vector<std::string>& found) {
+// Every group is looked into once: hard links may lead in circles.
+void collect(hid_t object, const std::string& path, int depth, std::set<haddr_t>& seen,
+             std::vector<std::string>& found) {
+  if (depth > kDeepest || !seen.insert(hdf5::address(object)).second) return;
   for (const std::string& name : hdf5::groups(object)) {
-    const hdf5::Handle child(H5Gopen2(object, name.c_str(), H5P_DEFAULT), H5Gclose);
+    const hdf5::Handle child = hdf5::open_group(object, name);
     const std::string full = path + "/" + name;
-    if (hdf5::has_attribute(child, "format") &&
-        hdf5::read_text_attribute(child, "format") == kFormat) {
+    if (is_snapshot(child)) {
       found.push_back(full);
     } else {
-      collect(child, full, found);
+      collect(child, full, depth + 1, seen, found);
     }
   }
 }
 
+std::vector<std::string> snapshots_in(const hdf5::Handle& file) {
+  const hdf5::Handle root = hdf5::open_group(file, "/");
+  std::set<haddr_t> seen;
+  std::vector<std::string> found;
+  collect(root, "", 0, seen, found);
+  return found;
+}
+
 void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) {
-  const hdf5::Handle group = create_group(file, group_name);
+  const hdf5::Handle group = hdf5::create_group(file, group_name);
   hdf5::write_attribute(group, "format", kFormat);
   hdf5::write_attribute(group, "dim", static_cast<double>(s.dim));
   hdf5::write_attribute(group, "time", s.time);
@@ -83,7 +89,7 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
     hdf5::write_attribute(group, "run_" + name, value);
   }
 
-  const hdf5::Handle g = create_group(group, "grains");
+  const hdf5::Handle g = hdf5::create_group(group, "grains");
   hdf5::write(g, "id", gather_integers(s.grains, [](const Grain& a) { return a.id; }), 1, "1");
   hdf5::write(g, "position", gather_vectors(s.grains, [](const Grain& a) { return a.position; }), 3,
               "m");
@@ -111,7 +117,7 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
     hdf5::write(g, "outline", corners, 2, "m");
   }
 
-  const hdf5::Handle c = create_group(group, "contacts");
+  const hdf5::Handle c = hdf5::create_group(group, "contacts");
   hdf5::write(c, "i", gather_integers(s.contacts, [](const Contact& a) { return a.i; }), 1, "1");
   hdf5::write(c, "j", gather_integers(s.contacts, [](const Contact& a) { return a.j; }), 1, "1");
   hdf5::write(c, "point", gather_vectors(s.contacts, [](const Contact& a) { return a.point; }), 3,
@@ -131,13 +137,32 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
               gather_integers(s.contacts, [](const Contact& a) { return a.sliding ? 1 : 0; }), 1,
               "1");
 
-  const hdf5::Handle w = create_group(group, "walls");
+  const hdf5::Handle w = hdf5::create_group(group, "walls");
   hdf5::write(w, "point", gather_vectors(s.walls, [](const Wall& a) { return a.point; }), 3, "m");
   hdf5::write(w, "normal", gather_vectors(s.walls, [](const Wall& a) { return a.normal; }), 3, "1");
   hdf5::write(w, "friction", gather(s.walls, [](const Wall& a) { return a.friction; }), 1, "1");
   std::string names;
   for (const Wall& wall : s.walls) names += (names.empty() ? "" : ",") + wall.name;
   hdf5::write_attribute(w, "names", names);
+}
+
+// Throws with the names of those there are.
+hdf5::Handle open_snapshot(const hdf5::Handle& file, const std::string& name,
+                           const std::string& where) {
+  if (hdf5::has_group(file, name)) {
+    hdf5::Handle group = hdf5::open_group(file, name);
+    if (is_snapshot(group)) return group;
+  }
+  std::string known;
+  for (const std::string& found : snapshots_in(file)) {
+    if (known.size() > kMostListed) {
+      known += ", ...";
+      break;
+    }
+    known += (known.empty() ? "" : ", ") + hdf5::shown(found);
+  }
+  throw std::invalid_argument(fmt::format("{}: no snapshot there; the file has: {}",
+                                          hdf5::shown(where), known.empty() ? "none" : known));
 }
 
 }  // namespace
@@ -150,23 +175,15 @@ void write_snapshot(const std::string& file, const std::string& group_name, cons
 
 Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
   const hdf5::Handle handle = hdf5::open_for_reading(file);
-  const hdf5::Handle group(H5Gopen2(handle, group_name.c_str(), H5P_DEFAULT), H5Gclose);
   const std::string where = file + ":" + group_name;
-  if (!group.valid() || !hdf5::has_attribute(group, "format") ||
-      hdf5::read_text_attribute(group, "format") != kFormat) {
-    std::vector<std::string> found;
-    collect(handle, "", found);
-    std::string known;
-    for (const std::string& name : found) known += (known.empty() ? "" : ", ") + name;
-    throw std::invalid_argument(fmt::format("{}: no snapshot there; the file has: {}", where,
-                                            known.empty() ? "none" : known));
-  }
+  const hdf5::Handle group = open_snapshot(handle, group_name, where);
   Snapshot s;
-  s.dim = static_cast<int>(hdf5::read_number_attribute(group, "dim"));
-  if (s.dim != 2 && s.dim != 3)
-    throw std::invalid_argument(fmt::format("{}: found dim {}, allowed: 2, 3", where, s.dim));
+  const long long dim = hdf5::read_integer_attribute(group, "dim");
+  if (dim != 2 && dim != 3)
+    throw std::invalid_argument(fmt::format("{}: found dim {}, allowed: 2, 3", where, dim));
+  s.dim = static_cast<int>(dim);
   s.time = hdf5::read_number_attribute(group, "time");
-  s.loaded_grain = static_cast<std::int64_t>(hdf5::read_number_attribute(group, "loaded_grain"));
+  s.loaded_grain = hdf5::read_integer_attribute(group, "loaded_grain");
   for (int k = 0; k < 3; ++k) {
     const char axis = "xyz"[k];
     s.gravity[k] = hdf5::read_number_attribute(group, fmt::format("gravity_{}", axis));
@@ -176,11 +193,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (name.starts_with("run_"))
       s.attributes[name.substr(4)] = hdf5::read_text_attribute(group, name);
   }
-  const auto open = [&](const char* name) {
-    hdf5::Handle child(H5Gopen2(group, name, H5P_DEFAULT), H5Gclose);
-    if (!child.valid()) throw std::invalid_argument(fmt::format("{}: no group '{}'", where, name));
-    return child;
-  };
+  const auto open = [&](const char* name) { return hdf5::open_group(group, name); };
   // nan is for coefficients that other programs do not tell; what moves, weighs or pushes is known.
   const auto finite = [&](const std::vector<double>& values, int columns, const char* what,
                           const auto& name_of) {
@@ -233,7 +246,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
                      fixed[k] != 0,
                      {}};
     }
-    if (H5Lexists(g, "outline_start", H5P_DEFAULT) > 0) {
+    if (hdf5::has_link(g, "outline_start")) {
       const auto start = hdf5::read_integers(g, "outline_start", 1, at);
       const auto corners = hdf5::read_doubles(g, "outline", 2, at);
       finite(corners, 2, "outline", [](std::size_t k) { return fmt::format("corner {}", k); });
@@ -313,10 +326,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
 }
 
 std::vector<std::string> list_snapshots(const std::string& file) {
-  const hdf5::Handle handle = hdf5::open_for_reading(file);
-  std::vector<std::string> found;
-  collect(handle, "", found);
-  return found;
+  return snapshots_in(hdf5::open_for_reading(file));
 }
 
 }  // namespace grainfield::dem

@@ -63,7 +63,7 @@ struct Snapshot {
 
 /// Writes the snapshot as group `group` ("/unloaded", "/realization_003/loaded") of the file,
 /// creating the file or adding to it. Not atomic: the caller writes beside and renames.
-/// Throws std::runtime_error naming the file.
+/// Throws StorageFailed (dem/storage_failed.h) naming the file.
 void write_snapshot(const std::string& file, const std::string& group, const Snapshot& snapshot);
 /// Throws std::invalid_argument naming the file and what is missing or broken (not HDF5, truncated,
 /// no such group or column, contacts naming unknown grains).

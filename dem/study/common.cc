@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/replace_file.h"
 
 namespace grainfield::dem {
 
@@ -125,18 +125,15 @@ std::string describe(const RestSetup& r) {
 
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
                       const ImageWriter& state, const NamedSnapshots& snapshots) {
-  const std::string beside = file + ".part";
-  std::filesystem::remove(beside);
-  {
+  write_in_place_of(file, [&](const std::string& beside) {
     ImageWriter w;
     w.put(fingerprint);
     w.put(state.bytes());
     hdf5::Handle handle = hdf5::open_for_adding(beside);
     hdf5::write_bytes(handle, "checkpoint", w.bytes());
-    hdf5::finish(std::move(handle), beside);
-  }
-  for (const auto& [name, snapshot] : snapshots) write_snapshot(beside, "/" + name, snapshot);
-  std::filesystem::rename(beside, file);
+    hdf5::finish(std::move(handle), file);
+    for (const auto& [name, snapshot] : snapshots) write_snapshot(beside, "/" + name, snapshot);
+  });
 }
 
 std::string read_checkpoint(const std::string& file, const std::string& fingerprint) {

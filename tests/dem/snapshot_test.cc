@@ -11,7 +11,7 @@
 #include <fstream>
 #include <limits>
 
-#include "dem/random/random.h"
+#include "tests/dem/snapshot_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -28,37 +28,6 @@ class SnapshotFile : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(directory_); }
 
-  static Snapshot sample() {
-    Random random(5);
-    Snapshot s;
-    s.time = 1.25;
-    s.gravity = Vec3(0, -9.81, 0);
-    s.loaded_grain = 3;
-    s.applied_force = Vec3(0, -30, 0);
-    s.attributes = {{"law", "linear"}, {"seed", "42"}};
-    for (int k = 0; k < 20; ++k) {
-      Grain g;
-      g.id = k;
-      g.position = Vec3(random.uniform(), random.uniform(), 0);
-      g.angle = random.uniform();
-      g.radius = random.uniform();
-      g.mass = random.uniform();
-      g.fixed = k % 5 == 0;
-      s.grains.push_back(g);
-    }
-    s.walls.push_back({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
-    s.walls.push_back({"left", {-1, 0, 0}, {1, 0, 0}, 0});
-    Contact c;
-    c.i = 3;
-    c.j = 7;
-    c.force = Vec3(1, 2, 0);
-    c.normal_force = 3;
-    c.sliding = true;
-    s.contacts = {c};
-    c.j = -2;
-    s.contacts.push_back(c);
-    return s;
-  }
   template <class Call>
   static std::string message(Call call) {
     try {
@@ -73,7 +42,7 @@ class SnapshotFile : public testing::Test {
 };
 
 TEST_F(SnapshotFile, ComesBackBitForBit) {
-  const Snapshot s = sample();
+  const Snapshot s = small_snapshot();
   write_snapshot(file_, "/realization_000/loaded", s);
   write_snapshot(file_, "/realization_000/unloaded", s);
   EXPECT_THAT(list_snapshots(file_),
@@ -104,7 +73,7 @@ TEST_F(SnapshotFile, SaysWhatIsWrong) {
   EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),
               testing::HasSubstr("not an HDF5 file"));
   std::filesystem::remove(file_);
-  write_snapshot(file_, "/loaded", sample());
+  write_snapshot(file_, "/loaded", small_snapshot());
   EXPECT_THAT(message([&] { read_snapshot(file_, "/unloaded"); }),
               testing::HasSubstr("the file has: /loaded"));
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
@@ -118,7 +87,7 @@ TEST_F(SnapshotFile, AFullDiskIsSaid) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "HDF5 keeps what it could not write, which counts as leaks";
 #endif
-  write_snapshot(file_, "/end", sample());
+  write_snapshot(file_, "/end", small_snapshot());
   const auto size = std::filesystem::file_size(file_);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit old{};
@@ -130,14 +99,14 @@ TEST_F(SnapshotFile, AFullDiskIsSaid) {
     setrlimit(RLIMIT_FSIZE, &limit);
     std::string said = "nothing";
     try {
-      write_snapshot(cut, "/end", sample());
+      write_snapshot(cut, "/end", small_snapshot());
     } catch (const std::runtime_error& e) {
       said = e.what();
     }
     setrlimit(RLIMIT_FSIZE, &old);
     if (part == 10) {
       EXPECT_EQ(said, "nothing");
-      EXPECT_EQ(read_snapshot(cut, "/end").grains.size(), sample().grains.size());
+      EXPECT_EQ(read_snapshot(cut, "/end").grains.size(), small_snapshot().grains.size());
     } else {
       EXPECT_THAT(said, testing::HasSubstr("cannot")) << part;
     }
@@ -148,19 +117,19 @@ TEST_F(SnapshotFile, AFullDiskIsSaid) {
 TEST_F(SnapshotFile, RefusesWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto said = [&](const auto& spoil) {
-    Snapshot s = sample();
+    Snapshot s = small_snapshot();
     spoil(s);
     write_snapshot(file_, "/loaded", s);
     const std::string text = message([&] { read_snapshot(file_, "/loaded"); });
     std::filesystem::remove(file_);
     return text;
   };
-  EXPECT_THAT(
-      said([&](Snapshot& s) { s.grains[1].position.y() = nan; }),
-      testing::HasSubstr(":/loaded: position of grain " + std::to_string(sample().grains[1].id) +
-                         " is nan; it must be a finite number"));
+  EXPECT_THAT(said([&](Snapshot& s) { s.grains[1].position.y() = nan; }),
+              testing::HasSubstr(":/loaded: position of grain " +
+                                 std::to_string(small_snapshot().grains[1].id) +
+                                 " is nan; it must be a finite number"));
   EXPECT_THAT(said([&](Snapshot& s) { s.grains[0].mass = INFINITY; }),
-              testing::HasSubstr("mass of grain " + std::to_string(sample().grains[0].id)));
+              testing::HasSubstr("mass of grain " + std::to_string(small_snapshot().grains[0].id)));
   EXPECT_THAT(said([&](Snapshot& s) { s.contacts[1].force.x() = nan; }),
               testing::HasSubstr("force of contact 1 is nan"));
   EXPECT_THAT(said([&](Snapshot& s) { s.walls[1].point.x() = nan; }),
@@ -174,7 +143,7 @@ TEST_F(SnapshotFile, RefusesWhatIsNotFinite) {
 }
 
 TEST_F(SnapshotFile, RefusesContactsOfUnknownGrains) {
-  Snapshot s = sample();
+  Snapshot s = small_snapshot();
   s.contacts[0].j = 20;
   write_snapshot(file_, "/loaded", s);
   EXPECT_THAT(message([&] { read_snapshot(file_, "/loaded"); }),

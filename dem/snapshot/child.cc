@@ -1,0 +1,107 @@
+#include "dem/snapshot/child.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+namespace grainfield::dem {
+namespace {
+
+// On a busy machine, or a slow disk, the clock runs so many times faster than the CPU's.
+constexpr double kWallShare = 30;
+// What the child says at its end.
+constexpr char kTrue = 't', kFalse = 'f';
+
+// Address space in use, bytes; 0: not known.
+double memory_in_use() {
+  std::FILE* in = std::fopen("/proc/self/statm", "r");
+  if (in == nullptr) return 0;
+  double pages = 0;
+  if (std::fscanf(in, "%lf", &pages) != 1) pages = 0;
+  std::fclose(in);
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+// Signals of a crash end the child as they would any program; those that ask to stop are its
+// parent's matter.
+void take_signals() {
+  for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM, SIGXCPU, SIGPIPE}) {
+    std::signal(s, SIG_DFL);
+  }
+  for (const int s : {SIGINT, SIGTERM, SIGHUP}) std::signal(s, SIG_IGN);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+void lower(decltype(RLIMIT_CPU) what, double to) {
+  rlimit limit{};
+  if (getrlimit(what, &limit) != 0) return;
+  const auto wanted = static_cast<rlim_t>(to);
+  if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > wanted) limit.rlim_cur = wanted;
+  setrlimit(what, &limit);
+}
+
+[[noreturn]] void be_the_child(const ChildLimits& limits, double in_use, int answer,
+                               const std::function<bool()>& work) {
+  take_signals();
+  const int nothing = open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (stream != answer) dup2(nothing, stream);
+  }
+  lower(RLIMIT_CORE, 0);
+  lower(RLIMIT_CPU, std::ceil(limits.seconds));
+  alarm(static_cast<unsigned>(std::min(std::ceil(kWallShare * limits.seconds), 1e6)));
+#ifndef __SANITIZE_ADDRESS__
+  if (in_use > 0) lower(RLIMIT_AS, in_use + limits.memory);
+#else
+  static_cast<void>(in_use);
+#endif
+  char letter = kFalse;
+  try {
+    if (work()) letter = kTrue;
+  } catch (...) {
+  }
+  if (write(answer, &letter, 1) != 1) _exit(1);
+  _exit(0);
+}
+
+}  // namespace
+
+ChildResult run_in_child(const ChildLimits& limits, const std::function<bool()>& work) {
+  std::array<int, 2> answer{};
+  if (pipe2(answer.data(), O_CLOEXEC) != 0) return {ChildEnd::unknown, ""};
+  const double in_use = memory_in_use();
+  const pid_t child = fork();
+  if (child == 0) be_the_child(limits, in_use, answer[1], work);
+  close(answer[1]);
+  char letter = 0;
+  while (child > 0 && read(answer[0], &letter, 1) < 0 && errno == EINTR) {
+  }
+  close(answer[0]);
+  if (child < 0) return {ChildEnd::unknown, ""};
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
+  }
+  if (letter == kTrue) return {ChildEnd::ok, ""};
+  if (letter == kFalse) return {ChildEnd::failed, ""};
+  // Who ignores SIGCHLD is not told how it ended.
+  if (ended != child || !WIFSIGNALED(status)) return {ChildEnd::crashed, ""};
+  const int number = WTERMSIG(status);
+  const char* name = sigabbrev_np(number);
+  const bool endless = number == SIGXCPU || number == SIGALRM || number == SIGKILL;
+  return {endless ? ChildEnd::endless : ChildEnd::crashed,
+          name != nullptr ? std::string("SIG") + name : ""};
+}
+
+}  // namespace grainfield::dem

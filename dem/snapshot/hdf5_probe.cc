@@ -1,0 +1,188 @@
+#include "dem/snapshot/hdf5_probe.h"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "dem/snapshot/child.h"
+#include "dem/snapshot/hdf5_damage.h"
+#include "dem/snapshot/hdf5_file.h"
+
+namespace grainfield::dem::hdf5 {
+namespace {
+
+// CPU time of the child: so much, and so many bytes more per second. Whole files are read at
+// hundreds of MB/s.
+constexpr double kSeconds = 2, kBytesPerSecond = 20e6;
+// Memory beyond what the process has: so many bytes, and times the file's size (numbers of one byte
+// become eight; compressed ones more).
+constexpr double kMemory = 512e6, kMemoryShare = 40;
+// Younger files may change without their time changing, ns.
+constexpr long long kYoung = 50'000'000;
+constexpr int kDeepest = 256;
+
+// A state of a file: device, inode, bytes, time of change.
+using State = std::tuple<dev_t, ino_t, off_t, long long>;
+
+long long nanoseconds(const timespec& t) { return 1'000'000'000LL * t.tv_sec + t.tv_nsec; }
+
+bool state_of(const std::string& file, State& state) {
+  struct stat s {};
+  if (stat(file.c_str(), &s) != 0) return false;
+  state = {s.st_dev, s.st_ino, s.st_size, nanoseconds(s.st_mtim)};
+  return true;
+}
+
+std::set<State>& known() {
+  static std::set<State> states;
+  return states;
+}
+
+// All of a file, as the readers of this folder would read it. What cannot be read is no matter
+// here: they say it.
+class Walk {
+ public:
+  void group(hid_t id, int depth) {
+    attributes(id);
+    H5O_info_t info;
+    if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return failed();
+    if (depth > kDeepest || !seen_.emplace(info.fileno, info.addr).second) return;
+    Below below{*this, depth};
+    if (H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, link, &below) < 0) failed();
+  }
+  bool out_of_memory() const { return out_of_memory_; }
+
+ private:
+  struct Below {
+    Walk& walk;
+    int depth;
+  };
+
+  static herr_t link(hid_t group, const char* name, const H5L_info_t* info, void* data) {
+    const auto [walk, depth] = *static_cast<Below*>(data);
+    if (info->type != H5L_TYPE_HARD) return 0;
+    const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+    if (!object.valid()) {
+      walk.failed();
+    } else if (H5Iget_type(object) == H5I_GROUP) {
+      walk.group(object, depth + 1);
+    } else if (H5Iget_type(object) == H5I_DATASET) {
+      walk.dataset(object);
+    }
+    return 0;
+  }
+
+  static herr_t attribute(hid_t object, const char* name, const H5A_info_t*, void* data) {
+    auto& walk = *static_cast<Walk*>(data);
+    const Handle one(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(one), H5Tclose);
+    const Handle space(H5Aget_space(one), H5Sclose);
+    if (!one.valid() || !type.valid() || !space.valid()) {
+      walk.failed();
+      return 0;
+    }
+    const H5T_class_t kind = H5Tget_class(type);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    const std::size_t size = H5Tget_size(type);
+    if (count != 1 || size > file_size(object)) return 0;
+    if (kind == H5T_STRING && H5Tis_variable_str(type) <= 0) {
+      walk.read(size, [&](void* to) { return H5Aread(one, type, to); });
+    } else if (kind == H5T_INTEGER || kind == H5T_FLOAT) {
+      walk.read(sizeof(double), [&](void* to) { return H5Aread(one, H5T_NATIVE_DOUBLE, to); });
+    }
+    return 0;
+  }
+
+  void attributes(hid_t id) {
+    if (H5Aiterate2(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, attribute, this) < 0) failed();
+  }
+
+  void dataset(hid_t set) {
+    attributes(set);
+    if (!unreadable(set).empty()) return failed();
+    const Handle space(H5Dget_space(set), H5Sclose);
+    const Handle type(H5Dget_type(set), H5Tclose);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    if (count < 0) return failed();
+    const auto as = [&](hid_t native) {
+      read(static_cast<std::size_t>(count) * H5Tget_size(native),
+           [&](void* to) { return H5Dread(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
+    };
+    if (H5Tget_class(type) == H5T_FLOAT) return as(H5T_NATIVE_DOUBLE);
+    as(H5Tget_size(type) == 1 ? H5T_NATIVE_CHAR : H5T_NATIVE_LLONG);
+  }
+
+  template <class Read>
+  void read(std::size_t bytes, Read call) {
+    void* to = std::malloc(std::max<std::size_t>(bytes, 1));
+    if (to == nullptr) {
+      out_of_memory_ = true;
+      return;
+    }
+    if (call(to) < 0) failed();
+    std::free(to);
+  }
+
+  void failed() { out_of_memory_ = out_of_memory_ || hdf5::out_of_memory(); }
+
+  std::set<std::pair<unsigned long, haddr_t>> seen_;
+  bool out_of_memory_ = false;
+};
+
+// False when it takes more memory than allowed.
+bool read_all(const std::string& file) {
+  Walk walk;
+  const Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!handle.valid()) return true;
+  const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
+  if (root.valid()) walk.group(root, 0);
+  return !walk.out_of_memory();
+}
+
+std::string why(const ChildResult& result) {
+  switch (result.end) {
+    case ChildEnd::failed:
+      return "reading it takes more memory than the file can need";
+    case ChildEnd::endless:
+      return "reading it does not come to an end";
+    case ChildEnd::crashed:
+      return "reading it crashes the HDF5 library" +
+             (result.signal.empty() ? "" : fmt::format(" ({})", result.signal));
+    case ChildEnd::ok:
+    case ChildEnd::unknown:  // there is no look ahead; the file is read as it is
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+void trust(const std::string& file) {
+  State state;
+  if (state_of(file, state)) known().insert(state);
+}
+
+void probe(const std::string& file) {
+  State state;
+  if (!state_of(file, state) || known().count(state) > 0) return;
+  const auto size = static_cast<double>(std::get<2>(state));
+  const ChildLimits limits{kSeconds + size / kBytesPerSecond, kMemory + kMemoryShare * size};
+  const ChildResult result = run_in_child(limits, [&] { return read_all(file); });
+  if (const std::string problem = why(result); !problem.empty()) {
+    throw std::invalid_argument(fmt::format("{}: damaged: {}", file, problem));
+  }
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (nanoseconds(now) - std::get<3>(state) > kYoung) known().insert(state);
+}
+
+}  // namespace grainfield::dem::hdf5
