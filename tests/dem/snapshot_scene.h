@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dem/engine/image.h"
+#include "dem/image/image.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
 
