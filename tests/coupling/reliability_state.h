@@ -70,6 +70,7 @@ inline std::string mixture(const Contents& earlier, const Contents& whole, const
       return name + " is neither the earlier run's nor the new one's";
     const fs::path file = name;
     if (file.filename() != "summary.json") continue;
+    if (is_of(earlier, name, text) && is_of(whole, name, text)) continue;  // not of the command
     // The topmost stands for everything, a member's for its own folder.
     const std::string above = file.parent_path().string();
     const std::string folder = above.empty() ? "" : above + "/";
