@@ -138,6 +138,15 @@ class InterruptedRun {
   }
 
   bool checkpoint() const { return fs::exists(out_ + "/checkpoint"); }
+  /// Finished or half-done realizations to go on from.
+  bool work() const {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(out_ + "/checkpoint", none)) {
+      const fs::path kind = entry.path().extension();
+      if (kind == ".h5" || kind == ".checkpoint") return true;
+    }
+    return false;
+  }
 
   /// To the end, undisturbed, if it is not there already: the same bits, and nothing else.
   void resume_to_the_end() {
@@ -153,14 +162,14 @@ class InterruptedRun {
   }
 
  private:
-  // A checkpoint is continued; without one, or beside a finished run, the run starts anew.
+  // Continued where there is something to go on from or the program said so, else started anew.
   Start start() {
     Start out{{"run", study_.file, "-o", out_, "--threads", std::to_string(1 + random_() % 3),
                "--checkpoint-seconds", "0.05"},
               {},
               "",
               {{"TMPDIR", folder_ / "tmp"}}};
-    if (checkpoint()) out.words.emplace_back("--resume");
+    if (work() || told_to_resume_) out.words.emplace_back("--resume");
     return out;
   }
 
@@ -191,6 +200,7 @@ class InterruptedRun {
     tally_.at[static_cast<std::size_t>(blow.aim)] += sent > 0;
     tally_.killed += sent > 0 && blow.signal == SIGKILL;
     EXPECT_FALSE(ending.late) << "still running: " << history_;
+    told_to_resume_ = ending.code == 130 && ending.err.find("--resume") != std::string::npos;
     const Contents found = results_in(out_);
     if (ending.code == 0) {
       tally_.whole += sent > 0;
@@ -235,7 +245,7 @@ class InterruptedRun {
   Contents before_;
   Folder folder_;
   std::string out_ = folder_ / "out", history_;
-  bool done_ = false;
+  bool done_ = false, told_to_resume_ = false;
 };
 
 inline Blow random_blow(std::mt19937& random, double seconds) {
@@ -265,8 +275,7 @@ inline Tally interrupt_runs(int signals, int most, double damage_share) {
     InterruptedRun run(study, random() % 3 == 0, random, tally);
     for (int k = 0; k < most && run.strike(random_blow(random, study.seconds)); ++k) {
     }
-    if (run.checkpoint() && std::uniform_real_distribution<>(0, 1)(random) < damage_share)
-      run.damage();
+    if (run.work() && std::uniform_real_distribution<>(0, 1)(random) < damage_share) run.damage();
     run.resume_to_the_end();
   }
   return tally;

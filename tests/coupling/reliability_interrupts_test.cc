@@ -26,7 +26,7 @@ TEST(Interrupts, DamagedCheckpointsStartAgain) {
   for (int round = 0; round < 2; ++round) {
     InterruptedRun run(reference("layer"), false, random, tally);
     run.strike({Aim::grains, SIGINT, false, 1, 0.4 * reference("layer").seconds});
-    if (run.checkpoint()) run.damage();
+    if (run.work()) run.damage();
     run.resume_to_the_end();
   }
 }

@@ -8,20 +8,21 @@ namespace grainfield::coupling::testing {
 
 using Contents = std::map<std::string, std::string>;
 
-/// The lock of an output folder: it may stay, it says nothing about results.
-inline bool is_lock(const fs::path& file) {
+/// What the program keeps for itself beside results: who works in a folder, which files are its
+/// own. It may stay.
+inline bool is_bookkeeping(const fs::path& file) {
   const std::string name = file.filename().string();
-  return name.front() == '.' && name.find("lock") != std::string::npos;
+  return name == ".results" || name.rfind(".lock", 0) == 0 || name.ends_with(".lock");
 }
 
 /// The results in a folder: contents() without what is not meant to be read, the checkpoint, the
-/// staging area and the lock. Empty where there is no folder.
+/// staging area and the bookkeeping. Empty where there is no folder.
 inline Contents results_in(const std::string& folder) {
   if (!fs::is_directory(folder)) return {};
   Contents out = contents(folder);
   std::erase_if(out, [](const auto& file) {
     const fs::path name = file.first;
-    return *name.begin() == "checkpoint" || *name.begin() == ".partial" || is_lock(name);
+    return *name.begin() == "checkpoint" || *name.begin() == ".partial" || is_bookkeeping(name);
   });
   return out;
 }
@@ -33,7 +34,7 @@ inline std::string leftovers(const std::string& folder) {
   if (!fs::is_directory(folder)) return out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path name = fs::relative(entry.path(), folder);
-    if (*name.begin() == "checkpoint" || is_lock(name)) continue;
+    if (*name.begin() == "checkpoint" || is_bookkeeping(name)) continue;
     if (name.filename().string().front() == '.' || name.extension() == ".part")
       out += name.string() + " ";
   }
@@ -59,7 +60,8 @@ inline std::string difference(const Contents& expected, const Contents& found) {
 }
 
 /// What a kill in the midst of publishing may leave: every file is whole, of the earlier or of the
-/// new run, and a summary.json stands beside its own run's files alone. "" or what is wrong.
+/// new run, and a summary.json stands beside no other run's files; the topmost only where all of
+/// its run is there. "" or what is wrong.
 inline std::string mixture(const Contents& earlier, const Contents& whole, const Contents& found) {
   const auto is_of = [](const Contents& run, const std::string& name, const std::string& text) {
     const auto at = run.find(name);
@@ -71,19 +73,15 @@ inline std::string mixture(const Contents& earlier, const Contents& whole, const
     const fs::path file = name;
     if (file.filename() != "summary.json") continue;
     if (is_of(earlier, name, text) && is_of(whole, name, text)) continue;  // not of the command
-    // The topmost stands for everything, a member's for its own folder.
-    const std::string above = file.parent_path().string();
-    const std::string folder = above.empty() ? "" : above + "/";
-    const auto below = [&](const Contents& run) {
-      Contents out;
-      for (const auto& [other, bytes] : run) {
-        if (other.rfind(folder, 0) == 0) out[other] = bytes;
-      }
-      return out;
-    };
     const Contents& its_run = is_of(whole, name, text) ? whole : earlier;
-    const std::string wrong = difference(below(its_run), below(found));
-    if (!wrong.empty()) return name + " beside another run's data: " + wrong;
+    const fs::path above = file.parent_path();
+    for (const auto& [other, bytes] : found) {
+      if (fs::path(other).parent_path() == above && !is_of(its_run, other, bytes))
+        return name + " beside another run's " + other;
+    }
+    for (const auto& [other, bytes] : its_run) {
+      if (above.empty() && found.count(other) == 0) return name + " without its " + other;
+    }
   }
   return "";
 }
