@@ -98,24 +98,27 @@ base = "rough"
 )" + more;
 }
 
-/// Every file below a folder by relative name. Times, memory and the command (keys time.*,
-/// memory.*, case.command) are left out.
+/// The text of a summary.json without what differs from run to run: times, memory and the command
+/// (keys time.*, memory.*, case.command).
+inline std::string figures_alone(const std::string& summary) {
+  std::istringstream lines(summary);
+  std::string line, kept;
+  while (std::getline(lines, line)) {
+    if (line.find("\"time.") != std::string::npos) continue;
+    if (line.find("\"case.command") != std::string::npos) continue;
+    if (line.find("\"memory.") == std::string::npos) kept += line + "\n";
+  }
+  return kept;
+}
+
+/// Every file below a folder by relative name; of a summary.json its figures_alone().
 inline std::map<std::string, std::string> contents(const std::string& folder) {
   std::map<std::string, std::string> out;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
-    std::string text = read_text(entry.path().string());
-    if (entry.path().filename() == "summary.json") {
-      std::istringstream lines(text);
-      std::string line, kept;
-      while (std::getline(lines, line)) {
-        if (line.find("\"time.") != std::string::npos) continue;
-        if (line.find("\"case.command") != std::string::npos) continue;
-        if (line.find("\"memory.") == std::string::npos) kept += line + "\n";
-      }
-      text = kept;
-    }
-    out[fs::relative(entry.path(), folder).string()] = text;
+    const std::string text = read_text(entry.path().string());
+    const bool summary = entry.path().filename() == "summary.json";
+    out[fs::relative(entry.path(), folder).string()] = summary ? figures_alone(text) : text;
   }
   return out;
 }
