@@ -27,6 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+constexpr int kTries = 5;  // of a picture whose drawing a signal ended
+
 /// A file in memory without a name: what a child reads or writes, and nobody else finds.
 class MemoryFile {
  public:
@@ -98,7 +100,9 @@ pid_t start(const std::string& program, const MemoryFile& script, const MemoryFi
   return child;
 }
 
-// Exit status, or -1 after the time limit.
+constexpr int kSignal = 128;  // added to the signal that ended a child
+
+// Exit status, -1 after the time limit, or kSignal + the signal that ended it.
 int wait_for(pid_t child, double seconds) {
   const OnSignal end_it([child] { kill(child, SIGKILL); });
   const auto limit = Clock::now() + std::chrono::duration<double>(seconds);
@@ -111,7 +115,7 @@ int wait_for(pid_t child, double seconds) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kSignal + WTERMSIG(status);
 }
 
 }  // namespace
@@ -132,18 +136,25 @@ std::optional<std::string> find_gnuplot() {
 Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
              double seconds) {
   MemoryFile script("a plot program");
-  const MemoryFile picture("a picture"), messages("gnuplot's messages");
   script.put("set terminal " + terminal + "\nset output\n" + program + "\nunset output\n");
-  const int status = wait_for(start(gnuplot, script, picture, messages), seconds);
   Drawing result;
-  if (status == 0) result.bytes = picture.text();
+  std::string said;
+  int status = 0;
+  // A signal to our group may meet gnuplot before it has left the group.
+  for (int k = 0; k < kTries; ++k) {
+    const MemoryFile picture("a picture"), messages("gnuplot's messages");
+    status = wait_for(start(gnuplot, script, picture, messages), seconds);
+    if (status == 0) result.bytes = picture.text();
+    said = messages.text();
+    if (status < kSignal) break;
+  }
   if (!result.bytes.empty()) return result;
   if (status == -1) {
     result.error = fmt::format("gnuplot took longer than {:g} s", seconds);
     return result;
   }
   // gnuplot shows the line, a caret, and then the message.
-  std::istringstream lines(messages.text());
+  std::istringstream lines(said);
   for (std::string line; std::getline(lines, line);)
     if (line.find("/dev/stdin") != std::string::npos && line.find("line ") != std::string::npos)
       result.error = line.substr(line.find("line "));
