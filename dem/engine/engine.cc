@@ -7,12 +7,10 @@
 #include <numbers>
 
 #include "dem/engine/engine_loop.h"
-#include "dem/engine/engine_search.h"
-#include "dem/engine/engine_sleep.h"
-#include "dem/engine/engine_state.h"
-#include "dem/engine/engine_step.h"
 #include "dem/motion/gear.h"
 #include "dem/motion/verlet.h"
+#include "dem/shapes/disk_store.h"
+#include "dem/shapes/polygon_store.h"
 
 namespace grainfield::dem {
 namespace {
@@ -20,9 +18,9 @@ namespace {
 template <class Shape, class Law>
 std::unique_ptr<Engine> with_shape(const EngineSettings& settings, const Law& law) {
   if (settings.integrator == IntegratorKind::gear) {
-    return std::make_unique<EngineLoop<Shape, Law, GearIntegrator>>(settings, law);
+    return std::make_unique<EngineLoop<Shape, Law, GearIntegrator<2>>>(settings, law);
   }
-  return std::make_unique<EngineLoop<Shape, Law, VerletIntegrator>>(settings, law);
+  return std::make_unique<EngineLoop<Shape, Law, VerletIntegrator<2>>>(settings, law);
 }
 
 }  // namespace

@@ -9,16 +9,21 @@
 
 namespace grainfield::dem {
 
+/// Numbers, and structs of numbers and of Eigen's fixed-size vectors (whose copy constructors are
+/// written out, so that they do not count as trivially copyable).
+template <class T>
+inline constexpr bool kIsPlain = std::is_standard_layout_v<T>&& std::is_trivially_destructible_v<T>;
+
 class ImageWriter {
  public:
   template <class T>
   void put(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
+    static_assert(kIsPlain<T>);
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
   template <class T>
   void put(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
+    static_assert(kIsPlain<T>);
     put(static_cast<std::uint64_t>(values.size()));
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
@@ -37,7 +42,8 @@ class ImageReader {
   template <class T>
   void get(T& value) {
     require(bytes_.size() - position_ >= sizeof(T));
-    std::memcpy(&value, bytes_.data() + position_, sizeof(T));
+    static_assert(kIsPlain<T>);
+    std::memcpy(static_cast<void*>(&value), bytes_.data() + position_, sizeof(T));
     position_ += sizeof(T);
   }
   template <class T>
@@ -46,7 +52,8 @@ class ImageReader {
     get(count);
     require(count <= (bytes_.size() - position_) / sizeof(T));
     values.resize(count);
-    if (count > 0) std::memcpy(values.data(), bytes_.data() + position_, count * sizeof(T));
+    if (count > 0)
+      std::memcpy(static_cast<void*>(values.data()), bytes_.data() + position_, count * sizeof(T));
     position_ += count * sizeof(T);
   }
   void get(std::string& text) {

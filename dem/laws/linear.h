@@ -10,6 +10,8 @@ namespace grainfield::dem {
 struct LinearLaw {
   static constexpr const char* name = "linear";
   static constexpr bool needs_area = false;
+  template <int D>
+  using Memory = SpringMemory<D>;
   double normal_stiffness = 1e7;           ///< k_n, N/m
   double tangential_stiffness_ = 2e7 / 7;  ///< k_t, N/m
   double normal_damping = 500;             ///< gamma_n, 1/s
@@ -28,20 +30,23 @@ struct LinearLaw {
   double edge_stiffness(double) const { return 4 * normal_stiffness; }
   double edge_rate(double, double) const { return 2 * normal_damping; }
 
-  LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
-                      double& spring) const {
+  template <int D>
+  LawForce<D> operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
+                         SpringMemory<D>& memory) const {
     const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
     const double normal =
         std::max(normal_stiffness * o.depth + mass * normal_damping * m.approach, 0.0);
-    const double force = friction_force(normal, mu, tangential_stiffness_,
-                                        mass * tangential_damping, m.slip, dt, spring);
+    const auto force = friction_force(normal, mu, tangential_stiffness_, mass * tangential_damping,
+                                      m.slip, dt, memory.spring);
     return {normal, force};
   }
 
   /// Elastic energy, J.
-  double energy(const Overlap& o, double spring) const {
+  template <int D>
+  double energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {
     return 0.5 * normal_stiffness * o.depth * o.depth +
-           (tangential_stiffness_ > 0 ? 0.5 * spring * spring / tangential_stiffness_ : 0.0);
+           (tangential_stiffness_ > 0 ? 0.5 * square_of(memory.spring) / tangential_stiffness_
+                                      : 0.0);
   }
 };
 

@@ -12,6 +12,8 @@ namespace grainfield::dem {
 struct OverlapAreaLaw {
   static constexpr const char* name = "overlap_area";
   static constexpr bool needs_area = true;
+  template <int D>
+  using Memory = SpringMemory<D>;
   double young = 1e7;     ///< E, N/m
   double damping = 0.75;  ///< gamma, -; raising it makes impacts less elastic
 
@@ -34,8 +36,8 @@ struct OverlapAreaLaw {
     return 4 * damping * steepness * std::sqrt(young / (2 * mass));
   }
 
-  LawForce operator()(const Overlap& o, const ContactMotion& m, double mu, double dt,
-                      double& spring) const {
+  LawForce<2> operator()(const Overlap& o, const ContactMotion<2>& m, double mu, double dt,
+                         SpringMemory<2>& memory) const {
     const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
     const double scale = young / o.length;
     const double elastic = scale * o.area;
@@ -45,17 +47,17 @@ struct OverlapAreaLaw {
     const double inverse_tangential = inverse_sum + o.arm_i * o.arm_i * m.inverse_inertia_i +
                                       o.arm_j * o.arm_j * m.inverse_inertia_j;
     const double kt = tangential_stiffness();
-    const double force =
-        friction_force(normal, mu, kt, std::sqrt(kt / inverse_tangential), m.slip, dt, spring);
+    const double force = friction_force(normal, mu, kt, std::sqrt(kt / inverse_tangential), m.slip,
+                                        dt, memory.spring);
     return {normal, force};
   }
 
   /// Elastic energy, J: the work of R at constant l, (E/l) * integral of A over the depth. The
   /// integral of the lens area is 2/5 A depth for small overlaps (A ~ depth^{3/2}), to O(depth/r).
   /// Of polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.
-  double energy(const Overlap& o, double spring) const {
+  double energy(const Overlap& o, const SpringMemory<2>& memory) const {
     return 0.4 * young * o.area / o.length * o.depth +
-           0.5 * spring * spring / tangential_stiffness();
+           0.5 * memory.spring * memory.spring / tangential_stiffness();
   }
 };
 

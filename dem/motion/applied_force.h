@@ -1,5 +1,6 @@
 // A force from outside on one grain.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 namespace grainfield::dem {
@@ -10,6 +11,14 @@ struct AppliedForce {
   double fx = 0, fy = 0;  ///< full force, N
   double start = 0;       ///< s
   double ramp = 0;        ///< s; 0: at once
+  double fz = 0;          ///< N; in 3D
+
+  /// Share of the full force that acts at time t, s.
+  double share_at(double t) const {
+    const double since = t - start;
+    const double s = ramp > 0 ? std::clamp(since / ramp, 0.0, 1.0) : 1.0;
+    return s * s * (3 - 2 * s);
+  }
 };
 
 }  // namespace grainfield::dem

@@ -5,53 +5,66 @@
 // e = dt^2/2 a(predicted) - x_2(predicted), x_n += c_n e, c = (3/16, 251/360, 1, 11/18, 1/6, 1/60);
 // c_0 = 3/16 because the forces depend on the velocity (3/20 when they do not).
 #pragma once
-#include "dem/space/body.h"
+#include "dem/motion/load.h"
 
 namespace grainfield::dem {
 
-class GearIntegrator {
+template <int D>
+class GearIntegrator;
+
+/// In the plane.
+template <>
+class GearIntegrator<2> {
  public:
-  /// Scaled derivatives 2..5 of one coordinate.
-  struct Derivatives {
-    double x2 = 0, x3 = 0, x4 = 0, x5 = 0;
-  };
-  /// Per grain: angle and the higher derivatives of x, y, angle.
-  struct Memory {
-    double angle = 0;
-    Derivatives x, y, rotation;
-  };
   static constexpr const char* name = "gear";
+  /// The corrector evaluates the forces once per step and is stable only for dt * rate <= 0.16
+  /// (from its amplification matrix).
+  static constexpr double viscous_limit = 0.16, edge_limit = 0.16;
+  static constexpr bool bears_irregular_edges = false;
+
+  /// Scaled derivatives 2..5 of a place or an angle.
+  template <class T>
+  struct Derivatives {
+    T x2 = zero<T>(), x3 = zero<T>(), x4 = zero<T>(), x5 = zero<T>();
+  };
+  /// Per grain: angle and the higher derivatives.
+  struct Memory {
+    double rotation = 0;
+    Derivatives<Eigen::Vector2d> place;
+    Derivatives<double> turning;
+  };
 
   explicit GearIntegrator(double dt) : dt_(dt), inverse_dt_(1 / dt), half_square_(0.5 * dt * dt) {}
 
   /// Of a grain that has not moved yet: its acceleration where it stands.
-  void start(Memory& m, double ax, double ay, double aspin) const {
-    m.x.x2 = half_square_ * ax;
-    m.y.x2 = half_square_ * ay;
-    m.rotation.x2 = half_square_ * aspin;
+  void start(const Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
+    m.place.x2 = half_square_ * acceleration_of(b, load);
+    m.turning.x2 = half_square_ * spin_rate_of(b, load);
   }
-  void begin(Body& b, Memory& m) const {
-    predict(b.x, b.vx, m.x);
-    predict(b.y, b.vy, m.y);
-    predict(m.angle, b.spin, m.rotation);
+  void begin(Body<2>& b, Memory& m, const Inertia<2>&) const {
+    predict(b.position, b.velocity, m.place);
+    predict(m.rotation, b.spin, m.turning);
   }
-  void end(Body& b, Memory& m, double ax, double ay, double aspin) const {
-    correct(b.x, b.vx, m.x, ax);
-    correct(b.y, b.vy, m.y, ay);
-    correct(m.angle, b.spin, m.rotation, aspin);
+  void end(Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
+    const Eigen::Vector2d a = acceleration_of(b, load);
+    const double rate = spin_rate_of(b, load);
+    correct(b.position, b.velocity, m.place, a);
+    correct(m.rotation, b.spin, m.turning, rate);
   }
 
  private:
-  void predict(double& x, double& v, Derivatives& d) const {
-    const double x1 = v * dt_;
+  template <class T>
+  void predict(T& x, T& v, Derivatives<T>& d) const {
+    const T x1 = v * dt_;
     x += x1 + d.x2 + d.x3 + d.x4 + d.x5;
     v = (x1 + 2 * d.x2 + 3 * d.x3 + 4 * d.x4 + 5 * d.x5) * inverse_dt_;
     d.x2 += 3 * d.x3 + 6 * d.x4 + 10 * d.x5;
     d.x3 += 4 * d.x4 + 10 * d.x5;
     d.x4 += 5 * d.x5;
   }
-  void correct(double& x, double& v, Derivatives& d, double a) const {
-    const double e = half_square_ * a - d.x2;
+  template <class T>
+  void correct(T& x, T& v, Derivatives<T>& d, const T& a) const {
+    const T e = half_square_ * a - d.x2;
     x += (3.0 / 16) * e;
     v += (251.0 / 360) * e * inverse_dt_;
     d.x2 += e;

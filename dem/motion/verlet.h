@@ -1,45 +1,50 @@
 // Velocity Verlet (Roul 2.19 as corrected): half kick, drift, forces, half kick. Forces see the
 // velocity at the half step.
 #pragma once
-#include "dem/space/body.h"
+#include "dem/motion/load.h"
 
 namespace grainfield::dem {
 
-class VerletIntegrator {
+template <int D>
+class VerletIntegrator;
+
+/// In the plane.
+template <>
+class VerletIntegrator<2> {
  public:
+  static constexpr const char* name = "verlet";
+  /// Limits of the time step, as engine.h: stable_time_step has them.
+  static constexpr double viscous_limit = 1.0, edge_limit = 1.4;
+  static constexpr bool bears_irregular_edges = true;
+
   /// Per grain: angle and acceleration.
   struct Memory {
-    double angle = 0, ax = 0, ay = 0, aspin = 0;
+    double rotation = 0;
+    Eigen::Vector2d acceleration{0, 0};
+    double spin_rate = 0;
   };
-  static constexpr const char* name = "verlet";
 
   explicit VerletIntegrator(double dt) : dt_(dt) {}
 
   /// Of a grain that has not moved yet: its acceleration where it stands.
-  void start(Memory& m, double ax, double ay, double aspin) const {
-    m.ax = ax;
-    m.ay = ay;
-    m.aspin = aspin;
+  void start(const Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
+    m.acceleration = acceleration_of(b, load);
+    m.spin_rate = spin_rate_of(b, load);
   }
   /// Before the forces: moves the grain.
-  void begin(Body& b, Memory& m) const {
+  void begin(Body<2>& b, Memory& m, const Inertia<2>&) const {
     const double half = 0.5 * dt_;
-    b.vx += half * m.ax;
-    b.vy += half * m.ay;
-    b.spin += half * m.aspin;
-    b.x += dt_ * b.vx;
-    b.y += dt_ * b.vy;
-    m.angle += dt_ * b.spin;
+    b.velocity += half * m.acceleration;
+    b.spin += half * m.spin_rate;
+    b.position += dt_ * b.velocity;
+    m.rotation += dt_ * b.spin;
   }
   /// After the forces: accelerations at the new position.
-  void end(Body& b, Memory& m, double ax, double ay, double aspin) const {
+  void end(Body<2>& b, Memory& m, const Inertia<2>& inertia, const Load<2>& load) const {
     const double half = 0.5 * dt_;
-    m.ax = ax;
-    m.ay = ay;
-    m.aspin = aspin;
-    b.vx += half * ax;
-    b.vy += half * ay;
-    b.spin += half * aspin;
+    start(b, m, inertia, load);
+    b.velocity += half * m.acceleration;
+    b.spin += half * m.spin_rate;
   }
 
  private:

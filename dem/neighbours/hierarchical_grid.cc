@@ -14,14 +14,26 @@ constexpr int kMaxLevels = 24;
 
 }  // namespace
 
-int HierarchicalGrid::column(const Level& level, double x) const {
-  return static_cast<int>(std::clamp((x - x0_) / level.cell, 0.0, level.nx - 1.0));
-}
-int HierarchicalGrid::row(const Level& level, double y) const {
-  return static_cast<int>(std::clamp((y - y0_) / level.cell, 0.0, level.ny - 1.0));
+template <int D>
+auto HierarchicalGrid<D>::cell_at(const Level& level, const Eigen::Matrix<double, D, 1>& at) const
+    -> Cell {
+  Cell cell;
+  for (int a = 0; a < D; ++a) {
+    cell[a] =
+        static_cast<int>(std::clamp((at[a] - low_[a]) / level.cell, 0.0, level.count[a] - 1.0));
+  }
+  return cell;
 }
 
-void HierarchicalGrid::build(std::span<const Reach> grains) {
+template <int D>
+int HierarchicalGrid<D>::number_of(const Level& level, const Cell& cell) {
+  int number = cell[D - 1];
+  for (int a = D - 2; a >= 0; --a) number = cell[a] + level.count[a] * number;
+  return number;
+}
+
+template <int D>
+void HierarchicalGrid<D>::build(std::span<const Reach<D>> grains) {
   grains_.assign(grains.begin(), grains.end());
   level_of_.assign(grains.size(), 0);
   if (grains.empty()) {
@@ -29,28 +41,31 @@ void HierarchicalGrid::build(std::span<const Reach> grains) {
     return;
   }
   constexpr double inf = std::numeric_limits<double>::infinity();
-  double x1 = -inf, y1 = -inf, least = inf, most = 0;
-  x0_ = y0_ = inf;
-  for (const Reach& g : grains) {
-    x0_ = std::min(x0_, g.x);
-    y0_ = std::min(y0_, g.y);
-    x1 = std::max(x1, g.x);
-    y1 = std::max(y1, g.y);
+  double least = inf, most = 0;
+  low_.setConstant(inf);
+  Eigen::Matrix<double, D, 1> high = Eigen::Matrix<double, D, 1>::Constant(-inf);
+  for (const Reach<D>& g : grains) {
+    low_ = low_.cwiseMin(g.centre);
+    high = high.cwiseMax(g.centre);
     least = std::min(least, g.reach);
     most = std::max(most, g.reach);
   }
   finest_ = 2 * least;
   const double limit = kMaxCellsPerGrain * static_cast<double>(grains.size()) + 64;
-  while (((x1 - x0_) / finest_ + 1) * ((y1 - y0_) / finest_ + 1) > limit) finest_ *= 1.5;
+  const auto cells = [&] { return ((high - low_).array() / finest_ + 1).prod(); };
+  while (cells() > limit) finest_ *= 1.5;
   int count = 1;
   while (count < kMaxLevels && finest_ * std::ldexp(1.0, count - 1) < 2 * most) ++count;
   levels_.resize(count);
   for (int l = 0; l < count; ++l) {
     Level& level = levels_[l];
     level.cell = std::ldexp(finest_, l);
-    level.nx = static_cast<int>((x1 - x0_) / level.cell) + 1;
-    level.ny = static_cast<int>((y1 - y0_) / level.cell) + 1;
-    level.start.assign(static_cast<std::size_t>(level.nx) * level.ny + 1, 0);
+    std::size_t number = 1;
+    for (int a = 0; a < D; ++a) {
+      level.count[a] = static_cast<int>((high[a] - low_[a]) / level.cell) + 1;
+      number *= static_cast<std::size_t>(level.count[a]);
+    }
+    level.start.assign(number + 1, 0);
   }
   const int n = static_cast<int>(grains.size());
   cell_of_.resize(n);
@@ -59,7 +74,7 @@ void HierarchicalGrid::build(std::span<const Reach> grains) {
     while (l + 1 < count && levels_[l].cell < 2 * grains[i].reach) ++l;
     level_of_[i] = static_cast<unsigned char>(l);
     Level& level = levels_[l];
-    cell_of_[i] = column(level, grains[i].x) + level.nx * row(level, grains[i].y);
+    cell_of_[i] = number_of(level, cell_at(level, grains[i].centre));
     ++level.start[cell_of_[i] + 1];
   }
   for (int l = 0; l < count; ++l) {
@@ -73,23 +88,34 @@ void HierarchicalGrid::build(std::span<const Reach> grains) {
   }
 }
 
+template <int D>
 template <class Visit>
-void HierarchicalGrid::visit_cells(const Level& level, const Reach& grain, Visit visit) const {
+void HierarchicalGrid<D>::visit_cells(const Level& level, const Reach<D>& grain,
+                                      Visit visit) const {
   // A partner on this level reaches at most half a cell.
-  const double reach = grain.reach + 0.5 * level.cell;
-  const int c0 = column(level, grain.x - reach), c1 = column(level, grain.x + reach);
-  const int r0 = row(level, grain.y - reach), r1 = row(level, grain.y + reach);
-  for (int r = r0; r <= r1; ++r) {
-    for (int k = level.start[c0 + level.nx * r]; k < level.start[c1 + level.nx * r + 1]; ++k) {
+  const Eigen::Matrix<double, D, 1> reach =
+      Eigen::Matrix<double, D, 1>::Constant(grain.reach + 0.5 * level.cell);
+  const Cell low = cell_at(level, grain.centre - reach),
+             high = cell_at(level, grain.centre + reach);
+  // Runs of cells along the first axis; the others count up like a clock.
+  Cell at = low;
+  while (true) {
+    const int first = number_of(level, at), last = first + high[0] - low[0];
+    for (int k = level.start[first]; k < level.start[last + 1]; ++k) {
       const int j = level.members[k];
-      const Reach& b = grains_[j];
-      const double dx = b.x - grain.x, dy = b.y - grain.y, sum = grain.reach + b.reach;
-      if (dx * dx + dy * dy < sum * sum) visit(j);
+      const Reach<D>& b = grains_[j];
+      const double sum = grain.reach + b.reach;
+      if ((b.centre - grain.centre).squaredNorm() < sum * sum) visit(j);
     }
+    int axis = 1;
+    for (; axis < D && at[axis] == high[axis]; ++axis) at[axis] = low[axis];
+    if (axis == D) return;
+    ++at[axis];
   }
 }
 
-void HierarchicalGrid::near(const Reach& grain, std::vector<int>& found) const {
+template <int D>
+void HierarchicalGrid<D>::near(const Reach<D>& grain, std::vector<int>& found) const {
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   for (const Level& level : levels_) {
     if (!level.members.empty()) {
@@ -101,11 +127,12 @@ void HierarchicalGrid::near(const Reach& grain, std::vector<int>& found) const {
   std::sort(found.begin() + first, found.end());
 }
 
-void HierarchicalGrid::pairs(std::vector<std::pair<int, int>>& pairs) const {
+template <int D>
+void HierarchicalGrid<D>::pairs(std::vector<std::pair<int, int>>& pairs) const {
   pairs.clear();
   const int n = static_cast<int>(grains_.size());
   for (int i = 0; i < n; ++i) {
-    const Reach& a = grains_[i];
+    const Reach<D>& a = grains_[i];
     for (int l = level_of_[i]; l < static_cast<int>(levels_.size()); ++l) {
       const Level& level = levels_[l];
       if (level.members.empty()) continue;
@@ -127,17 +154,29 @@ void HierarchicalGrid::pairs(std::vector<std::pair<int, int>>& pairs) const {
   pairs.swap(sorted);
 }
 
-std::vector<int> HierarchicalGrid::order() const {
+template <int D>
+std::vector<int> HierarchicalGrid<D>::order() const {
+  std::vector<int> order(grains_.size());
+  if (grains_.empty()) return order;
+  const Level& level = levels_.front();
+  // From the axis with the fewest cells to that with the most.
+  std::array<int, D> axes;
+  for (int a = 0; a < D; ++a) axes[a] = D - 1 - a;
+  std::stable_sort(axes.begin(), axes.end(),
+                   [&](int a, int b) { return level.count[a] < level.count[b]; });
   std::vector<std::pair<std::int64_t, int>> keyed(grains_.size());
   for (std::size_t i = 0; i < grains_.size(); ++i) {
-    const Level& level = levels_.front();
-    const std::int64_t c = column(level, grains_[i].x), r = row(level, grains_[i].y);
-    keyed[i] = {level.nx < level.ny ? c + r * level.nx : r + c * level.ny, static_cast<int>(i)};
+    const Cell cell = cell_at(level, grains_[i].centre);
+    std::int64_t key = cell[axes[D - 1]];
+    for (int k = D - 2; k >= 0; --k) key = cell[axes[k]] + key * level.count[axes[k]];
+    keyed[i] = {key, static_cast<int>(i)};
   }
   std::sort(keyed.begin(), keyed.end());
-  std::vector<int> order(grains_.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
   return order;
 }
+
+template class HierarchicalGrid<2>;
+template class HierarchicalGrid<3>;
 
 }  // namespace grainfield::dem

@@ -1,29 +1,34 @@
-// Neighbour search for mixed sizes, linear in grains.
+// Neighbour search for mixed sizes, linear in grains, in two or three dimensions.
 //
 // A grain belongs to the finest level whose cells are at least as wide as its diameter (with the
 // gap it keeps); cells double from level to level. A grain looks for partners on its own level and
-// all coarser ones: there are as many levels as octaves of size, and per level at most 3 x 3 cells
-// to visit. Within a level, grains are binned by counting sort, so nothing depends on memory
-// addresses.
+// all coarser ones: there are as many levels as octaves of size, and per level at most three cells
+// to visit along each axis. Within a level, grains are binned by counting sort, so nothing depends
+// on memory addresses.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "dem/space/space.h"
+
 namespace grainfield::dem {
 
 /// A grain as the search sees it.
+template <int D>
 struct Reach {
-  double x = 0, y = 0;
+  Eigen::Matrix<double, D, 1> centre = Eigen::Matrix<double, D, 1>::Zero();  ///< m
   double reach = 0;    ///< radius and the gap that it keeps, m
   bool fixed = false;  ///< never partner of another fixed one
 };
 
+template <int D>
 class HierarchicalGrid {
  public:
   /// Bins the grains and keeps a copy of them.
-  void build(std::span<const Reach> grains);
+  void build(std::span<const Reach<D>> grains);
 
   /// Every pair (i < j) that is closer than the sum of its reaches, fixed-fixed pairs left out,
   /// sorted by (i, j), into `pairs`.
@@ -31,30 +36,36 @@ class HierarchicalGrid {
 
   /// Appends the indices of all binned grains that are closer to `grain` than the sum of the
   /// reaches, ascending.
-  void near(const Reach& grain, std::vector<int>& found) const;
+  void near(const Reach<D>& grain, std::vector<int>& found) const;
 
-  /// Order of the grains by rows of the finest level's cells, rows along the shorter side of the
-  /// packing (ties by index): neighbours in space become neighbours in memory, and what a sweep
-  /// needs of the next row stays in cache.
+  /// Order of the grains by rows of the finest level's cells, rows along the shortest side of the
+  /// packing and layers along the next one (ties by index): neighbours in space become neighbours
+  /// in memory, and what a sweep needs of the next row stays in cache.
   std::vector<int> order() const;
 
  private:
+  using Cell = std::array<int, D>;
   struct Level {
     double cell = 0;
-    int nx = 0, ny = 0;
+    Cell count{};              // of cells along each axis
     std::vector<int> start;    // of each cell in `members`
     std::vector<int> members;  // grain indices, ascending within a cell
   };
-  int column(const Level& level, double x) const;
-  int row(const Level& level, double y) const;
+  Cell cell_at(const Level& level, const Eigen::Matrix<double, D, 1>& at) const;
+  /// Number of a cell: the first axis runs fastest.
+  static int number_of(const Level& level, const Cell& cell);
   template <class Visit>
-  void visit_cells(const Level& level, const Reach& grain, Visit visit) const;
+  void visit_cells(const Level& level, const Reach<D>& grain, Visit visit) const;
 
-  double x0_ = 0, y0_ = 0, finest_ = 0;
-  std::vector<Reach> grains_;
+  Eigen::Matrix<double, D, 1> low_ = Eigen::Matrix<double, D, 1>::Zero();
+  double finest_ = 0;
+  std::vector<Reach<D>> grains_;
   std::vector<Level> levels_;
   std::vector<unsigned char> level_of_;
   std::vector<int> cell_of_, cursor_;
 };
+
+extern template class HierarchicalGrid<2>;
+extern template class HierarchicalGrid<3>;
 
 }  // namespace grainfield::dem

@@ -219,23 +219,24 @@ void ContactNetwork::ensure_candidates(const Vector& z) {
 /// springs again.
 void ContactNetwork::search(const Vector& z) {
   const int n = static_cast<int>(shapes_.size());
-  std::vector<Reach> reaches(n);
+  std::vector<Reach<2>> reaches(n);
   searched_.resize(n);
   for (int k = 0; k < n; ++k) {
     searched_[k] = {displacement(k, 0, z), displacement(k, 1, z)};
-    reaches[k] = {origin_[k][0] + searched_[k][0], origin_[k][1] + searched_[k][1],
-                  shapes_[k].radius + 0.5 * skin_, shapes_[k].unknown < 0};
+    reaches[k] = {{origin_[k][0] + searched_[k][0], origin_[k][1] + searched_[k][1]},
+                  shapes_[k].radius + 0.5 * skin_,
+                  shapes_[k].unknown < 0};
   }
   std::vector<std::pair<int, int>> found, all;
-  HierarchicalGrid grid;
+  HierarchicalGrid<2> grid;
   grid.build(reaches);
   grid.pairs(found);
   std::size_t next = 0;
   for (int i = 0; i < n; ++i) {
     for (int w = static_cast<int>(walls_.size()) - 1; w >= 0 && shapes_[i].unknown >= 0; --w) {
       const Wall& wall = walls_[w];
-      const double height = (reaches[i].x - wall.point.x()) * wall.normal.x() +
-                            (reaches[i].y - wall.point.y()) * wall.normal.y();
+      const double height = (reaches[i].centre.x() - wall.point.x()) * wall.normal.x() +
+                            (reaches[i].centre.y() - wall.point.y()) * wall.normal.y();
       if (height < shapes_[i].radius + skin_) all.emplace_back(i, -1 - w);
     }
     for (; next < found.size() && found[next].first == i; ++next) all.push_back(found[next]);

@@ -59,8 +59,8 @@ bool ContactNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) con
   if (!overlap(pair, p, o)) return false;
   g.normal = std::visit(
       [&](const auto& law) {
-        double none = 0;
-        ContactMotion at_rest;
+        SpringMemory<2> none;
+        ContactMotion<2> at_rest;
         at_rest.inverse_mass_i = 1;  // any: there is no velocity to damp
         return law(o, at_rest, 0.0, 0.0, none).normal;
       },

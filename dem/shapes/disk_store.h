@@ -6,33 +6,39 @@
 #include "dem/image/image.h"
 #include "dem/shapes/disk.h"
 #include "dem/shapes/polygon.h"
+#include "dem/shapes/solid.h"
 #include "dem/space/body.h"
+#include "dem/space/plane.h"
 
 namespace grainfield::dem {
 
 class DiskStore {
  public:
+  static constexpr int dim = 2;
   static constexpr bool outlines = false;
+  using Overlap = dem::Overlap;
+  using Feature = PairFeature;
 
-  void add(const Outline& outline) {
-    if (!outline.empty()) {
+  Solid<2> add(const ShapeInput& shape) {
+    if (!shape.outline.empty()) {
       throw std::invalid_argument("a grain with an outline needs EngineSettings::polygons");
     }
+    return disk_solid(shape.radius);
   }
-  void place(int, const Body&, double) {}
+  void place(int, const Body<2>&, double) {}
   void swap(int, int) {}
   void sort(const std::vector<int>&) {}
   Outline outline(int) const { return {}; }
 
   template <bool with_area>
-  bool overlap(int, const Body& a, int, const Body& b, PairFeature&, Overlap& o) const {
-    return overlap_of_disks<with_area>(b.x - a.x, b.y - a.y, a.radius, b.radius, o);
+  bool overlap(int, const Body<2>& a, int, const Body<2>& b, Feature&, Overlap& o) const {
+    return overlap_of_disks<with_area>(b.position.x() - a.position.x(),
+                                       b.position.y() - a.position.y(), a.radius, b.radius, o);
   }
-  /// (px, py) on the plane, (wx, wy) its outward normal.
   template <bool with_area>
-  bool overlap_plane(int, const Body& a, double px, double py, double wx, double wy,
-                     Overlap& o) const {
-    return overlap_with_plane<with_area>((a.x - px) * wx + (a.y - py) * wy, a.radius, wx, wy, o);
+  bool overlap_plane(int, const Body<2>& a, const Plane<2>& plane, Overlap& o) const {
+    return overlap_with_plane<with_area>(plane.height(a.position), a.radius, plane.normal.x(),
+                                         plane.normal.y(), o);
   }
 
   void write(ImageWriter&) const {}

@@ -8,16 +8,22 @@
 #include "dem/image/image.h"
 #include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/polygon.h"
+#include "dem/shapes/solid.h"
 #include "dem/space/body.h"
+#include "dem/space/plane.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
 
 class PolygonStore {
  public:
+  static constexpr int dim = 2;
   static constexpr bool outlines = true;
+  using Overlap = dem::Overlap;
+  using Feature = PairFeature;
 
-  void add(const Outline& outline) {
+  Solid<2> add(const ShapeInput& shape) {
+    const Outline& outline = shape.outline;
     const int n = static_cast<int>(outline.size());
     if (outline.size() + 1 > stride_) widen(n + 1);
     count_.push_back(n);
@@ -29,10 +35,12 @@ class PolygonStore {
       block[k] = outline[k % n][0];
       block[stride_ + k] = outline[k % n][1];
     }
+    if (n == 0) return disk_solid(shape.radius);
+    return {circumradius_of(outline), area_of(outline), polar_moment_of(outline)};
   }
 
   /// Turns and moves the corners to where the body is.
-  void place(int i, const Body& b, double angle) {
+  void place(int i, const Body<2>& b, double angle) {
     const int n = count_[i];
     if (n == 0) return;
     double* block = block_of(i);
@@ -40,8 +48,8 @@ class PolygonStore {
     const double *bx = block, *by = block + stride_;
     double *x = block + 2 * stride_, *y = block + 3 * stride_;
     for (int k = 0; k <= n; ++k) {
-      x[k] = b.x + (c * bx[k] - s * by[k]);
-      y[k] = b.y + (s * bx[k] + c * by[k]);
+      x[k] = b.position.x() + (c * bx[k] - s * by[k]);
+      y[k] = b.position.y() + (s * bx[k] + c * by[k]);
     }
   }
 
@@ -74,30 +82,33 @@ class PolygonStore {
     return out;
   }
 
-  PlacedShape placed(int i, const Body& b) const {
+  PlacedShape placed(int i, const Body<2>& b) const {
     const double* block = block_of(i);
-    return {block + 2 * stride_, block + 3 * stride_, count_[i], b.x, b.y, b.radius};
+    return {block + 2 * stride_, block + 3 * stride_, count_[i],
+            b.position.x(),      b.position.y(),      b.radius};
   }
   bool slender(int i) const { return long_axis_[i][0] != 0 || long_axis_[i][1] != 0; }
   bool any_slender() const { return any_slender_; }
   /// Where a slender grain's rectangle lies, or another's circle, with `gap` all round.
-  BoundingRectangle bound(int i, const Body& b, double angle, double gap) const {
+  BoundingRectangle bound(int i, const Body<2>& b, double angle, double gap) const {
     const auto [c, s] = rotation_of(angle);
     const auto [ux, uy] = long_axis_[i];
     return bounding_rectangle(placed(i, b), c * ux - s * uy, s * ux + c * uy, gap);
   }
 
   template <bool>
-  bool overlap(int i, const Body& a, int j, const Body& b, PairFeature& feature, Overlap& o) const {
-    const double dx = b.x - a.x, dy = b.y - a.y, reach = a.radius + b.radius;
+  bool overlap(int i, const Body<2>& a, int j, const Body<2>& b, Feature& feature,
+               Overlap& o) const {
+    const double dx = b.position.x() - a.position.x(), dy = b.position.y() - a.position.y();
+    const double reach = a.radius + b.radius;
     if (dx * dx + dy * dy >= reach * reach) return false;
     return overlap_of_shapes(placed(i, a), placed(j, b), feature, o);
   }
   template <bool>
-  bool overlap_plane(int i, const Body& a, double px, double py, double wx, double wy,
-                     Overlap& o) const {
-    if ((a.x - px) * wx + (a.y - py) * wy >= a.radius) return false;
-    return overlap_with_half_plane(placed(i, a), px, py, wx, wy, o);
+  bool overlap_plane(int i, const Body<2>& a, const Plane<2>& plane, Overlap& o) const {
+    if (plane.height(a.position) >= a.radius) return false;
+    return overlap_with_half_plane(placed(i, a), plane.point.x(), plane.point.y(), plane.normal.x(),
+                                   plane.normal.y(), o);
   }
 
   void write(ImageWriter& w) const {

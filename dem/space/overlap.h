@@ -1,10 +1,12 @@
 // What two shapes in contact say of their overlap, and laws read.
 #pragma once
+#include <Eigen/Core>
+#include <type_traits>
 
 namespace grainfield::dem {
 
-/// Geometry of one contact, as seen by the laws. With the tangent t = (-ny, nx) and the contact
-/// point s: s - x_i = lever_i n + shift_i t, s - x_j = -lever_j n + shift_j t.
+/// Geometry of one contact in the plane. With the tangent t = (-ny, nx) and the contact point s:
+/// s - x_i = lever_i n + shift_i t, s - x_j = -lever_j n + shift_j t.
 struct Overlap {
   double nx = 0, ny = 0;            ///< unit normal from the first towards the second
   double depth = 0;                 ///< penetration along the normal, m
@@ -15,5 +17,17 @@ struct Overlap {
   double lever_i = 0, lever_j = 0;  ///< polygons only; of disks lever = arm
   double shift_i = 0, shift_j = 0;  ///< polygons only; of disks 0
 };
+
+/// Geometry of one contact in space.
+struct Overlap3 {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the first towards the second
+  double depth = 0;                                  ///< penetration along the normal, m
+  Eigen::Vector3d arm_i = Eigen::Vector3d::Zero();   ///< from the centroids to the contact point, m
+  Eigen::Vector3d arm_j = Eigen::Vector3d::Zero();
+  double radius = 0;  ///< relative radius of curvature: R_i R_j/(R_i + R_j) of spheres, m
+};
+
+template <int D>
+using OverlapIn = std::conditional_t<D == 2, Overlap, Overlap3>;
 
 }  // namespace grainfield::dem

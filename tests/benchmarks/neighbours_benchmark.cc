@@ -16,11 +16,11 @@ using grainfield::dem::Reach;
 
 // Grains of area pi r^2 / aspect with radii between r / ratio and r, equal shares of area per
 // octave, anywhere in a square that they fill to 80 %.
-std::vector<Reach> scattered(int n, double ratio, double aspect) {
+std::vector<Reach<2>> scattered(int n, double ratio, double aspect) {
   Random random(1);
-  std::vector<Reach> grains(n);
+  std::vector<Reach<2>> grains(n);
   double area = 0;
-  for (Reach& g : grains) {
+  for (Reach<2>& g : grains) {
     // Number density ~ r^-3.
     const double u = random.uniform(), least = 1 / (ratio * ratio);
     g.reach = ratio > 1 ? std::sqrt(least / (1 - u * (1 - least))) : 1;
@@ -28,16 +28,16 @@ std::vector<Reach> scattered(int n, double ratio, double aspect) {
     g.reach *= 1.05;
   }
   const double width = std::sqrt(area / 0.8);
-  for (Reach& g : grains) {
-    g.x = random.uniform(0, width);
-    g.y = random.uniform(0, width);
+  for (Reach<2>& g : grains) {
+    g.centre.x() = random.uniform(0, width);
+    g.centre.y() = random.uniform(0, width);
   }
   return grains;
 }
 
 void search(benchmark::State& state, double ratio, double aspect) {
   const auto grains = scattered(static_cast<int>(state.range(0)), ratio, aspect);
-  HierarchicalGrid grid;
+  HierarchicalGrid<2> grid;
   std::vector<std::pair<int, int>> pairs;
   for (auto _ : state) {
     grid.build(grains);

@@ -10,13 +10,14 @@
 namespace grainfield::dem {
 namespace {
 
-std::vector<std::pair<int, int>> all_pairs(const std::vector<Reach>& grains) {
+std::vector<std::pair<int, int>> all_pairs(const std::vector<Reach<2>>& grains) {
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < static_cast<int>(grains.size()); ++i) {
     for (int j = i + 1; j < static_cast<int>(grains.size()); ++j) {
-      const Reach &a = grains[i], &b = grains[j];
+      const Reach<2>&a = grains[i], &b = grains[j];
       if (a.fixed && b.fixed) continue;
-      const double dx = b.x - a.x, dy = b.y - a.y, sum = a.reach + b.reach;
+      const double dx = b.centre.x() - a.centre.x(), dy = b.centre.y() - a.centre.y(),
+                   sum = a.reach + b.reach;
       if (dx * dx + dy * dy < sum * sum) pairs.emplace_back(i, j);
     }
   }
@@ -27,28 +28,31 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
   for (const double ratio : {1.0, 3.0, 20.0, 100.0}) {
     for (int seed = 0; seed < 20; ++seed) {
       Random random(seed);
-      std::vector<Reach> grains(200);
+      std::vector<Reach<2>> grains(200);
       const double gap = seed % 2 == 0 ? 0 : 0.0025;
-      for (Reach& g : grains) {
+      for (Reach<2>& g : grains) {
         g.reach = 0.01 * std::pow(ratio, random.uniform()) + gap;
-        g.x = random.uniform(-1, 1) * (seed % 3 == 0 ? 30 : 1);  // dense, and thinly spread
-        g.y = random.uniform(-0.2, 0.2);
+        g.centre.x() =
+            random.uniform(-1, 1) * (seed % 3 == 0 ? 30 : 1);  // dense, and thinly spread
+        g.centre.y() = random.uniform(-0.2, 0.2);
         g.fixed = random.uniform() < 0.1;
       }
-      grains[1].x = grains[0].x;  // same place
-      grains[1].y = grains[0].y;
-      HierarchicalGrid grid;
+      grains[1].centre.x() = grains[0].centre.x();  // same place
+      grains[1].centre.y() = grains[0].centre.y();
+      HierarchicalGrid<2> grid;
       grid.build(grains);
       std::vector<std::pair<int, int>> found;
       grid.pairs(found);
       EXPECT_EQ(found, all_pairs(grains)) << "ratio " << ratio << " seed " << seed;
       for (int probe = 0; probe < 50; ++probe) {
-        const Reach g{random.uniform(-1, 1), random.uniform(-0.2, 0.2),
-                      0.01 * std::pow(ratio, random.uniform()), probe % 5 == 0};
+        const Reach<2> g{{random.uniform(-1, 1), random.uniform(-0.2, 0.2)},
+                         0.01 * std::pow(ratio, random.uniform()),
+                         probe % 5 == 0};
         std::vector<int> near, expected;
         grid.near(g, near);
         for (int j = 0; j < 200; ++j) {
-          const double dx = grains[j].x - g.x, dy = grains[j].y - g.y;
+          const double dx = grains[j].centre.x() - g.centre.x(),
+                       dy = grains[j].centre.y() - g.centre.y();
           const double sum = g.reach + grains[j].reach;
           if (dx * dx + dy * dy < sum * sum && !(g.fixed && grains[j].fixed)) expected.push_back(j);
         }
@@ -62,8 +66,8 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
 }
 
 TEST(Neighbours, EmptyAndSingle) {
-  HierarchicalGrid grid;
-  std::vector<Reach> grains;
+  HierarchicalGrid<2> grid;
+  std::vector<Reach<2>> grains;
   std::vector<std::pair<int, int>> found{{1, 2}};
   grid.build(grains);
   grid.pairs(found);

@@ -1,0 +1,70 @@
+// All that is kept by body: kinematics, inertia, shape, what the integrator remembers.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "dem/space/body.h"
+
+namespace grainfield::dem {
+
+/// Bodies change their order; `ids` tell who is who (0, 1, 2, ... in the order of adding).
+template <class Shape, class Integrator>
+struct Grains {
+  static constexpr int dim = Shape::dim;
+  using Body = dem::Body<dim>;
+  using Memory = typename Integrator::Memory;
+  using Store = Shape;
+
+  std::vector<Body> bodies;
+  std::vector<Memory> memory;  ///< the integrator's, with the rotation
+  std::vector<Inertia<dim>> inertias;
+  std::vector<std::int64_t> ids;
+  Shape shapes;
+
+  int size() const { return static_cast<int>(bodies.size()); }
+  bool is_fixed(int i) const { return bodies[i].inverse_mass == 0; }
+
+  /// The first order.size() bodies in this order.
+  void sort(const std::vector<int>& order) {
+    const auto permute = [&order](auto& values) {
+      std::vector sorted(values.begin(),
+                         values.begin() + static_cast<std::ptrdiff_t>(order.size()));
+      for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+      std::copy(sorted.begin(), sorted.end(), values.begin());
+    };
+    permute(bodies);
+    permute(memory);
+    permute(inertias);
+    permute(ids);
+    shapes.sort(order);
+  }
+  void swap(int i, int j) {
+    std::swap(bodies[i], bodies[j]);
+    std::swap(memory[i], memory[j]);
+    std::swap(inertias[i], inertias[j]);
+    std::swap(ids[i], ids[j]);
+    shapes.swap(i, j);
+  }
+  /// Where each id is.
+  std::vector<int> index() const {
+    std::vector<int> at(ids.size());
+    for (int i = 0; i < size(); ++i) at[ids[i]] = i;
+    return at;
+  }
+
+  template <class Self, class Each>
+  static void visit(Self& self, Each each) {
+    each(self.bodies);
+    each(self.memory);
+    each(self.inertias);
+    each(self.ids);
+  }
+  bool fits() const {
+    return memory.size() == bodies.size() && inertias.size() == bodies.size() &&
+           ids.size() == bodies.size();
+  }
+};
+
+}  // namespace grainfield::dem

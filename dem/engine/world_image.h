@@ -1,0 +1,58 @@
+// The bits of a world, and back.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dem/engine/search.h"
+#include "dem/engine/world.h"
+#include "dem/image/image.h"
+
+namespace grainfield::dem {
+
+/// each(value) for all that an image holds but the frozen contacts and the shapes, in its order.
+template <class World, class Search, class Each>
+void visit_world(World& world, Search& search, Each each) {
+  each(world.around);
+  each(world.steps);
+  each(world.sleep.on);
+  each(world.search_needed);
+  each(world.awake);
+  std::remove_const_t<decltype(world.grains)>::visit(world.grains, each);
+  std::remove_const_t<decltype(world.sleepers)>::visit(world.sleepers, each);
+  std::remove_const_t<decltype(world.contacts)>::visit(world.contacts, each);
+  each(world.margins);
+  std::remove_const_t<Search>::visit(search, each);
+}
+
+template <class World>
+void write_world(const World& world, const Search<World>& search, ImageWriter& w) {
+  visit_world(world, search, [&w](const auto& value) { w.put(value); });
+  w.put(world.sleepers.frozen.sorted());
+  world.grains.shapes.write(w);
+}
+
+/// Throws std::invalid_argument when the image does not fit.
+template <class World>
+void read_world(World& world, Search<World>& search, ImageReader& r) {
+  visit_world(world, search, [&r](auto& value) { r.get(value); });
+  std::vector<typename World::Frozen> frozen;
+  r.get(frozen);
+  world.sleepers.frozen.assign(frozen);
+  world.grains.shapes.read(r, world.grains.bodies.size());
+  const int n = world.grains.size();
+  const bool searched = !world.search_needed;
+  r.require(world.awake >= 0 && world.awake <= n && world.grains.fits() &&
+            world.sleepers.fits(world.grains.bodies.size()) &&
+            world.contacts.fits(searched, world.awake, n, world.walls.size()) &&
+            (!searched || world.margins.size() == static_cast<std::size_t>(world.awake)));
+  for (const std::int64_t id : world.grains.ids) r.require(id >= 0 && id < n);
+  if (searched) {
+    search.divide();
+    search.bin_sleepers();  // a review may ask it before the next search
+  } else {
+    world.sleepers.set_changed();
+  }
+  world.locate_applied();
+}
+
+}  // namespace grainfield::dem

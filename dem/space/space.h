@@ -1,0 +1,99 @@
+// Vectors, spins and rotations of two and of three dimensions under the same names, so that one
+// text serves both. What only three dimensions need of Eigen is in space3.h.
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <type_traits>
+
+namespace grainfield::dem {
+
+template <int D>
+struct Space;
+
+template <>
+struct Space<2> {
+  using Vector = Eigen::Vector2d;
+  using Spin = double;        ///< about z: angular velocity, torque
+  using Tangential = double;  ///< along (-n_y, n_x): slip, friction
+  using Rotation = double;    ///< angle, rad
+  using Moments = double;     ///< polar moment about the centroid
+};
+
+template <int D>
+using VectorOf = typename Space<D>::Vector;
+template <int D>
+using SpinOf = typename Space<D>::Spin;
+template <int D>
+using TangentialOf = typename Space<D>::Tangential;
+template <int D>
+using RotationOf = typename Space<D>::Rotation;
+
+/// 0 of a number or of a vector.
+template <class T>
+T zero() {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return 0;
+  } else {
+    return T::Zero();
+  }
+}
+
+/// The rotation to start with.
+template <class T>
+T no_rotation() {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return 0;
+  } else {
+    return T::Identity();
+  }
+}
+
+/// How far apart two rotations are, rad.
+inline double angle_between(double a, double b) { return std::fabs(a - b); }
+
+/// Length of a vector, without overflow in the plane.
+template <class Derived>
+double length_of(const Eigen::MatrixBase<Derived>& v) {
+  if constexpr (Derived::RowsAtCompileTime == 2) return std::hypot(v[0], v[1]);
+  return v.norm();
+}
+
+/// The first D components of a vector in space.
+template <int D>
+VectorOf<D> in_space(const Eigen::Vector3d& v) {
+  return v.template head<D>();
+}
+/// A vector with 0 for what the plane does not have.
+inline Eigen::Vector3d to_three(const Eigen::Vector2d& v) { return {v[0], v[1], 0}; }
+inline Eigen::Vector3d to_three(const Eigen::Vector3d& v) { return v; }
+
+/// Size of a spin, a torque or a tangential force.
+inline double size_of(double value) { return std::fabs(value); }
+template <class Derived>
+double size_of(const Eigen::MatrixBase<Derived>& value) {
+  return value.norm();
+}
+
+/// A size with the sign that a number has.
+inline double signed_size_of(double value) { return value; }
+template <class Derived>
+double signed_size_of(const Eigen::MatrixBase<Derived>& value) {
+  return value.norm();
+}
+
+inline double square_of(double value) { return value * value; }
+template <class Derived>
+double square_of(const Eigen::MatrixBase<Derived>& value) {
+  return value.squaredNorm();
+}
+
+/// Sum of the sizes of the components: a size without a square root.
+template <class Derived>
+double sum_of_sizes(const Eigen::MatrixBase<Derived>& v) {
+  double sum = std::fabs(v[0]) + std::fabs(v[1]);
+  if constexpr (Derived::RowsAtCompileTime == 3) sum += std::fabs(v[2]);
+  return sum;
+}
+inline double sum_of_sizes(double value) { return std::fabs(value); }
+
+}  // namespace grainfield::dem
