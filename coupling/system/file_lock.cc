@@ -8,15 +8,20 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "coupling/system/printable.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
+
+using namespace std::chrono_literals;
+
 namespace {
 
 constexpr std::size_t kLongestCommand = 200;  // bytes of it that the file keeps
@@ -61,7 +66,8 @@ bool same_file(int descriptor, const std::string& file) {
 FileLock::FileLock(const std::string& file, const std::string& what, const std::string& hint,
                    const std::string& command)
     : file_(file) {
-  for (int k = 0; k < kTries && descriptor_ < 0; ++k) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (descriptor_ < 0) {
     const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) {
       throw std::invalid_argument(
@@ -69,13 +75,17 @@ FileLock::FileLock(const std::string& file, const std::string& what, const std::
     }
     const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
     const bool known = locked || errno == EWOULDBLOCK;
-    if (locked && !same_file(descriptor, file)) {
-      close(descriptor);
-      continue;
-    }
     const Holder holder = read_holder(descriptor);
-    if (known ? !locked : lives(holder)) {
-      close(descriptor);
+    const bool alive = lives(holder);
+    const bool ours = known ? locked : !alive;
+    // A holder that ends between our open and our lock takes its file along.
+    if (ours && same_file(descriptor, file)) {
+      descriptor_ = descriptor;
+      break;
+    }
+    close(descriptor);
+    const auto waited = std::chrono::steady_clock::now() - begin;
+    if (!ours && waited > (alive ? kForTheLiving : kForTheDead)) {
       throw std::invalid_argument(fmt::format(
           "{}: in use by {}; {}", what,
           holder.process > 0 ? fmt::format("process {} on {} ({})", holder.process, holder.host,
@@ -83,10 +93,7 @@ FileLock::FileLock(const std::string& file, const std::string& what, const std::
                              : "another process",
           hint));
     }
-    descriptor_ = descriptor;
-  }
-  if (descriptor_ < 0) {
-    throw std::invalid_argument(fmt::format("{}: in use; {}", what, hint));
+    if (!ours) std::this_thread::sleep_for(kPause);
   }
   const std::string text =
       fmt::format("{} {} {}\n", getpid(), host_name(), one_line(command, kLongestCommand));

@@ -145,6 +145,24 @@ TEST(OutputFolder, ALockOutlivesNobody) {
   EXPECT_EQ(found(folder), (Files{{"x.csv", "new"}}));
 }
 
+// As after kill -9 while a child of the killed process is at work: it holds the lock a little
+// longer.
+TEST(OutputFolder, ALockIsWaitedForWhoseHolderIsDead) {
+  const testing::Folder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    const OutputFolder out(folder / "out", "grainfield test");
+    if (fork() == 0) {
+      usleep(1'000'000);
+      _exit(0);
+    }
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  publish(folder, {{"x.csv", "new"}});
+  EXPECT_EQ(found(folder), (Files{{"x.csv", "new"}}));
+}
+
 TEST(OutputFolder, ReservedNames) {
   for (const std::string name : {"checkpoint", "report.html", "case.toml", ".results", ".x", "",
                                  "summary.json", "profiles.csv"}) {
