@@ -25,8 +25,9 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr std::size_t kLongestCommand = 200;  // bytes of it that the file keeps
-constexpr int kTries =
-    100;  // a holder that ends between our open and our lock takes its file along
+// How long a lock is asked for whose holder is dead, or may be ending just now: a child of a killed
+// process has it until it ends too.
+constexpr auto kForTheDead = 10s, kForTheLiving = 300ms, kPause = 10ms;
 
 struct Holder {
   long process = 0;
