@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t kLongestCommand = 200;  // bytes of it that the file keeps
 // How long a lock is asked for whose holder is dead, or may be ending just now: a child of a killed
 // process has it until it ends too.
-constexpr auto kForTheDead = 10s, kForTheLiving = 300ms, kPause = 10ms;
+constexpr std::chrono::milliseconds kForTheDead = 10s, kForTheLiving = 300ms, kPause = 10ms;
 
 struct Holder {
   long process = 0;
