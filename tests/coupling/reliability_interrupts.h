@@ -138,15 +138,7 @@ class InterruptedRun {
   }
 
   bool checkpoint() const { return fs::exists(out_ + "/checkpoint"); }
-  /// Finished or half-done realizations to go on from.
-  bool work() const {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(out_ + "/checkpoint", none)) {
-      const fs::path kind = entry.path().extension();
-      if (kind == ".h5" || kind == ".checkpoint") return true;
-    }
-    return false;
-  }
+  bool work() const { return holds_work(out_); }
 
   /// To the end, undisturbed, if it is not there already: the same bits, and nothing else.
   void resume_to_the_end() {
