@@ -63,6 +63,11 @@ class Reference {
     seconds = seconds_since(start);
     earlier = made("earlier", {"--set", study.another});
   }
+
+ private:
+  Folder folder_;
+
+ public:
   std::string name, file;
   Contents whole, earlier;
   double seconds = 0;
@@ -76,8 +81,6 @@ class Reference {
     if (ending.code != 0) throw std::runtime_error(name + ": " + ending.err);
     return results_in(folder_ / out);
   }
-
-  Folder folder_;
 };
 
 inline const Reference& reference(const std::string& name) {
