@@ -81,12 +81,12 @@ inline void run_into_a_full_disk(const Reference& study, const std::string& out,
     EXPECT_EQ(difference(before, results_in(out)), "");
     EXPECT_EQ(leftovers(out), "");
     // Without room it is not resumed either, and still nothing is lost.
-    if (fs::exists(out + "/checkpoint") && again == 0) start.words.emplace_back("--resume");
+    if (holds_work(out) && again == 0) start.words.emplace_back("--resume");
   }
   lift();
   start.file_size = RLIM_INFINITY;
   std::erase(start.words, "--resume");
-  if (fs::exists(out + "/checkpoint")) start.words.emplace_back("--resume");
+  if (holds_work(out)) start.words.emplace_back("--resume");
   const Ending ending = finish(start);
   EXPECT_EQ(ending.code, 0) << "with room: " << ending;
   const std::string wrong = difference(study.whole, results_in(out));
@@ -151,7 +151,7 @@ inline void limit_commands(const std::vector<rlim_t>& sizes, DiskTally& tally) {
       // Whole or not at all: no file of the new result beside the old ones.
       EXPECT_EQ(difference(before, made_by(command, output)), "");
       start.file_size = RLIM_INFINITY;
-      if (fs::exists(output + "/checkpoint")) start.words.emplace_back("--resume");
+      if (holds_work(output)) start.words.emplace_back("--resume");
       EXPECT_EQ(finish(start).code, 0);
     }
   }

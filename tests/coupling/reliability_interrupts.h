@@ -63,6 +63,11 @@ class Reference {
     seconds = seconds_since(start);
     earlier = made("earlier", {"--set", study.another});
   }
+
+ private:
+  Folder folder_;
+
+ public:
   std::string name, file;
   Contents whole, earlier;
   double seconds = 0;
@@ -76,8 +81,6 @@ class Reference {
     if (ending.code != 0) throw std::runtime_error(name + ": " + ending.err);
     return results_in(folder_ / out);
   }
-
-  Folder folder_;
 };
 
 inline const Reference& reference(const std::string& name) {
@@ -138,15 +141,7 @@ class InterruptedRun {
   }
 
   bool checkpoint() const { return fs::exists(out_ + "/checkpoint"); }
-  /// Finished or half-done realizations to go on from.
-  bool work() const {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(out_ + "/checkpoint", none)) {
-      const fs::path kind = entry.path().extension();
-      if (kind == ".h5" || kind == ".checkpoint") return true;
-    }
-    return false;
-  }
+  bool work() const { return holds_work(out_); }
 
   /// To the end, undisturbed, if it is not there already: the same bits, and nothing else.
   void resume_to_the_end() {

@@ -15,11 +15,34 @@ inline bool is_bookkeeping(const fs::path& file) {
   return name == ".results" || name.rfind(".lock", 0) == 0 || name.ends_with(".lock");
 }
 
-/// The results in a folder: contents() without what is not meant to be read, the checkpoint, the
-/// staging area and the bookkeeping. Empty where there is no folder.
+/// A report without the rows of times.
+inline std::string without_times(const std::string& report) {
+  std::istringstream lines(report);
+  std::string line, kept;
+  while (std::getline(lines, line)) {
+    if (line.find(" (time.") == std::string::npos) kept += line + "\n";
+  }
+  return kept;
+}
+
+/// Finished or half-done realizations that --resume can go on from.
+inline bool holds_work(const std::string& folder) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder + "/checkpoint", none)) {
+    const fs::path kind = entry.path().extension();
+    if (kind == ".h5" || kind == ".checkpoint") return true;
+  }
+  return false;
+}
+
+/// The results in a folder: contents() without times, and without what is not meant to be read, the
+/// checkpoint, the staging area and the bookkeeping. Empty where there is no folder.
 inline Contents results_in(const std::string& folder) {
   if (!fs::is_directory(folder)) return {};
   Contents out = contents(folder);
+  for (auto& [name, text] : out) {
+    if (fs::path(name).filename() == "report.html") text = without_times(text);
+  }
   std::erase_if(out, [](const auto& file) {
     const fs::path name = file.first;
     return *name.begin() == "checkpoint" || *name.begin() == ".partial" || is_bookkeeping(name);
