@@ -188,6 +188,7 @@ class EngineLoop final : public Engine {
   std::array<double, 3> weight_of(int i) const;
   void start_new_grains();
   void check_motion();
+  static bool is_finite(const Body& b);
   ContactForce evaluate(const Body& a, const Body& b, const Overlap& o, double mu, double dt,
                         double& spring) const;
   bool overlap_with_wall(int i, const Wall& w, Overlap& o) const;

@@ -118,6 +118,13 @@ Diagnostics EngineLoop<Shape, Law, Integrator>::measure() const {
   const Motion m = motion();
   d.kinetic_energy = m.kinetic_energy;
   d.awake = m.awake;
+  if (!std::isfinite(d.kinetic_energy) || !std::isfinite(d.elastic_energy)) {
+    throw ComputationFailed(fmt::format(
+        "the energy is not a finite number at t = {:.6g} s (step {}): kinetic {:g} J, elastic {:g} "
+        "J; lower motion.time_step (now {:.3g} s), damping or stiffness, or give grains of a usual "
+        "size",
+        time(), steps_, d.kinetic_energy, d.elastic_energy, settings_.time_step));
+  }
   return d;
 }
 

@@ -235,8 +235,11 @@ void EngineLoop<Shape, Law, Integrator>::step(long n) {
       }
     }
   });
+  if (!diverged_) {
+    steps_ = start + n;
+    check_motion();  // a grain that only spins is not searched for
+  }
   if (diverged_) report_divergence();
-  steps_ = start + n;
 }
 
 /// Grains added since the last step get the acceleration of where they stand, so that their first
@@ -259,10 +262,14 @@ void EngineLoop<Shape, Law, Integrator>::check_motion() {
   for (int i = 0; i < awake_; ++i) {
     const Body& b = bodies_[i];
     const double move = std::hypot(b.vx, b.vy) * settings_.time_step;
-    if (!(move <= kMaxMoveShare * b.radius) || !std::isfinite(b.x) || !std::isfinite(b.y)) {
-      diverged_ = true;
-    }
+    if (!(move <= kMaxMoveShare * b.radius) || !is_finite(b)) diverged_ = true;
   }
+}
+
+/// A speed that is not finite shows in how far the grain moves.
+template <class Shape, class Law, class Integrator>
+inline bool EngineLoop<Shape, Law, Integrator>::is_finite(const Body& b) {
+  return std::isfinite(b.x) && std::isfinite(b.y) && std::isfinite(b.spin);
 }
 
 template <class Shape, class Law, class Integrator>
@@ -270,9 +277,13 @@ void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
   for (int i = 0; i < awake_; ++i) {
     const Body& b = bodies_[i];
     const double speed = std::hypot(b.vx, b.vy);
-    if (speed * settings_.time_step <= kMaxMoveShare * b.radius && std::isfinite(b.x) &&
-        std::isfinite(b.y)) {
-      continue;
+    if (speed * settings_.time_step <= kMaxMoveShare * b.radius && is_finite(b)) continue;
+    if (!std::isfinite(speed) || !is_finite(b)) {
+      throw ComputationFailed(fmt::format(
+          "diverged at t = {:.6g} s (step {}): grain {} last seen near ({:.4g}, {:.4g}) m has a "
+          "place, speed or spin that is not a finite number; lower motion.time_step (now {:.3g} s), "
+          "damping or stiffness, or give grains of a usual size",
+          time(), steps_, ids_[i], reference_[i].x, reference_[i].y, settings_.time_step));
     }
     throw ComputationFailed(fmt::format(
         "diverged at t = {:.6g} s (step {}): grain {} last seen near ({:.4g}, {:.4g}) m at {:.3g} "

@@ -7,6 +7,7 @@
 
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/replace_file.h"
+#include "dem/study/run.h"
 
 namespace grainfield::dem {
 
@@ -146,7 +147,7 @@ std::string read_checkpoint(const std::string& file, const std::string& fingerpr
   std::string of, state;
   r.get(of);
   if (of != fingerprint) {
-    throw std::invalid_argument(
+    throw OtherSetup(
         fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
   }
   r.get(state);

@@ -53,11 +53,11 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
 
 using NamedSnapshots = std::vector<std::pair<std::string, Snapshot>>;
 /// Writes a checkpoint beside `file` and renames it: the fingerprint of the setup, the state's bits
-/// and the snapshots taken so far.
+/// and the snapshots taken so far. Throws StorageFailed.
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
                       const ImageWriter& state, const NamedSnapshots& snapshots);
-/// The state's bits. Throws std::invalid_argument naming the file when it is broken or has another
-/// fingerprint.
+/// The state's bits. Throws std::invalid_argument naming the file when it is broken, OtherSetup
+/// when it has another fingerprint.
 std::string read_checkpoint(const std::string& file, const std::string& fingerprint);
 
 }  // namespace grainfield::dem
