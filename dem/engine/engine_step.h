@@ -201,6 +201,7 @@ void EngineLoop<Shape, Law, Integrator>::sweep(int rank, long step_index, double
 template <class Shape, class Law, class Integrator>
 void EngineLoop<Shape, Law, Integrator>::step(long n) {
   if (n <= 0) return;
+  if (diverged_) report_divergence();
   if (search_needed_) search(false);
   const double dt = settings_.time_step;
   const long start = steps_;
@@ -281,7 +282,8 @@ void EngineLoop<Shape, Law, Integrator>::report_divergence() const {
     if (!std::isfinite(speed) || !is_finite(b)) {
       throw ComputationFailed(fmt::format(
           "diverged at t = {:.6g} s (step {}): grain {} last seen near ({:.4g}, {:.4g}) m has a "
-          "place, speed or spin that is not a finite number; lower motion.time_step (now {:.3g} s), "
+          "place, speed or spin that is not a finite number; lower motion.time_step (now {:.3g} "
+          "s), "
           "damping or stiffness, or give grains of a usual size",
           time(), steps_, ids_[i], reference_[i].x, reference_[i].y, settings_.time_step));
     }

@@ -58,6 +58,14 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   return e;
 }
 
+void check_countable(const char* key, double time, double time_step) {
+  if (time <= kMostSteps * time_step) return;
+  throw std::invalid_argument(
+      fmt::format("{}: found {:g} s in all, allowed: at most {:g} s ({:g} steps of {:g} s, see "
+                  "motion.time_step)",
+                  key, time, kMostSteps * time_step, kMostSteps, time_step));
+}
+
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {
   return d.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
          d.kinetic_energy <= rest.kinetic_to_elastic_energy * d.elastic_energy;

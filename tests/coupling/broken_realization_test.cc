@@ -86,7 +86,7 @@ TEST(BrokenRealization, ACheckpointIsNoDeadEnd) {
     stopped.run();
     EXPECT_THAT(
         stopped.notes,
-        ElementsAre(MatchesRegex(checkpoint + " is broken \\([^/].*\\): this realization starts "
+        ElementsAre(MatchesRegex(checkpoint + " is broken \\(.+\\): this realization starts "
                                               "again")))
         << how;
     EXPECT_TRUE(read_text(file) == read_text(whole_folder / "r0.h5")) << how;
@@ -111,7 +111,7 @@ TEST(BrokenRealization, AFinishedOneIsDoneAgain) {
     ensemble.notes.clear();
     ensemble.run();
     EXPECT_THAT(ensemble.notes,
-                ElementsAre(MatchesRegex(file + " is broken \\([^/].*\\): this realization starts "
+                ElementsAre(MatchesRegex(file + " is broken \\(.+\\): this realization starts "
                                                 "again")))
         << how;
     EXPECT_TRUE(read_text(file) == good) << how;
