@@ -60,8 +60,8 @@ TEST(DamagedField, AWrongByteIsNoticedOrChangesNothing) {
   const TestFolder folder;
   write_fields(folder / "f.h5", {{"map", sample()}, {"profile", sample()}});
   Damage found;
-  flip_bytes(folder / "f.h5", folder, 211, true, bits_of, found);
-  EXPECT_GT(found.copies, 400);
+  flip_bytes(folder / "f.h5", folder, 509, true, bits_of, found);
+  EXPECT_GT(found.copies, 200);
   EXPECT_GT(found.refused, found.copies / 4);
 }
 
@@ -72,8 +72,8 @@ TEST(DamagedField, OneWithoutChecksumsDoesNotEndTheProgram) {
   grainfield::testing::copy_plainly(folder / "f.h5", plain);
   EXPECT_TRUE(bits_of(plain) == bits_of(folder / "f.h5"));
   Damage found;
-  flip_bytes(plain, folder, 37, false, bits_of, found);
-  EXPECT_GT(found.copies, 400);
+  flip_bytes(plain, folder, 83, false, bits_of, found);
+  EXPECT_GT(found.copies, 200);
   EXPECT_GT(found.refused, 20);
 }
 
