@@ -39,12 +39,15 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
+/// The superblock and the first headers.
+inline constexpr std::size_t kDense = 128;
+
 /// How many damaged copies were refused, and how many of these by the look ahead.
 struct Damage {
   int copies = 0, refused = 0, crashes = 0;
 };
 
-/// Reads copies of the file with one wrong byte each: the first 256 bytes, then every
+/// Reads copies of the file with one wrong byte each: the first kDense bytes, then every
 /// `stride`-th. read(file) gives all that was read as bits. Each must end in one
 /// std::invalid_argument that names the file, or, when `checked`, in the original's bits.
 inline void flip_bytes(const std::string& file, const TestFolder& folder, std::size_t stride,
@@ -75,7 +78,7 @@ inline void flip_bytes(const std::string& file, const TestFolder& folder, std::s
     // It stays, empty, so that its inode is no other copy's.
     std::filesystem::resize_file(copy, 0);
   };
-  for (std::size_t at = 0; at < original.size(); at += at < 256 ? 1 : stride) {
+  for (std::size_t at = 0; at < original.size(); at += at < kDense ? 1 : stride) {
     std::string damaged = original;
     const auto change = at % 2 == 0 ? 1 << static_cast<int>(8 * random.uniform())
                                     : 1 + static_cast<int>(255 * random.uniform());

@@ -15,6 +15,7 @@
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/file_lock.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -33,28 +34,19 @@ dem::Vec3 parse_vector(const std::string& text, const char* option) {
   std::vector<std::string_view> parts;
   split(text, ',', parts);
   dem::Vec3 v(0, 0, 0);
-  try {
-    if (parts.size() != 2 && parts.size() != 3) throw std::invalid_argument("");
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      std::size_t used = 0;
-      v[static_cast<Eigen::Index>(k)] = std::stod(std::string(parts[k]), &used);
-      if (used != parts[k].size() || !std::isfinite(v[static_cast<Eigen::Index>(k)]))
-        throw std::invalid_argument("");
-    }
-  } catch (const std::exception&) {
-    throw std::invalid_argument(
-        fmt::format("{}: found \"{}\", expected X,Y or X,Y,Z", option, text));
+  bool good = parts.size() == 2 || parts.size() == 3;
+  for (std::size_t k = 0; good && k < parts.size(); ++k) {
+    const std::optional<double> number = dem::parse_number(parts[k]);
+    good = number && std::isfinite(*number);
+    if (good) v[static_cast<Eigen::Index>(k)] = *number;
   }
-  return v;
+  if (good) return v;
+  throw std::invalid_argument(fmt::format("{}: found \"{}\", expected X,Y or X,Y,Z", option, text));
 }
 
 long long parse_whole(const std::string& text, const std::string& option) {
-  try {
-    std::size_t used = 0;
-    const long long value = std::stoll(text, &used);
-    if (used == text.size() && value >= 0) return value;
-  } catch (const std::exception&) {
-  }
+  const std::optional<long long> value = dem::parse_integer(text);
+  if (value && *value >= 0) return *value;
   throw std::invalid_argument(
       fmt::format("{}: found \"{}\", expected a whole number from 0", option, text));
 }

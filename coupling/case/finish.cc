@@ -40,7 +40,7 @@ bool is_default(const continuum::ModelInfo& info, const std::string& name,
     if (p.name != name) continue;
     if (!p.choices.empty()) return value == p.choices.front();
     if (continuum::is_text(p)) return value.empty();
-    return std::stod(value) == p.value;
+    return continuum::number_of({{name, value}}, name) == p.value;
   }
   return false;
 }

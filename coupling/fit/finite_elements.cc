@@ -6,15 +6,15 @@
 #include <cmath>
 
 #include "coupling/fit/fit_tables.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 
 std::string constants_text(const continuum::Settings& settings) {
   std::vector<std::string> out;
   for (const auto& [key, value] : settings) {
-    const bool word = value.find_first_not_of("0123456789.+-e") != std::string::npos;
-    out.push_back(
-        fmt::format("{}={}", key, word ? value : fmt::format("{:.4g}", std::stod(value))));
+    const std::optional<double> number = dem::parse_number(value);
+    out.push_back(fmt::format("{}={}", key, number ? fmt::format("{:.4g}", *number) : value));
   }
   return fmt::format("{}", fmt::join(out, ", "));
 }

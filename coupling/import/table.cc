@@ -5,22 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "continuum/model.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
-
-std::optional<double> parse(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 // What other programs call our columns; in lower case, without "_", "-", ".", " " and units in
 // brackets.
@@ -78,8 +70,8 @@ std::vector<std::string> expanded(const std::string& list) {
     const std::size_t open = part.rfind('['), dots = part.rfind("..");
     std::optional<double> first, last;
     if (open != std::string_view::npos && dots != std::string_view::npos && part.back() == ']') {
-      first = parse(part.substr(open + 1, dots - open - 1));
-      last = parse(part.substr(dots + 2, part.size() - dots - 3));
+      first = dem::parse_number(part.substr(open + 1, dots - open - 1));
+      last = dem::parse_number(part.substr(dots + 2, part.size() - dots - 3));
     }
     if (!first || !last || *first < 0 || *last < *first || *last > 1000) {
       out.emplace_back(part);
@@ -218,7 +210,7 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
     const auto& columns = *table_.columns;
     const auto at = std::find(columns.begin(), columns.end(), candidate.theirs);
     std::optional<double> constant;
-    if (at == columns.end() && candidate.chosen) constant = parse(candidate.theirs);
+    if (at == columns.end() && candidate.chosen) constant = dem::parse_number(candidate.theirs);
     if (at == columns.end() && !constant) continue;
     if (candidate.chosen) names_.mark_used(ours, candidate.theirs);
     const int index = at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
@@ -287,7 +279,7 @@ void ForeignRow::refuse(const std::string& what) const {
 
 double ForeignRow::number(const ForeignColumn& column) const {
   if (column.constant) return *column.constant;
-  const std::optional<double> value = parse(text(column));
+  const std::optional<double> value = dem::parse_number(text(column));
   if (!value || !std::isfinite(*value))
     refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
                        text(column)));
@@ -296,10 +288,7 @@ double ForeignRow::number(const ForeignColumn& column) const {
 
 long long ForeignRow::whole(const ForeignColumn& column) const {
   if (!column.constant) {
-    const std::string_view digits = text(column);
-    long long value = 0;
-    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc() && stop == digits.data() + digits.size()) return value;
+    if (const auto value = dem::parse_integer(text(column))) return *value;
   }
   const double value = number(column);
   if (value != std::floor(value) || std::abs(value) > 9e15)

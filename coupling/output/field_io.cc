@@ -34,7 +34,7 @@ void check_name(const std::string& name) {
   if (!good || name == "." || name == "..")
     throw std::invalid_argument(fmt::format(
         "\"{}\" cannot name a field or column; allowed are letters, digits, \"_\", \"-\", \".\"",
-        name));
+        h5::shown(name)));
 }
 
 void check(const NamedFields& fields) {

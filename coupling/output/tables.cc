@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -236,7 +237,7 @@ Summary read_summary(const std::string& file) {
     else if (value.is_number())
       summary[key] = value.get<double>();
     else if (value == "nan" || value == "inf" || value == "-inf")
-      summary[key] = std::stod(value.get<std::string>());
+      summary[key] = dem::parse_number(value.get<std::string>()).value();
     else if (value.is_string())
       summary[key] = value.get<std::string>();
     else

@@ -11,11 +11,15 @@
 #include <fstream>
 #include <limits>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include "coupling/run/realization_file.h"
 #include "coupling/system/signals.h"
+#include "dem/storage_failed.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -47,6 +51,14 @@ constexpr auto kReportEvery = std::chrono::milliseconds(200);
 std::mutex files;
 
 enum class Outcome { finished, stopped };
+
+// "FILE is broken (WHY): ...", where what() begins with the file.
+std::string starts_again(const std::string& file, const std::invalid_argument& error) {
+  std::string why = error.what();
+  if (why.starts_with(file)) why.erase(0, file.size());
+  why.erase(0, std::min(why.find_first_not_of(": "), why.size()));
+  return fmt::format("{} is broken ({}): this realization starts again", file, why);
+}
 
 class Worker {
  public:
@@ -102,6 +114,15 @@ class Worker {
     stopped_ = true;  // first: who sees halt_ alone believes in a failure, and saves nothing
     halt_ = true;
   }
+  void add_note(std::string text) {
+    const std::lock_guard lock(mutex_);
+    notes_.push_back(std::move(text));
+  }
+  std::vector<std::string> take_notes() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(notes_, {});
+  }
+
   bool stopped() const { return stopped_; }
   // What became of the tasks: the first failure, an Interrupted, or null.
   std::exception_ptr outcome() const {
@@ -113,6 +134,20 @@ class Worker {
   }
 
  private:
+  // False when the checkpoint is broken; it stays until the next one takes its place.
+  bool restore(dem::Run& run, const std::string& checkpoint) {
+    try {
+      const std::lock_guard lock(files);
+      run.restore(checkpoint);
+      return true;
+    } catch (const dem::OtherSetup&) {
+      throw;
+    } catch (const std::invalid_argument& error) {
+      add_note(starts_again(checkpoint, error));
+      return false;
+    }
+  }
+
   void note(std::size_t task, const dem::Progress& progress, bool finished = false) {
     const std::lock_guard lock(mutex_);
     if (states_[task].phase.empty()) begun_at_[task] = progress.fraction;
@@ -123,10 +158,11 @@ class Worker {
   Outcome simulate(std::size_t index, int engine_threads) {
     const Task& task = tasks_[index];
     const std::string checkpoint = task.file + ".checkpoint";
-    const auto run = [&] {
+    const auto make = [&] {
       const std::lock_guard lock(files);  // a run may begin by reading a file
       return task.make(engine_threads);
-    }();
+    };
+    std::unique_ptr<dem::Run> run = make();
     double cpu = 0, counted_at = thread_seconds();
     const auto record_cpu = [&] {
       const double now = thread_seconds();
@@ -140,9 +176,11 @@ class Worker {
       record_cpu();
     };
     if (fs::exists(checkpoint)) {
-      const std::lock_guard lock(files);
-      run->restore(checkpoint);
-      cpu = cpu_seconds(task.file);
+      if (restore(*run, checkpoint)) {
+        cpu = cpu_seconds(task.file);
+      } else {
+        run = make();
+      }
     }
     run->set_watch([&](const dem::Progress& now) {
       note(index, now);
@@ -184,13 +222,26 @@ class Worker {
 
   const std::vector<Task>& tasks_;
   const EnsembleOptions& options_;
-  std::mutex mutex_;  // states_
+  std::mutex mutex_;  // states_, notes_
   std::vector<dem::Progress> states_;
+  std::vector<std::string> notes_;
   std::vector<double> begun_at_;            // fraction that a checkpoint had already
   std::vector<std::exception_ptr> errors_;  // every task writes its own
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> halt_ = false, stopped_ = false;
 };
+
+// Whether the realization is done. A broken file stays until the new one takes its place.
+bool finished(const std::string& file, Worker& worker) {
+  if (!fs::exists(file)) return false;
+  try {
+    read_realization(file);
+    return true;
+  } catch (const std::invalid_argument& error) {
+    worker.add_note(starts_again(file, error));
+    return false;
+  }
+}
 
 }  // namespace
 
@@ -207,12 +258,20 @@ std::uint64_t realization_seed(const Case& value, std::int64_t number) {
 }
 
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options) {
+  Worker worker(tasks, options);
+  std::string noted;
+  const auto pass_notes = [&] {
+    for (const std::string& text : worker.take_notes()) {
+      noted += text + '\n';
+      if (options.note) options.note(text);
+    }
+  };
   std::vector<std::size_t> mine;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const bool here = static_cast<int>(t % static_cast<std::size_t>(ranks.size())) == ranks.rank();
-    if (here && !fs::exists(tasks[t].file)) mine.push_back(t);
+    if (here && !finished(tasks[t].file, worker)) mine.push_back(t);
   }
-  Worker worker(tasks, options);
+  pass_notes();
   if (!mine.empty()) {
     const int threads = std::max(1, options.threads);
     const int workers = std::min(threads, static_cast<int>(mine.size()));
@@ -235,6 +294,7 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
         ranks.tell_stop();
         told = true;
       }
+      pass_notes();
       static thread_local Clock::time_point reported;
       if (options.progress && Clock::now() - reported > kReportEvery) {
         reported = Clock::now();
@@ -242,7 +302,13 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
       }
     }
     for (auto& thread : pool) thread.join();
+    pass_notes();
     if (options.progress) options.progress(worker.progress(mine, seconds_since(start)));
+  }
+  const std::vector<std::string> all_notes = ranks.gather(noted);
+  for (std::size_t r = 1; ranks.first() && options.note && r < all_notes.size(); ++r) {
+    std::istringstream lines(all_notes[r]);
+    for (std::string text; std::getline(lines, text);) options.note(text);
   }
   throw_together(ranks, worker.outcome());
 }

@@ -42,13 +42,16 @@ struct EnsembleOptions {
   double checkpoint_seconds = 30;  ///< wall time between checkpoints of a realization
   long stop_after_steps = 0;       ///< > 0: act as if interrupted when a realization gets there
   std::function<void(const EnsembleProgress&)> progress;  ///< about five times a second
+  std::function<void(const std::string&)> note;  ///< one line about a file that starts again
 };
 
 /// Does the tasks whose file does not exist yet (those of other ranks are done there: task t on
 /// rank t mod size) and waits for all ranks. With fewer tasks than threads each run gets several.
-/// Continues from checkpoints beside the files. Throws what the first failing task (by number)
-/// threw, on every rank; Interrupted, after all runs are saved, when stopped. Beside each file it
-/// leaves FILE.cpu, what cpu_seconds reads.
+/// Continues from checkpoints beside the files. A file or a checkpoint that is broken counts as
+/// none, which is noted (on the first rank those of all): the realization starts again
+/// and ends in the same bits. Throws what the first failing task (by number) threw, on every rank;
+/// Interrupted, after all runs are saved, when stopped. Beside each file it leaves FILE.cpu, what
+/// cpu_seconds reads.
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options);
 
 /// CPU time that the realization of this file took, s: of the thread that steps it, times the

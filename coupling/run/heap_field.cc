@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -32,13 +35,12 @@ double mean_known(const std::vector<double>& values) {
   return count > 0 ? sum / count : std::nan("");
 }
 
+std::string from_first(const std::string& text) {
+  return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+}
+
 double number_in(const std::string& text, const std::string& name, const std::string& where) {
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(text, &used);
-    if (used == text.size()) return value;
-  } catch (const std::exception&) {
-  }
+  if (const std::optional<double> value = dem::parse_number(from_first(text))) return *value;
   refuse(where, fmt::format("attribute \"{}\": found \"{}\", expected a number", name, text));
 }
 

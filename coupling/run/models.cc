@@ -70,7 +70,8 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
   // A heap with two slopes is at least as frictional as the steeper of them.
   for (const char* slope : {"left_deg", "right_deg"}) {
     const auto at = out.find(slope);
-    if (friction_filled && at != out.end() && std::stod(at->second) > std::stod(out.at("phi_deg")))
+    if (friction_filled && at != out.end() &&
+        continuum::number_of(out, slope) > continuum::number_of(out, "phi_deg"))
       out["phi_deg"] = at->second;
   }
   return out;

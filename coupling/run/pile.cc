@@ -15,6 +15,7 @@
 #include "coupling/run/models.h"
 #include "coupling/run/pile_ensemble.h"
 #include "coupling/run/summary_keys.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -286,7 +287,9 @@ class Analysis {
     for (const auto& [key, unused] : summary) {
       if (!key.starts_with(first) || !key.ends_with(last)) continue;
       const std::string name = key.substr(0, key.size() - last.size());
-      changes[std::stod(name.substr(first.size()))] = name;
+      if (const auto gravity = dem::parse_number(name.substr(first.size()))) {
+        changes[*gravity] = name;
+      }
     }
     for (const auto& [gravity, name] : changes) {
       std::vector<std::string> row{fmt::format("{:g} m/s2", gravity)};

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "continuum/model.h"
@@ -110,6 +111,8 @@ std::string described(const std::exception_ptr& error) {
     return std::string("c") + e.what();
   } catch (const dem::StorageFailed& e) {
     return std::string("s") + e.what();
+  } catch (const std::system_error& e) {
+    return (dem::means_storage_failed(e.code()) ? "s" : "1") + std::string(e.what());
   } catch (const std::exception& e) {
     return std::string("1") + e.what();
   }

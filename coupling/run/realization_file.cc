@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "dem/snapshot/number.h"
 #include "dem/snapshot/replace_file.h"
 
 namespace grainfield::coupling {
@@ -14,14 +15,23 @@ constexpr std::string_view kFigure = "figure:";
 constexpr const char* kOrder = "realization:order";
 
 // Takes what write_realization added to the attributes out again; returns the order.
-std::size_t strip(dem::Snapshot& snapshot, std::map<std::string, double>& figures) {
+std::size_t strip(dem::Snapshot& snapshot, std::map<std::string, double>& figures,
+                  const std::string& file) {
+  const auto refuse = [&](const auto& at, const char* wanted) {
+    throw std::invalid_argument(
+        fmt::format("{}: {} is \"{}\"; it must be {}", file, at->first, at->second, wanted));
+  };
   std::size_t order = 0;
   auto& attributes = snapshot.attributes;
   for (auto at = attributes.begin(); at != attributes.end();) {
     if (at->first == kOrder) {
-      order = std::stoul(at->second);
+      const auto number = dem::parse_integer(at->second);
+      if (!number || *number < 0) refuse(at, "a whole number from 0");
+      order = static_cast<std::size_t>(*number);
     } else if (at->first.compare(0, kFigure.size(), kFigure) == 0) {
-      figures[at->first.substr(kFigure.size())] = std::stod(at->second);
+      const auto number = dem::parse_number(at->second);
+      if (!number) refuse(at, "a number");
+      figures[at->first.substr(kFigure.size())] = *number;
     } else {
       ++at;
       continue;
@@ -72,7 +82,7 @@ Realization read_realization(const std::string& file) {
   for (const auto& group : dem::list_snapshots(file)) {
     dem::Snapshot snapshot = dem::read_snapshot(file, group);
     const std::string name = group.substr(group.rfind('/') + 1);
-    order.emplace_back(strip(snapshot, out.figures), name);
+    order.emplace_back(strip(snapshot, out.figures, file), name);
     found.emplace(name, std::move(snapshot));
   }
   if (order.empty()) throw std::invalid_argument(file + ": holds no snapshot");

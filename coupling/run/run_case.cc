@@ -183,6 +183,7 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
   ensemble.checkpoint_seconds = options.checkpoint_seconds;
   ensemble.stop_after_steps = options.stop_after_steps;
   ensemble.progress = options.progress;
+  ensemble.note = options.note;
   run_tasks(tasks, ranks, ensemble);
   return seconds_since(start);
 }

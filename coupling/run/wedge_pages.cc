@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
+#include "continuum/settings.h"
 #include "coupling/run/wedge_analysis.h"
 
 namespace grainfield::coupling {
@@ -133,8 +134,9 @@ void WedgeAnalysis::add_maps(const WedgeMember& m, WedgeReport& in) const {
   Map shear = mobilized;
   // In rho g h, so that the product does not depend on it.
   const auto mapped = m.figures.find("map_young");
-  const double young =
-      mapped != m.figures.end() ? mapped->second : std::stod(continuum_setting(m, "E"));
+  const double young = mapped != m.figures.end()
+                           ? mapped->second
+                           : continuum::number_of({{"E", continuum_setting(m, "E")}}, "E");
   for (const auto& quantity : m.quantities) {
     if (quantity.name == "mobilized") mobilized.value = quantity.values.cwiseMin(1.05);
     if (quantity.name == "plastic_shear")

@@ -82,13 +82,15 @@ class Engine {
   virtual void set_gravity(double gx, double gy) = 0;
   /// Switches sleeping on or off; off wakes every grain.
   virtual void set_sleep(bool on) = 0;
-  /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges.
+  /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges: a grain
+  /// moves by more than half its radius in a step, or its place, speed or spin is not finite.
   virtual void step(long n) = 0;
 
   virtual double time() const = 0;
   virtual long steps() const = 0;
   virtual int grains() const = 0;  ///< without fixed ones
   virtual double time_step() const = 0;
+  /// Throws ComputationFailed when an energy is not finite.
   virtual Diagnostics measure() const = 0;
   virtual Motion motion() const = 0;
   virtual Snapshot snapshot() const = 0;

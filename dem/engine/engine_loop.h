@@ -109,8 +109,11 @@ class EngineLoop final : public Engine {
         }
       }
     });
+    if (!diverged_) {
+      world_.steps = start + n;
+      diverged_ = first_diverged() >= 0;  // a grain that only spins is not searched for
+    }
     if (diverged_) report_divergence();
-    world_.steps = start + n;
   }
 
   double time() const override { return world_.time(); }
@@ -204,9 +207,16 @@ class EngineLoop final : public Engine {
     for (int i = 0; i < world_.awake; ++i) {
       const auto& b = world_.grains.bodies[i];
       const double move = length_of(b.velocity) * world_.time_step;
-      if (!(move <= kMaxMoveShare * b.radius) || !b.position.allFinite()) return i;
+      if (!(move <= kMaxMoveShare * b.radius) || !is_finite(b)) return i;
     }
     return -1;
+  }
+
+  /// Of place, speed and spin.
+  template <class Body>
+  static bool is_finite(const Body& b) {
+    return b.position.allFinite() && std::isfinite(length_of(b.velocity)) &&
+           std::isfinite(length_of(b.spin));
   }
 
   [[noreturn]] void report_divergence() const {
@@ -215,6 +225,14 @@ class EngineLoop final : public Engine {
     std::string place;
     for (const double x : world_.margins[i].position) {
       place += fmt::format("{}{:.4g}", place.empty() ? "" : ", ", x);
+    }
+    if (!is_finite(world_.grains.bodies[i])) {
+      throw ComputationFailed(fmt::format(
+          "diverged at t = {:.6g} s (step {}): grain {} last seen near ({}) m has a place, speed "
+          "or "
+          "spin that is not a finite number; lower motion.time_step (now {:.3g} s), damping or "
+          "stiffness, or give grains of a usual size",
+          time(), steps(), world_.grains.ids[i], place, world_.time_step));
     }
     throw ComputationFailed(fmt::format(
         "diverged at t = {:.6g} s (step {}): grain {} last seen near ({}) m at {:.3g} m/s moves "

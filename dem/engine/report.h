@@ -93,6 +93,14 @@ class Report {
     const Motion m = motion();
     d.kinetic_energy = m.kinetic_energy;
     d.awake = m.awake;
+    if (!std::isfinite(d.kinetic_energy) || !std::isfinite(d.elastic_energy)) {
+      throw ComputationFailed(fmt::format(
+          "the energy is not a finite number at t = {:.6g} s (step {}): kinetic {:g} J, elastic "
+          "{:g} J; lower motion.time_step (now {:.3g} s), damping or stiffness, or give grains of "
+          "a "
+          "usual size",
+          world_.time(), world_.steps, d.kinetic_energy, d.elastic_energy, world_.time_step));
+    }
     return d;
   }
 

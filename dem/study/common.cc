@@ -7,6 +7,7 @@
 
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/replace_file.h"
+#include "dem/study/run.h"
 
 namespace grainfield::dem {
 
@@ -55,6 +56,14 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   e.gravity_y = -m.gravity;
   e.threads = threads;
   return e;
+}
+
+void check_countable(const char* key, double time, double time_step) {
+  if (time <= kMostSteps * time_step) return;
+  throw std::invalid_argument(
+      fmt::format("{}: found {:g} s in all, allowed: at most {:g} s ({:g} steps of {:g} s, see "
+                  "motion.time_step)",
+                  key, time, kMostSteps * time_step, kMostSteps, time_step));
 }
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {
@@ -146,7 +155,7 @@ std::string read_checkpoint(const std::string& file, const std::string& fingerpr
   std::string of, state;
   r.get(of);
   if (of != fingerprint) {
-    throw std::invalid_argument(
+    throw OtherSetup(
         fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
   }
   r.get(state);

@@ -30,6 +30,11 @@ void add_reached(const std::string& prefix, const Reached& reached,
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular = false);
 
+/// Throws std::invalid_argument naming the key when its time, s, takes more steps than anyone waits
+/// for (kMostSteps).
+void check_countable(const char* key, double time, double time_step);
+inline constexpr double kMostSteps = 1e15;
+
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
 /// How far a rest has come, in [0, 1]: on the logarithms of the unbalanced force ratio and of
 /// kinetic over elastic energy, whichever is further from its goal.
@@ -53,11 +58,11 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
 
 using NamedSnapshots = std::vector<std::pair<std::string, Snapshot>>;
 /// Writes a checkpoint beside `file` and renames it: the fingerprint of the setup, the state's bits
-/// and the snapshots taken so far.
+/// and the snapshots taken so far. Throws StorageFailed.
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
                       const ImageWriter& state, const NamedSnapshots& snapshots);
-/// The state's bits. Throws std::invalid_argument naming the file when it is broken or has another
-/// fingerprint.
+/// The state's bits. Throws std::invalid_argument naming the file when it is broken, OtherSetup
+/// when it has another fingerprint.
 std::string read_checkpoint(const std::string& file, const std::string& fingerprint);
 
 }  // namespace grainfield::dem

@@ -31,6 +31,8 @@ GravityChanges::GravityChanges(const ChangeSetup& change, const RestSetup& rest,
       where_(std::move(where)),
       changed_(change.gravity.size()),
       reached_(change.gravity.size()) {
+  if (!change_.gravity.empty() && change_.method != "newton")
+    check_countable("change.ramp_time", change_.ramp_time, settings_.time_step);
   settings_.sleep.on = false;
 }
 

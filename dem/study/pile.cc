@@ -27,6 +27,11 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
       engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
                       threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
   check_source(setup_, grains_);
+  const SourceSetup& o = setup_.source;
+  if (o.kind == "point") {
+    const double fall = least_interval(o.speed, setup_.material.gravity, o.height);
+    check_countable("source.interval", o.grains * o.interval + fall, settings_.time_step);
+  }
   settings_.polygons = setup_.shape.kind != "disk" || setup_.source.opening > 0;
   const SleepSetup& s = setup_.sleep;
   settings_.sleep = {s.on,         s.quiet_time, s.quiet_move, s.quiet_force,

@@ -79,6 +79,9 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
                               setup_.packing.shape == "irregular");
   settings_.polygons = setup_.packing.shape != "disk";
+  if (!by_newton()) {
+    check_countable("load.ramp_time", setup_.load.ramp_time, settings_.time_step);
+  }
   engine_ = make_engine(settings_);
   for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
   add(floor_grains(setup_.packing, supply_, density, random_));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,12 @@ struct RunResult {
   std::map<std::string, double> figures;  ///< summary keys, e.g. "dem.grains", "base.weight_ratio"
 };
 
+/// A checkpoint that is whole, but of another setup or seed.
+class OtherSetup : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
 class Run {
  public:
   virtual ~Run() = default;
@@ -47,10 +54,11 @@ class Run {
   virtual bool done() const = 0;
   virtual Progress progress() const = 0;
   virtual Outlook outlook() const { return {}; }
-  /// Everything needed to continue to the same bits. Writes beside and renames.
+  /// Everything needed to continue to the same bits. Writes beside and renames. Throws
+  /// StorageFailed (dem/storage_failed.h); what stood there before is then still there.
   virtual void save(const std::string& file) const = 0;
-  /// Continues from a file that save() wrote for the same setup and seed; throws
-  /// std::invalid_argument when it is another one's or broken.
+  /// Continues from a file that save() wrote for the same setup and seed; throws OtherSetup when it
+  /// is another one's, std::invalid_argument when it is broken. The run is then of no use any more.
   virtual void restore(const std::string& file) = 0;
   /// Valid once done().
   virtual RunResult result() const = 0;

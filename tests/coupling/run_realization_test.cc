@@ -54,5 +54,36 @@ TEST(RealizationFile, KeepsOrderFiguresAndAttributes) {
   }
 }
 
+// The standard library's stod refuses subnormal figures.
+TEST(RealizationFile, KeepsFiguresOfAnySize) {
+  const Folder folder;
+  dem::RunResult result;
+  result.snapshots = {{"pile", state(1)}};
+  result.figures = {{"tiny", 4.9406564584124654e-324}, {"huge", -1.7e308}, {"far", INFINITY}};
+  write_realization(folder / "r.h5", result);
+  EXPECT_EQ(read_realization(folder / "r.h5").figures, result.figures);
+}
+
+TEST(RealizationFile, NamesAFigureThatIsNoNumber) {
+  const Folder folder;
+  for (const auto& [key, value, wanted] :
+       {std::tuple{"figure:dem.grains", "many", "a number"},
+        std::tuple{"figure:dem.grains", "1e999", "a number"},
+        std::tuple{"realization:order", "-1", "a whole number from 0"}}) {
+    const std::string file = folder / "r.h5";
+    dem::Snapshot s = state(1);
+    s.attributes["realization:order"] = "0";
+    s.attributes[key] = value;
+    dem::write_snapshot(file, "/pile", s);
+    try {
+      read_realization(file);
+      ADD_FAILURE() << value;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_EQ(e.what(), file + ": " + key + " is \"" + value + "\"; it must be " + wanted);
+    }
+    testing::fs::remove(file);
+  }
+}
+
 }  // namespace
 }  // namespace grainfield::coupling

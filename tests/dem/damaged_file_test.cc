@@ -56,8 +56,8 @@ TEST(DamagedFile, AWrongByteIsNoticedOrChangesNothing) {
   const std::string file = folder / "s.h5";
   write_snapshot(file, "/a/loaded", small_snapshot());
   grainfield::testing::Damage found;
-  grainfield::testing::flip_bytes(file, folder, 301, true, bits_of_file, found);
-  EXPECT_GT(found.copies, 400);
+  grainfield::testing::flip_bytes(file, folder, 601, true, bits_of_file, found);
+  EXPECT_GT(found.copies, 200);
   EXPECT_GT(found.refused, found.copies / 4);  // many bytes are none of a value
 }
 
@@ -68,8 +68,8 @@ TEST(DamagedFile, OneWithoutChecksumsDoesNotEndTheProgram) {
   grainfield::testing::copy_plainly(folder / "s.h5", plain);
   EXPECT_TRUE(bits_of_file(plain) == bits_of_file(folder / "s.h5"));
   grainfield::testing::Damage found;
-  grainfield::testing::flip_bytes(plain, folder, 67, false, bits_of_file, found);
-  EXPECT_GT(found.copies, 400);
+  grainfield::testing::flip_bytes(plain, folder, 131, false, bits_of_file, found);
+  EXPECT_GT(found.copies, 200);
   EXPECT_GT(found.refused, 20);
 }
 

@@ -1,0 +1,109 @@
+// Fields with wrong bytes: each is noticed, or changes nothing.
+#include <gmock/gmock.h>
+
+#include "coupling/output/field_io.h"
+#include "dem/engine/image.h"
+#include "tests/damaged_files.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using grainfield::testing::Damage;
+using grainfield::testing::flip_bytes;
+using grainfield::testing::TestFolder;
+using ::testing::HasSubstr;
+
+Field sample() {
+  Field field;
+  field.points = Eigen::MatrixXd::Random(12, 2);
+  field.nx = 4;
+  field.ny = 3;
+  field.realizations = 3;
+  field.attributes = {{"method", "coarse_graining"}, {"h", "0.3"}};
+  for (const char* name : {"sigma_xx", "sigma_yy"}) {
+    Column& column = field.add(name, "N/m");
+    column.value = Eigen::VectorXd::Random(12);
+    column.error = Eigen::VectorXd::Random(12);
+    column.samples = Eigen::MatrixXd::Random(12, 3);
+  }
+  field.add("density", "1").value[3] = 2;
+  return field;
+}
+
+std::string bits_of(const std::string& file) {
+  dem::ImageWriter w;
+  const auto put = [&](const auto& matrix) {
+    w.put(static_cast<long>(matrix.rows()));
+    for (Eigen::Index k = 0; k < matrix.size(); ++k) w.put(matrix(k));
+  };
+  for (const std::string& name : list_fields(file)) {
+    const Field field = read_field(file, name);
+    w.put(name);
+    put(Eigen::MatrixXd(field.points).reshaped());
+    for (const int n : {field.nx, field.ny, field.realizations}) w.put(n);
+    for (const auto& [key, value] : field.attributes) {
+      w.put(key);
+      w.put(value);
+    }
+    for (const Column& column : field.columns) {
+      w.put(column.name);
+      w.put(column.unit);
+      put(column.value);
+      put(column.error);
+      put(Eigen::MatrixXd(column.samples).reshaped());
+    }
+  }
+  return w.bytes();
+}
+
+TEST(DamagedField, AWrongByteIsNoticedOrChangesNothing) {
+  const TestFolder folder;
+  write_fields(folder / "f.h5", {{"map", sample()}, {"profile", sample()}});
+  Damage found;
+  flip_bytes(folder / "f.h5", folder, 509, true, bits_of, found);
+  EXPECT_GT(found.copies, 200);
+  EXPECT_GT(found.refused, found.copies / 4);
+}
+
+TEST(DamagedField, OneWithoutChecksumsDoesNotEndTheProgram) {
+  const TestFolder folder;
+  write_fields(folder / "f.h5", {{"map", sample()}});
+  const std::string plain = folder / "plain.h5";
+  grainfield::testing::copy_plainly(folder / "f.h5", plain);
+  EXPECT_TRUE(bits_of(plain) == bits_of(folder / "f.h5"));
+  Damage found;
+  flip_bytes(plain, folder, 83, false, bits_of, found);
+  EXPECT_GT(found.copies, 200);
+  EXPECT_GT(found.refused, 20);
+}
+
+// What would divide by zero, or take the memory of a column many times over.
+TEST(DamagedField, NumbersThatCannotBeAreNamed) {
+  const TestFolder folder;
+  const auto said = [&](const char* attribute, const auto& value) -> std::string {
+    const std::string file = folder / "f.h5";
+    write_fields(file, {{"map", sample()}});
+    {
+      const dem::hdf5::Handle out = dem::hdf5::open_for_adding(file);
+      const dem::hdf5::Handle map = dem::hdf5::open_group(out, "map");
+      H5Adelete(map, attribute);
+      dem::hdf5::write_attribute(map, attribute, value);
+    }
+    try {
+      read_field(file, "map");
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(said("realizations", 0.0), HasSubstr("\"realizations\" is 0; allowed are 1 and"));
+  EXPECT_THAT(said("nx", -4.0), HasSubstr("\"nx\" is -4; allowed are 0 and above"));
+  EXPECT_THAT(said("ny", 1e12), HasSubstr("\"ny\" is 1000000000000"));
+  EXPECT_THAT(said("dim", 0.5), HasSubstr("'dim' is 0.5; it must be a whole number"));
+  EXPECT_THAT(said("dim", std::nan("")), HasSubstr("'dim' is nan; it must be a whole number"));
+  EXPECT_THAT(said("columns", std::string("density,density")),
+              HasSubstr("column \"density\" is named twice"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
