@@ -102,9 +102,12 @@ void wedge(Section s) {
   s.word("histories", +IN(Words, wedge.histories), {"at_once", "rise", "grow"},
          "every finite-element heap is solved for each of these, with each of dilations_deg and "
          "bases; empty: as its own settings say");
-  s.numbers_or_none("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.or_none();
+  s.number("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.or_none();
   s.word("bases", +IN(Words, wedge.bases), {},
          "likewise: rough, smooth, or the friction angle of a frictional base, e.g. \"20\"");
+  s.or_none();
 }
 
 void compare(Section s) {
@@ -113,6 +116,7 @@ void compare(Section s) {
       "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
       "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
       "elastic-layer; base, r and t of orthotropic-layer) are filled from the run unless set");
+  s.or_none();
 }
 
 void output(Section s) {
@@ -128,6 +132,7 @@ void sweep(Section s) {
       "the case is run once for every value of this key; empty: no sweep; variant: once for every "
       "named set of keys of tables [variant.NAME.SECTION]");
   s.word("values", +IN(Words, sweep.values), {}, "values of that key");
+  s.or_none();
 }
 
 }  // namespace

@@ -162,7 +162,8 @@ void keep_for_variant(Draft& draft, const Assignment& a) {
       inner.path == "study") {
     reject(a, a.path, "cannot be part of a variant");
   }
-  Draft scratch = draft;
+  Draft scratch;
+  scratch.value.study = draft.value.study;
   apply(scratch, inner);
   std::vector<std::string>& kept = variant_named(draft, name).keys;
   const std::string start = inner.path + "=";

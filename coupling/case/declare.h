@@ -25,41 +25,41 @@ class Section {
 
   void number(const std::string& name, const std::string& unit, Binding where, Range range,
               const std::string& meaning, const std::string& source = "") {
-    keys_.push_back({name_,
-                     name,
-                     unit,
-                     where,
-                     range.least,
-                     range.most,
-                     {},
-                     meaning,
-                     source,
-                     range.open_least,
-                     false,
-                     "",
-                     {}});
-  }
-  /// A list of numbers that may be empty.
-  void numbers_or_none(const std::string& name, const std::string& unit, Binding where, Range range,
-                       const std::string& meaning, const std::string& source = "") {
-    number(name, unit, where, range, meaning, source);
-    keys_.back().may_be_empty = true;
+    Key& key = add(name, unit, where, meaning, source);
+    key.least = range.least;
+    key.most = range.most;
+    key.open_least = range.open_least;
   }
   void word(const std::string& name, Binding where, std::vector<std::string> choices,
             const std::string& meaning, const std::string& source = "") {
-    keys_.push_back(
-        {name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false, false, "", {}});
+    add(name, "-", where, meaning, source).choices = std::move(choices);
   }
+  /// The last key, a list, may be without any value.
+  void or_none() { keys_.back().may_be_empty = true; }
+  /// The last key, a list, may hold a value more than once.
+  void with_repeats() { keys_.back().may_repeat = true; }
   /// The last key has an effect only where another one is (or, of a list, holds) one of these.
   void only(const std::string& needs, std::vector<std::string> needed) {
     keys_.back().needs = needs;
     keys_.back().needed = std::move(needed);
   }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
-    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false, false, "", {}});
+    add(name, "-", where, meaning, "").most = 1;
   }
 
  private:
+  Key& add(const std::string& name, const std::string& unit, Binding where,
+           const std::string& meaning, const std::string& source) {
+    Key key{};
+    key.section = name_;
+    key.name = name;
+    key.unit = unit;
+    key.where = where;
+    key.meaning = meaning;
+    key.source = source;
+    return keys_.emplace_back(std::move(key));
+  }
+
   std::vector<Key>& keys_;
   std::string name_;
 };

@@ -19,6 +19,7 @@ void grains(Section s) {
          "pile or pile-fields; only the changes of gravity that they do not hold are computed. "
          "[material] must be that of the piles; [shape], [source] and [floor] are not used. []: "
          "the piles are poured");
+  s.or_none();
 }
 
 void fields(Section s) {

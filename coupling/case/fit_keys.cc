@@ -30,7 +30,8 @@ void fit(Section s) {
   s.word(
       "finite_elements", +IN(Words, fit.finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
       "finite-element models that are solved with the measured slope and the fitted constants and "
-      "join the tables; may be empty");
+      "join the tables");
+  s.or_none();
   s.word("components", +IN(Words, fit.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.number("heights", "-", +IN(Numbers, fit.heights), {0, 1, true},

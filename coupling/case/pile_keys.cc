@@ -36,9 +36,11 @@ void shape(Section s) {
   s.number("side", "m", +IN(double, pile.shape.side), kNotNegative,
            "mean length of a side; 0: of the regular pentagon in the circle of radius", "Roul 5.1");
   s.only("shape.kind", {"irregular"});
-  s.numbers_or_none("outline", "-", +IN(Numbers, pile.shape.outline), {},
-                    "corners x1, y1, x2, y2, ... in units of radius, in their order round "
-                    "the grain, convex; the farthest 0.2 to 5 from the centroid");
+  s.number("outline", "-", +IN(Numbers, pile.shape.outline), {},
+           "corners x1, y1, x2, y2, ... in units of radius, in their order round "
+           "the grain, convex; the farthest 0.2 to 5 from the centroid");
+  s.or_none();
+  s.with_repeats();
   s.only("shape.kind", {"outline"});
 }
 
@@ -121,10 +123,11 @@ void sleep(Section s) {
 }
 
 void change(Section s) {
-  s.numbers_or_none("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kPositive,
-                    "after the rest gravity is changed to each of these, slowly, always from "
-                    "material.gravity; [] changes nothing (pile-fields: takes 10 % away)",
-                    "Roul 3.5-3.9");
+  s.number("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kPositive,
+           "after the rest gravity is changed to each of these, slowly, always from "
+           "material.gravity; [] changes nothing (pile-fields: takes 10 % away)",
+           "Roul 3.5-3.9");
+  s.or_none();
   s.word("method", +IN(string, pile.change.method), {"newton", "damped"},
          "quasi-static solver on the contact network, or slow damped dynamics");
   s.number("unbalanced_force_ratio", "-", +IN(double, pile.change.unbalanced_force_ratio),

@@ -19,6 +19,7 @@ void verdict(Section s) {
   s.word("finite_elements", +IN(Words, verdict.finite_elements),
          {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
          "finite-element models that are solved with the fitted constants and join the tables");
+  s.or_none();
   s.word("components", +IN(Words, verdict.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", +IN(bool, verdict.base), "the forces on the base are fitted as well");

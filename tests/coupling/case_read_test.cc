@@ -4,39 +4,18 @@
 
 #include <random>
 
-#include "coupling/case/case.h"
-#include "coupling/case/document.h"
+#include "check_scene.h"
 #include "coupling/case/keys.h"
-#include "program.h"
-#include "tests/paths.h"
 
 namespace grainfield::coupling {
 namespace {
 
+using testing::accepted;
+using testing::complaint;
 using ::testing::EndsWith;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-// What reading says of a file with this text; "" when it is accepted.
-std::string complaint(const std::string& text, const Overrides& set = {}, bool quick = false) {
-  const Folder folder;
-  const std::string file = folder.write("x.toml", text);
-  try {
-    read_case(file, quick, set);
-  } catch (const std::invalid_argument& e) {
-    const std::string what = e.what();
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    // The folder differs from run to run.
-    return what.compare(0, file.size(), file) == 0 ? "x.toml" + what.substr(file.size()) : what;
-  }
-  return "";
-}
-
-Case accepted(const std::string& text, const Overrides& set = {}, bool quick = false) {
-  const Folder folder;
-  return read_case(folder.write("x.toml", text), quick, set);
-}
 
 TEST(ReadCase, FitsNeedEveryEntryOnce) {
   const auto fit = [](const std::string& line) {
