@@ -11,8 +11,8 @@ namespace grainfield::coupling {
 namespace {
 
 void check_range(const Key& key, const Assignment& a, double value) {
-  const bool ok = std::isfinite(value) && value <= key.most &&
-                  (key.open_least ? value > key.least : value >= key.least);
+  const bool inside = std::isfinite(value) && key.least <= value && value <= key.most;
+  const bool ok = inside || (key.or_zero && value == 0);
   if (!ok) reject(a, key.path(), fmt::format("found {:g}, allowed: {}", value, allowed(key)));
 }
 

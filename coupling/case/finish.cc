@@ -11,7 +11,9 @@
 #include "continuum/idle.h"
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
+#include "coupling/case/cost.h"
 #include "coupling/case/members.h"
+#include "coupling/run/models.h"
 #include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
@@ -19,6 +21,8 @@ namespace {
 
 // Tables [model.LABEL] of a case.
 constexpr std::size_t kMostModels = 200;
+// Grains that are drawn for one member of a sweep, however many there are.
+constexpr std::int64_t kLeastDraws = 300;
 
 void check_sections(const Draft& draft) {
   for (const auto& [path, a] : draft.last) {
@@ -225,18 +229,31 @@ void check_verdict(const Draft& draft) {
   }
 }
 
+// Does it, and blames what it throws, "KEY: ...", on the line where the key was written.
+template <class Judge>
+void blame(const Draft& draft, const Judge& judge) {
+  try {
+    judge();
+  } catch (const std::invalid_argument& e) {
+    const std::string what = e.what();
+    throw std::invalid_argument(written(draft, what.substr(0, what.find(':'))).origin + ": " +
+                                what);
+  }
+}
+
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
   if (!study.has_grains()) return;
   if (section_applies("packing", study.name)) check_sizes(draft);
-  try {
-    study.make_run(draft.value, 0, 1);
-  } catch (const std::invalid_argument& e) {
-    const std::string what = e.what();
-    const std::string path = what.substr(0, what.find(':'));
-    throw std::invalid_argument(written(draft, path).origin + ": " + what);
-  }
+  check_points(draft);
+  blame(draft, [&] { require_models(draft.value.models); });
+  // Of a sweep's many members each has a part of the draws.
+  const std::int64_t draws =
+      std::max(kLeastDraws, kMostDraws / static_cast<std::int64_t>(draft.members));
+  dem::Outlook outlook;
+  blame(draft, [&] { outlook = study.foresee(draft.value, draws); });
+  check_steps(draft, outlook);
 }
 
 }  // namespace
@@ -259,12 +276,20 @@ std::vector<std::string>& model_names(Case& value) {
 
 void finish(Draft& draft) {
   draft.value.idle.clear();
+  if (draft.value.variants.size() > kMostEntries) {
+    reject(written(draft, "sweep.key"), "variant",
+           fmt::format("found {} tables [variant.NAME], allowed: up to {}",
+                       draft.value.variants.size(), kMostEntries));
+  }
   check_sections(draft);
   choose_models(draft);
   check_lists(draft);
   check_elastic(draft);
   check_heap(draft);
   check_verdict(draft);
+  if (const Study& study = study_of(draft.value); study.check != nullptr) {
+    blame(draft, [&] { study.check(draft.value); });
+  }
   check_grains(draft);
   check_sweep(draft);
   for (const auto& [path, a] : draft.last) {

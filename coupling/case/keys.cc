@@ -240,14 +240,11 @@ std::string allowed(const Key& key) {
   const std::string type = type_name(key);
   if (type == "boolean") return "true | false";
   if (type == "text" || type == "list of words") return "any";
-  const bool lower = std::isfinite(key.least), upper = std::isfinite(key.most);
-  if (key.open_least) {
-    return upper ? fmt::format("above {:g}, up to {:g}", key.least, key.most)
-                 : fmt::format("above {:g}", key.least);
-  }
-  if (lower && upper) return fmt::format("{} to {}", key.least, key.most);
-  if (lower) return fmt::format("{:g} or more", key.least);
-  return "any finite number";
+  // Whole numbers in full, others in six digits.
+  const auto shown = [&](double limit) {
+    return type == "integer" ? fmt::format("{:.0f}", limit) : fmt::format("{:g}", limit);
+  };
+  return fmt::format("{}{} to {}", key.or_zero ? "0, or " : "", shown(key.least), shown(key.most));
 }
 
 std::string value_text(const Key& key, const Case& value) {

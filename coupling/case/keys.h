@@ -27,7 +27,7 @@ struct Key {
   std::vector<std::string> choices;  ///< words: those allowed; empty: any text
   std::string meaning;               ///< with what raising it does
   std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
-  bool open_least = false;           ///< the least value itself is not allowed
+  bool or_zero = false;              ///< 0 is allowed besides
   bool may_be_empty = false;         ///< lists: without any value
   bool may_repeat = false;           ///< lists: a value more than once
   std::string needs;                 ///< path of the key on which it depends; empty: on none
@@ -54,7 +54,7 @@ std::string condition(const Key& key);
 std::string type_name(const Key& key);
 /// Of a list: "one or more, each once"; empty for other keys.
 std::string entries_allowed(const Key& key);
-/// "0 to 2", "above 0, up to 1e12", "smooth | rough", "any finite number".
+/// "0 to 2", "0, or 1e-06 to 1000", "smooth | rough", "any finite number".
 std::string allowed(const Key& key);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);

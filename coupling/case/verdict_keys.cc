@@ -26,7 +26,7 @@ void verdict(Section s) {
   s.word("covariance", +IN(string, verdict.covariance),
          {"auto", "parametric", "sample", "diagonal"},
          "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 packings");
-  s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 100000},
+  s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }
 

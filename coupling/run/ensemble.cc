@@ -228,6 +228,14 @@ std::uint64_t realization_seed(const Case& value, std::int64_t number) {
                           static_cast<std::uint64_t>(number));
 }
 
+std::vector<std::uint64_t> realization_seeds(const Case& value) {
+  std::vector<std::uint64_t> seeds;
+  for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
+    seeds.push_back(realization_seed(value, r));
+  }
+  return seeds;
+}
+
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options) {
   std::vector<std::size_t> mine;
   for (std::size_t t = 0; t < tasks.size(); ++t) {

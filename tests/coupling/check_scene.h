@@ -3,14 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <map>
 #include <string>
 
 #include "coupling/case/case.h"
-#include "coupling/case/document.h"
+#include "coupling/case/keys.h"
+#include "coupling/run/studies.h"
 #include "program.h"
-#include "tests/paths.h"
 
 namespace grainfield::coupling::testing {
 
@@ -42,14 +40,15 @@ inline Case accepted(const std::string& text, const Overrides& set = {}, bool qu
   return read_case(folder.write("x.toml", text), quick, set);
 }
 
-/// A shipped case without a sweep for every study, by its name.
-inline std::map<std::string, std::string> a_case_of_every_study() {
-  std::map<std::string, std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(GRAINFIELD_CASES)) {
-    const std::string file = entry.path().string();
-    const Case value = read_case(file, false, {});
-    if (value.sweep.key.empty()) out.emplace(value.study, file);
+/// A small case of a study, as text.
+inline std::string small_case(const std::string& study) {
+  std::string out = "study = \"" + study + "\"\n";
+  if (study == "wedge") {
+    out += "[compare]\nmodels = [\"fe_mohr_coulomb_wedge\", \"cantelaube\"]\n";
   }
+  const bool grains = find_study(study)->has_grains();
+  if (grains) out += "[ensemble]\nrealizations = 2\n";
+  if (grains && section_applies("source", study)) out += "[source]\ngrains = 200\n";
   return out;
 }
 
