@@ -23,6 +23,8 @@ namespace {
 constexpr double kBytesOfDisk = 2500, kBytesOfPolygon = 4000;
 // Volume fraction of a layer of dropped rows, about.
 constexpr double kLayerFraction = 0.85;
+// Grains side by side along the floor of a pile.
+constexpr double kMostOnFloor = 1e5;
 // By how much the time step and the largest grain may miss those of grains that were not drawn; and
 // standard errors of their total area.
 constexpr double kStepReserve = 1.05, kSizeReserve = 1.1, kAreaErrors = 6;
@@ -97,15 +99,15 @@ double grains_of(const PackingSetup& p) {
   return count;
 }
 
-// Grains side by side on a rough floor of this length, about; throws when they are too many.
-double floor_grains_of(const PileSetup& s) {
-  if (s.floor.kind != "rough") return 0;
+// Grains side by side on the floor, about; throws when they are too many: a rough one is made of
+// them, and of a smooth one surface and stray grains are looked at in columns as wide.
+double length_in_grains(const PileSetup& s) {
   const bool by_side = s.shape.kind == "irregular" && s.shape.side > 0;
   const double radius = by_side ? 0.85 * s.shape.side : s.shape.radius;
   const double count = s.floor.length / (2 * radius);
-  if (count > kMostGrains) {
-    too_many("floor.length", s.floor.length, 2 * radius * kMostGrains, " m",
-             fmt::format("with floor.kind = rough and grains of this size: {}", ten_million()));
+  if (count > kMostOnFloor) {
+    too_many("floor.length", s.floor.length, 2 * radius * kMostOnFloor, " m",
+             fmt::format("with grains of this size: {:g} of them side by side", kMostOnFloor));
   }
   return count;
 }
@@ -204,7 +206,8 @@ Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds
   check_pile(s);
   Outlook out;
   out.grains = s.source.grains;
-  out.fixed = floor_grains_of(s);
+  const double side_by_side = length_in_grains(s);
+  out.fixed = s.floor.kind == "rough" ? side_by_side : 0;
   out.bytes = (out.grains + out.fixed) * (s.shape.kind == "disk" ? kBytesOfDisk : kBytesOfPolygon);
 
   const bool irregular = s.shape.kind == "rand1" || s.shape.kind == "irregular";
