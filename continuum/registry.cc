@@ -9,6 +9,7 @@
 #include "continuum/model.h"
 #include "continuum/osl/models.h"
 #include "continuum/settings.h"
+#include "continuum/size.h"
 
 namespace grainfield::continuum {
 
@@ -54,7 +55,9 @@ int dimension(const ModelInfo& info, const Settings& settings) {
 std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings) {
   const ModelInfo& info = find_model(name);
   if (const auto idle = find_idle(info, settings)) throw BadParameter(idle->refusal);
-  return info.make(complete(info, settings));
+  const Settings full = complete(info, settings);
+  require_possible(info, full);
+  return info.make(full);
 }
 
 }  // namespace grainfield::continuum

@@ -11,6 +11,10 @@
 namespace grainfield::continuum {
 namespace {
 
+/// Letters by which a name is compared with others: the work grows with them, and beyond no name is
+/// meant.
+constexpr std::size_t kLongestMisspelt = 80;
+
 /// Letters inserted, deleted or replaced, or neighbours swapped (optimal string alignment).
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
@@ -50,7 +54,8 @@ std::string missed(const Parameter& parameter, const std::string& text, double v
 
 }  // namespace
 
-std::string nearest(const std::string& name, const std::vector<std::string>& names) {
+std::string nearest(const std::string& given, const std::vector<std::string>& names) {
+  const std::string name = given.substr(0, kLongestMisspelt);
   const auto best = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return edits(name, a) < edits(name, b);
   });
@@ -58,6 +63,7 @@ std::string nearest(const std::string& name, const std::vector<std::string>& nam
 }
 
 std::string misspelt(const std::string& name, const std::vector<std::string>& names) {
+  if (name.size() > kLongestMisspelt) return "";
   const std::string best = nearest(name, names);
   return 3 * edits(name, best) <= name.size() ? best : std::string();
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
+#include "coupling/case/cost.h"
 #include "coupling/case/keys.h"
 #include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
@@ -21,45 +21,6 @@ void warn_of_idle_keys(const Case& value) {
     note("warning: {}", text);
   }
 }
-
-namespace {
-
-// Grain-steps per CPU second of settled polygons, all awake (docs/benchmarks.md): an estimate.
-constexpr double kRate = 5e6;
-
-std::string duration(double seconds) {
-  if (seconds < 90) return fmt::format("{:.0f} s", std::max(1.0, seconds));
-  if (seconds < 5400) return fmt::format("{:.0f} minutes", seconds / 60);
-  return fmt::format("{:.1f} hours", seconds / 3600);
-}
-
-/// The size of a case before it runs: members, realizations, time step, steps, cost.
-std::string outlook_text(const Case& value) {
-  const Study& study = study_of(value);
-  if (!study.has_grains()) return "";
-  const dem::Outlook o = study.make_run(value, 0, 1)->outlook();
-  std::string out = fmt::format("  {} realization{}", value.ensemble.realizations,
-                                value.ensemble.realizations == 1 ? "" : "s");
-  if (!value.sweep.key.empty()) {
-    out += fmt::format(" for each of {} values of {}", value.sweep.values.size(), value.sweep.key);
-  }
-  if (o.grains > 0) out += fmt::format(" of {} grains", o.grains);
-  if (o.time_step > 0) out += fmt::format(", steps of {:.3g} s", o.time_step);
-  if (!value.sweep.key.empty()) out += " (of the case as it is)";
-  if (o.time == 0) return out + "\n";
-  const double steps = o.time / o.time_step;
-  // Grain by grain: half of them on average.
-  const double seconds = 0.5 * o.grains * steps / kRate;
-  return out + fmt::format(
-                   "\n  pouring takes {:.1f} s, {:.1f} million steps: with every grain awake "
-                   "about {} a realization on one core{}\n",
-                   o.time, 1e-6 * steps, duration(seconds),
-                   value.pile.sleep.on ? "; sleeping makes it less, several times when a "
-                                         "pile is large and poured slowly"
-                                       : "");
-}
-
-}  // namespace
 
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "validate a case without running it");

@@ -10,6 +10,7 @@
 #include "coupling/app/model_settings.h"
 #include "coupling/app/points_options.h"
 #include "coupling/app/terminal.h"
+#include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/output/other_file.h"
 #include "coupling/run/average_files.h"
@@ -112,7 +113,7 @@ void add_average(CLI::App& app, Action& action) {
   command->add_flag("--balance", given->balance,
                     "print how well every averaging carries the weight; --width is the kernels', "
                     "RVEs take 2.5 times as much");
-  command->add_option("--threads", options.threads, "the results do not depend on it");
+  add_threads(*command, options.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
       AverageRequest& request = given->request;
@@ -135,7 +136,7 @@ void add_average(CLI::App& app, Action& action) {
       std::vector<std::string> inputs{given->where.points};
       for (const SnapshotName& name : request.snapshots) inputs.push_back(name.file);
       require_other_file("-o", given->output, inputs);
-      request.points = given->where.read(request.snapshots[0]);
+      request.points = given->where.read(request.snapshots);
       request.frame = given->where.frame;
       request.nx = given->where.columns;
       request.ny = given->where.rows;

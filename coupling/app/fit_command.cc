@@ -8,6 +8,7 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
+#include "coupling/app/threads_option.h"
 #include "coupling/fit/fit_files.h"
 
 namespace grainfield::coupling {
@@ -59,7 +60,7 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
   command->add_option("-o,--output", request.folder, "folder; default results/fit-INPUT");
-  command->add_option("--threads", request.threads, "the results do not depend on it");
+  add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
       FitRequest wanted = given->request;

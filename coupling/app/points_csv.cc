@@ -83,7 +83,8 @@ Eigen::MatrixXd read(const std::string& file) {
 }  // namespace
 
 Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
-  if (std::filesystem::is_directory(file)) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
     throw std::invalid_argument(file + ": is a folder, expected a CSV file");
   }
   return dim == 2 ? read<2>(file) : read<3>(file);

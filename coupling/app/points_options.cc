@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <limits>
 #include <stdexcept>
+#include <string_view>
 
 #include "coupling/app/points_csv.h"
 #include "dem/snapshot/snapshot.h"
@@ -10,17 +13,27 @@
 namespace grainfield::coupling {
 namespace {
 
+// Points of a grid; and on how many points and snapshots a field may be averaged, each value some
+// hundred bytes.
+constexpr double kMostPoints = 1e6, kMostValues = 1e7;
+
 void parse_grid(const std::string& text, int& columns, int& rows) {
+  const auto whole = [](std::string_view part, int& number) {
+    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    // Too many for an int are many.
+    if (error == std::errc::result_out_of_range) number = std::numeric_limits<int>::max();
+    return error != std::errc::invalid_argument && stop == part.data() + part.size() && number >= 2;
+  };
   const std::size_t x = text.find('x');
-  try {
-    std::size_t used = 0;
-    columns = std::stoi(text, &used);
-    if (used != x) throw std::invalid_argument("");
-    rows = std::stoi(text.substr(x + 1), &used);
-    if (used + x + 1 != text.size() || columns < 2 || rows < 2) throw std::invalid_argument("");
-  } catch (const std::exception&) {
+  if (x == std::string::npos || !whole(std::string_view(text).substr(0, x), columns) ||
+      !whole(std::string_view(text).substr(x + 1), rows)) {
     throw std::invalid_argument(
         fmt::format("--grid: found \"{}\", expected COLUMNSxROWS, both 2 or more", text));
+  }
+  if (static_cast<double>(columns) * rows > kMostPoints) {
+    throw std::invalid_argument(fmt::format("--grid: found {}, {:.3g} points, allowed: up to {:g}",
+                                            text, static_cast<double>(columns) * rows,
+                                            kMostPoints));
   }
 }
 
@@ -34,10 +47,22 @@ void PointsOptions::add_to(CLI::App& command) {
   command.add_option("--grid", grid, "COLUMNSxROWS over the packing; default 81x31");
 }
 
-Eigen::MatrixXd PointsOptions::read(const SnapshotName& snapshot) {
+Eigen::MatrixXd PointsOptions::read(const std::vector<SnapshotName>& snapshots) {
   if (!grid.empty()) parse_grid(grid, columns, rows);
-  if (points.empty()) return {};
-  return read_points_csv(points, dem::read_snapshot(snapshot.file, snapshot.group).dim);
+  Eigen::MatrixXd out;
+  if (!points.empty()) {
+    const SnapshotName& first = snapshots.front();
+    out = read_points_csv(points, dem::read_snapshot(first.file, first.group).dim);
+  }
+  const double places =
+      points.empty() ? static_cast<double>(columns) * rows : static_cast<double>(out.rows());
+  const auto many = static_cast<double>(snapshots.size());
+  if (places * many > kMostValues) {
+    throw std::invalid_argument(
+        fmt::format("{}: found {:g} points for {:g} snapshots, allowed: up to {:g} together",
+                    points.empty() ? "--grid" : "--points", places, many, kMostValues));
+  }
+  return out;
 }
 
 }  // namespace grainfield::coupling

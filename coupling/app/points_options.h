@@ -15,7 +15,7 @@ struct PointsOptions {
   void add_to(CLI::App& command);
   /// Reads --grid, and the file of --points if one is given (else no rows), with the axes of the
   /// snapshot. Throws std::invalid_argument.
-  Eigen::MatrixXd read(const SnapshotName& snapshot);
+  Eigen::MatrixXd read(const std::vector<SnapshotName>& snapshots);
 };
 
 }  // namespace grainfield::coupling

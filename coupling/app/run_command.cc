@@ -11,6 +11,7 @@
 #include "coupling/app/progress_text.h"
 #include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
+#include "coupling/app/threads_option.h"
 #include "coupling/case/case.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/run_case.h"
@@ -56,6 +57,7 @@ class ProgressLine {
 
 // Of the smaller radius; Roul's piles reach 0.04.
 constexpr double kDeepOverlap = 0.1;
+constexpr double kMostBetweenCheckpoints = 1e6;  // s; eleven days
 
 struct Given {
   std::string file, output;
@@ -105,13 +107,9 @@ void say_result(const Case& value, const std::string& folder) {
 }
 
 int run(const Given& given) {
-  if (given.threads < 0) {
-    throw std::invalid_argument(
-        fmt::format("--threads: found {}, allowed: 1 or more", given.threads));
-  }
-  if (!(given.checkpoint_seconds >= 0)) {
-    throw std::invalid_argument(fmt::format("--checkpoint-seconds: found {:g}, allowed: 0 or more",
-                                            given.checkpoint_seconds));
+  if (!(given.checkpoint_seconds >= 0 && given.checkpoint_seconds <= kMostBetweenCheckpoints)) {
+    throw std::invalid_argument(fmt::format("--checkpoint-seconds: found {:g}, allowed: 0 to {:g}",
+                                            given.checkpoint_seconds, kMostBetweenCheckpoints));
   }
   Case value = read_case(find_case(given.file), given.quick, given.sets);
   value.command = command_of(given);
@@ -153,9 +151,8 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("-o,--output", given->output, "folder; default results/CASE (CASE-quick)");
   command->add_flag("--quick", given->quick, "with the case's quick setting");
   command->add_option("--set", given->sets, "override: key.path=value")->allow_extra_args(false);
-  command->add_option(
-      "--threads", given->threads,
-      "default: all cores; under mpirun one per rank; the results do not depend on it");
+  add_threads(*command, given->threads,
+              "default: all cores; under mpirun one per rank; the results do not depend on it");
   command->add_flag("--resume", given->resume, "continue an interrupted run");
   command->add_option("--checkpoint-seconds", given->checkpoint_seconds,
                       "wall time between checkpoints: what a crash may cost; default 30");

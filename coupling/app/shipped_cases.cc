@@ -17,8 +17,9 @@ namespace {
 std::vector<fs::path> there() {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(cases_folder(), error)) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  for (fs::directory_iterator at(cases_folder(), error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    if (at->path().extension() == ".toml") files.push_back(at->path());
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -8,6 +8,7 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/points_options.h"
 #include "coupling/app/terminal.h"
+#include "coupling/app/threads_option.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/other_file.h"
 #include "coupling/run/strain_files.h"
@@ -50,7 +51,7 @@ void add_strain(CLI::App& app, Action& action) {
   command->add_option("--least-grains", options.least_grains,
                       "fewer grains in the support: nan; default 6");
   given->where.add_to(*command);
-  command->add_option("--threads", options.threads, "the results do not depend on it");
+  add_threads(*command, options.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
       StrainRequest& request = given->request;
@@ -65,7 +66,7 @@ void add_strain(CLI::App& app, Action& action) {
       request.after = one_snapshot(given->after);
       require_other_file("-o", given->output,
                          {request.before.file, request.after.file, given->where.points});
-      request.points = given->where.read(request.before);
+      request.points = given->where.read({request.before});
       request.frame = given->where.frame;
       request.nx = given->where.columns;
       request.ny = given->where.rows;

@@ -25,7 +25,7 @@ void top(Section s) {
 }
 
 void ensemble(Section s) {
-  s.number("realizations", "-", +IN(Integer, ensemble.realizations), {1, 100000},
+  s.number("realizations", "-", +IN(Integer, ensemble.realizations), {1, 10000},
            "independent packings; the standard error falls with the square root of their number");
   s.number("seed", "-", +IN(Integer, ensemble.seed), {0, 9007199254740992.0},
            "every realization derives its own seed from this one and its number");
@@ -39,54 +39,54 @@ void average(Section s) {
   s.word("kernel", +IN(string, average.kernel), {"lucy", "gaussian", "heaviside"}, "the weight",
          "Weinhart et al. 2012");
   s.only("average.methods", {"coarse_graining"});
-  s.number("width", "m", +IN(double, average.width), kNotNegative,
+  s.number("width", "m", +IN(double, average.width), kLength.with_zero(),
            "w of the kernel (lucy ends at 2 w); wider is smoother and blurs "
            "peaks; 0: width_diameters mean diameters");
   s.only("average.methods", {"coarse_graining"});
-  s.number("width_diameters", "-", +IN(double, average.width_diameters), {0, 100, true},
+  s.number("width_diameters", "-", +IN(double, average.width_diameters), {0.01, 100},
            "the same in mean grain diameters, used where width is 0");
   s.only("average.width", {"0.0"});
   s.word("rve_shape", +IN(string, average.rve_shape), {"circle", "square"},
          "shape of the representative volume element");
   s.only("average.methods", {"particle_centre", "area_exact"});
-  s.number("rve_radius", "m", +IN(double, average.rve_radius), kNotNegative,
+  s.number("rve_radius", "m", +IN(double, average.rve_radius), kLength.with_zero(),
            "radius or half side; larger is smoother; 0: rve_diameters mean "
            "diameters",
            "Roul 3.2");
   s.only("average.methods", {"particle_centre", "area_exact"});
-  s.number("rve_diameters", "-", +IN(double, average.rve_diameters), {0, 100, true},
+  s.number("rve_diameters", "-", +IN(double, average.rve_diameters), {0.01, 100},
            "the same in mean grain diameters, used where rve_radius is 0");
   s.only("average.rve_radius", {"0.0"});
-  s.number("depths", "-", +IN(Numbers, average.depths), {0, 1, true},
+  s.number("depths", "-", +IN(Numbers, average.depths), {1e-6, 1},
            "profiles below the surface, as shares of the layer's height; the base is always added");
-  s.number("points", "-", +IN(Integer, average.points), {3, 100000}, "of a profile");
-  s.number("half_width", "m", +IN(double, average.half_width), kNotNegative,
+  s.number("points", "-", +IN(Integer, average.points), {3, 10000}, "of a profile");
+  s.number("half_width", "m", +IN(double, average.half_width), kLength.with_zero(),
            "profiles reach this far to either side of the load; 0: to the nearer side wall");
-  s.number("map_columns", "-", +IN(Integer, average.map_columns), {2, 10000},
+  s.number("map_columns", "-", +IN(Integer, average.map_columns), {2, 2000},
            "points of the maps along x");
-  s.number("map_rows", "-", +IN(Integer, average.map_rows), {2, 10000},
+  s.number("map_rows", "-", +IN(Integer, average.map_rows), {2, 2000},
            "points of the maps along y");
 }
 
 void elastic(Section s) {
-  s.number("force", "N", +IN(double, elastic.force), kPositive,
+  s.number("force", "N", +IN(double, elastic.force), kForce,
            "point load on the surface (2D: force as on one grain)");
-  s.number("height", "m", +IN(double, elastic.height), kPositive,
+  s.number("height", "m", +IN(double, elastic.height), kLength,
            "height h of the layer or the heap; elastic-half-space has none", "Roul table 5.1");
   s.number("dim", "-", +IN(Integer, elastic.dim), {2, 3},
            "2: plane strain, 3: space; models of the other dimension are left out");
   s.word("base", +IN(string, elastic.base), {"smooth", "rough"},
          "elastic-layer, orthotropic-layer: base of every model that has one and does not set it",
          "Roul 5.5");
-  s.number("depths", "m", +IN(Numbers, elastic.depths), kPositive, "profiles below the surface");
-  s.number("half_width", "m", +IN(double, elastic.half_width), kPositive,
+  s.number("depths", "m", +IN(Numbers, elastic.depths), kLength, "profiles below the surface");
+  s.number("half_width", "m", +IN(double, elastic.half_width), kLength,
            "profiles reach this far to either side of the load");
-  s.number("points", "-", +IN(Integer, elastic.points), {3, 100000}, "of a profile");
+  s.number("points", "-", +IN(Integer, elastic.points), {3, 10000}, "of a profile");
   s.number("r", "-", +IN(double, elastic.r), {-1e6, 1e6},
            "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1; a half plane has "
            "two peaks below 0",
            "Otto et al. 2003");
-  s.number("t", "-", +IN(double, elastic.t), {0, 1e6, true}, "E_x/E_y; isotropic: 1",
+  s.number("t", "-", +IN(double, elastic.t), {1e-6, 1e6}, "E_x/E_y; isotropic: 1",
            "Otto et al. 2003");
 }
 
@@ -94,17 +94,20 @@ void wedge(Section s) {
   s.number("phi_deg", "deg", +IN(double, wedge.phi_deg), {1, 60}, "friction angle");
   s.number("left_deg", "deg", +IN(double, wedge.left_deg), {1, 80}, "slope on the left");
   s.number("right_deg", "deg", +IN(double, wedge.right_deg), {1, 80}, "slope on the right");
-  s.number("rho_g", "N/m2", +IN(double, wedge.rho_g), kPositive, "weight of a unit area");
-  s.number("height", "m", +IN(double, wedge.height), kPositive, "of the heap");
-  s.number("depths", "-", +IN(Numbers, wedge.depths), {0, 1, true},
+  s.number("rho_g", "N/m2", +IN(double, wedge.rho_g), {1e-6, 1e9}, "weight of a unit area");
+  s.number("height", "m", +IN(double, wedge.height), kLength, "of the heap");
+  s.number("depths", "-", +IN(Numbers, wedge.depths), {1e-6, 1},
            "profiles below the apex, as shares of the height; the base, 1, is always one");
-  s.number("points", "-", +IN(Integer, wedge.points), {11, 100000}, "of a profile");
+  s.number("points", "-", +IN(Integer, wedge.points), {11, 10000}, "of a profile");
   s.word("histories", +IN(Words, wedge.histories), {"at_once", "rise", "grow"},
          "every finite-element heap is solved for each of these, with each of dilations_deg and "
          "bases; empty: as its own settings say");
-  s.numbers_or_none("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.or_none();
+  s.number("dilations_deg", "deg", +IN(Numbers, wedge.dilations_deg), {0, 60}, "likewise");
+  s.or_none();
   s.word("bases", +IN(Words, wedge.bases), {},
          "likewise: rough, smooth, or the friction angle of a frictional base, e.g. \"20\"");
+  s.or_none();
 }
 
 void compare(Section s) {
@@ -113,6 +116,7 @@ void compare(Section s) {
       "models by name (`grainfield model` lists them) or by the label of a [model.LABEL] table, "
       "which may set name = \"...\" and the model's parameters; F, h, dim, depth (and base of "
       "elastic-layer; base, r and t of orthotropic-layer) are filled from the run unless set");
+  s.or_none();
 }
 
 void output(Section s) {
@@ -128,6 +132,7 @@ void sweep(Section s) {
       "the case is run once for every value of this key; empty: no sweep; variant: once for every "
       "named set of keys of tables [variant.NAME.SECTION]");
   s.word("values", +IN(Words, sweep.values), {}, "values of that key");
+  s.or_none();
 }
 
 }  // namespace

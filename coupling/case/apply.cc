@@ -11,8 +11,8 @@ namespace grainfield::coupling {
 namespace {
 
 void check_range(const Key& key, const Assignment& a, double value) {
-  const bool ok = std::isfinite(value) && value <= key.most &&
-                  (key.open_least ? value > key.least : value >= key.least);
+  const bool inside = std::isfinite(value) && key.least <= value && value <= key.most;
+  const bool ok = inside || (key.or_zero && value == 0);
   if (!ok) reject(a, key.path(), fmt::format("found {:g}, allowed: {}", value, allowed(key)));
 }
 
@@ -162,7 +162,8 @@ void keep_for_variant(Draft& draft, const Assignment& a) {
       inner.path == "study") {
     reject(a, a.path, "cannot be part of a variant");
   }
-  Draft scratch = draft;
+  Draft scratch;
+  scratch.value.study = draft.value.study;
   apply(scratch, inner);
   std::vector<std::string>& kept = variant_named(draft, name).keys;
   const std::string start = inner.path + "=";

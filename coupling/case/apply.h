@@ -17,7 +17,11 @@ struct Draft {
   std::map<std::string, Assignment> last;  ///< by key path: the assignment that holds
   /// [model.LABEL] tables: parameter (and "name") by label.
   std::map<std::string, std::map<std::string, Assignment>> models;
+  std::size_t members = 1;  ///< of the sweep that this draft is one member of
 };
+
+/// Where a key was written; a key that was not is blamed on the file as a whole.
+Assignment written(const Draft& draft, const std::string& path);
 
 /// Throws std::invalid_argument "ORIGIN: KEY: ..." for an unknown key or section (with the nearest
 /// name), a wrong type or a value out of range.
@@ -27,7 +31,7 @@ void apply(Draft& draft, const Assignment& assignment);
 /// limits between keys, the stable time step. Fills Case::models.
 void finish(Draft& draft);
 
-/// Those of finish() that concern [fit] alone.
+/// Those of finish() that concern [fit] alone: its lists.
 void check_fit(const Draft& draft);
 
 /// Where compare.models of the case's study lives.

@@ -10,6 +10,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
+#include "coupling/case/members.h"
 #include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
@@ -32,24 +33,8 @@ void put(Draft& draft, const std::vector<Assignment>& assignments) {
 
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
-bool plain_name(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char ch) {
-    return std::isalnum(ch) != 0 || ch == '_' || ch == '-';
-  });
-}
-
 std::string model_value(const continuum::Parameter& parameter, const std::string& value) {
   return parameter.choices.empty() && !continuum::is_text(parameter) ? value : "\"" + value + "\"";
-}
-
-// A suffix that is a folder's name and part of a key: "friction_0.3".
-std::string suffix_of(const std::string& key, const std::string& value) {
-  std::string out = key == "variant" ? "" : key.substr(key.rfind('.') + 1) + "_";
-  for (const char ch : value) {
-    const auto c = static_cast<unsigned char>(ch);
-    out += std::isalnum(c) != 0 || ch == '.' || ch == '-' || ch == '+' ? ch : '_';
-  }
-  return out;
 }
 
 }  // namespace
@@ -98,21 +83,21 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
 
 std::vector<SweepCase> sweep_cases(const Case& value) {
   if (value.sweep.key.empty()) return {{"", value}};
+  Draft draft;
+  draft.value = value;
+  for (const auto& model : value.models) {
+    auto& table = draft.models[model.label];
+    table["name"] = parse_override("model." + model.label + ".name=" + model.name);
+    for (const auto& [parameter, setting] : model.settings) {
+      table[parameter] = parse_override("model." + model.label + "." + parameter + "=" + setting);
+    }
+  }
+  const Members members(draft);
   std::vector<SweepCase> out;
   for (const auto& text : value.sweep.values) {
-    Draft draft;
-    draft.value = value;
-    draft.value.sweep = {};
-    for (const auto& model : value.models) {
-      auto& table = draft.models[model.label];
-      table["name"] = parse_override("model." + model.label + ".name=" + model.name);
-      for (const auto& [parameter, setting] : model.settings) {
-        table[parameter] = parse_override("model." + model.label + "." + parameter + "=" + setting);
-      }
-    }
-    apply(draft, parse_override(value.sweep.key + "=" + text));
-    finish(draft);
-    out.push_back({suffix_of(value.sweep.key, text), draft.value});
+    Draft one = members.of(text);
+    finish(one);
+    out.push_back({member_name(value.sweep.key, text), one.value});
   }
   return out;
 }

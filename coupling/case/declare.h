@@ -1,6 +1,5 @@
 // How sections declare their keys; used by the *_keys.cc files only.
 #pragma once
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,14 +8,23 @@
 
 namespace grainfield::coupling {
 
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
 struct Range {
-  double least = -kNoLimit, most = kNoLimit;
-  bool open_least = false;
+  double least = 0, most = 0;
+  bool or_zero = false;  ///< 0 is allowed besides, where it means "not given" or "none"
+
+  Range with_zero() const { return {least, most, true}; }
 };
-inline constexpr Range kPositive{0, kNoLimit, true};
-inline constexpr Range kNotNegative{0, kNoLimit, false};
+/// What SI units of sand, gravel and boulders reach, and far beyond; further out sums of squares
+/// and quotients lose their digits.
+inline constexpr Range kRadius{1e-6, 1e3};        ///< m
+inline constexpr Range kLength{1e-6, 1e6};        ///< m
+inline constexpr Range kOffset{-1e6, 1e6};        ///< m
+inline constexpr Range kTime{1e-6, 1e6};          ///< s
+inline constexpr Range kForce{1e-9, 1e12};        ///< N
+inline constexpr Range kStiffness{1e-3, 1e15};    ///< N/m
+inline constexpr Range kRate{0, 1e9};             ///< 1/s
+inline constexpr Range kAcceleration{1e-6, 1e6};  ///< m/s2
+inline constexpr Range kRatioOfForces{1e-14, 0.1};
 
 /// Collects the keys of one section.
 class Section {
@@ -25,41 +33,41 @@ class Section {
 
   void number(const std::string& name, const std::string& unit, Binding where, Range range,
               const std::string& meaning, const std::string& source = "") {
-    keys_.push_back({name_,
-                     name,
-                     unit,
-                     where,
-                     range.least,
-                     range.most,
-                     {},
-                     meaning,
-                     source,
-                     range.open_least,
-                     false,
-                     "",
-                     {}});
-  }
-  /// A list of numbers that may be empty.
-  void numbers_or_none(const std::string& name, const std::string& unit, Binding where, Range range,
-                       const std::string& meaning, const std::string& source = "") {
-    number(name, unit, where, range, meaning, source);
-    keys_.back().may_be_empty = true;
+    Key& key = add(name, unit, where, meaning, source);
+    key.least = range.least;
+    key.most = range.most;
+    key.or_zero = range.or_zero;
   }
   void word(const std::string& name, Binding where, std::vector<std::string> choices,
             const std::string& meaning, const std::string& source = "") {
-    keys_.push_back(
-        {name_, name, "-", where, 0, 0, std::move(choices), meaning, source, false, false, "", {}});
+    add(name, "-", where, meaning, source).choices = std::move(choices);
   }
+  /// The last key, a list, may be without any value.
+  void or_none() { keys_.back().may_be_empty = true; }
+  /// The last key, a list, may hold a value more than once.
+  void with_repeats() { keys_.back().may_repeat = true; }
   /// The last key has an effect only where another one is (or, of a list, holds) one of these.
   void only(const std::string& needs, std::vector<std::string> needed) {
     keys_.back().needs = needs;
     keys_.back().needed = std::move(needed);
   }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
-    keys_.push_back({name_, name, "-", where, 0, 1, {}, meaning, "", false, false, "", {}});
+    add(name, "-", where, meaning, "").most = 1;
   }
 
  private:
+  Key& add(const std::string& name, const std::string& unit, Binding where,
+           const std::string& meaning, const std::string& source) {
+    Key key{};
+    key.section = name_;
+    key.name = name;
+    key.unit = unit;
+    key.where = where;
+    key.meaning = meaning;
+    key.source = source;
+    return keys_.emplace_back(std::move(key));
+  }
+
   std::vector<Key>& keys_;
   std::string name_;
 };

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -48,6 +47,16 @@ void read_value(const toml::node& node, Assignment& out) {
   }
 }
 
+void check_texts(const Assignment& a) {
+  for (const Scalar& item : a.items) {
+    const auto* text = std::get_if<std::string>(&item);
+    if (text == nullptr || text->size() <= kMostCharacters) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: {}: found a text of {} characters, allowed: up to {}", a.origin, a.path,
+                    text->size(), kMostCharacters));
+  }
+}
+
 using Placed = std::pair<unsigned, Assignment>;  // line, assignment
 
 void flatten(const toml::table& table, const std::string& prefix, const std::string& file,
@@ -70,16 +79,108 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
       a.table = true;
     } else {
       read_value(node, a);
+      check_texts(a);
     }
     out.emplace_back(line, std::move(a));
   }
+}
+
+// The file as far as it is not too large, and a byte more.
+std::string read_start(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(kMostBytes + 1, '\0');
+  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!in.eof() && (!in || in.bad())) {
+    throw std::invalid_argument(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
+  }
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
 }
 
 std::string first_line(std::string_view text) {
   return std::string(text.substr(0, text.find('\n')));
 }
 
+// Walks over TOML outside of comments and strings. Keys are told from values only as far as it
+// needs: a number has few dots.
+class Nesting {
+ public:
+  explicit Nesting(std::string_view text) : text_(text) {}
+
+  /// What is too much, or "".
+  std::string find() {
+    for (at_ = 0; at_ < text_.size(); ++at_) {
+      const char ch = text_[at_];
+      if (ch == '\n') ++line_;
+      if (ch == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+      } else if (ch == '"' || ch == '\'') {
+        skip_string(ch);
+      } else if (ch == '.') {
+        ++parts_;
+      } else if (ch == '[' || ch == '{') {
+        ++levels_;
+        parts_ = 1;
+      } else if (ch == ']' || ch == '}') {
+        levels_ -= levels_ > 0 ? 1 : 0;
+        parts_ = 1;
+      } else if (ch == '\n' || ch == '=' || ch == ',') {
+        parts_ = 1;
+        values_ += ch == '\n' ? 0 : 1;
+      }
+      if (parts_ > kMostParts) return fmt::format("a key of more than {} parts", kMostParts);
+      if (values_ > kMostValues) return fmt::format("more than {} values", kMostValues);
+      if (levels_ > kMostLevels) {
+        return fmt::format("lists or tables of more than {} levels", kMostLevels);
+      }
+    }
+    return "";
+  }
+  unsigned line() const { return line_; }
+
+ private:
+  // To its last quote, or to the end of the line where it has none.
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    if (text_.substr(at_, 3) == three) {
+      const std::size_t begin = at_ + 3;
+      std::size_t end = text_.find(three, begin);
+      while (quote == '"' && end != std::string_view::npos && escaped(end, begin)) {
+        end = text_.find(three, end + 1);
+      }
+      end = end == std::string_view::npos ? text_.size() : end + 2;
+      line_ += static_cast<unsigned>(std::count(
+          text_.begin() + static_cast<std::ptrdiff_t>(at_),
+          text_.begin() + static_cast<std::ptrdiff_t>(std::min(end, text_.size())), '\n'));
+      at_ = end;
+      return;
+    }
+    for (std::size_t k = at_ + 1; k < text_.size() && text_[k] != '\n'; ++k) {
+      at_ = k;
+      if (text_[k] == quote) return;
+      if (text_[k] == '\\' && quote == '"' && k + 1 < text_.size() && text_[k + 1] != '\n') ++k;
+    }
+  }
+  bool escaped(std::size_t at, std::size_t begin) const {
+    std::size_t slashes = 0;
+    while (at > begin + slashes && text_[at - slashes - 1] == '\\') ++slashes;
+    return slashes % 2 == 1;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0, parts_ = 1, levels_ = 0, values_ = 0;
+  unsigned line_ = 1;
+};
+
 }  // namespace
+
+void check_nesting(std::string_view text, const std::string& origin, bool lines) {
+  Nesting nesting(text);
+  const std::string what = nesting.find();
+  if (what.empty()) return;
+  throw std::invalid_argument(lines ? fmt::format("{}:{}: {}", origin, nesting.line(), what)
+                                    : fmt::format("{}: {}", origin, what));
+}
 
 std::vector<Assignment> read_document(const std::string& file) {
   std::error_code error;
@@ -90,17 +191,15 @@ std::vector<Assignment> read_document(const std::string& file) {
   if (std::filesystem::is_directory(status)) {
     throw std::invalid_argument(file + ": is a folder, expected a case file");
   }
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    if (!in || in.bad() || std::filesystem::file_size(file, error) > 0) {
-      throw std::invalid_argument(
-          fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
-    }
+  const std::string text = read_start(file);
+  if (text.size() > kMostBytes) {
+    throw std::invalid_argument(fmt::format("{}: is larger than {} MB, expected a case file", file,
+                                            kMostBytes / 1'000'000));
   }
+  check_nesting(text, file, true);
   toml::table table;
   try {
-    table = toml::parse(text.str(), file);
+    table = toml::parse(text, file);
   } catch (const toml::parse_error& e) {
     throw std::invalid_argument(fmt::format("{}:{}: not valid TOML: {}", file,
                                             e.source().begin.line, first_line(e.description())));
@@ -128,6 +227,7 @@ Assignment parse_override(const std::string& text) {
   }
   out.path = trimmed(text.substr(0, at));
   out.text = trimmed(text.substr(at + 1));
+  check_nesting(text, out.origin, false);
   if (out.path.empty() || out.text.empty()) {
     throw std::invalid_argument(fmt::format("--set: found \"{}\", expected key.path=value", text));
   }
@@ -137,6 +237,7 @@ Assignment parse_override(const std::string& text) {
   } catch (const toml::parse_error&) {
     out.items = {out.text};
   }
+  check_texts(out);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -20,6 +21,16 @@ struct Assignment {
 
   bool from_command_line() const { return origin == "--set"; }
 };
+
+/// Most bytes of a case file, values in it, parts of a dotted key, levels of lists and tables
+/// within each other, and characters of a text.
+inline constexpr std::size_t kMostBytes = 4'000'000, kMostValues = 200'000, kMostParts = 32,
+                             kMostLevels = 32, kMostCharacters = 4096;
+
+/// Throws std::invalid_argument "ORIGIN:LINE: ..." (without `lines`: "ORIGIN: ...") for TOML of
+/// more parts, levels or values than that: a parser calls itself for every level and keeps every
+/// value.
+void check_nesting(std::string_view text, const std::string& origin, bool lines);
 
 /// Assignments of a TOML file in the order of its lines. Throws std::invalid_argument, one line
 /// "FILE:LINE: what", for a missing, unreadable or malformed file.

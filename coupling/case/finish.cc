@@ -3,26 +3,26 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <set>
 #include <stdexcept>
+#include <type_traits>
 
 #include "continuum/idle.h"
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
+#include "coupling/case/cost.h"
+#include "coupling/case/members.h"
+#include "coupling/run/models.h"
 #include "coupling/run/studies.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// Where a key was written; a key that was not is blamed on the file as a whole.
-Assignment written(const Draft& draft, const std::string& path) {
-  const auto at = draft.last.find(path);
-  if (at != draft.last.end()) return at->second;
-  Assignment none;
-  none.path = path;
-  none.origin = draft.file;
-  return none;
-}
+// Tables [model.LABEL] of a case.
+constexpr std::size_t kMostModels = 200;
+// Grains that are drawn for one member of a sweep, however many there are.
+constexpr std::int64_t kLeastDraws = 300;
 
 void check_sections(const Draft& draft) {
   for (const auto& [path, a] : draft.last) {
@@ -45,13 +45,27 @@ bool is_default(const continuum::ModelInfo& info, const std::string& name,
   return false;
 }
 
+// A label names fields, files and keys of summary.json.
+void check_label(const Assignment& where, const std::string& label) {
+  if (plain_name(label) && label.size() <= kLongestName) return;
+  reject(where, "model." + label,
+         fmt::format("found the label \"{}\", allowed: up to {} letters, digits, _ and -", label,
+                     kLongestName));
+}
+
 // Every [model.LABEL] table, whether it is used or not.
 std::map<std::string, ModelChoice> read_models(const Draft& draft) {
   std::map<std::string, ModelChoice> out;
+  if (draft.models.size() > kMostModels) {
+    reject(written(draft, "compare.models"), "model",
+           fmt::format("found {} tables [model.LABEL], allowed: up to {}", draft.models.size(),
+                       kMostModels));
+  }
   for (const auto& [label, table] : draft.models) {
     ModelChoice choice{label, label, {}};
     Assignment where = written(draft, "compare.models");
     if (!table.empty()) where = table.begin()->second;
+    check_label(where, label);
     if (const auto name = table.find("name"); name != table.end()) {
       where = name->second;
       choice.name = scalar_text(name->second.items.front());
@@ -91,9 +105,18 @@ void choose_models(Draft& draft) {
   const Assignment where = written(draft, "compare.models");
   Case& value = draft.value;
   value.models.clear();
-  std::set<std::string> seen;
+  std::map<std::string, std::string> seen;  // in small letters
   for (const auto& label : model_names(value)) {
-    if (!seen.insert(label).second) reject(where, "compare.models", "\"" + label + "\" twice");
+    const auto [other, fresh] = seen.emplace(boost::algorithm::to_lower_copy(label), label);
+    if (!fresh && other->second == label) {
+      reject(where, "compare.models", "\"" + label + "\" twice");
+    }
+    if (!fresh) {
+      reject(where, "compare.models",
+             fmt::format("\"{}\" and \"{}\" differ in small and capital letters only, which some "
+                         "file systems do not tell apart",
+                         other->second, label));
+    }
     const auto table = tables.find(label);
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
     try {
@@ -152,25 +175,52 @@ void check_heap(const Draft& draft) {
   }
 }
 
-// A list of the fit needs at least one entry, and none twice: the same values would count twice.
 template <class T>
-void check_list(const Draft& draft, const std::string& key, std::vector<T> list) {
-  if (list.empty()) reject(written(draft, key), key, "found an empty list, expected one or more");
-  std::sort(list.begin(), list.end());
-  const auto twice = std::adjacent_find(list.begin(), list.end());
-  if (twice != list.end()) {
-    reject(written(draft, key), key,
-           fmt::format("found {} twice, allowed: every entry once", *twice));
+void check_list(const Assignment& where, const Key& key, const std::vector<T>& list) {
+  if (list.empty() && !key.may_be_empty) {
+    reject(where, key.path(), "found an empty list, expected one or more");
+  }
+  if (list.size() > kMostEntries) {
+    reject(where, key.path(),
+           fmt::format("found {} entries, allowed: up to {}", list.size(), kMostEntries));
+  }
+  if (key.may_repeat) return;
+  // As they name curves, fields and keys: numbers to six digits.
+  std::set<std::string> seen;
+  for (const T& entry : list) {
+    std::string name;
+    if constexpr (std::is_same_v<T, double>) {
+      name = fmt::format("{:g}", entry);
+    } else {
+      name = entry;
+    }
+    if (!seen.insert(name).second) {
+      reject(where, key.path(), fmt::format("found {} twice, allowed: every entry once", name));
+    }
+  }
+}
+
+// Every list that the study reads, given or not. `section`: only this one's.
+void check_lists(const Draft& draft, const std::string& section = "") {
+  for (const Key& key : keys()) {
+    if (!key_applies(key, draft.value.study)) continue;
+    if (!section.empty() && key.section != section) continue;
+    std::visit(
+        [&](auto where) {
+          const auto& held = where(const_cast<Case&>(draft.value));  // only read
+          using T = std::decay_t<decltype(held)>;
+          if constexpr (std::is_same_v<T, std::vector<double>> ||
+                        std::is_same_v<T, std::vector<std::string>>) {
+            check_list(written(draft, key.path()), key, held);
+          }
+        },
+        key.where);
   }
 }
 
 void check_verdict(const Draft& draft) {
   if (!section_applies("verdict", draft.value.study)) return;
-  const VerdictSetup& v = draft.value.verdict;
-  check_list(draft, "verdict.models", v.models);
-  check_list(draft, "verdict.components", v.components);
-  if (!v.finite_elements.empty()) check_list(draft, "verdict.finite_elements", v.finite_elements);
-  for (const std::string& name : v.finite_elements) {
+  for (const std::string& name : draft.value.verdict.finite_elements) {
     try {
       continuum::find_model(name);
     } catch (const continuum::BadParameter& e) {
@@ -179,62 +229,45 @@ void check_verdict(const Draft& draft) {
   }
 }
 
+// Does it, and blames what it throws, "KEY: ...", on the line where the key was written.
+template <class Judge>
+void blame(const Draft& draft, const Judge& judge) {
+  try {
+    judge();
+  } catch (const std::invalid_argument& e) {
+    const std::string what = e.what();
+    throw std::invalid_argument(written(draft, what.substr(0, what.find(':'))).origin + ": " +
+                                what);
+  }
+}
+
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
   if (!study.has_grains()) return;
   if (section_applies("packing", study.name)) check_sizes(draft);
-  try {
-    study.make_run(draft.value, 0, 1);
-  } catch (const std::invalid_argument& e) {
-    const std::string what = e.what();
-    const std::string path = what.substr(0, what.find(':'));
-    throw std::invalid_argument(written(draft, path).origin + ": " + what);
-  }
-}
-
-void check_sweep(const Draft& draft) {
-  const SweepSetup& sweep = draft.value.sweep;
-  if (sweep.key.empty()) {
-    if (!sweep.values.empty()) {
-      reject(written(draft, "sweep.values"), "sweep.values", "needs sweep.key as well");
-    }
-    return;
-  }
-  const Assignment where = written(draft, "sweep.key");
-  if (sweep.key.compare(0, 6, "sweep.") == 0)
-    reject(where, "sweep.key", "cannot be one of [sweep]");
-  if (sweep.values.empty()) reject(where, "sweep.key", "needs sweep.values as well");
-  std::set<std::string> seen;
-  for (const auto& text : sweep.values) {
-    if (!seen.insert(text).second) {
-      reject(written(draft, "sweep.values"), "sweep.values", "\"" + text + "\" twice");
-    }
-    Draft one = draft;
-    one.value.sweep = {};
-    one.last.erase("sweep.key");
-    one.last.erase("sweep.values");
-    try {
-      apply(one, parse_override(sweep.key + "=" + text));
-      finish(one);
-    } catch (const std::invalid_argument& e) {
-      std::string what = e.what();
-      const std::string set = "--set: ";
-      if (what.compare(0, set.size(), set) == 0) what = what.substr(set.size());
-      reject(written(draft, find_key(sweep.key) != nullptr ? "sweep.values" : "sweep.key"),
-             find_key(sweep.key) != nullptr ? "sweep.values" : "sweep.key", what);
-    }
-  }
+  check_points(draft);
+  blame(draft, [&] { require_models(draft.value.models); });
+  // Of a sweep's many members each has a part of the draws.
+  const std::int64_t draws =
+      std::max(kLeastDraws, kMostDraws / static_cast<std::int64_t>(draft.members));
+  dem::Outlook outlook;
+  blame(draft, [&] { outlook = study.foresee(draft.value, draws); });
+  check_steps(draft, outlook);
 }
 
 }  // namespace
 
-void check_fit(const Draft& draft) {
-  if (!section_applies("fit", draft.value.study)) return;
-  check_list(draft, "fit.models", draft.value.fit.models);
-  check_list(draft, "fit.components", draft.value.fit.components);
-  check_list(draft, "fit.heights", draft.value.fit.heights);
+Assignment written(const Draft& draft, const std::string& path) {
+  const auto at = draft.last.find(path);
+  if (at != draft.last.end()) return at->second;
+  Assignment none;
+  none.path = path;
+  none.origin = draft.file;
+  return none;
 }
+
+void check_fit(const Draft& draft) { check_lists(draft, "fit"); }
 
 std::vector<std::string>& model_names(Case& value) {
   const Study* study = find_study(value.study);
@@ -243,12 +276,20 @@ std::vector<std::string>& model_names(Case& value) {
 
 void finish(Draft& draft) {
   draft.value.idle.clear();
+  if (draft.value.variants.size() > kMostEntries) {
+    reject(written(draft, "sweep.key"), "variant",
+           fmt::format("found {} tables [variant.NAME], allowed: up to {}",
+                       draft.value.variants.size(), kMostEntries));
+  }
   check_sections(draft);
   choose_models(draft);
+  check_lists(draft);
   check_elastic(draft);
   check_heap(draft);
-  check_fit(draft);
   check_verdict(draft);
+  if (const Study& study = study_of(draft.value); study.check != nullptr) {
+    blame(draft, [&] { study.check(draft.value); });
+  }
   check_grains(draft);
   check_sweep(draft);
   for (const auto& [path, a] : draft.last) {

@@ -30,13 +30,14 @@ void fit(Section s) {
   s.word(
       "finite_elements", +IN(Words, fit.finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
       "finite-element models that are solved with the measured slope and the fitted constants and "
-      "join the tables; may be empty");
+      "join the tables");
+  s.or_none();
   s.word("components", +IN(Words, fit.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
-  s.number("heights", "-", +IN(Numbers, fit.heights), {0, 1, true},
+  s.number("heights", "-", +IN(Numbers, fit.heights), {1e-6, 1},
            "horizontal lines, shares of the pile's height above the base; all together");
   s.number(
-      "width_diameters", "-", +IN(double, fit.width_diameters), {0, 100, true},
+      "width_diameters", "-", +IN(double, fit.width_diameters), {0.01, 100},
       "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
       "keeps points further from the flanks");
   s.number("left_deg", "deg", +IN(double, fit.left_deg), {0, 89},
@@ -46,10 +47,10 @@ void fit(Section s) {
            "friction angle of the models that take the flanks apart; 0: the steeper slope");
   s.word("covariance", +IN(string, fit.covariance), {"auto", "parametric", "sample", "diagonal"},
          "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 piles");
-  s.number("huber", "-", +IN(double, fit.huber), kNotNegative,
+  s.number("huber", "-", +IN(double, fit.huber), {0, 1e6},
            "0: least squares; above: values further off than this many errors pull no more than "
            "that (points in the wrong region)");
-  s.number("bootstrap", "-", +IN(Integer, fit.bootstrap), {0, 100000},
+  s.number("bootstrap", "-", +IN(Integer, fit.bootstrap), {0, 10000},
            "draws of the piles for the bootstrap errors; below 10: none");
 }
 

@@ -28,21 +28,21 @@ void packing(Section s) {
          "Roul 5.2, 5.4");
   s.word("sizes", +IN(string, packing.sizes), {"mono", "bidisperse", "uniform"},
          "radii: all equal, two sizes, or uniform between radius_min and radius_max", kRoul);
-  s.number("radius", "m", +IN(double, packing.radius), kPositive,
+  s.number("radius", "m", +IN(double, packing.radius), kRadius,
            "radius of mono and of the larger bidisperse grains; larger grains: fewer of them and a "
            "longer time step",
            kRoul);
   s.only("packing.sizes", {"mono", "bidisperse"});
-  s.number("radius_small", "m", +IN(double, packing.radius_small), kPositive,
+  s.number("radius_small", "m", +IN(double, packing.radius_small), kRadius,
            "radius of the smaller bidisperse grains", kRoul);
   s.only("packing.sizes", {"bidisperse"});
   s.number("fraction_small", "-", +IN(double, packing.fraction_small), {0, 1},
            "share by number of the smaller bidisperse grains; 0 and 1 are mono-disperse");
   s.only("packing.sizes", {"bidisperse"});
-  s.number("radius_min", "m", +IN(double, packing.radius_min), kPositive,
+  s.number("radius_min", "m", +IN(double, packing.radius_min), kRadius,
            "smallest radius of uniform sizes; it sets the time step", kRoul);
   s.only("packing.sizes", {"uniform"});
-  s.number("radius_max", "m", +IN(double, packing.radius_max), kPositive,
+  s.number("radius_max", "m", +IN(double, packing.radius_max), kRadius,
            "largest radius of uniform sizes", kRoul);
   s.only("packing.sizes", {"uniform"});
   s.number("columns", "-", +IN(int, packing.columns), {2, 100000},
@@ -56,20 +56,20 @@ void packing(Section s) {
            "not touch and a grain has four contacts",
            "Roul 5.4");
   s.only("packing.kind", {"sqrt3"});
-  s.number("width", "m", +IN(double, packing.width), kPositive,
+  s.number("width", "m", +IN(double, packing.width), kLength,
            "distance of the side walls; four depths keep their influence small", kRoul);
   s.only("packing.kind", {"layered"});
-  s.number("depth", "m", +IN(double, packing.depth), kPositive,
+  s.number("depth", "m", +IN(double, packing.depth), kLength,
            "rows are dropped until the surface is this high", kRoul);
   s.only("packing.kind", {"layered"});
-  s.number("drop_height", "m", +IN(double, packing.drop_height), kPositive,
+  s.number("drop_height", "m", +IN(double, packing.drop_height), kLength,
            "height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
   s.only("packing.kind", {"layered"});
   s.word("shape", +IN(string, packing.shape), {"disk", "irregular"},
          "disks, or irregular pentagons (sizes and radii are not used)", "Roul 5.1");
   s.only("packing.kind", {"layered"});
-  s.number("side", "m", +IN(double, packing.side), kPositive, "mean length of a side", "Roul 5.1");
+  s.number("side", "m", +IN(double, packing.side), kRadius, "mean length of a side", "Roul 5.1");
   s.only("packing.shape", {"irregular"});
   s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
          "flat wall with friction, or a row of fixed grains", "Roul 5.5");
@@ -82,26 +82,26 @@ void material(Section s) {
   s.word("law", +SHARED(string, material.law), {"overlap_area", "linear"},
          "contact law: elastic force from the overlap area, or linear spring and dashpot",
          "Roul 2.3");
-  s.number("density", "kg/m2", +SHARED(double, material.density), kPositive,
+  s.number("density", "kg/m2", +SHARED(double, material.density), {1e-3, 1e6},
            "areal density of the grains; heavier grains: longer time step", kBoth);
-  s.number("young", "N/m", +SHARED(double, material.young), kPositive,
+  s.number("young", "N/m", +SHARED(double, material.young), kStiffness,
            "Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
            "time step",
            kBoth);
   s.only("material.law", {"overlap_area"});
-  s.number("damping", "-", +SHARED(double, material.damping), kNotNegative,
+  s.number("damping", "-", +SHARED(double, material.damping), {0, 1000},
            "gamma of the normal dashpot; more dissipates faster", kBoth);
   s.only("material.law", {"overlap_area"});
-  s.number("normal_stiffness", "N/m", +SHARED(double, material.normal_stiffness), kPositive,
+  s.number("normal_stiffness", "N/m", +SHARED(double, material.normal_stiffness), kStiffness,
            "normal spring");
   s.only("material.law", {"linear"});
-  s.number("tangential_stiffness", "N/m", +SHARED(double, material.tangential_stiffness),
-           kNotNegative, "tangential spring; 2/7 of the normal one makes both swing in step");
+  s.number("tangential_stiffness", "N/m", +SHARED(double, material.tangential_stiffness), {0, 1e15},
+           "tangential spring; 2/7 of the normal one makes both swing in step");
   s.only("material.law", {"linear"});
-  s.number("normal_damping", "1/s", +SHARED(double, material.normal_damping), kNotNegative,
+  s.number("normal_damping", "1/s", +SHARED(double, material.normal_damping), kRate,
            "normal force of the dashpot per reduced mass and approach velocity");
   s.only("material.law", {"linear"});
-  s.number("tangential_damping", "1/s", +SHARED(double, material.tangential_damping), kNotNegative,
+  s.number("tangential_damping", "1/s", +SHARED(double, material.tangential_damping), kRate,
            "tangential force of the dashpot per reduced mass and slip velocity");
   s.only("material.law", {"linear"});
   s.number(
@@ -115,16 +115,16 @@ void material(Section s) {
            kBoth);
   s.number("wall_friction", "-", +SHARED(double, material.wall_friction), {0, 10},
            "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
-  s.number("gravity", "m/s2", +SHARED(double, material.gravity), kPositive, "downwards", kBoth);
+  s.number("gravity", "m/s2", +SHARED(double, material.gravity), kAcceleration, "downwards", kBoth);
 }
 
 void motion(Section s) {
   s.word("integrator", +SHARED(string, motion.integrator), {"verlet", "gear"},
          "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
          "Roul 2.5");
-  s.number("time_step", "s", +SHARED(double, motion.time_step), kNotNegative,
+  s.number("time_step", "s", +SHARED(double, motion.time_step), Range{1e-12, 1}.with_zero(),
            "0: time_step_fraction of the stable limit");
-  s.number("time_step_fraction", "-", +SHARED(double, motion.time_step_fraction), {0, 2.5, true},
+  s.number("time_step_fraction", "-", +SHARED(double, motion.time_step_fraction), {1e-6, 2.5},
            "share of the stable limit; less is more exact and takes longer. Above 1 for irregular "
            "polygons (rand1, irregular) with verlet only: the limit holds for chains of equal "
            "grains edge "
@@ -135,26 +135,26 @@ void motion(Section s) {
 
 void rest(Section s) {
   s.number("unbalanced_force_ratio", "-", +SHARED(double, rest.unbalanced_force_ratio),
-           {0, 0.1, true}, "at rest: mean resultant over mean contact force is below this");
+           kRatioOfForces, "at rest: mean resultant over mean contact force is below this");
   s.number("kinetic_to_elastic_energy", "-", +SHARED(double, rest.kinetic_to_elastic_energy),
-           {0, 0.1, true}, "at rest: kinetic over elastic energy is below this");
-  s.number("background_damping", "1/s", +SHARED(double, rest.background_damping), kNotNegative,
+           {1e-28, 0.1}, "at rest: kinetic over elastic energy is below this");
+  s.number("background_damping", "1/s", +SHARED(double, rest.background_damping), kRate,
            "acceleration -= this * velocity while coming to rest; more ends slow swinging sooner, "
            "far more makes settling creep");
-  s.number("max_time", "s", +SHARED(double, rest.max_time), kPositive,
+  s.number("max_time", "s", +SHARED(double, rest.max_time), kTime,
            "simulated time after which a packing that is not at rest counts as failed");
 }
 
 void load(Section s) {
-  s.number("force", "N", +IN(double, load.force), kPositive,
+  s.number("force", "N", +IN(double, load.force), kForce,
            "downwards on one grain of the surface; more rearranges grains", kRoul);
   s.word("method", +IN(string, load.method), {"damped", "newton"},
          "slow damped dynamics, or the quasi-static solver on the contact network (for small "
          "forces: it fails where many contacts rearrange)");
-  s.number("unbalanced_force_ratio", "-", +IN(double, load.unbalanced_force_ratio), {0, 0.1, true},
+  s.number("unbalanced_force_ratio", "-", +IN(double, load.unbalanced_force_ratio), kRatioOfForces,
            "mean resultant over mean contact force that Newton's method must reach");
   s.only("load.method", {"newton"});
-  s.number("ramp_time", "s", +IN(double, load.ramp_time), kPositive,
+  s.number("ramp_time", "s", +IN(double, load.ramp_time), kTime,
            "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
   s.only("load.method", {"damped"});
   s.number("position", "-", +IN(double, load.position), {0, 1},

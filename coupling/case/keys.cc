@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <unordered_map>
 
 #include "continuum/model.h"
 #include "coupling/case/declare.h"
@@ -88,6 +90,12 @@ Defaults defaults_of(const Key& key) {
   return out;
 }
 
+// "list of numbers, one or more, each once".
+std::string type_shown(const Key& key) {
+  const std::string entries = entries_allowed(key);
+  return type_name(key) + (entries.empty() ? "" : ", " + entries);
+}
+
 // What stands before a key's meaning: for which studies and with which choices it has an effect.
 std::string limits(const Key& key) {
   const std::string with = condition(key);
@@ -107,6 +115,12 @@ std::string toml_text(const std::string& text) {
     }
   }
   return out + "\"";
+}
+
+bool plain_name(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char ch) {
+    return std::isalnum(ch) != 0 || ch == '_' || ch == '-';
+  });
 }
 
 const std::vector<Key>& keys() {
@@ -135,10 +149,13 @@ const std::vector<Key>& keys() {
 }
 
 const Key* find_key(const std::string& path) {
-  for (const Key& key : keys()) {
-    if (key.path() == path) return &key;
-  }
-  return nullptr;
+  static const std::unordered_map<std::string, const Key*> by_path = [] {
+    std::unordered_map<std::string, const Key*> out;
+    for (const Key& key : keys()) out.emplace(key.path(), &key);
+    return out;
+  }();
+  const auto at = by_path.find(path);
+  return at == by_path.end() ? nullptr : at->second;
 }
 
 std::vector<std::string> sections() {
@@ -209,19 +226,25 @@ std::string type_name(const Key& key) {
       key.where);
 }
 
+std::string entries_allowed(const Key& key) {
+  const bool list = std::visit(
+      [](auto where) { return is_list<std::decay_t<decltype(where(std::declval<Case&>()))>>; },
+      key.where);
+  if (!list) return "";
+  return std::string(key.may_be_empty ? "none or more" : "one or more") +
+         (key.may_repeat ? "" : ", each once");
+}
+
 std::string allowed(const Key& key) {
   if (!key.choices.empty()) return fmt::format("{}", fmt::join(key.choices, " | "));
   const std::string type = type_name(key);
   if (type == "boolean") return "true | false";
   if (type == "text" || type == "list of words") return "any";
-  const bool lower = std::isfinite(key.least), upper = std::isfinite(key.most);
-  if (key.open_least) {
-    return upper ? fmt::format("above {:g}, up to {:g}", key.least, key.most)
-                 : fmt::format("above {:g}", key.least);
-  }
-  if (lower && upper) return fmt::format("{} to {}", key.least, key.most);
-  if (lower) return fmt::format("{:g} or more", key.least);
-  return "any finite number";
+  // Whole numbers in full, others in six digits.
+  const auto shown = [&](double limit) {
+    return type == "integer" ? fmt::format("{:.0f}", limit) : fmt::format("{:g}", limit);
+  };
+  return fmt::format("{}{} to {}", key.or_zero ? "0, or " : "", shown(key.least), shown(key.most));
 }
 
 std::string value_text(const Key& key, const Case& value) {
@@ -281,9 +304,10 @@ std::string keys_text(const std::string& section) {
     std::string others;
     for (const auto& [study, text] : defaults.others)
       others += fmt::format("; {}: {}", study, text);
-    out += fmt::format("  {} = {}{}  ({}; {}; {})\n      {}{}{}\n", key.name, defaults.first,
-                       others, type_name(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
-                       limits(key), key.meaning, key.source.empty() ? "" : " [" + key.source + "]");
+    out +=
+        fmt::format("  {} = {}{}  ({}; {}; {})\n      {}{}{}\n", key.name, defaults.first, others,
+                    type_shown(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
+                    limits(key), key.meaning, key.source.empty() ? "" : " [" + key.source + "]");
   }
   return out;
 }
@@ -313,7 +337,7 @@ std::string keys_markdown() {
       standard += fmt::format("; {}: `{}`", study, cell(text));
     }
     out +=
-        fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_name(key), key.unit,
+        fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_shown(key), key.unit,
                     standard, cell(allowed(key)), cell(limits(key) + key.meaning), key.source);
   }
   return out;

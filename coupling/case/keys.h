@@ -15,6 +15,9 @@ using Binding = std::variant<double& (*)(Case&), std::int64_t& (*)(Case&), int& 
                              bool& (*)(Case&), std::string& (*)(Case&),
                              std::vector<double>& (*)(Case&), std::vector<std::string>& (*)(Case&)>;
 
+/// Most entries of any list.
+inline constexpr std::size_t kMostEntries = 1000;
+
 struct Key {
   std::string section;  ///< empty: top level
   std::string name;
@@ -24,8 +27,9 @@ struct Key {
   std::vector<std::string> choices;  ///< words: those allowed; empty: any text
   std::string meaning;               ///< with what raising it does
   std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
-  bool open_least = false;           ///< the least value itself is not allowed
+  bool or_zero = false;              ///< 0 is allowed besides
   bool may_be_empty = false;         ///< lists: without any value
+  bool may_repeat = false;           ///< lists: a value more than once
   std::string needs;                 ///< path of the key on which it depends; empty: on none
   std::vector<std::string>
       needed;  ///< ... and the values (as TOML, words bare) that give it effect
@@ -48,13 +52,18 @@ std::string condition(const Key& key);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);
-/// "0 to 2", "above 0, up to 1e12", "smooth | rough", "any finite number".
+/// Of a list: "one or more, each once"; empty for other keys.
+std::string entries_allowed(const Key& key);
+/// "0 to 2", "0, or 1e-06 to 1000", "smooth | rough", "any finite number".
 std::string allowed(const Key& key);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);
 
 /// The text in double quotes, as TOML.
 std::string toml_text(const std::string& text);
+/// Whether the text is made of letters, digits, "_" and "-": what TOML takes without quotes, and
+/// what names files, fields and keys of summary.json.
+bool plain_name(const std::string& text);
 
 /// What `grainfield keys` prints: all, one section ("fit") or one key ("fit.heights"). Throws
 /// std::invalid_argument with the nearest name for an unknown one.

@@ -12,10 +12,10 @@ void declare_lattice_keys(std::vector<Key>& keys) {
            "disks in the lowest row, and rows of the equilateral pile; the pile is as many times "
            "softer against its own weight",
            "Liffman et al. 1992, fig. 7");
-  s.number("slope_deg", "deg", +IN(double, slope_deg), {0, 60, true},
+  s.number("slope_deg", "deg", +IN(double, slope_deg), {1, 60},
            "of the outline: rows end under it; 60 is the equilateral pile",
            "Liffman et al. 1992, fig. 13");
-  s.number("radius", "m", +IN(double, radius), kPositive,
+  s.number("radius", "m", +IN(double, radius), kRadius,
            "of the disks; larger: heavier, and a longer time step");
   s.number("gap", "-", +IN(double, gap), {0, 0.5},
            "between neighbours of a row, in diameters; raises H by 4/3 of it; 0: neighbours touch, "

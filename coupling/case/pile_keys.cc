@@ -17,7 +17,7 @@ void shape(Section s) {
          "disk; rand1: corners at random on a circle or ellipse; regular: regular polygons; "
          "irregular: pentagons; outline: the one given",
          "Roul 2.8");
-  s.number("radius", "m", +IN(double, pile.shape.radius), kPositive,
+  s.number("radius", "m", +IN(double, pile.shape.radius), kRadius,
            "mean radius of the circle that the corners lie on (ellipse: of equal area); larger "
            "grains: longer time step",
            kRoul);
@@ -33,28 +33,30 @@ void shape(Section s) {
   s.number("axis_ratio", "-", +IN(double, pile.shape.axis_ratio), {1, 5},
            "major over minor axis of the ellipse", "Roul 3.1 (elliptic: 2)");
   s.only("shape.kind", {"rand1"});
-  s.number("side", "m", +IN(double, pile.shape.side), kNotNegative,
+  s.number("side", "m", +IN(double, pile.shape.side), kRadius.with_zero(),
            "mean length of a side; 0: of the regular pentagon in the circle of radius", "Roul 5.1");
   s.only("shape.kind", {"irregular"});
-  s.numbers_or_none("outline", "-", +IN(Numbers, pile.shape.outline), {},
-                    "corners x1, y1, x2, y2, ... in units of radius, in their order round "
-                    "the grain, convex; the farthest 0.2 to 5 from the centroid");
+  s.number("outline", "-", +IN(Numbers, pile.shape.outline), {-100, 100},
+           "corners x1, y1, x2, y2, ... in units of radius, in their order round "
+           "the grain, convex; the farthest 0.2 to 5 from the centroid");
+  s.or_none();
+  s.with_repeats();
   s.only("shape.kind", {"outline"});
 }
 
 void source(Section s) {
   s.word("kind", +IN(string, pile.source.kind), {"point", "line"},
          "point: grain by grain from a funnel; line: layers dropped from just above", "Roul 3.1");
-  s.number("grains", "-", +IN(Integer, pile.source.grains), {3, 1000000},
+  s.number("grains", "-", +IN(Integer, pile.source.grains), {3, 1e7},
            "of the pile; cost grows a little faster than this number; line: fewer when the pile "
            "comes to a point before",
            kRoul);
-  s.number("height", "m", +IN(double, pile.source.height), kPositive,
+  s.number("height", "m", +IN(double, pile.source.height), kLength,
            "of the funnel's mouth above the floor; higher: faster grains at the top", kRoul);
   s.only("source.kind", {"point"});
-  s.number("speed", "m/s", +IN(double, pile.source.speed), kNotNegative, "downwards, at the start",
+  s.number("speed", "m/s", +IN(double, pile.source.speed), {0, 1e4}, "downwards, at the start",
            kRoul);
-  s.number("interval", "s", +IN(double, pile.source.interval), kPositive,
+  s.number("interval", "s", +IN(double, pile.source.interval), kTime,
            "from one grain to the next; longer: each grain comes to rest before the next, "
            "and the pouring takes as much longer",
            kRoul);
@@ -63,24 +65,24 @@ void source(Section s) {
            "without a funnel of plates: grains start within +- this many mean radii of the axis");
   s.only("source.kind", {"point"});
   s.number(
-      "opening", "m", +IN(double, pile.source.opening), kNotNegative,
+      "opening", "m", +IN(double, pile.source.opening), kLength.with_zero(),
       "width of the funnel's mouth between two immobile plates at 60 degrees, down which the "
       "grains come from anywhere between their upper ends; 0: no plates, they fall freely from "
       "the mouth (and cost less)");
   s.only("source.kind", {"point"});
-  s.number("move", "m", +IN(double, pile.source.move), {},
+  s.number("move", "m", +IN(double, pile.source.move), kOffset,
            "the funnel moves this far to the right while it pours; an asymmetric pile",
            "Roul 3.11");
   s.only("source.kind", {"point"});
-  s.number("clearance", "m", +IN(double, pile.source.clearance), kPositive,
+  s.number("clearance", "m", +IN(double, pile.source.clearance), kLength,
            "height above the pile from which a layer falls", kRoul);
   s.only("source.kind", {"line"});
-  s.number("length", "m", +IN(double, pile.source.length), kPositive,
+  s.number("length", "m", +IN(double, pile.source.length), kLength,
            "of the first layer; later ones are as long as the pile's plateau. Pouring ends when "
            "it has come to a point: about 0.7 of the finished pile's base fits all grains",
            "Roul 3.1");
   s.only("source.kind", {"line"});
-  s.number("shift", "m", +IN(double, pile.source.shift), {},
+  s.number("shift", "m", +IN(double, pile.source.shift), kOffset,
            "every layer's middle lies this far to the right of the last one's; an asymmetric "
            "pile, steeper on the right; below 0: to the left",
            "Roul 3.11");
@@ -91,7 +93,7 @@ void ground(Section s) {
   s.word("kind", +IN(string, pile.floor.kind), {"smooth", "rough"},
          "flat with material.floor_friction, or grains of the pile's kind fixed side by side",
          "Roul 3.1");
-  s.number("length", "m", +IN(double, pile.floor.length), kPositive,
+  s.number("length", "m", +IN(double, pile.floor.length), kLength,
            "of the floor; a pile that leans on the walls at its ends is refused");
 }
 
@@ -99,53 +101,54 @@ void sleep(Section s) {
   s.flag("on", +IN(bool, pile.sleep.on),
          "grains at rest sleep while the pile is poured: the cost follows the moving ones; the "
          "final state is always relaxed with every grain awake");
-  s.number("quiet_time", "s", +IN(double, pile.sleep.quiet_time), kPositive,
+  s.number("quiet_time", "s", +IN(double, pile.sleep.quiet_time), kTime,
            "a grain must be quiet this long before it sleeps; longer: fewer errors, dearer");
   s.only("sleep.on", {"true"});
-  s.number("quiet_move", "-", +IN(double, pile.sleep.quiet_move), kPositive,
+  s.number("quiet_move", "-", +IN(double, pile.sleep.quiet_move), {1e-12, 1e3},
            "quiet: moved less than this share of its diameter in quiet_time");
   s.only("sleep.on", {"true"});
-  s.number("quiet_force", "-", +IN(double, pile.sleep.quiet_force), kPositive,
+  s.number("quiet_force", "-", +IN(double, pile.sleep.quiet_force), {1e-12, 1e3},
            "quiet: resultant below this share of the forces on it");
   s.only("sleep.on", {"true"});
-  s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), kPositive,
+  s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), {1e-12, 1e3},
            "wakes: resultant above this share of the forces on it; less wakes more");
   s.only("sleep.on", {"true"});
-  s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), kPositive,
+  s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), {1e-6, 1e6},
            "wakes: touched at more than this times sqrt(g d)");
   s.only("sleep.on", {"true"});
-  s.number("wake_reach", "-", +IN(double, pile.sleep.wake_reach), kNotNegative,
+  s.number("wake_reach", "-", +IN(double, pile.sleep.wake_reach), {0, 1e3},
            "wakes: within this times d v / sqrt(g d) of a grain that comes near at such a speed v; "
            "0: only what it touches, and impacts hardly move the pile");
   s.only("sleep.on", {"true"});
 }
 
 void change(Section s) {
-  s.numbers_or_none("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kPositive,
-                    "after the rest gravity is changed to each of these, slowly, always from "
-                    "material.gravity; [] changes nothing (pile-fields: takes 10 % away)",
-                    "Roul 3.5-3.9");
+  s.number("gravity", "m/s2", +IN(Numbers, pile.change.gravity), kAcceleration,
+           "after the rest gravity is changed to each of these, slowly, always from "
+           "material.gravity; [] changes nothing (pile-fields: takes 10 % away)",
+           "Roul 3.5-3.9");
+  s.or_none();
   s.word("method", +IN(string, pile.change.method), {"newton", "damped"},
          "quasi-static solver on the contact network, or slow damped dynamics");
   s.number("unbalanced_force_ratio", "-", +IN(double, pile.change.unbalanced_force_ratio),
-           {0, 0.1, true}, "mean resultant over mean contact force to be reached");
+           kRatioOfForces, "mean resultant over mean contact force to be reached");
   s.only("change.method", {"newton"});
-  s.number("ramp_time", "s", +IN(double, pile.change.ramp_time), kPositive,
+  s.number("ramp_time", "s", +IN(double, pile.change.ramp_time), kTime,
            "from the old to the new gravity; longer is closer to quasi-static");
   s.only("change.method", {"damped"});
 }
 
 void heap(Section s) {
-  s.number("heights", "-", +IN(Numbers, heap.heights), {0, 1, true},
+  s.number("heights", "-", +IN(Numbers, heap.heights), {1e-6, 1},
            "horizontal cuts, as shares of the pile's height above the base; the base is always "
            "added",
            "Roul 3.3");
-  s.number("centre", "-", +IN(double, heap.centre), {0, 1, true},
+  s.number("centre", "-", +IN(double, heap.centre), {1e-6, 1},
            "dip: the window under the apex is |x| up to this share of the half base; wider is "
            "less noisy and blurs a narrow dip");
   s.number("shoulder_from", "-", +IN(double, heap.shoulder_from), {0, 1},
            "dip: the windows beside it begin here, shares of the half base");
-  s.number("shoulder_to", "-", +IN(double, heap.shoulder_to), {0, 1, true}, "and end here");
+  s.number("shoulder_to", "-", +IN(double, heap.shoulder_to), {1e-6, 1}, "and end here");
 }
 
 }  // namespace

@@ -19,13 +19,14 @@ void verdict(Section s) {
   s.word("finite_elements", +IN(Words, verdict.finite_elements),
          {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
          "finite-element models that are solved with the fitted constants and join the tables");
+  s.or_none();
   s.word("components", +IN(Words, verdict.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", +IN(bool, verdict.base), "the forces on the base are fitted as well");
   s.word("covariance", +IN(string, verdict.covariance),
          {"auto", "parametric", "sample", "diagonal"},
          "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 packings");
-  s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 100000},
+  s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }
 

@@ -20,10 +20,18 @@ namespace {
 // Strains come from this share of gravity where the case names no other.
 constexpr double kLowered = 0.9;
 
-std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+dem::PileSetup setup_of(const Case& value) {
   dem::PileSetup setup = value.pile;
   if (setup.change.gravity.empty()) setup.change.gravity = {kLowered * setup.material.gravity};
-  return make_pile(value, setup, number, threads);
+  return setup;
+}
+
+std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+  return make_pile(value, setup_of(value), number, threads);
+}
+
+dem::Outlook foresee(const Case& value, std::int64_t draws) {
+  return foresee_pile(value, setup_of(value), draws);
 }
 
 // Vertical pressure along rows of the grid: what profiles.csv holds.
@@ -199,6 +207,7 @@ Study pile_fields_study() {
   out.without = {"compare.models"};
   out.models_optional = true;
   out.make_run = make_run;
+  out.foresee = foresee;
   out.analyse = analyse;
   return out;
 }

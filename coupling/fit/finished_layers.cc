@@ -13,6 +13,8 @@
 namespace grainfield::coupling {
 namespace {
 
+const std::vector<std::string> kStates{"unloaded", "loaded"};
+constexpr const char* kStudy = "point-load";
 constexpr double kSameForce = 1e-9;  // relative: numbers that went through a file
 
 class FinishedLayer final : public dem::Run {
@@ -63,8 +65,14 @@ class FinishedLayer final : public dem::Run {
 }  // namespace
 
 std::unique_ptr<dem::Run> make_finished_layer_run(const Case& value, std::int64_t number) {
-  return std::make_unique<FinishedLayer>(
-      finished_run(value, number, {"unloaded", "loaded"}, "point-load"), value.layer.load.force);
+  return std::make_unique<FinishedLayer>(finished_run(value, number, kStates, kStudy),
+                                         value.layer.load.force);
+}
+
+void try_finished_layers(const Case& value) {
+  try_finished_runs(value, kStates, kStudy, [&](const FinishedRun& layer) {
+    FinishedLayer(layer, value.layer.load.force);
+  });
 }
 
 }  // namespace grainfield::coupling

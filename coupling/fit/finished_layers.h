@@ -14,5 +14,7 @@ namespace grainfield::coupling {
 /// file without such a group or too few for ensemble.realizations, "load.force: ..." when the
 /// layer carries another force.
 std::unique_ptr<dem::Run> make_finished_layer_run(const Case& value, std::int64_t number);
+/// Reads all of them (try_finished_runs). Throws the same.
+void try_finished_layers(const Case& value);
 
 }  // namespace grainfield::coupling

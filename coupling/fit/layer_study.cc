@@ -25,6 +25,14 @@ std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int t
   return dem::make_point_load_run(value.layer, realization_seed(value, number), threads);
 }
 
+dem::Outlook foresee(const Case& value, std::int64_t draws) {
+  if (value.grains.files.empty()) {
+    return dem::foresee_point_load(value.layer, realization_seeds(value), draws);
+  }
+  try_finished_layers(value);
+  return {};
+}
+
 // The registry's model with F = 1, h = 1 at the fit's points, through the same kernel.
 FiniteElementFit solve(const std::string& name, const LayerFits& fits, const LayerSight& sight) {
   FiniteElementFit out;
@@ -210,6 +218,7 @@ Study point_load_verdict_study() {
   out.without = {"compare.models"};
   out.models_optional = true;
   out.make_run = make_run;
+  out.foresee = foresee;
   out.analyse = analyse;
   return out;
 }

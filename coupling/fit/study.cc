@@ -9,10 +9,19 @@
 namespace grainfield::coupling {
 namespace {
 
-std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+// The piles as they are.
+dem::PileSetup setup_of(const Case& value) {
   dem::PileSetup setup = value.pile;
   setup.change.gravity.clear();
-  return make_pile(value, setup, number, threads);
+  return setup;
+}
+
+std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+  return make_pile(value, setup_of(value), number, threads);
+}
+
+dem::Outlook foresee(const Case& value, std::int64_t draws) {
+  return foresee_pile(value, setup_of(value), draws);
 }
 
 StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
@@ -37,6 +46,7 @@ Study pile_fit_study() {
   out.without = {"compare.models"};
   out.models_optional = true;
   out.make_run = make_run;
+  out.foresee = foresee;
   out.analyse = analyse;
   return out;
 }

@@ -25,9 +25,8 @@ std::vector<ModelChoice> of_dimension(const Case& value) {
   return out;
 }
 
-}  // namespace
-
-StudyResult analyse_elastic(const Case& value) {
+// Where the models are looked at, and what they are told.
+ModelsOnly places_of(const Case& value) {
   const ElasticSetup& setup = value.elastic;
   const auto [least, most] = std::minmax_element(setup.depths.begin(), setup.depths.end());
   const bool heap = value.study == "wedge-core", layer = value.study != "elastic-half-space";
@@ -43,10 +42,8 @@ StudyResult analyse_elastic(const Case& value) {
   where.depths = setup.depths;
   where.half_width = setup.half_width;
   where.points = static_cast<int>(setup.points);
-  return compare_models(value, of_dimension(value), where);
+  return where;
 }
-
-namespace {
 
 Study elastic_study(const char* name, const char* meaning) {
   Study out;
@@ -55,6 +52,9 @@ Study elastic_study(const char* name, const char* meaning) {
   out.sections = {"elastic"};
   out.without = {"elastic.r", "elastic.t"};
   out.fills = {"F", "h", "dim", "depth"};
+  out.check = [](const Case& value) {
+    require_models(of_dimension(value), places_of(value).facts);
+  };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
     return analyse_elastic(value);
   };
@@ -62,6 +62,10 @@ Study elastic_study(const char* name, const char* meaning) {
 }
 
 }  // namespace
+
+StudyResult analyse_elastic(const Case& value) {
+  return compare_models(value, of_dimension(value), places_of(value));
+}
 
 Study elastic_layer_study() {
   Study out = elastic_study("elastic-layer", "finite elements of a loaded layer, closed form");

@@ -257,6 +257,14 @@ std::uint64_t realization_seed(const Case& value, std::int64_t number) {
                           static_cast<std::uint64_t>(number));
 }
 
+std::vector<std::uint64_t> realization_seeds(const Case& value) {
+  std::vector<std::uint64_t> seeds;
+  for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
+    seeds.push_back(realization_seed(value, r));
+  }
+  return seeds;
+}
+
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options) {
   Worker worker(tasks, options);
   std::string noted;

@@ -17,6 +17,8 @@ namespace grainfield::coupling {
 std::uint64_t realization_seed(std::uint64_t seed, std::uint64_t index);
 /// That of the case's realization `number`, from its ensemble.seed.
 std::uint64_t realization_seed(const Case& value, std::int64_t number);
+/// Those of all its realizations.
+std::vector<std::uint64_t> realization_seeds(const Case& value);
 
 /// One realization to be done.
 struct Task {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
 #include "coupling/run/ensemble.h"
@@ -11,6 +12,9 @@
 
 namespace grainfield::coupling {
 namespace {
+
+// Of grains.files, in all, that a check reads: a second's worth.
+constexpr std::uintmax_t kReadBytes = 64'000'000;
 
 std::vector<std::string> groups_of(const std::string& file) {
   try {
@@ -20,10 +24,9 @@ std::vector<std::string> groups_of(const std::string& file) {
   }
 }
 
-}  // namespace
-
-FinishedRun finished_run(const Case& value, std::int64_t number,
-                         const std::vector<std::string>& snapshots, const std::string& study) {
+// All that the files hold, at least as many as the case wants.
+std::vector<FinishedRun> finished_runs(const Case& value, const std::vector<std::string>& snapshots,
+                                       const std::string& study) {
   std::vector<FinishedRun> there;
   for (const std::string& file : value.grains.files) {
     const std::size_t before = there.size();
@@ -49,7 +52,29 @@ FinishedRun finished_run(const Case& value, std::int64_t number,
         "ensemble.realizations: found {}, allowed: up to {}, the realizations in grains.files",
         value.ensemble.realizations, count));
   }
-  return there[static_cast<std::size_t>(number)];
+  there.resize(static_cast<std::size_t>(value.ensemble.realizations));
+  return there;
+}
+
+}  // namespace
+
+FinishedRun finished_run(const Case& value, std::int64_t number,
+                         const std::vector<std::string>& snapshots, const std::string& study) {
+  return finished_runs(value, snapshots, study)[static_cast<std::size_t>(number)];
+}
+
+void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
+                       const std::string& study,
+                       const std::function<void(const FinishedRun&)>& make) {
+  std::uintmax_t bytes = 0;
+  std::string last;
+  for (const FinishedRun& run : finished_runs(value, snapshots, study)) {
+    std::error_code error;
+    if (run.file != last) bytes += std::filesystem::file_size(run.file, error);
+    if (error || bytes > kReadBytes) return;
+    last = run.file;
+    make(run);
+  }
 }
 
 std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
@@ -59,6 +84,16 @@ std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& set
   }
   const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
   return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
+}
+
+dem::Outlook foresee_pile(const Case& value, const dem::PileSetup& setup, std::int64_t draws) {
+  if (value.grains.files.empty()) {
+    return dem::foresee_pile(setup, realization_seeds(value), draws);
+  }
+  try_finished_runs(value, {"pile"}, "pile", [&](const FinishedRun& pile) {
+    dem::make_pile_change_run(setup, pile.file, pile.group, 1);
+  });
+  return dem::foresee_changes(setup.change);
 }
 
 }  // namespace grainfield::coupling

@@ -1,11 +1,13 @@
 // What earlier runs left, as a new run finds it in grains.files.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "dem/study/outlook.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -23,10 +25,19 @@ struct FinishedRun {
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study);
 
+/// Makes the run of every realization in grains.files and lets it go again, as far as the files are
+/// no larger than a check may read. Throws as finished_run and as `make`.
+void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
+                       const std::string& study,
+                       const std::function<void(const FinishedRun&)>& make);
+
 /// The pile of that number: poured as `setup` says, or, where the case names grains.files, the one
 /// found there ("pile") under the changes of `setup`. Throws as finished_run and dem's runs of
 /// piles.
 std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
                                     std::int64_t number, int threads);
+
+/// What that takes (Study::foresee). Throws as make_pile.
+dem::Outlook foresee_pile(const Case& value, const dem::PileSetup& setup, std::int64_t draws);
 
 }  // namespace grainfield::coupling

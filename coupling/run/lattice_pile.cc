@@ -286,6 +286,9 @@ Study lattice_pile_study() {
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_lattice_pile_run(value.lattice_pile, realization_seed(value, number), threads);
   };
+  out.foresee = [](const Case& value, std::int64_t) {
+    return dem::foresee_lattice_pile(value.lattice_pile);
+  };
   out.analyse = analyse_lattice_pile;
   return out;
 }

@@ -6,10 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 
+#include "continuum/constants.h"
 #include "continuum/idle.h"
 #include "continuum/settings.h"
+#include "continuum/size.h"
 #include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
 
@@ -75,6 +79,41 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
       out["phi_deg"] = at->second;
   }
   return out;
+}
+
+void require_models(const std::vector<ModelChoice>& choices, const RunFacts& facts) {
+  for (const ModelChoice& choice : choices) {
+    const auto& info = continuum::find_model(choice.name);
+    const continuum::Settings settings = filled_settings(choice, facts);
+    if (const auto idle = continuum::find_idle(info, settings)) {
+      throw continuum::BadParameter(idle->refusal);
+    }
+    const continuum::Settings full = continuum::complete(info, settings);
+    continuum::require_possible(info, full);
+    if (!choice.name.starts_with("fe_")) info.make(full);
+  }
+}
+
+void require_models(const std::vector<ModelChoice>& choices) {
+  constexpr double kHeights[] = {1e-3, 0.1, 10}, kSlopes[] = {20, 27, 35};
+  for (const ModelChoice& choice : choices) {
+    std::set<std::string> said;
+    for (std::size_t k = 0; k < std::size(kHeights); ++k) {
+      const double h = kHeights[k], slope = kSlopes[k];
+      RunFacts facts{1, h, 2, 0.1 * h, "", {}};
+      facts.numbers = {{"rho_g", 1 / h},      {"phi_deg", slope},
+                       {"left_deg", slope},   {"right_deg", slope},
+                       {"chi_g", 1},          {"alpha_deg", slope},
+                       {"spacing", 0.01 * h}, {"width", 2 * h / std::tan(slope * kDegree)}};
+      try {
+        require_models({choice}, facts);
+        said.emplace();
+      } catch (const continuum::BadParameter& e) {
+        said.emplace(e.what());
+      }
+    }
+    if (said.size() == 1 && !said.begin()->empty()) throw continuum::BadParameter(*said.begin());
+  }
 }
 
 std::string model_label(const ModelChoice& choice) {

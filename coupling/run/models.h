@@ -24,6 +24,12 @@ struct RunFacts {
 /// not set it; a filled phi_deg is at least left_deg and right_deg of a model that has them. Throws
 /// continuum::BadParameter where a number that would be filled in is nan (not measurable).
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts);
+/// Throws continuum::BadParameter for a model that refuses these facts beside its settings.
+/// Finite-element models are not made: of them only ranges and settings without effect are seen.
+void require_models(const std::vector<ModelChoice>& choices, const RunFacts& facts);
+/// The same before a run that will fill in F, h, slopes and weight: what is refused whatever they
+/// will be.
+void require_models(const std::vector<ModelChoice>& choices);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
 

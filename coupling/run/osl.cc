@@ -8,8 +8,10 @@
 #include "coupling/run/models_only.h"
 
 namespace grainfield::coupling {
+namespace {
 
-StudyResult analyse_osl(const Case& value) {
+// Where the models are looked at, and what they are told.
+ModelsOnly places_of(const Case& value) {
   const ElasticSetup& setup = value.elastic;
   if (value.models.size() < 2) {
     throw std::invalid_argument(fmt::format(
@@ -27,10 +29,8 @@ StudyResult analyse_osl(const Case& value) {
   where.depths = setup.depths;
   where.half_width = setup.half_width;
   where.points = static_cast<int>(setup.points);
-  return compare_models(value, value.models, where);
+  return where;
 }
-
-namespace {
 
 Study osl_study(const char* name, const char* meaning) {
   Study out;
@@ -39,6 +39,7 @@ Study osl_study(const char* name, const char* meaning) {
   out.sections = {"elastic"};
   out.without = {"elastic.dim", "elastic.base", "elastic.r", "elastic.t"};
   out.fills = {"h"};
+  out.check = [](const Case& value) { require_models(value.models, places_of(value).facts); };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
     return analyse_osl(value);
   };
@@ -46,6 +47,10 @@ Study osl_study(const char* name, const char* meaning) {
 }
 
 }  // namespace
+
+StudyResult analyse_osl(const Case& value) {
+  return compare_models(value, value.models, places_of(value));
+}
 
 Study osl_wedge_study() {
   Study out = osl_study("osl-wedge", "oriented stress linearity of a heap, solvers, closed form");

@@ -383,6 +383,9 @@ Study pile_study() {
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return make_pile(value, value.pile, number, threads);
   };
+  out.foresee = [](const Case& value, std::int64_t draws) {
+    return foresee_pile(value, value.pile, draws);
+  };
   out.analyse = analyse_pile;
   return out;
 }

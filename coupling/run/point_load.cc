@@ -292,6 +292,9 @@ Study point_load_study() {
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_point_load_run(value.layer, realization_seed(value, number), threads);
   };
+  out.foresee = [](const Case& value, std::int64_t draws) {
+    return dem::foresee_point_load(value.layer, realization_seeds(value), draws);
+  };
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int threads) {
     return analyse_point_load(value, files, threads);
   };

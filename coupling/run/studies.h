@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "dem/study/outlook.h"
 #include "dem/study/run.h"
 
 namespace grainfield::coupling {
@@ -27,6 +28,12 @@ struct Study {
   /// The realization of grains of this number, from 0; null: a study without grains. Throws
   /// std::invalid_argument beginning with the key that does not hold.
   std::unique_ptr<dem::Run> (*make_run)(const Case&, std::int64_t number, int threads) = nullptr;
+  /// What a realization will take, from the case alone; set where make_run is. Throws what make_run
+  /// would for any of the realizations; draws at most so many grains (dem/study/outlook.h).
+  dem::Outlook (*foresee)(const Case&, std::int64_t draws) = nullptr;
+  /// What only the study knows of its keys and models; null: nothing. Throws std::invalid_argument
+  /// beginning with the key that does not hold.
+  void (*check)(const Case&) = nullptr;
   /// Everything the study leaves, from the files of its realizations in order (none without
   /// grains). The bits do not depend on threads.
   StudyResult (*analyse)(const Case&, const std::vector<std::string>& realizations,

@@ -142,6 +142,7 @@ Study wedge_study() {
   out.meaning = "elastic-plastic heaps by how they were laid, beside the closed wedges";
   out.sections = {"wedge"};
   out.fills = {"h", "rho_g", "phi_deg", "left_deg", "right_deg"};
+  out.check = [](const Case& value) { WedgeAnalysis{value}; };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
     return analyse_wedge(value);
   };

@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 #include <stdexcept>
 
 #include "continuum/constants.h"
 #include "continuum/idle.h"
+#include "continuum/settings.h"
+#include "continuum/size.h"
 #include "coupling/run/wedge_analysis.h"
 
 namespace grainfield::coupling {
@@ -31,9 +33,10 @@ double relative(const Eigen::VectorXd& of, const Eigen::VectorXd& from) {
 
 /// The angle a base stands for: none where it is a word.
 bool is_angle(const std::string& base) {
-  char* end = nullptr;
-  const double angle = std::strtod(base.c_str(), &end);
-  return !base.empty() && *end == '\0' && angle >= 0 && angle <= 80;
+  double angle = -1;
+  const char* end = base.data() + base.size();
+  const auto [stop, error] = std::from_chars(base.data(), end, angle);
+  return error == std::errc() && stop == end && angle >= 0 && angle <= 80;
 }
 
 }  // namespace
@@ -135,6 +138,18 @@ void WedgeAnalysis::find_members() {
       }
     }
     drop_idle(choice, begin);
+  }
+  for (const WedgeMember& m : members_) {
+    const auto& info = continuum::find_model(m.choice.name);
+    continuum::require_possible(info, continuum::complete(info, filled_settings(m.choice, facts_)));
+  }
+  std::set<std::string> labels;
+  for (const WedgeMember& m : members_) {
+    if (!labels.insert(m.choice.label).second)
+      throw std::invalid_argument(
+          fmt::format("compare.models: found \"{}\" twice, with what wedge.histories, "
+                      "dilations_deg and bases add; choose another label",
+                      m.choice.label));
   }
   if (!members_[first_heap()].heap)
     throw std::invalid_argument(

@@ -52,6 +52,10 @@ std::vector<double> draw_gaps(int n, Random& random) {
   }
 }
 
+// Of draw_gaps: the chance that none of n uniform spacings is above (kMostGap - kLeastGap) /
+// (1 - kLeastGap) = 2.5 of their mean is about exp(-n exp(-2.5)).
+double gap_draws(double n) { return n * std::exp(n * std::exp(-2.5)); }
+
 Outline on_ellipse(const std::vector<double>& angles, double a, double b) {
   Outline out;
   out.reserve(angles.size());
@@ -191,6 +195,11 @@ ShapedGrain disk_grain(double radius) {
   return g;
 }
 
+double draw_work(const ShapeSetup& s) {
+  constexpr double kOctagon = 8;
+  return s.kind == "rand1" ? std::max(1.0, gap_draws(s.corners_max) / gap_draws(kOctagon)) : 1;
+}
+
 ShapedGrain draw_grain(const ShapeSetup& s, Random& random) {
   const double size = 1 + s.polydispersity * random.uniform(-1, 1);
   const double radius = s.radius * size;
@@ -213,22 +222,34 @@ ShapedGrain draw_grain(const ShapeSetup& s, Random& random) {
   return g;
 }
 
+GrainTally::GrainTally(double density) : density_(density) {
+  extremes_.least_mass = std::numeric_limits<double>::infinity();
+}
+
+void GrainTally::add(const ShapedGrain& g) {
+  const double mass = density_ * g.area;
+  extremes_.least_mass = std::min(extremes_.least_mass, mass);
+  largest_radius_ = std::max(largest_radius_, g.radius);
+  area_ += g.area;
+  squares_ += g.area * g.area;
+  ++count_;
+  if (g.outline.empty()) return;
+  const double steepness = edge_steepness(g.outline), quick = steepness / std::sqrt(mass);
+  if (quick <= quickest_) return;
+  quickest_ = quick;
+  extremes_.steepest_edge = steepness;
+  extremes_.steep_mass = mass;
+}
+
+double GrainTally::area_variation() const {
+  const double n = static_cast<double>(count_), mean = area_ / n;
+  return std::sqrt(std::max(0.0, squares_ / n - mean * mean)) / mean;
+}
+
 GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density) {
-  GrainExtremes e;
-  e.least_mass = std::numeric_limits<double>::infinity();
-  double quickest = 0;
-  for (const ShapedGrain& g : grains) {
-    const double mass = density * g.area;
-    e.least_mass = std::min(e.least_mass, mass);
-    if (g.outline.empty()) continue;
-    const double steepness = edge_steepness(g.outline), quick = steepness / std::sqrt(mass);
-    if (quick > quickest) {
-      quickest = quick;
-      e.steepest_edge = steepness;
-      e.steep_mass = mass;
-    }
-  }
-  return e;
+  GrainTally tally(density);
+  for (const ShapedGrain& g : grains) tally.add(g);
+  return tally.extremes();
 }
 
 double largest_radius(const std::vector<ShapedGrain>& grains) {

@@ -1,5 +1,6 @@
 // Grains of a family: sizes and outlines drawn from a seed.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -30,8 +31,29 @@ void check_shape(const ShapeSetup& shape);
 /// - irregular: pentagon whose corners lie on a circle, each turned by up to a quarter of the mean
 ///   gap from the regular pentagon's, with the mean side asked for.
 ShapedGrain draw_grain(const ShapeSetup& shape, Random& random);
+/// Work of drawing one, about, over that of a RAND1 octagon: many corners are rejected often.
+double draw_work(const ShapeSetup& shape);
 /// A disk of this radius; draws nothing.
 ShapedGrain disk_grain(double radius);
+
+/// What is asked of a population of grains, without keeping them.
+class GrainTally {
+ public:
+  explicit GrainTally(double density);
+  void add(const ShapedGrain& grain);
+
+  std::int64_t count() const { return count_; }
+  double area() const { return area_; }                      ///< of all, m2
+  double largest_radius() const { return largest_radius_; }  ///< m
+  const GrainExtremes& extremes() const { return extremes_; }
+  /// Standard deviation of the grains' areas over their mean.
+  double area_variation() const;
+
+ private:
+  double density_, area_ = 0, squares_ = 0, largest_radius_ = 0, quickest_ = 0;
+  std::int64_t count_ = 0;
+  GrainExtremes extremes_;
+};
 
 /// What bounds the time step of these grains.
 GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density);

@@ -41,7 +41,18 @@ constexpr double kPentagonCircumradius = 1.25, kPentagonInradius = 0.4;
 // Their mean area over side^2 is 1.6, less is taken.
 constexpr double kPentagonArea = 1.4;
 
-bool pentagons(const PackingSetup& p) { return p.kind == "layered" && p.shape == "irregular"; }
+}  // namespace
+
+bool draws_pentagons(const PackingSetup& p) {
+  return p.kind == "layered" && p.shape == "irregular";
+}
+
+double pentagons_drawn(const PackingSetup& p) {
+  // A layer's worth at a volume fraction of 1, and three rows more: what lies above the depth at
+  // the end, and a rough floor.
+  const double area = p.width * (p.depth + 6 * largest_radius(p));
+  return area / (kPentagonArea * p.side * p.side);
+}
 
 ShapeSetup pentagon(const PackingSetup& p) {
   ShapeSetup s;
@@ -50,8 +61,6 @@ ShapeSetup pentagon(const PackingSetup& p) {
   s.side = p.side;
   return s;
 }
-
-}  // namespace
 
 void check_packing(const PackingSetup& p) {
   if (p.kind == "layered") {
@@ -91,13 +100,13 @@ double draw_radius(const PackingSetup& p, Random& random) {
 }
 
 double largest_radius(const PackingSetup& p) {
-  if (pentagons(p)) return kPentagonCircumradius * p.side;
+  if (draws_pentagons(p)) return kPentagonCircumradius * p.side;
   if (p.sizes == "bidisperse") return std::max(p.radius, p.radius_small);
   return p.sizes == "uniform" ? p.radius_max : p.radius;
 }
 
 double smallest_radius(const PackingSetup& p) {
-  if (pentagons(p)) return kPentagonInradius * p.side;
+  if (draws_pentagons(p)) return kPentagonInradius * p.side;
   if (p.sizes == "bidisperse") return std::min(p.radius, p.radius_small);
   return p.sizes == "uniform" ? p.radius_min : p.radius * (1 - 2 * p.jitter);
 }
@@ -138,12 +147,9 @@ void add_row(const PackingSetup& p, bool shifted, double y, double density, bool
 }  // namespace
 
 GrainSupply::GrainSupply(const PackingSetup& packing, Random& random) : packing_(packing) {
-  if (!pentagons(packing)) return;
+  if (!draws_pentagons(packing)) return;
   const ShapeSetup shape = pentagon(packing);
-  // A layer's worth at a volume fraction of 1, and three rows more: what lies above the depth at
-  // the end, and a rough floor.
-  const double area = packing.width * (packing.depth + 6 * largest_radius(packing));
-  const auto count = static_cast<std::size_t>(area / (kPentagonArea * packing.side * packing.side));
+  const auto count = static_cast<std::size_t>(pentagons_drawn(packing));
   while (drawn_.size() < count) drawn_.push_back(draw_grain(shape, random));
 }
 
@@ -151,13 +157,13 @@ std::vector<ShapedGrain> GrainSupply::fill(double width, Random& random) {
   std::vector<ShapedGrain> out;
   double slack = width;
   while (true) {
-    if (pentagons(packing_) && taken_ == static_cast<long>(drawn_.size())) {
+    if (draws_pentagons(packing_) && taken_ == static_cast<long>(drawn_.size())) {
       throw ComputationFailed(fmt::format(
           "the layer does not reach packing.depth = {:g} m with {} grains; lower packing.depth",
           packing_.depth, taken_));
     }
     const ShapedGrain next =
-        pentagons(packing_) ? drawn_[taken_] : disk_grain(draw_radius(packing_, random));
+        draws_pentagons(packing_) ? drawn_[taken_] : disk_grain(draw_radius(packing_, random));
     // Rounding must not cost a row its last grain.
     if (2 * next.radius > slack * (1 + 1e-9)) return out;
     ++taken_;

@@ -43,6 +43,12 @@ double draw_radius(const PackingSetup& packing, Random& random);
 double largest_radius(const PackingSetup& packing);
 double smallest_radius(const PackingSetup& packing);
 
+/// Whether the grains are pentagons, drawn before the layer is built, and how many are drawn.
+bool draws_pentagons(const PackingSetup& packing);
+double pentagons_drawn(const PackingSetup& packing);
+/// Their family.
+ShapeSetup pentagon(const PackingSetup& packing);
+
 /// Distance between the side walls, m.
 double layer_width(const PackingSetup& packing);
 

@@ -12,7 +12,8 @@
 namespace grainfield::dem {
 
 EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
-                               const GrainExtremes& extremes, int threads, bool irregular) {
+                               const GrainExtremes& extremes, int threads, bool irregular,
+                               double reserve) {
   if (!(m.gravity > 0)) {
     throw std::invalid_argument(fmt::format(
         "material.gravity: found {:g}, allowed: above 0 (grains need weight to come to rest)",
@@ -34,8 +35,11 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   const double limit = stable_time_step(e, extremes);
   e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
   const bool beyond = irregular && e.integrator == IntegratorKind::verlet;
+  const bool own = motion.time_step <= 0 && motion.time_step_fraction <= 1;
   const double most =
-      beyond ? std::min(kMostOfLimit * limit, 2 * stable_time_step(e, extremes.least_mass)) : limit;
+      (beyond ? std::min(kMostOfLimit * limit, 2 * stable_time_step(e, extremes.least_mass))
+              : limit) /
+      (own ? 1 : reserve);
   // A fraction of the limit itself must not fail by its last digit.
   if (e.time_step > most * (1 + 1e-12)) {
     const std::string who =
@@ -64,6 +68,19 @@ void check_countable(const char* key, double time, double time_step) {
       fmt::format("{}: found {:g} s in all, allowed: at most {:g} s ({:g} steps of {:g} s, see "
                   "motion.time_step)",
                   key, time, kMostSteps * time_step, kMostSteps, time_step));
+}
+
+double round_down(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::floor(value / unit * (1 + 1e-12)) * unit;
+}
+
+void check_background_damping(const RestSetup& rest, double time_step) {
+  if (rest.background_damping * time_step <= 1) return;
+  throw std::invalid_argument(fmt::format(
+      "rest.background_damping: found {:g}, allowed: at most {:g} 1/s, one over the time step of "
+      "{:.3g} s",
+      rest.background_damping, round_down(1 / time_step), time_step));
 }
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {

@@ -26,9 +26,16 @@ void add_reached(const std::string& prefix, const Reached& reached,
 /// Settings of the engine, without polygons and sleeping. Throws std::invalid_argument naming the
 /// key when there is no gravity or the time step is above the stable limit of these grains;
 /// irregular polygons may go up to kMostOfLimit times it with Verlet, but never beyond what the
-/// dashpots of round grains bear (twice their bound).
+/// dashpots of round grains bear (twice their bound). A step that does not follow from the grains'
+/// own limit must stay below it by `reserve`, where not all of the grains were drawn.
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
-                               const GrainExtremes& extremes, int threads, bool irregular = false);
+                               const GrainExtremes& extremes, int threads, bool irregular = false,
+                               double reserve = 1);
+/// A positive number to three digits, never up: the limit that a message names must be accepted.
+double round_down(double value);
+/// Throws std::invalid_argument naming rest.background_damping when it would take more than its
+/// velocity from a grain within a time step.
+void check_background_damping(const RestSetup& rest, double time_step);
 
 /// Throws std::invalid_argument naming the key when its time, s, takes more steps than anyone waits
 /// for (kMostSteps).

@@ -25,7 +25,10 @@ class LatticePileRun final : public Run {
     check_lattice(setup_.lattice);
     const double r = setup_.lattice.radius;
     const double mass = setup_.material.density * std::numbers::pi * r * r;
-    engine_ = make_engine(engine_settings(setup_.material, setup_.motion, {mass, 0}, threads));
+    const EngineSettings settings =
+        engine_settings(setup_.material, setup_.motion, {mass, 0}, threads);
+    check_background_damping(setup_.rest, settings.time_step);
+    engine_ = make_engine(settings);
     engine_->add_wall({"floor", Vec3(0, 0, 0), Vec3(0, 1, 0), setup_.material.floor_friction});
     for (const NewGrain& g : lattice_pile_grains(setup_.lattice, setup_.material.density)) {
       engine_->add(g);

@@ -26,7 +26,8 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   settings_ =
       engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
                       threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
-  check_source(setup_, grains_);
+  check_background_damping(setup_.rest, settings_.time_step);
+  check_source(setup_, largest_radius(grains_), total_area(grains_));
   const SourceSetup& o = setup_.source;
   if (o.kind == "point") {
     const double fall = least_interval(o.speed, setup_.material.gravity, o.height);

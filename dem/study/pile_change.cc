@@ -119,6 +119,7 @@ class PileChangeRun final : public Run {
     EngineSettings out =
         engine_settings(setup_.material, setup_.motion,
                         extremes_of(grains, setup_.material.density), threads, irregular);
+    check_background_damping(setup_.rest, out.time_step);
     out.polygons = polygons;
     return out;
   }

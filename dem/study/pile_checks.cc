@@ -138,9 +138,9 @@ void check_pile(const PileSetup& s) {
   }
 }
 
-void check_source(const PileSetup& s, const std::vector<ShapedGrain>& grains) {
-  const double diameter = 2 * largest_radius(grains);
-  const ExpectedHeap heap = expected_heap(total_area(grains));
+void check_source(const PileSetup& s, double largest_radius, double grain_area) {
+  const double diameter = 2 * largest_radius;
+  const ExpectedHeap heap = expected_heap(grain_area);
   double base = heap.base;
   if (s.source.kind == "point") {
     const double interval = least_interval(s.source.speed, s.material.gravity, diameter);

@@ -17,10 +17,11 @@ ExpectedHeap expected_heap(double grain_area);
 
 /// Settings that can be judged without the grains. Throws std::invalid_argument naming the key.
 void check_pile(const PileSetup& setup);
-/// The source and the floor against the grains that were drawn: pour rate, height of the mouth,
+/// The source and the floor against the grains that were drawn (their largest radius, m, and the
+/// area of all, m2): pour rate, height of the mouth,
 /// length of the line and of the floor. Throws std::invalid_argument naming the key and the least
 /// value allowed.
-void check_source(const PileSetup& setup, const std::vector<ShapedGrain>& grains);
+void check_source(const PileSetup& setup, double largest_radius, double grain_area);
 
 /// Top of the grains at rest on others or on the floor, m; 0 without any. Grains in flight, above
 /// the mouth or on a funnel's plates do not count.

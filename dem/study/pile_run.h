@@ -30,7 +30,6 @@ class PileRun final : public Run {
   void advance(long steps) override;
   bool done() const override { return phase_ == PilePhase::done; }
   Progress progress() const override;
-  Outlook outlook() const override;
   void save(const std::string& file) const override;
   void restore(const std::string& file) override;
   RunResult result() const override;

@@ -52,12 +52,6 @@ Progress PileRun::progress() const {
   return p;
 }
 
-Outlook PileRun::outlook() const {
-  // Nobody knows how long the layers of a line take to settle.
-  const double pour = setup_.source.grains * setup_.source.interval;
-  return {setup_.source.grains, settings_.time_step, setup_.source.kind == "point" ? pour : 0};
-}
-
 std::string PileRun::fingerprint() const {
   const ShapeSetup& h = setup_.shape;
   const SourceSetup& o = setup_.source;

@@ -33,10 +33,6 @@ class PointLoadRun final : public Run {
   void advance(long steps) override;
   bool done() const override { return phase_ == Phase::done; }
   Progress progress() const override;
-  Outlook outlook() const override {
-    const bool whole = setup_.packing.kind != "layered";  // else only the first row is there
-    return {whole ? engine_->grains() : 0, engine_->time_step(), 0};
-  }
   void save(const std::string& file) const override;
   void restore(const std::string& file) override;
   RunResult result() const override;
@@ -78,6 +74,7 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
                               setup_.packing.shape == "irregular");
+  check_background_damping(setup_.rest, settings_.time_step);
   settings_.polygons = setup_.packing.shape != "disk";
   if (!by_newton()) {
     check_countable("load.ramp_time", setup_.load.ramp_time, settings_.time_step);
@@ -208,22 +205,19 @@ void PointLoadRun::solve() {
 
 std::int64_t PointLoadRun::choose_loaded_grain(const Snapshot& s) const {
   const double x0 = (setup_.load.position - 0.5) * width_;
-  const double reach = largest_radius(setup_.packing);
   std::int64_t best = -1;
   double height = -1;
-  // The highest grain within a radius of the wanted place; ties go to the nearer one.
-  for (const Grain& g : s.grains) {
-    if (g.fixed || std::fabs(g.position.x() - x0) > reach) continue;
-    const double key = g.position.y() - 1e-3 * std::fabs(g.position.x() - x0);
-    if (best < 0 || key > height) {
-      best = g.id;
-      height = key;
+  // The highest grain within a radius of the wanted place, or where there is none within more; ties
+  // go to the nearer one.
+  for (double reach = largest_radius(setup_.packing); best < 0; reach *= 2) {
+    for (const Grain& g : s.grains) {
+      if (g.fixed || std::fabs(g.position.x() - x0) > reach) continue;
+      const double key = g.position.y() - 1e-3 * std::fabs(g.position.x() - x0);
+      if (best < 0 || key > height) {
+        best = g.id;
+        height = key;
+      }
     }
-  }
-  if (best < 0) {
-    throw std::invalid_argument(fmt::format(
-        "load.position: found {:g}, allowed: a share of the width with a grain below it",
-        setup_.load.position));
   }
   return best;
 }

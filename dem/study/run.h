@@ -26,13 +26,6 @@ struct Progress {
   double unbalanced_force_ratio = 0;
 };
 
-/// What is known of a realization's size before it runs.
-struct Outlook {
-  int grains = 0;        ///< without fixed ones; 0: not known yet
-  double time_step = 0;  ///< s; 0: not known yet
-  double time = 0;       ///< s that will be simulated at least; 0: not known yet
-};
-
 /// What a finished realization leaves.
 struct RunResult {
   std::vector<std::pair<std::string, Snapshot>>
@@ -53,7 +46,6 @@ class Run {
   virtual void advance(long steps) = 0;
   virtual bool done() const = 0;
   virtual Progress progress() const = 0;
-  virtual Outlook outlook() const { return {}; }
   /// Everything needed to continue to the same bits. Writes beside and renames. Throws
   /// StorageFailed (dem/storage_failed.h); what stood there before is then still there.
   virtual void save(const std::string& file) const = 0;

@@ -40,7 +40,7 @@ TEST(Errors, Usage) {
   expect_refusal(program("run"), 2, "run: case is required");
   expect_refusal(program("keys materiel"), 2, "nearest: material");
   expect_refusal(program("run fit-osl-point --checkpoint-seconds -1"), 2,
-                 "--checkpoint-seconds: found -1, allowed: 0 or more");
+                 "--checkpoint-seconds: found -1, allowed: 0 to 1e+06");
   EXPECT_EQ(program("--help").code, 0);
   EXPECT_THAT(program("--version").out, StartsWith("grainfield "));
 }

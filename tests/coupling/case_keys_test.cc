@@ -47,6 +47,8 @@ TEST(Keys, EveryDefaultIsAllowed) {
     Case value;
     value.study = study.name;
     value.title = "defaults";
+    // The study of plastic heaps has no other models by default than layers do, and needs its own.
+    if (study.name == "wedge") value.compare.models = {"fe_mohr_coulomb_wedge", "cantelaube"};
     const std::string file = folder.write(study.name + ".toml", write_case(value));
     EXPECT_NO_THROW(read_case(file, false, {})) << study.name;
   }

@@ -233,11 +233,11 @@ TEST(PileRun, MoreRealizationsReuseTheGrainsOfAFailedAnalysis) {
   const Folder folder;
   const std::string file = folder.write("x.toml", tiny_pile("[output]\nreport = false\n"));
   const std::string run = "run " + file + " -o " + (folder / "out");
-  const Output failed = program(run + " --set average.width=1e-9");
+  const Output failed = program(run + " --set average.width=1e-6");
   EXPECT_EQ(failed.code, 2) << failed.err;
   EXPECT_THAT(failed.err, HasSubstr("; the grains are kept in "));
   const auto made = testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5");
-  EXPECT_EQ(program(run + " --resume --set average.width=1e-9 --set ensemble.realizations=3").code,
+  EXPECT_EQ(program(run + " --resume --set average.width=1e-6 --set ensemble.realizations=3").code,
             2);
   EXPECT_EQ(testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5"), made);
   const Output done = program(run + " --resume --set ensemble.realizations=3");

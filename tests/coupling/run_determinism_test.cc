@@ -148,7 +148,7 @@ TEST(Resume, RepeatsAFailedAnalysisWithoutTheGrains) {
   const std::string run =
       "run " + (folder / "x.toml") + " --threads 2 -o " + (folder / "out") + " ";
   // No grain has its centre in so narrow a kernel.
-  const Output failed = program(run + "--set average.width=1e-9");
+  const Output failed = program(run + "--set average.width=1e-6");
   EXPECT_EQ(failed.code, 2);
   EXPECT_THAT(failed.err,
               HasSubstr("no point has enough grains around it; the grains are kept in " +
@@ -156,7 +156,7 @@ TEST(Resume, RepeatsAFailedAnalysisWithoutTheGrains) {
   EXPECT_FALSE(testing::fs::exists(folder / "out/summary.json"));
   const auto made = testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5");
   // Still wrong: the same grains are kept again.
-  EXPECT_EQ(program(run + "--resume --set average.width=1e-9").code, 2);
+  EXPECT_EQ(program(run + "--resume --set average.width=1e-6").code, 2);
   EXPECT_EQ(testing::fs::last_write_time(folder / "out/checkpoint/realization_001.h5"), made);
   const Output done = program(run + "--resume");
   EXPECT_EQ(done.code, 0) << done.err;
