@@ -27,7 +27,8 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
       engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
                       threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
   check_source(setup_, grains_);
-  settings_.polygons = setup_.shape.kind != "disk" || setup_.source.opening > 0;
+  settings_.shape = (setup_.shape.kind != "disk" || setup_.source.opening > 0) ? ShapeKind::polygon
+                                                                               : ShapeKind::disk;
   const SleepSetup& s = setup_.sleep;
   settings_.sleep = {s.on,         s.quiet_time, s.quiet_move, s.quiet_force,
                      s.wake_force, s.wake_speed, s.wake_reach};

@@ -119,7 +119,7 @@ class PileChangeRun final : public Run {
     EngineSettings out =
         engine_settings(setup_.material, setup_.motion,
                         extremes_of(grains, setup_.material.density), threads, irregular);
-    out.polygons = polygons;
+    out.shape = polygons ? ShapeKind::polygon : ShapeKind::disk;
     return out;
   }
 

@@ -78,7 +78,7 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
                               setup_.packing.shape == "irregular");
-  settings_.polygons = setup_.packing.shape != "disk";
+  settings_.shape = setup_.packing.shape != "disk" ? ShapeKind::polygon : ShapeKind::disk;
   engine_ = make_engine(settings_);
   for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
   add(floor_grains(setup_.packing, supply_, density, random_));
