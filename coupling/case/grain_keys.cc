@@ -1,6 +1,8 @@
 // Keys of the grains that several studies share, and of layers: [packing] [material] [motion]
 // [rest] [load].
 #include "coupling/case/declare.h"
+#include "dem/laws/registry.h"
+#include "dem/motion/registry.h"
 
 // A key bound to the member of the same name: the default is that member's.
 #define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.layer.MEMBER; }
@@ -79,7 +81,7 @@ void packing(Section s) {
 }
 
 void material(Section s) {
-  s.word("law", +SHARED(string, material.law), {"overlap_area", "linear"},
+  s.word("law", +SHARED(string, material.law), dem::words_of<dem::AnyLaw>(),
          "contact law: elastic force from the overlap area, or linear spring and dashpot",
          "Roul 2.3");
   s.number("density", "kg/m2", +SHARED(double, material.density), {1e-3, 1e6},
@@ -119,7 +121,7 @@ void material(Section s) {
 }
 
 void motion(Section s) {
-  s.word("integrator", +SHARED(string, motion.integrator), {"verlet", "gear"},
+  s.word("integrator", +SHARED(string, motion.integrator), dem::words_of<dem::AnyIntegrator>(),
          "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
          "Roul 2.5");
   s.number("time_step", "s", +SHARED(double, motion.time_step), Range{1e-12, 1}.with_zero(),

@@ -4,51 +4,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "dem/engine/engine_loop.h"
-#include "dem/motion/gear.h"
-#include "dem/motion/verlet.h"
-#include "dem/shapes/disk_store.h"
-#include "dem/shapes/polygon_store.h"
+#include "dem/engine/engine_of.h"
 
 namespace grainfield::dem {
 namespace {
 
-template <class Shape, class Law>
-std::unique_ptr<Engine> with_shape(const EngineSettings& settings, const Law& law) {
-  if (settings.integrator == IntegratorKind::gear) {
-    return std::make_unique<EngineLoop<Shape, Law, GearIntegrator<2>>>(settings, law);
-  }
-  return std::make_unique<EngineLoop<Shape, Law, VerletIntegrator<2>>>(settings, law);
+/// visit(law) for every law of the settings.
+template <class Visit>
+void visit_laws(const EngineSettings& settings, Visit visit) {
+  if (settings.material_pairs.empty()) std::visit(visit, settings.law);
+  for (const MaterialPair& pair : settings.material_pairs) std::visit(visit, pair.law);
 }
 
 }  // namespace
 
 double stable_time_step(const EngineSettings& settings, double least_mass) {
-  const double viscous_limit = settings.integrator == IntegratorKind::gear ? 0.16 : 1.0;
-  return std::visit(
-      [&](const auto& law) {
-        const double elastic = 0.1 * std::numbers::pi * std::sqrt(least_mass / law.stiffness());
-        const double rate = law.viscous_rate(least_mass);
-        return rate > 0 ? std::min(elastic, viscous_limit / rate) : elastic;
-      },
-      settings.law);
+  const double viscous_limit =
+      settings.integrator.visit([](auto kind) { return kind.viscous_limit; });
+  double limit = std::numeric_limits<double>::infinity();
+  visit_laws(settings, [&](const auto& law) {
+    limit = std::min(limit, 0.1 * std::numbers::pi * std::sqrt(least_mass / law.stiffness()));
+    const double rate = law.viscous_rate(least_mass);
+    if (rate > 0) limit = std::min(limit, viscous_limit / rate);
+  });
+  return limit;
 }
 
 double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes) {
   double limit = stable_time_step(settings, extremes.least_mass);
-  if (extremes.steepest_edge > 0) {
-    const double share = settings.integrator == IntegratorKind::gear ? 0.16 : 1.4;
-    std::visit(
-        [&](const auto& law) {
-          // Positive root of c dt + k dt^2/2 = share.
-          const double k = law.edge_stiffness(extremes.steepest_edge) / extremes.steep_mass;
-          const double c = law.edge_rate(extremes.steep_mass, extremes.steepest_edge);
-          limit = std::min(limit, 2 * share / (c + std::sqrt(c * c + 2 * k * share)));
-        },
-        settings.law);
-  }
+  if (!(extremes.steepest_edge > 0)) return limit;
+  const double share = settings.integrator.visit([](auto kind) { return kind.edge_limit; });
+  visit_laws(settings, [&](const auto& law) {
+    // Positive root of c dt + k dt^2/2 = share.
+    const double k = law.edge_stiffness(extremes.steepest_edge) / extremes.steep_mass;
+    const double c = law.edge_rate(extremes.steep_mass, extremes.steepest_edge);
+    limit = std::min(limit, 2 * share / (c + std::sqrt(c * c + 2 * k * share)));
+  });
   return limit;
 }
 
@@ -57,18 +51,9 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
     throw std::invalid_argument(
         fmt::format("motion.time_step: found {} s, allowed: above 0", settings.time_step));
   }
-  if (!(settings.friction >= 0)) {
-    throw std::invalid_argument(
-        fmt::format("material.friction: found {}, allowed: 0 or more", settings.friction));
-  }
-  // Shapes times laws times integrators, each compiled as one loop. A new law joins the variant in
-  // engine.h.
-  return std::visit(
-      [&settings](const auto& law) {
-        return settings.polygons ? with_shape<PolygonStore>(settings, law)
-                                 : with_shape<DiskStore>(settings, law);
-      },
-      settings.law);
+  check_materials(settings);
+  return settings.shape.visit(
+      [&](auto kind) { return engine_of<typename decltype(kind)::Store>(settings); });
 }
 
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start) {

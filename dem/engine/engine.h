@@ -10,29 +10,26 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "dem/computation_failed.h"
-#include "dem/laws/linear.h"
-#include "dem/laws/overlap_area.h"
+#include "dem/laws/materials.h"
 #include "dem/motion/applied_force.h"
+#include "dem/motion/registry.h"
+#include "dem/shapes/registry.h"
 #include "dem/sleep/sleep_settings.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
 
-enum class IntegratorKind { verlet, gear };
-
-struct EngineSettings {
-  std::variant<OverlapAreaLaw, LinearLaw> law;
-  IntegratorKind integrator = IntegratorKind::verlet;
+/// Laws and friction (Materials), motion, and what the engine is made for.
+struct EngineSettings : Materials {
+  IntegratorKind integrator;
   double time_step = 1e-5;                  ///< s
-  double friction = 0.5;                    ///< grain on grain
   double gravity_x = 0, gravity_y = -9.81;  ///< m/s2
   double skin = 0;  ///< m; gap kept in the neighbour list; 0 = chosen from the radii
   int threads = 1;
-  bool polygons = false;  ///< grains may have outlines; false is faster and takes disks only
+  ShapeKind shape;  ///< polygons are disks too, but slower
   SleepSettings sleep;
 };
 
@@ -42,8 +39,9 @@ struct NewGrain {
   double radius = 0;
   double density = 0;  ///< kg/m2
   bool fixed = false;
-  bool rotates = true;  ///< false: a block that slides but never spins
-  Outline outline;      ///< body frame (polygon.h: centred); empty: a disk of `radius`
+  bool rotates = true;   ///< false: a block that slides but never spins
+  Outline outline;       ///< body frame (polygon.h: centred); empty: a disk of `radius`
+  std::string material;  ///< one of EngineSettings::materials
 };
 
 /// State of rest and energy, from the forces of the last step.
@@ -73,7 +71,11 @@ class Engine {
 
   /// Adds a grain and returns its id (0, 1, 2, ...). Radius and density must be positive.
   virtual std::int64_t add(const NewGrain& grain) = 0;
-  virtual void add_wall(const Wall& wall) = 0;
+  /// `material`: "": the wall has the friction of `wall` and the law of each grain with its like;
+  /// else one of EngineSettings::materials, and all is the pair's. Throws std::invalid_argument
+  /// when nothing is known of a pair that can meet.
+  virtual void add_wall(const Wall& wall, const std::string& material) = 0;
+  void add_wall(const Wall& wall) { add_wall(wall, ""); }
   /// Applies this force from now on instead of any earlier one.
   virtual void apply(const AppliedForce& force) = 0;
   /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
@@ -107,11 +109,10 @@ class Engine {
 
 /// The largest time step that make_engine's user should take, s: the smaller of
 ///  - (1/10) pi sqrt(m/k) (physics section 2): a tenth of the half period of a contact, and
-///  - the integrator's limit for the dashpots: their fastest mode in a packing decays at the law's
-///    viscous_rate(m). Gear's corrector evaluates the forces once per step and is stable only for
-///    dt * rate <= 0.16 (from its amplification matrix); for Verlet the limit is 2, of which half
-///    is allowed. For Roul's law this is what makes Gear need steps of 5e-6 s where Verlet takes
-///    5e-5.
+///  - the integrator's limit for the dashpots (viscous_limit): their fastest mode in a packing
+///    decays at the law's viscous_rate(m). For Roul's law this is what makes Gear need steps of
+///    5e-6 s where Verlet takes 5e-5.
+/// Of several laws the one with the smallest step counts.
 double stable_time_step(const EngineSettings& settings, double least_mass);
 
 /// What of a population of grains bounds the time step.

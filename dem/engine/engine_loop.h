@@ -33,8 +33,10 @@ class EngineLoop final : public Engine {
   using State = World<Shape, Law, Integrator>;
   static constexpr int dim = Shape::dim;
 
-  EngineLoop(const EngineSettings& settings, const Law& law)
-      : world_(world_of(settings, law)),
+  /// `integrator`: its word. Throws std::invalid_argument for materials that do not fit.
+  EngineLoop(const EngineSettings& settings, const Rules<Law>& rules, const char* integrator)
+      : world_(world_of(settings, rules, integrator)),
+        materials_(settings),
         search_(world_, settings.skin, settings.threads),
         review_(world_, search_),
         sweep_(world_),
@@ -43,6 +45,8 @@ class EngineLoop final : public Engine {
   std::int64_t add(const NewGrain& g) override {
     auto& grains = world_.grains;
     const int i = grains.size();
+    const int kind = material_index(materials_, "grain", g.material);
+    world_.acting.add_grain(kind);
     const Solid<dim> solid = grains.shapes.add({g.radius, g.outline});
     typename State::Body b;
     b.position = in_space<dim>({g.x, g.y, 0});
@@ -63,13 +67,16 @@ class EngineLoop final : public Engine {
     grains.memory.push_back(memory);
     grains.inertias.push_back(inertia);
     grains.ids.push_back(i);
+    grains.kinds.push_back(static_cast<std::uint8_t>(kind));
     world_.sleepers.add(b.position, memory.rotation, world_.steps, g.fixed && world_.sleep.on);
     grains.shapes.place(i, b, memory.rotation);
     world_.search_needed = true;
     return i;
   }
 
-  void add_wall(const Wall& wall) override {
+  void add_wall(const Wall& wall, const std::string& material) override {
+    const int kind = material.empty() ? -1 : material_index(materials_, wall.name, material);
+    world_.acting.add_wall(kind, wall.friction);
     world_.walls.add(wall);
     world_.search_needed = true;
   }
@@ -149,13 +156,16 @@ class EngineLoop final : public Engine {
     r.get(first_new_);
     read_world(world_, search_, r);
     r.finish();
+    for (const int kind : world_.grains.kinds) world_.acting.add_grain(kind);
     sweep_.reset();
   }
 
  private:
-  static State world_of(const EngineSettings& settings, const Law& law) {
+  static State world_of(const EngineSettings& settings, const Rules<Law>& rules,
+                        const char* integrator) {
     State world;
-    world.acting = {law, settings.friction};
+    world.acting = typename State::Acting(rules);
+    world.integrator = integrator;
     world.sleep = settings.sleep;
     world.time_step = settings.time_step;
     world.around.gravity = in_space<dim>({settings.gravity_x, settings.gravity_y, 0});
@@ -242,6 +252,7 @@ class EngineLoop final : public Engine {
   }
 
   State world_;
+  Materials materials_;
   Search<State> search_;
   Review<State> review_;
   Sweep<State> sweep_;

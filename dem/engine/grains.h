@@ -21,6 +21,7 @@ struct Grains {
   std::vector<Memory> memory;  ///< the integrator's, with the rotation
   std::vector<Inertia<dim>> inertias;
   std::vector<std::int64_t> ids;
+  std::vector<std::uint8_t> kinds;  ///< material
   Shape shapes;
 
   int size() const { return static_cast<int>(bodies.size()); }
@@ -38,6 +39,7 @@ struct Grains {
     permute(memory);
     permute(inertias);
     permute(ids);
+    permute(kinds);
     shapes.sort(order);
   }
   void swap(int i, int j) {
@@ -45,6 +47,7 @@ struct Grains {
     std::swap(memory[i], memory[j]);
     std::swap(inertias[i], inertias[j]);
     std::swap(ids[i], ids[j]);
+    std::swap(kinds[i], kinds[j]);
     shapes.swap(i, j);
   }
   /// Where each id is.
@@ -60,10 +63,11 @@ struct Grains {
     each(self.memory);
     each(self.inertias);
     each(self.ids);
+    each(self.kinds);
   }
   bool fits() const {
     return memory.size() == bodies.size() && inertias.size() == bodies.size() &&
-           ids.size() == bodies.size();
+           ids.size() == bodies.size() && kinds.size() == bodies.size();
   }
 };
 

@@ -1,23 +1,61 @@
 // What acts between two bodies, or a body and a wall: overlap, law, force.
 #pragma once
-#include "dem/engine/walls.h"
+#include <cstddef>
+#include <vector>
+
 #include "dem/laws/contact.h"
+#include "dem/laws/materials.h"
 #include "dem/space/kinematics.h"
+#include "dem/space/plane.h"
 
 namespace grainfield::dem {
 
-/// The law put between the shapes: needs nothing but two bodies and what their pair remembers.
+/// Laws put between the shapes, by the materials (`kind`) of the bodies. Knows of two bodies at a
+/// time, and of what their pair remembers.
 template <class Shape, class Law>
-struct Interaction {
+class Interaction {
+ public:
   static constexpr int dim = Shape::dim;
   static constexpr bool central = !Shape::outlines;
   using Body = dem::Body<dim>;
   using Overlap = typename Shape::Overlap;
   using Feature = typename Shape::Feature;
   using Memory = typename Law::template Memory<dim>;
+  using Rule = typename Rules<Law>::Rule;
 
-  Law law;
-  double friction = 0;  ///< grain on grain
+  Interaction() = default;
+  explicit Interaction(const Rules<Law>& rules) : rules_(rules), grains_(rules.count(), false) {}
+
+  /// Grains of this kind are there from now on. Throws std::invalid_argument when a pair with what
+  /// is there already is missing.
+  void add_grain(int kind) {
+    if (grains_[kind]) return;
+    rules_.require(kind, kind);
+    for (int other = 0; other < rules_.count(); ++other) {
+      if (grains_[other]) rules_.require(kind, other);
+    }
+    for (const int wall : wall_kinds_) rules_.require(kind, wall < 0 ? kind : wall);
+    grains_[kind] = true;
+  }
+  /// The next wall, with its kind or (-1) with its own friction and each grain's own law. Throws
+  /// likewise.
+  void add_wall(int kind, double friction) {
+    for (int grain = 0; grain < rules_.count(); ++grain) {
+      if (grains_[grain] && kind >= 0) rules_.require(grain, kind);
+    }
+    wall_kinds_.push_back(kind);
+    for (int grain = 0; grain < rules_.count(); ++grain) {
+      Rule rule = rules_.of(grain, kind < 0 ? grain : kind);
+      if (kind < 0) rule.friction = friction;
+      wall_rules_.push_back(rule);
+    }
+  }
+
+  int kinds() const { return rules_.count(); }
+  const Rule& rule(int kind_i, int kind_j) const { return rules_.of(kind_i, kind_j); }
+  const Rule& wall_rule(int kind, int wall) const {
+    return wall_rules_[static_cast<std::size_t>(wall) * rules_.count() + kind];
+  }
 
   /// At rest, of infinite mass: what a wall is to the laws.
   static const Body& wall_body() {
@@ -35,12 +73,18 @@ struct Interaction {
   }
 
   /// Force of bodies that overlap. The memory advances by dt, s; with dt = 0 it stays.
-  ContactForce<dim> force(const Body& a, const Body& b, const Overlap& o, double mu, double dt,
-                          Memory& memory) const {
+  static ContactForce<dim> force(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
+                                 double dt, Memory& memory) {
     const ContactMotion<dim> motion = motion_at<central>(a, b, o);
-    const LawForce<dim> f = law(o, motion, mu, dt, memory);
+    const LawForce<dim> f = rule.law(o, motion, rule.friction, dt, memory);
     return forces_at<central>(o, f.normal, f.tangential);
   }
+
+ private:
+  Rules<Law> rules_;
+  std::vector<bool> grains_;      // kinds that are there
+  std::vector<int> wall_kinds_;   // of the walls in their order
+  std::vector<Rule> wall_rules_;  // by wall, then by the grain's kind
 };
 
 }  // namespace grainfield::dem

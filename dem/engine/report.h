@@ -64,11 +64,11 @@ class Report {
     visit_contacts([&](int i, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
       ++d.contacts;
       force_sum += length_of(f.force);
-      d.elastic_energy += world_.acting.law.energy(o, pair.memory);
+      d.elastic_energy += rule(i, pair, wall).law.energy(o, pair.memory);
       const double radius =
           wall ? bodies[i].radius : std::min(bodies[i].radius, bodies[pair.j].radius);
       d.max_overlap_ratio = std::max(d.max_overlap_ratio, o.depth / radius);
-      if (is_sliding(f, o, friction(pair, wall))) ++d.sliding;
+      if (is_sliding(f, o, rule(i, pair, wall).friction)) ++d.sliding;
       resultant[i] += f.force;
       if (!wall) resultant[pair.j] -= f.force;
     });
@@ -138,7 +138,7 @@ class Report {
     std::sort(s.contacts.begin(), s.contacts.end(), [](const Contact& a, const Contact& b) {
       return a.i != b.i ? a.i < b.i : a.j < b.j;
     });
-    s.attributes["integrator"] = World::Integrator::name;
+    s.attributes["integrator"] = world_.integrator;
     s.attributes["law"] = World::Law::name;
     s.attributes["time_step"] = fmt::format("{:.17g}", world_.time_step);
     return s;
@@ -157,8 +157,8 @@ class Report {
                                  o);
   }
 
-  double friction(const Pair& pair, bool wall) const {
-    return wall ? world_.walls.friction(pair.j) : world_.acting.friction;
+  const auto& rule(int i, const Pair& pair, bool wall) const {
+    return wall ? world_.wall_rule(i, pair.j) : world_.pair_rule(i, pair.j);
   }
 
   static bool is_sliding(const Force& f, const Overlap& o, double mu) {
@@ -189,7 +189,7 @@ class Report {
     c.force = to_three(f.force);
     c.normal_force = repulsion_of(f.force, o);
     c.tangential_force = signed_size_of(tangential_of(f.force, o));
-    c.friction = friction(pair, wall);
+    c.friction = rule(i, pair, wall).friction;
     c.sliding = is_sliding(f, o, c.friction);
     const bool turned = !wall && c.j < c.i;
     tell_spring(seen_from(pair.memory, turned), c);

@@ -107,7 +107,7 @@ class Review {
         const auto a = at_rest(i), b = at_rest(pair.j);
         if (!acting.overlap(shapes, i, a, pair.j, b, pair.feature, o)) continue;
         Memory memory = pair.memory;
-        const ContactForce<dim> f = acting.force(a, b, o, acting.friction, 0, memory);
+        const ContactForce<dim> f = acting.force(world_.pair_rule(i, pair.j), a, b, o, 0, memory);
         visit(i, pair.j, false, f, memory);
       }
       if (!marked[i]) continue;
@@ -117,7 +117,7 @@ class Review {
         if (!acting.overlap(shapes, i, a, world_.walls.plane(w), o)) continue;
         Memory memory = contacts.walls[k].memory;
         const ContactForce<dim> f =
-            acting.force(a, acting.wall_body(), o, world_.walls.friction(w), 0, memory);
+            acting.force(world_.wall_rule(i, w), a, acting.wall_body(), o, 0, memory);
         visit(i, w, true, f, memory);
       }
     }

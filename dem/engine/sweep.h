@@ -144,7 +144,7 @@ class Sweep {
       pair.memory = {};
       return false;
     }
-    force = world_.acting.force(a, b, o, world_.acting.friction, dt, pair.memory);
+    force = world_.acting.force(world_.pair_rule(i, pair.j), a, b, o, dt, pair.memory);
     return true;
   }
 
@@ -158,7 +158,7 @@ class Sweep {
       typename World::Overlap o;
       Force f;
       if (acting.overlap(world_.grains.shapes, i, b, world_.walls.plane(pair.j), o)) {
-        f = acting.force(b, acting.wall_body(), o, world_.walls.friction(pair.j), dt, pair.memory);
+        f = acting.force(world_.wall_rule(i, pair.j), b, acting.wall_body(), o, dt, pair.memory);
         force += f.force;
         torque += f.torque_i;
       } else {

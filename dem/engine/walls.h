@@ -17,7 +17,6 @@ class Walls {
   int size() const { return static_cast<int>(walls_.size()); }
   const std::vector<Wall>& all() const { return walls_; }
   const Plane<D>& plane(int w) const { return planes_[w]; }
-  double friction(int w) const { return walls_[w].friction; }
 
  private:
   std::vector<Wall> walls_;

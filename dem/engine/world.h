@@ -3,6 +3,8 @@
 // tells) and world_image.h (its bits).
 #pragma once
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "dem/contacts/contact_list.h"
 #include "dem/contacts/margins.h"
@@ -49,6 +51,7 @@ struct World {
   SleepSettings sleep;
   double time_step = 0;  ///< s
   long steps = 0;
+  const char* integrator = "";  ///< its word
 
   Grains<Shape, Integrator> grains;
   Walls<dim> walls;
@@ -66,6 +69,10 @@ struct World {
     const auto at = std::find(grains.ids.begin(), grains.ids.end(), around.applied.id);
     applied_index = at == grains.ids.end() ? -1 : static_cast<int>(at - grains.ids.begin());
   }
+  const auto& pair_rule(int i, int j) const {
+    return acting.rule(grains.kinds[i], grains.kinds[j]);
+  }
+  const auto& wall_rule(int i, int wall) const { return acting.wall_rule(grains.kinds[i], wall); }
   const auto& rotation(int i) const { return grains.memory[i].rotation; }
   Vector weight(int i) const { return grains.inertias[i].mass * around.gravity; }
 

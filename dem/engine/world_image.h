@@ -46,6 +46,7 @@ void read_world(World& world, Search<World>& search, ImageReader& r) {
             world.contacts.fits(searched, world.awake, n, world.walls.size()) &&
             (!searched || world.margins.size() == static_cast<std::size_t>(world.awake)));
   for (const std::int64_t id : world.grains.ids) r.require(id >= 0 && id < n);
+  for (const int kind : world.grains.kinds) r.require(kind < world.acting.kinds());
   if (searched) {
     search.divide();
     search.bin_sleepers();  // a review may ask it before the next search

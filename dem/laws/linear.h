@@ -4,18 +4,24 @@
 //   spring k_t v_t dt, dashpot m_eff gamma_t v_t
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/material_setup.h"
 
 namespace grainfield::dem {
 
 struct LinearLaw {
   static constexpr const char* name = "linear";
-  static constexpr bool needs_area = false;
+  static constexpr bool needs_area = false, needs_curvature = false;
+  static constexpr bool feels_edges = false;  ///< a spring on the depth alone does not
   template <int D>
   using Memory = SpringMemory<D>;
   double normal_stiffness = 1e7;           ///< k_n, N/m
   double tangential_stiffness_ = 2e7 / 7;  ///< k_t, N/m
   double normal_damping = 500;             ///< gamma_n, 1/s
   double tangential_damping = 250;         ///< gamma_t, 1/s
+
+  static LinearLaw of(const MaterialSetup& m) {
+    return {m.normal_stiffness, m.tangential_stiffness, m.normal_damping, m.tangential_damping};
+  }
 
   double stiffness() const { return std::max(normal_stiffness, tangential_stiffness_); }
   double tangential_stiffness() const { return tangential_stiffness_; }
@@ -27,7 +33,7 @@ struct LinearLaw {
   }
 
   /// Of a chain of grains edge on edge; the law takes no notice of the edges' width.
-  double edge_stiffness(double) const { return 4 * normal_stiffness; }
+  double edge_stiffness(double /*steepness*/) const { return 4 * normal_stiffness; }
   double edge_rate(double, double) const { return 2 * normal_damping; }
 
   template <int D>

@@ -6,16 +6,20 @@
 //   r_j^2/I_j
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/material_setup.h"
 
 namespace grainfield::dem {
 
 struct OverlapAreaLaw {
   static constexpr const char* name = "overlap_area";
-  static constexpr bool needs_area = true;
+  static constexpr bool needs_area = true, needs_curvature = false;
+  static constexpr bool feels_edges = true;
   template <int D>
   using Memory = SpringMemory<D>;
   double young = 1e7;     ///< E, N/m
   double damping = 0.75;  ///< gamma, -; raising it makes impacts less elastic
+
+  static OverlapAreaLaw of(const MaterialSetup& m) { return {m.young, m.damping}; }
 
   /// Stiffness that bounds the time step, N/m.
   double stiffness() const { return young; }

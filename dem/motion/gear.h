@@ -16,12 +16,6 @@ class GearIntegrator;
 template <>
 class GearIntegrator<2> {
  public:
-  static constexpr const char* name = "gear";
-  /// The corrector evaluates the forces once per step and is stable only for dt * rate <= 0.16
-  /// (from its amplification matrix).
-  static constexpr double viscous_limit = 0.16, edge_limit = 0.16;
-  static constexpr bool bears_irregular_edges = false;
-
   /// Scaled derivatives 2..5 of a place or an angle.
   template <class T>
   struct Derivatives {
@@ -74,6 +68,16 @@ class GearIntegrator<2> {
   }
 
   double dt_, inverse_dt_, half_square_;
+};
+
+/// The kind, for the registry. The corrector evaluates the forces once per step and is stable only
+/// for dt * rate <= 0.16 (from its amplification matrix).
+struct Gear {
+  static constexpr const char* name = "gear";
+  static constexpr double viscous_limit = 0.16, edge_limit = 0.16;
+  static constexpr bool bears_irregular_edges = false;
+  template <int D>
+  using In = GearIntegrator<D>;
 };
 
 }  // namespace grainfield::dem

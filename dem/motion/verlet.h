@@ -12,11 +12,6 @@ class VerletIntegrator;
 template <>
 class VerletIntegrator<2> {
  public:
-  static constexpr const char* name = "verlet";
-  /// Limits of the time step, as engine.h: stable_time_step has them.
-  static constexpr double viscous_limit = 1.0, edge_limit = 1.4;
-  static constexpr bool bears_irregular_edges = true;
-
   /// Per grain: angle and acceleration.
   struct Memory {
     double rotation = 0;
@@ -49,6 +44,16 @@ class VerletIntegrator<2> {
 
  private:
   double dt_;
+};
+
+/// The kind, for the registry. Stable for dt * rate < 2, of which half is allowed, and for
+/// c dt + k dt^2/2 < 2, of which 0.7 is.
+struct Verlet {
+  static constexpr const char* name = "verlet";
+  static constexpr double viscous_limit = 1.0, edge_limit = 1.4;
+  static constexpr bool bears_irregular_edges = true;
+  template <int D>
+  using In = VerletIntegrator<D>;
 };
 
 }  // namespace grainfield::dem

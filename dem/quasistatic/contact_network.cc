@@ -19,8 +19,8 @@ constexpr double kFloor = 1e-6;
 
 }  // namespace
 
-ContactNetwork::ContactNetwork(const Snapshot& start, const EngineSettings& law)
-    : law_(law.law), friction_(law.friction), walls_(start.walls) {
+ContactNetwork::ContactNetwork(const Snapshot& start, const Materials& materials)
+    : law_(materials.law), friction_(materials.friction), walls_(start.walls) {
   std::visit(
       [this](const auto& l) {
         stiffness_ = l.stiffness();

@@ -26,7 +26,8 @@
 #include <utility>
 #include <vector>
 
-#include "dem/engine/engine.h"
+#include "dem/laws/materials.h"
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
 
@@ -37,7 +38,7 @@ class ContactNetwork {
   using Matrix = Eigen::SparseMatrix<double>;
 
   /// Committed state: the start's positions and springs. `start` must have been checked.
-  ContactNetwork(const Snapshot& start, const EngineSettings& law);
+  ContactNetwork(const Snapshot& start, const Materials& materials);
 
   int size() const { return 3 * free_; }  ///< unknowns
   int free_grains() const { return free_; }
@@ -117,7 +118,7 @@ class ContactNetwork {
     Outline outline;
   };
 
-  decltype(EngineSettings::law) law_;
+  AnyLaw law_;
   double friction_;
   double stiffness_, tangential_stiffness_;
   double scale_ = 1;

@@ -96,11 +96,11 @@ void check_start(const Snapshot& s) {
 
 class Relaxation {
  public:
-  Relaxation(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+  Relaxation(const Snapshot& start, const Materials& materials, const Vec3& gravity,
              const AppliedForce& force, const QuasistaticSettings& settings)
       : start_(start),
         settings_(settings),
-        network_(start, law),
+        network_(start, materials),
         gravity_(gravity),
         old_grain_(start.loaded_grain < 0 ? -1 : index_of(start, start.loaded_grain)),
         new_grain_(force.id < 0 ? -1 : index_of(start, force.id)),
@@ -266,10 +266,15 @@ class Relaxation {
 
 }  // namespace
 
-QuasistaticResult relax(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+QuasistaticResult relax(const Snapshot& start, const Materials& materials, const Vec3& gravity,
                         const AppliedForce& force, const QuasistaticSettings& settings) {
   check_settings(settings);
   check_start(start);
+  if (!materials.materials.empty()) {
+    throw std::invalid_argument(
+        fmt::format("quasi-static relaxation: found {} materials, allowed: one for all grains",
+                    materials.materials.size()));
+  }
   if (!gravity.allFinite()) {
     throw std::invalid_argument("quasi-static relaxation: found a gravity that is not finite");
   }
@@ -286,7 +291,7 @@ QuasistaticResult relax(const Snapshot& start, const EngineSettings& law, const 
           "quasi-static relaxation: found a force on grain {} that is not finite", force.id));
     }
   }
-  return Relaxation(start, law, gravity, force, settings).run();
+  return Relaxation(start, materials, gravity, force, settings).run();
 }
 
 }  // namespace grainfield::dem

@@ -9,7 +9,10 @@
 #include <functional>
 #include <stdexcept>
 
-#include "dem/engine/engine.h"
+#include "dem/computation_failed.h"
+#include "dem/laws/materials.h"
+#include "dem/motion/applied_force.h"
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
 
@@ -36,11 +39,10 @@ struct QuasistaticResult {
 };
 
 /// The packing `start` at rest under the gravity and the force given (start.applied_force is
-/// replaced). `law`: contact law and friction of the grains (time step and integrator are not
-/// used); walls keep their own friction. Throws std::invalid_argument for a start that does not
-/// fit, and ComputationFailed saying how far it came (share of the change, ratio reached) and what
-/// to try.
-QuasistaticResult relax(const Snapshot& start, const EngineSettings& law, const Vec3& gravity,
+/// replaced). `materials`: contact law and friction of the grains, one for all; walls keep their
+/// own friction. Throws std::invalid_argument for a start that does not fit, and ComputationFailed
+/// saying how far it came (share of the change, ratio reached) and what to try.
+QuasistaticResult relax(const Snapshot& start, const Materials& materials, const Vec3& gravity,
                         const AppliedForce& force, const QuasistaticSettings& settings);
 
 }  // namespace grainfield::dem

@@ -16,12 +16,14 @@ class DiskStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = false;
+  static constexpr bool offers_area = true, offers_curvature = false;
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 
   Solid<2> add(const ShapeInput& shape) {
     if (!shape.outline.empty()) {
-      throw std::invalid_argument("a grain with an outline needs EngineSettings::polygons");
+      throw std::invalid_argument(
+          "a grain with an outline needs EngineSettings::shape = ShapeKind::polygon");
     }
     return disk_solid(shape.radius);
   }

@@ -19,6 +19,7 @@ class PolygonStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = true;
+  static constexpr bool offers_area = true, offers_curvature = false;
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 

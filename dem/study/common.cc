@@ -1,6 +1,7 @@
 #include "dem/study/common.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 #include "dem/study/run.h"
 
 namespace grainfield::dem {
-
 EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular,
                                double reserve) {
@@ -20,21 +20,19 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         m.gravity));
   }
   EngineSettings e;
-  if (m.law == "linear") {
-    if (extremes.steepest_edge > 0) {
-      throw std::invalid_argument(
-          "material.law: found linear, allowed for polygons: overlap_area (a spring on the depth "
-          "alone does not feel how wide two edges touch, so grains edge on edge keep rocking)");
-    }
-    e.law = LinearLaw{m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
-                      m.tangential_damping};
-  } else {
-    e.law = OverlapAreaLaw{m.young, m.damping};
+  e.law = law_of(m);
+  const bool feels_edges = std::visit([](const auto& law) { return law.feels_edges; }, e.law);
+  if (extremes.steepest_edge > 0 && !feels_edges) {
+    throw std::invalid_argument(fmt::format(
+        "material.law: found {}, allowed for polygons: {} (a spring on the depth alone does not "
+        "feel how wide two edges touch, so grains edge on edge keep rocking)",
+        m.law, fmt::join(laws_that_feel_edges(), ", ")));
   }
-  e.integrator = motion.integrator == "verlet" ? IntegratorKind::verlet : IntegratorKind::gear;
+  e.integrator = IntegratorKind::named(motion.integrator);
   const double limit = stable_time_step(e, extremes);
   e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
-  const bool beyond = irregular && e.integrator == IntegratorKind::verlet;
+  const bool beyond =
+      irregular && e.integrator.visit([](auto kind) { return kind.bears_irregular_edges; });
   const bool own = motion.time_step <= 0 && motion.time_step_fraction <= 1;
   const double most =
       (beyond ? std::min(kMostOfLimit * limit, 2 * stable_time_step(e, extremes.least_mass))

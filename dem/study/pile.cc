@@ -33,7 +33,8 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
     const double fall = least_interval(o.speed, setup_.material.gravity, o.height);
     check_countable("source.interval", o.grains * o.interval + fall, settings_.time_step);
   }
-  settings_.polygons = setup_.shape.kind != "disk" || setup_.source.opening > 0;
+  settings_.shape = (setup_.shape.kind != "disk" || setup_.source.opening > 0) ? ShapeKind::polygon
+                                                                               : ShapeKind::disk;
   const SleepSetup& s = setup_.sleep;
   settings_.sleep = {s.on,         s.quiet_time, s.quiet_move, s.quiet_force,
                      s.wake_force, s.wake_speed, s.wake_reach};

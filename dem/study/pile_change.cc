@@ -120,7 +120,7 @@ class PileChangeRun final : public Run {
         engine_settings(setup_.material, setup_.motion,
                         extremes_of(grains, setup_.material.density), threads, irregular);
     check_background_damping(setup_.rest, out.time_step);
-    out.polygons = polygons;
+    out.shape = polygons ? ShapeKind::polygon : ShapeKind::disk;
     return out;
   }
 

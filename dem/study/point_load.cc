@@ -74,8 +74,8 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
                               setup_.packing.shape == "irregular");
+  settings_.shape = setup_.packing.shape != "disk" ? ShapeKind::polygon : ShapeKind::disk;
   check_background_damping(setup_.rest, settings_.time_step);
-  settings_.polygons = setup_.packing.shape != "disk";
   if (!by_newton()) {
     check_countable("load.ramp_time", setup_.load.ramp_time, settings_.time_step);
   }

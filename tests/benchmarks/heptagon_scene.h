@@ -16,7 +16,7 @@ inline dem::EngineSettings heptagon_settings(int threads, double aspect = 1) {
   dem::EngineSettings s;
   s.law = dem::OverlapAreaLaw{1e7, 0.75};
   s.friction = 0.54;
-  s.polygons = true;
+  s.shape = dem::ShapeKind::polygon;
   s.threads = threads;
   s.time_step = 7e-6 / aspect;
   return s;

@@ -20,7 +20,7 @@ Scene falling(std::string name, std::uint64_t hash, Kind kind, bool linear, Inte
   s.name = std::move(name);
   s.hash = hash;
   s.settings = settings_of(linear, how);
-  s.settings.polygons = kind != Kind::disks;
+  s.settings.shape = kind != Kind::disks ? ShapeKind::polygon : ShapeKind::disk;
   s.steps = how == IntegratorKind::gear ? 6000 : 3000;
   s.walls = walls_of_box(8.2 * kCell);
   s.grains = block(kind, 8, 7, kCell, 3);
@@ -33,7 +33,7 @@ Scene sleeping_pour(std::string name, std::uint64_t hash, Kind kind, IntegratorK
   s.name = std::move(name);
   s.hash = hash;
   s.settings = settings_of(false, how);
-  s.settings.polygons = kind != Kind::disks;
+  s.settings.shape = kind != Kind::disks ? ShapeKind::polygon : ShapeKind::disk;
   s.settings.sleep.on = true;
   s.settings.sleep.quiet_time = 5e-3;
   s.settings.sleep.quiet_move = 1e-2;
@@ -84,7 +84,7 @@ Scene rough_floor(std::string name, std::uint64_t hash, Kind kind, bool sleep) {
 }
 
 std::vector<Scene> scenes() {
-  constexpr auto verlet = IntegratorKind::verlet, gear = IntegratorKind::gear;
+  const auto verlet = IntegratorKind::verlet, gear = IntegratorKind::gear;
   return {
       falling("DisksAreaVerlet", 0xb88bc8dd010a5cbe, Kind::disks, false, verlet),
       falling("DisksAreaGear", 0x0fdf0ef6e1fd6344, Kind::disks, false, gear),

@@ -44,7 +44,7 @@ double highest_energy(const Chain& c, double share, long steps) {
   s.integrator = c.integrator;
   s.friction = c.friction;
   s.gravity_y = 0;
-  s.polygons = true;
+  s.shape = ShapeKind::polygon;
   const double mass = c.density * area_of(outline);
   s.time_step = share * stable_time_step(s, GrainExtremes{mass, edge_steepness(outline), mass});
   const auto engine = make_engine(s);
@@ -142,7 +142,7 @@ TEST(EdgeOnEdge, HemmedInSquaresComeToRestAtTheLimit) {
       s.law = OverlapAreaLaw{1e7, damping};
       s.friction = friction;
       s.gravity_y = 0;
-      s.polygons = true;
+      s.shape = ShapeKind::polygon;
       s.time_step = stable_time_step(
           s,
           GrainExtremes{5000 * area_of(outline), edge_steepness(outline), 5000 * area_of(outline)});

@@ -103,7 +103,7 @@ TEST(Funnel, EveryGrainLeavesByTheMouth) {
   for (int k = 0; k < 60; ++k) {
     EngineSettings settings;
     settings.friction = 0.54;
-    settings.polygons = true;
+    settings.shape = ShapeKind::polygon;
     const auto engine = make_engine(settings);
     for (const NewGrain& plate : funnel_plates(source, 5000)) engine->add(plate);
     const ShapedGrain grain = draw_grain(shape, random);

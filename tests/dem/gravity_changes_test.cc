@@ -68,7 +68,7 @@ TEST(GravityChanges, AnEngineGoesOnFromASnapshot) {
     EngineSettings settings;
     settings.law = OverlapAreaLaw{1e6, 0.75};
     settings.time_step = 1e-5;
-    settings.polygons = polygons;
+    settings.shape = polygons ? ShapeKind::polygon : ShapeKind::disk;
     const auto engine = make_engine(settings);
     engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
     engine->add_wall({"left", {-0.015, 0, 0}, {1, 0, 0}, 0.5});

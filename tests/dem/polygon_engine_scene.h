@@ -25,7 +25,7 @@ inline EngineSettings polygon_settings(int threads = 1, bool sleep = false) {
   EngineSettings s;
   s.law = OverlapAreaLaw{1e6, 0.75};
   s.friction = 0.5;
-  s.polygons = true;
+  s.shape = ShapeKind::polygon;
   s.threads = threads;
   s.sleep.on = sleep;
   s.sleep.quiet_time = 5e-3;  // these grains are softer than Roul's, their contacts swing slower

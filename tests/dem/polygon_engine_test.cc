@@ -37,7 +37,7 @@ TEST(PolygonEngine, MassAndInertiaFollowFromTheOutline) {
 
 TEST(PolygonEngine, DisksOnlyEngineRefusesOutlines) {
   EngineSettings s = polygon_settings();
-  s.polygons = false;
+  s.shape = ShapeKind::disk;
   auto engine = make_engine(s);
   Random random(1);
   EXPECT_THROW(engine->add(polygon_grain(random, 0, 0)), std::invalid_argument);

@@ -44,7 +44,7 @@ inline Wall wall(const char* name, double x, double y, double nx, double ny, dou
 /// The grains where they are put, without contacts.
 inline Snapshot put(const std::vector<NewGrain>& grains, const std::vector<Wall>& walls) {
   EngineSettings e;
-  e.polygons = true;
+  e.shape = ShapeKind::polygon;
   e.time_step = 1e-7;
   const auto engine = make_engine(e);
   for (const NewGrain& g : grains) engine->add(g);

@@ -35,7 +35,7 @@ Scene settled(bool heptagons, std::uint64_t seed) {
   Scene s;
   s.settings.law = OverlapAreaLaw{1e7, 0.75};
   s.settings.friction = 0.54;
-  s.settings.polygons = heptagons;
+  s.settings.shape = heptagons ? ShapeKind::polygon : ShapeKind::disk;
   Random random(seed);
   GrainExtremes extremes;
   extremes.least_mass = 1;

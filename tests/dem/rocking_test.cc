@@ -19,7 +19,7 @@ double rise(double from, double damping, double time_step) {
   EngineSettings settings;
   settings.law = OverlapAreaLaw{1e7, damping};
   settings.friction = 0.54;
-  settings.polygons = true;
+  settings.shape = ShapeKind::polygon;
   settings.time_step = time_step;
   const auto engine = make_engine(settings);
   engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.54});

@@ -31,7 +31,7 @@ std::unique_ptr<Engine> engine_for(const Scene& scene, bool polygons = false) {
   }
   s.integrator = scene.integrator;
   s.friction = 0.5;
-  s.polygons = polygons;
+  s.shape = polygons ? ShapeKind::polygon : ShapeKind::disk;
   const GrainExtremes extremes =
       polygons
           ? GrainExtremes{5000 * area_of(kSquare), edge_steepness(kSquare), 5000 * area_of(kSquare)}

@@ -28,7 +28,7 @@ struct Population {
     for (int k = 0; k < count; ++k) grains.push_back(draw_grain(shape, random));
     settings.law = OverlapAreaLaw{1e7, 0.75};
     settings.friction = 0.54;
-    settings.polygons = true;
+    settings.shape = ShapeKind::polygon;
     limit = stable_time_step(settings, extremes_of(grains, 5000));
   }
 };

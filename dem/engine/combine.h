@@ -1,0 +1,56 @@
+// One shape with every law and integrator that go with it.
+#pragma once
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <stdexcept>
+
+#include "dem/engine/engine_loop.h"
+#include "dem/engine/engine_of.h"
+#include "dem/shapes/shape.h"
+
+namespace grainfield::dem {
+
+/// The shape offers what the law reads.
+template <class Law, class Store>
+concept GoesWith = Shape<Store> && ContactLaw<Law, Store::dim> &&
+                   (!Law::needs_area || Store::offers_area) &&
+                   (!Law::needs_curvature || Store::offers_curvature);
+
+template <class Store>
+std::unique_ptr<Engine> engine_of(const EngineSettings& settings) {
+  static_assert(Shape<Store>);
+  const auto refuse = [](const char* key, const char* found,
+                         const std::vector<std::string>& allowed) {
+    throw std::invalid_argument(
+        fmt::format("{}: found \"{}\", allowed for grains of this shape: {}", key, found,
+                    fmt::join(allowed, ", ")));
+  };
+  const AnyLaw& any =
+      settings.material_pairs.empty() ? settings.law : settings.material_pairs.front().law;
+  std::unique_ptr<Engine> engine;
+  std::visit(
+      [&]<LawEntry Law>(const Law&) {
+        if constexpr (GoesWith<Law, Store>) {
+          settings.integrator.visit([&]<IntegratorEntry Kind>(Kind) {
+            if constexpr (IntegratesIn<Kind, Store::dim>) {
+              using Mover = typename Kind::template In<Store::dim>;
+              engine = std::make_unique<EngineLoop<Store, Law, Mover>>(
+                  settings, Rules<Law>(settings), Kind::name);
+            } else {
+              refuse("motion.integrator", Kind::name, words_where<AnyIntegrator>([]<class K>() {
+                       return IntegratesIn<K, Store::dim>;
+                     }));
+            }
+          });
+        } else {
+          refuse("material.law", Law::name,
+                 words_where<AnyLaw>([]<class L>() { return GoesWith<L, Store>; }));
+        }
+      },
+      any);
+  return engine;
+}
+
+}  // namespace grainfield::dem

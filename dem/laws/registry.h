@@ -1,0 +1,26 @@
+// Every contact law, by its word. A new one is a header beside this one and an entry in AnyLaw.
+#pragma once
+#include <variant>
+
+#include "dem/laws/law.h"
+#include "dem/laws/linear.h"
+#include "dem/laws/overlap_area.h"
+#include "dem/words/choice.h"
+
+namespace grainfield::dem {
+
+using AnyLaw = std::variant<OverlapAreaLaw, LinearLaw>;
+
+/// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
+/// material.law.
+inline AnyLaw law_of(const MaterialSetup& material) {
+  return kind_named<AnyLaw>("material.law", material.law,
+                            [&]<LawEntry Law>() { return AnyLaw(Law::of(material)); });
+}
+
+/// Words of the laws whose force grows with the width of a contact: those that polygons need.
+inline std::vector<std::string> laws_that_feel_edges() {
+  return words_where<AnyLaw>([]<LawEntry Law>() { return Law::feels_edges; });
+}
+
+}  // namespace grainfield::dem

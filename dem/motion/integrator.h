@@ -1,0 +1,39 @@
+// What an integrator must have.
+//
+// A step is begin (moves the body, before the forces), then end (takes force and torque at the new
+// place); start gives a body that has not moved yet the acceleration of where it stands. All act on
+// one body and its Memory alone, so that bodies may be moved in any order.
+#pragma once
+#include <concepts>
+
+#include "dem/motion/load.h"
+
+namespace grainfield::dem {
+
+template <class I, int D>
+concept Integrator = requires(const I& integrator, Body<D>& body, typename I::Memory& memory,
+                              const Inertia<D>& inertia, const Load<D>& load) {
+  requires std::constructible_from<I, double>;  // time step, s
+  { memory.rotation } -> std::convertible_to<RotationOf<D>>;
+  integrator.start(body, memory, inertia, load);
+  integrator.begin(body, memory, inertia);
+  integrator.end(body, memory, inertia, load);
+};
+
+/// A kind of integrator for the registry: its word; its limits of the time step (engine.h:
+/// stable_time_step): largest dt times decay rate of a dashpot, and largest c dt + k dt^2/2 of a
+/// chain of grains edge on edge; whether irregular polygons may go above the latter; and the
+/// integrator in D dimensions, In<D>.
+template <class K>
+concept IntegratorEntry = requires {
+  { K::name } -> std::convertible_to<const char*>;
+  { K::viscous_limit } -> std::convertible_to<double>;
+  { K::edge_limit } -> std::convertible_to<double>;
+  { K::bears_irregular_edges } -> std::convertible_to<bool>;
+};
+
+/// The kind integrates motion in D dimensions.
+template <class K, int D>
+concept IntegratesIn = Integrator<typename K::template In<D>, D>;
+
+}  // namespace grainfield::dem

@@ -1,0 +1,41 @@
+// What a shape must have: the store of what the engine keeps of all grains of that shape.
+//
+// The store answers by index, in the order of the bodies: how heavy a grain is, where its points
+// are, and how two of them, or one and a half space, overlap. What a pair remembers for the shapes'
+// own sake is its Feature, which must not change a result, only its cost.
+#pragma once
+#include <concepts>
+#include <vector>
+
+#include "dem/image/image.h"
+#include "dem/shapes/solid.h"
+#include "dem/space/body.h"
+#include "dem/space/overlap.h"
+#include "dem/space/plane.h"
+
+namespace grainfield::dem {
+
+/// `outlines`: has corners, may be slender, and its contact points lie beside the line of centres.
+/// `offers_area`, `offers_curvature`: measures of the overlap that laws may need.
+template <class S>
+concept Shape = std::default_initializable<typename S::Feature> && std::default_initializable<S> &&
+    requires(S& store, const S& same, const ShapeInput& input, int i, const Body<S::dim>& body,
+             const RotationOf<S::dim>& rotation, const Plane<S::dim>& plane,
+             const std::vector<int>& order, typename S::Feature& feature,
+             typename S::Overlap& overlap, ImageWriter& writer, ImageReader& reader) {
+  { S::outlines } -> std::convertible_to<bool>;
+  { S::offers_area } -> std::convertible_to<bool>;
+  { S::offers_curvature } -> std::convertible_to<bool>;
+  requires std::same_as<typename S::Overlap, OverlapIn<S::dim>>;
+  { store.add(input) } -> std::same_as<Solid<S::dim>>;  // throws std::invalid_argument
+  store.place(i, body, rotation);                       // after the body has moved
+  store.swap(i, i);
+  store.sort(order);  // the first order.size() grains in this order
+  { same.outline(i) } -> std::same_as<Outline>;
+  { same.template overlap<true>(i, body, i, body, feature, overlap) } -> std::same_as<bool>;
+  { same.template overlap_plane<true>(i, body, plane, overlap) } -> std::same_as<bool>;
+  same.write(writer);
+  store.read(reader, std::size_t{});
+};
+
+}  // namespace grainfield::dem

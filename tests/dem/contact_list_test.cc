@@ -1,0 +1,160 @@
+// The list of near pairs by itself: rows, what is found again by ids, blocks of threads, margins.
+#include "dem/contacts/contact_list.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "dem/contacts/margins.h"
+#include "dem/random/random.h"
+
+namespace grainfield::dem {
+namespace {
+
+// A memory with a direction, as springs in space have one.
+struct Arrow {
+  double size = 0;
+  bool empty() const { return size == 0; }
+  Arrow reversed() const { return {-size}; }
+};
+struct NoFeature {};
+using List = ContactList<2, Arrow, NoFeature>;
+
+TEST(ContactList, KeysTellPairsAndWallsApart) {
+  EXPECT_EQ(pair_key(7, 3), pair_key(3, 7));
+  EXPECT_NE(pair_key(3, 7), pair_key(3, 8));
+  EXPECT_EQ(first_of(pair_key(7, 3)), 3);
+  EXPECT_EQ(second_of(pair_key(7, 3)), 7);
+  EXPECT_EQ(wall_of(pair_key(7, 3), 4), -1);
+  EXPECT_EQ(wall_of(wall_key(5, 2), 4), 2);
+  EXPECT_EQ(wall_of(wall_key(5, 2), 2), -1);
+  EXPECT_EQ(first_of(wall_key(5, 2)), 5);
+}
+
+TEST(ContactList, MemoriesAreFoundAgainFromEitherSide) {
+  List list;
+  list.clear();
+  const std::vector<std::int64_t> ids{5, 2, 9};
+  list.pairs.add({{1.5}, 1, {}});  // 5 with 2: seen from the higher id
+  list.pairs.add({{0}, 2, {}});    // empty: not kept
+  list.pairs.end_row();
+  list.pairs.add({{-4}, 2, {}});  // 2 with 9
+  list.pairs.end_row();
+  list.pairs.end_row();
+  list.walls.add({{8}, 1, {}});
+  for (int row = 0; row < 3; ++row) list.walls.end_row();
+  list.finish();
+  EXPECT_EQ(list.pairs.rows(), 3);
+  EXPECT_EQ(list.pairs.size(), 3);
+  EXPECT_EQ(list.pairs.with_idle(), 3U + kAhead);
+  EXPECT_EQ(list.pair_forces.size(), list.pairs.with_idle());
+
+  const auto none = [](auto...) { return false; };
+  const Kept<Arrow> kept = list.kept_pairs(ids, none);
+  ASSERT_TRUE(kept.find(pair_key(2, 5)));
+  EXPECT_EQ(kept.find(pair_key(2, 5))->size, -1.5);  // from 2, the lower
+  EXPECT_EQ(seen_from(*kept.find(pair_key(2, 5)), true).size, 1.5);
+  EXPECT_EQ(kept.find(pair_key(2, 9))->size, -4);
+  EXPECT_FALSE(kept.find(pair_key(5, 9)));
+  EXPECT_EQ(list.kept_walls(ids, none).find(wall_key(5, 1))->size, 8);
+  const Kept<Arrow> some = list.kept_pairs(ids, [](int i, int j) { return i == 1 && j == 2; });
+  EXPECT_FALSE(some.find(pair_key(2, 9)));
+  EXPECT_TRUE(some.find(pair_key(2, 5)));
+}
+
+TEST(ContactList, NonsenseFromAnImageIsSeen) {
+  List list;
+  list.clear();
+  list.pairs.add({{1}, 1, {}});
+  list.pairs.end_row();
+  list.pairs.end_row();
+  list.walls.end_row();
+  list.walls.end_row();
+  list.finish();
+  EXPECT_TRUE(list.fits(true, 2, 2, 0));
+  EXPECT_FALSE(list.fits(true, 3, 2, 0));  // rows
+  EXPECT_FALSE(list.fits(true, 2, 1, 0));  // a grain that is none
+  list.felt.pop_back();
+  EXPECT_FALSE(list.fits(true, 2, 2, 0));
+}
+
+TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
+  Random random(3);
+  for (const int threads : {1, 2, 3, 8}) {
+    const int grains = 300, all = 330;  // 30 asleep behind
+    List list;
+    list.clear();
+    for (int i = 0; i < grains; ++i) {
+      for (int n = 0; n < 3; ++n) {
+        const int j = i + 1 + static_cast<int>(40 * random.uniform());
+        if (j < all) list.pairs.add({{1}, j, {}});
+      }
+      list.pairs.end_row();
+    }
+    list.finish();
+    list.blocks.divide(list.pairs, grains, threads);
+    EXPECT_EQ(list.blocks.first(0), 0);
+    EXPECT_EQ(list.blocks.last(threads - 1), grains);
+    std::vector<int> done(list.pairs.size(), 0);
+    int most = 0;
+    for (int rank = 0; rank < threads; ++rank) {
+      EXPECT_EQ(list.blocks.first(rank), rank == 0 ? 0 : list.blocks.last(rank - 1));
+      int pairs = 0;
+      for (int i = list.blocks.first(rank); i < list.blocks.last(rank); ++i) {
+        for (int k = list.pairs.first(i); k < list.pairs.last(i); ++k, ++pairs) {
+          const int j = list.pairs[k].j;
+          if (j < list.blocks.last(rank) || j >= grains) ++done[k];
+        }
+      }
+      most = std::max(most, pairs);
+      for (const auto& [i, k] : list.blocks.incoming(rank)) {
+        EXPECT_LT(i, list.blocks.first(rank));
+        EXPECT_GE(list.pairs[k].j, list.blocks.first(rank));
+        EXPECT_LT(list.pairs[k].j, list.blocks.last(rank));
+        ++done[k];
+      }
+    }
+    EXPECT_THAT(done, testing::Each(1));
+    EXPECT_LT(most, 1.2 * list.pairs.size() / threads + 6);
+  }
+}
+
+TEST(ContactList, MarginsAreLeftByMovingAndByTurning) {
+  Margin<2> m;
+  m.position = {1, 1};
+  m.rotation = 0.5;
+  m.turning = 0.1;
+  m.way = 0.02;
+  const Eigen::Vector2d near(1.01, 1), far(1.03, 1);
+  EXPECT_FALSE(m.is_left<true>(near, 0.5));
+  EXPECT_TRUE(m.is_left<true>(far, 0.5));
+  EXPECT_TRUE(m.is_left<true>(near, 0.65));  // 0.01 moved, 0.015 by turning
+  EXPECT_FALSE(m.is_left<false>(near, 0.65));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(m.is_left<true>({nan, 1}, 0.5));
+  EXPECT_TRUE(m.is_left<true>(near, nan));
+}
+
+TEST(ContactList, SkinGrowsWithSearchesAndShrinksWithout) {
+  Skin skin;
+  skin.set(0, 1);
+  EXPECT_DOUBLE_EQ(skin.way(0, 1, 1e-5), 0.5 * kFirstSkin);
+  skin.adapt(true, kOften - 1);
+  skin.set(0, 1);
+  EXPECT_DOUBLE_EQ(skin.way(0, 1, 1e-5), 0.75 * kFirstSkin);
+  skin.adapt(false, kOften);  // not by motion: nothing is learnt
+  skin.set(0, 1);
+  EXPECT_DOUBLE_EQ(skin.way(0, 1, 1e-5), 0.75 * kFirstSkin);
+  EXPECT_FALSE(skin.is_too_large(kOften + kSeldom - 10));
+  EXPECT_TRUE(skin.is_too_large(kOften + kSeldom));
+  skin.adapt(true, kOften + kSeldom);
+  skin.set(0, 1);
+  EXPECT_DOUBLE_EQ(skin.way(0, 1, 1e-5), 0.375 * kFirstSkin);
+  skin.set(0.3, 1);  // given
+  EXPECT_DOUBLE_EQ(skin.way(0, 1, 1e-5), 0.15);
+  EXPECT_DOUBLE_EQ(skin.way(1e9, 1, 1e-5), 0.15 + kMostAhead);
+}
+
+}  // namespace
+}  // namespace grainfield::dem
