@@ -226,7 +226,7 @@ class EngineLoop final : public Engine {
   template <class Body>
   static bool is_finite(const Body& b) {
     return b.position.allFinite() && std::isfinite(length_of(b.velocity)) &&
-           std::isfinite(length_of(b.spin));
+           std::isfinite(size_of(b.spin));
   }
 
   [[noreturn]] void report_divergence() const {
