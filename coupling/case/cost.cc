@@ -95,7 +95,9 @@ void check_points(const Draft& draft) {
 std::string outlook_text(const Case& value) {
   const Study& study = study_of(value);
   if (!study.has_grains()) return "";
-  const dem::Outlook o = study.foresee(value, kMostDraws);
+  Case first = value;  // all have been looked at when the case was read
+  first.ensemble.realizations = 1;
+  const dem::Outlook o = study.foresee(first, kMostDraws);
   std::string out = fmt::format("  {} realization{}", value.ensemble.realizations,
                                 value.ensemble.realizations == 1 ? "" : "s");
   if (!value.sweep.key.empty()) {

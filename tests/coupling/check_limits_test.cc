@@ -177,6 +177,18 @@ TEST(CheckCost, MeshesOfHyperbolicModelsToo) {
               HasSubstr("ask for 3.6e+11 unknowns; allowed: up to 1e+07"));
 }
 
+// The least floor that is accepted, to a thousandth.
+template <class Complaint>
+double least_floor(double refused, double taken, const Complaint& complaint_of_length) {
+  EXPECT_NE(complaint_of_length(refused), "");
+  EXPECT_EQ(complaint_of_length(taken), "");
+  while (taken - refused > 1e-3 * taken) {
+    const double middle = 0.5 * (refused + taken);
+    (complaint_of_length(middle).empty() ? taken : refused) = middle;
+  }
+  return taken;
+}
+
 // A later realization meets the floor's limit that the first one does not.
 TEST(CheckRealizations, AllOfThemAreTried) {
   const auto floor = [](int realizations, double length) {
@@ -185,10 +197,7 @@ TEST(CheckRealizations, AllOfThemAreTried) {
                          "[floor]\nlength = {}\n",
                          realizations, length)));
   };
-  double least = 0.01;
-  while (!floor(1, least).empty()) least *= 1.002;
-  ASSERT_LT(least, 0.5);
-  EXPECT_EQ(floor(1, least), "");
+  const double least = least_floor(0.05, 0.5, [&](double length) { return floor(1, length); });
   EXPECT_THAT(floor(200, least), HasSubstr("x.toml:7: floor.length: found "));
 }
 
@@ -201,9 +210,7 @@ TEST(CheckRealizations, ThoseThatCannotAllBeDrawnAreHeldTighter) {
                          realizations, length)));
   };
   // Of 400 piles of 6500 grains some 46 are drawn.
-  double least = 1;
-  while (!pouring(1, least).empty()) least *= 1.001;
-  ASSERT_LT(least, 2);
+  const double least = least_floor(1, 2, [&](double length) { return pouring(1, length); });
   EXPECT_THAT(pouring(400, least), HasSubstr("floor.length: found "));
   EXPECT_EQ(pouring(400, 1.05 * least), "");
 }
