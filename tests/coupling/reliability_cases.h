@@ -92,7 +92,7 @@ mu = 0
 width = 0.03
 half_width = 1.4
 solver = "march"
-columns = 160
+columns = 100
 )";
 }
 

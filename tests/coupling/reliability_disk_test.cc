@@ -7,7 +7,6 @@ namespace {
 TEST(FullDisk, FilesMayNotGrow) {
   DiskTally tally;
   limit_files("layer", {2'000, 40'000, 200'000}, true, tally);
-  limit_files("models", {20'000}, false, tally);
   tally.print("limited files");
   EXPECT_GE(tally.refused, 3);
 }

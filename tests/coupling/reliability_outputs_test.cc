@@ -155,8 +155,7 @@ TEST(Outputs, ARunOverAnotherStudyLeavesNothingOfIt) {
       {"notes.txt", "mine"}, {"data.csv", "1,2"}, {"mine.vtu", "x"}, {"plots/a.png", "y"}};
   fs::create_directories(out + "/plots");
   for (const auto& [name, text] : own) folder.write("out/" + name, text);
-  // Every study after every other.
-  for (const std::size_t k : {0, 1, 2, 3, 1, 0, 2, 0, 3, 2, 1, 3, 0}) {
+  for (const std::size_t k : {0, 2, 1, 3, 0}) {
     run(studies[k].text, out);
     Contents expected = alone.at(studies[k].name);
     expected.insert(own.begin(), own.end());

@@ -50,6 +50,11 @@ inline Contents results_in(const std::string& folder) {
   return out;
 }
 
+/// A file beside its target that a kill -9 found half written: nobody could remove it.
+inline bool is_orphan(const fs::path& file) {
+  return file.filename().string().front() == '.' && file.extension() == ".part";
+}
+
 /// Names of what a program may leave behind only where nobody could stop it: files that are being
 /// written and the staging area. The checkpoint is none of these.
 inline std::string leftovers(const std::string& folder) {
