@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "coupling/output/atomic_file.h"
+#include "dem/snapshot/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -152,8 +153,8 @@ void OutputFolder::publish() {
   }
   for (const fs::path& name : results) {
     fs::create_directories((folder_ / name).parent_path(), error);
-    fs::rename(partial_ / name, folder_ / name, error);
-    if (error) fail(folder_ / name, error);
+    if (error) fail((folder_ / name).parent_path(), error);
+    dem::replace_file((partial_ / name).string(), (folder_ / name).string());
   }
   list({results.begin(), results.end()});
   fs::remove_all(partial_, error);

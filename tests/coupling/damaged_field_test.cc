@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "coupling/output/field_io.h"
-#include "dem/engine/image.h"
+#include "dem/image/image.h"
 #include "tests/damaged_files.h"
 
 namespace grainfield::coupling {

@@ -234,7 +234,7 @@ TEST_F(ReportTest, ASignalToTheGroupDoesNotReachThePicture) {
   // The child leads a group, survives the signal itself and draws while the group is sent it.
   const pid_t child = fork();
   if (child == 0) {
-    setpgid(0, 0);
+    if (setpgid(0, 0) != 0) _exit(2);
     signal(SIGTERM, [](int) {});  // what is ignored would be ignored by gnuplot as well
     std::thread shooter([] {
       for (int k = 0; k < 20; ++k) {

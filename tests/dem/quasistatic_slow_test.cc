@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/engine/engine.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
