@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -110,6 +111,18 @@ double length_in_grains(const PileSetup& s) {
              fmt::format("with grains of this size: {:g} of them side by side", kMostOnFloor));
   }
   return count;
+}
+
+// Of all grains of a pile, m2: none is larger than the circle or ellipse that carries its corners.
+double most_area(const PileSetup& s) {
+  if (s.shape.kind == "irregular" || s.shape.kind == "outline") {
+    return std::numeric_limits<double>::infinity();
+  }
+  // Moments of a size uniform in 1 -+ p.
+  const double n = s.source.grains, p2 = s.shape.polydispersity * s.shape.polydispersity;
+  const double second = 1 + p2 / 3, fourth = 1 + 2 * p2 + p2 * p2 / 5;
+  const double error = std::sqrt((fourth / (second * second) - 1) / n);
+  return n * disk_grain(s.shape.radius).area * second * (1 + kAreaErrors * error);
 }
 
 // Draws the grains of one realization after the other, at most so many in all.
@@ -230,7 +243,7 @@ Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds
     if (!whole) {
       const double n = s.source.grains, drawn = static_cast<double>(poured.count());
       const double error = poured.area_variation() * (1 / std::sqrt(n) + 1 / std::sqrt(drawn));
-      area *= n / drawn * (1 + kAreaErrors * error);
+      area = std::min(area * n / drawn * (1 + kAreaErrors * error), most_area(s));
     }
     check_source(s, (whole ? 1 : kSizeReserve) * poured.largest_radius(), area);
   }

@@ -129,8 +129,7 @@ TEST(LatticePileRun, MistakesAreNamed) {
                                          "slope_deg = 61\n");
   const Output output = program("check " + steep);
   EXPECT_EQ(output.code, 2);
-  EXPECT_THAT(output.err, HasSubstr("y.toml:3: lattice.slope_deg: found 61, allowed: above 0, up "
-                                    "to 60"));
+  EXPECT_THAT(output.err, HasSubstr("y.toml:3: lattice.slope_deg: found 61, allowed: 1 to 60"));
 }
 
 }  // namespace
