@@ -81,7 +81,7 @@ void packing(Section s) {
 }
 
 void material(Section s) {
-  s.word("law", +SHARED(string, material.law), dem::words_of<dem::AnyLaw>(),
+  s.word("law", +SHARED(string, material.law), dem::laws_in<2>(),
          "contact law: elastic force from the overlap area, or linear spring and dashpot",
          "Roul 2.3");
   s.number("density", "kg/m2", +SHARED(double, material.density), {1e-3, 1e6},

@@ -69,7 +69,7 @@ struct Margin {
   template <bool turns>
   bool is_left(const VectorOf<D>& now, const RotationOf<D>& rotation_now) const {
     double left = way;
-    if constexpr (turns) left -= turning * angle_between(rotation_now, rotation);
+    if constexpr (turns) left -= turning * Space<D>::angle_between(rotation_now, rotation);
     return !(left >= 0 && (now - position).squaredNorm() <= left * left);
   }
 };

@@ -21,20 +21,21 @@ void visit_laws(const EngineSettings& settings, Visit visit) {
 
 }  // namespace
 
-double stable_time_step(const EngineSettings& settings, double least_mass) {
+double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius) {
   const double viscous_limit =
       settings.integrator.visit([](auto kind) { return kind.viscous_limit; });
   double limit = std::numeric_limits<double>::infinity();
   visit_laws(settings, [&](const auto& law) {
-    limit = std::min(limit, 0.1 * std::numbers::pi * std::sqrt(least_mass / law.stiffness()));
-    const double rate = law.viscous_rate(least_mass);
+    limit = std::min(limit,
+                     0.1 * std::numbers::pi * std::sqrt(least_mass / law.stiffness(least_radius)));
+    const double rate = law.viscous_rate(least_mass, least_radius);
     if (rate > 0) limit = std::min(limit, viscous_limit / rate);
   });
   return limit;
 }
 
 double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes) {
-  double limit = stable_time_step(settings, extremes.least_mass);
+  double limit = stable_time_step(settings, extremes.least_mass, extremes.least_radius);
   if (!(extremes.steepest_edge > 0)) return limit;
   const double share = settings.integrator.visit([](auto kind) { return kind.edge_limit; });
   visit_laws(settings, [&](const auto& law) {
@@ -57,10 +58,15 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
 }
 
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start) {
-  if (start.dim != 2) throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
+  const int dim = settings.shape.visit([](auto kind) { return kind.dim; });
+  if (start.dim != dim) {
+    throw std::invalid_argument(
+        fmt::format("the snapshot is {}D; a {}D one is needed", start.dim, dim));
+  }
   EngineSettings same = settings;
   same.gravity_x = start.gravity.x();
   same.gravity_y = start.gravity.y();
+  same.gravity_z = start.gravity.z();
   std::unique_ptr<Engine> engine = make_engine(same);
   for (const Wall& wall : start.walls) engine->add_wall(wall);
   for (const Grain& g : start.grains) {
@@ -75,6 +81,11 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapsh
     grain.density = g.mass / g.volume;
     grain.fixed = g.fixed;
     grain.outline = g.outline;
+    grain.z = g.position.z();
+    grain.vz = g.velocity.z();
+    grain.spin_x = g.angular_velocity.x();
+    grain.spin_y = g.angular_velocity.y();
+    grain.orientation = g.orientation;
     if (engine->add(grain) != g.id) {
       throw std::invalid_argument("the snapshot's grains are not numbered 0, 1, 2, ...");
     }

@@ -7,6 +7,7 @@
 // Parts 3 and 1 of successive steps are one sweep. Shape, law and integrator are fixed at compile
 // time inside (engine_loop.h); this interface hides them.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -25,8 +26,8 @@ namespace grainfield::dem {
 /// Laws and friction (Materials), motion, and what the engine is made for.
 struct EngineSettings : Materials {
   IntegratorKind integrator;
-  double time_step = 1e-5;                  ///< s
-  double gravity_x = 0, gravity_y = -9.81;  ///< m/s2
+  double time_step = 1e-5;                                 ///< s
+  double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s2
   double skin = 0;  ///< m; gap kept in the neighbour list; 0 = chosen from the radii
   int threads = 1;
   ShapeKind shape;  ///< polygons are disks too, but slower
@@ -42,6 +43,9 @@ struct NewGrain {
   bool rotates = true;   ///< false: a block that slides but never spins
   Outline outline;       ///< body frame (polygon.h: centred); empty: a disk of `radius`
   std::string material;  ///< one of EngineSettings::materials
+  /// In 3D; `spin` is about z, `angle` is not used, `density` is in kg/m3.
+  double z = 0, vz = 0, spin_x = 0, spin_y = 0;
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 };
 
 /// State of rest and energy, from the forces of the last step.
@@ -81,7 +85,8 @@ class Engine {
   /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
   virtual void set_background_damping(double rate) = 0;
   /// From now on; every grain wakes.
-  virtual void set_gravity(double gx, double gy) = 0;
+  virtual void set_gravity(double gx, double gy, double gz) = 0;
+  void set_gravity(double gx, double gy) { set_gravity(gx, gy, 0); }
   /// Switches sleeping on or off; off wakes every grain.
   virtual void set_sleep(bool on) = 0;
   /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges: a grain
@@ -113,7 +118,7 @@ class Engine {
 ///    decays at the law's viscous_rate(m). For Roul's law this is what makes Gear need steps of
 ///    5e-6 s where Verlet takes 5e-5.
 /// Of several laws the one with the smallest step counts.
-double stable_time_step(const EngineSettings& settings, double least_mass);
+double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius = 0);
 
 /// What of a population of grains bounds the time step.
 struct GrainExtremes {
@@ -121,6 +126,7 @@ struct GrainExtremes {
   double steepest_edge = 0;  ///< edge_steepness (polygon.h) of the polygon with the largest
                              ///< steepness / sqrt(mass); 0: disks only
   double steep_mass = 0;     ///< its mass, kg
+  double least_radius = 0;   ///< m; for laws whose stiffness goes by it (hertz)
 };
 /// The same with polygons: two parallel edges of length e at arms a give the contact the stiffness
 /// E e/l <= E s, s = 2 e/a, and the dashpot gamma s sqrt(E m_eff). In a chain of grains like the
@@ -137,9 +143,10 @@ inline constexpr double kMostOfLimit = 2.5;
 
 /// Throws std::invalid_argument for settings out of range.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
-/// The same, to go on from a 2D snapshot whose grains are numbered 0, 1, 2, ...: its walls, grains
-/// with their velocities, and springs. Time begins at 0; the settings' gravity is replaced by the
-/// snapshot's. Throws std::invalid_argument when the snapshot is 3D or numbered otherwise.
+/// The same, to go on from a snapshot of the shape's dimension, whose grains are numbered 0, 1, 2,
+/// ...: its walls, grains with their velocities, and springs. Time begins at 0; the settings'
+/// gravity is replaced by the snapshot's. Materials are not in a snapshot: there may be one only.
+/// Throws std::invalid_argument when the snapshot is of another dimension or numbered otherwise.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start);
 
 }  // namespace grainfield::dem

@@ -49,20 +49,17 @@ class EngineLoop final : public Engine {
     world_.acting.add_grain(kind);
     const Solid<dim> solid = grains.shapes.add({g.radius, g.outline});
     typename State::Body b;
-    b.position = in_space<dim>({g.x, g.y, 0});
+    b.position = in_space<dim>({g.x, g.y, g.z});
     b.radius = solid.radius;
     const Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
     if (!g.fixed) {
-      b.velocity = in_space<dim>({g.vx, g.vy, 0});
+      b.velocity = in_space<dim>({g.vx, g.vy, g.vz});
       b.inverse_mass = 1 / inertia.mass;
-      if (g.rotates) {
-        b.spin = g.spin;
-        b.inverse_inertia = 1 / inertia.moments;
-      }
+      if (g.rotates) take_turning(g, inertia, b);
       ++free_;
     }
     typename Integrator::Memory memory;
-    memory.rotation = g.angle;
+    memory.rotation = rotation_told(g, inertia);
     grains.bodies.push_back(b);
     grains.memory.push_back(memory);
     grains.inertias.push_back(inertia);
@@ -85,8 +82,8 @@ class EngineLoop final : public Engine {
     world_.wake_all();
   }
   void set_background_damping(double rate) override { world_.around.drag = rate; }
-  void set_gravity(double gx, double gy) override {
-    world_.around.gravity = in_space<dim>({gx, gy, 0});
+  void set_gravity(double gx, double gy, double gz) override {
+    world_.around.gravity = in_space<dim>({gx, gy, gz});
     world_.wake_all();
   }
   void set_sleep(bool on) override {
@@ -136,7 +133,8 @@ class EngineLoop final : public Engine {
     for (const Contact& c : contacts) {
       typename State::Frozen frozen;
       frozen.key = c.j < 0 ? wall_key(c.i, static_cast<int>(-1 - c.j)) : pair_key(c.i, c.j);
-      const auto memory = spring_told(c, static_cast<const typename State::Memory*>(nullptr));
+      typename State::Memory memory;
+      take_spring(c, memory.spring);
       frozen.memory = seen_from(memory, c.j >= 0 && c.j < c.i);
       world_.sleepers.frozen.keep(frozen);
     }
@@ -168,7 +166,8 @@ class EngineLoop final : public Engine {
     world.integrator = integrator;
     world.sleep = settings.sleep;
     world.time_step = settings.time_step;
-    world.around.gravity = in_space<dim>({settings.gravity_x, settings.gravity_y, 0});
+    world.around.gravity =
+        in_space<dim>({settings.gravity_x, settings.gravity_y, settings.gravity_z});
     return world;
   }
 

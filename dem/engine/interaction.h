@@ -58,10 +58,7 @@ class Interaction {
   }
 
   /// At rest, of infinite mass: what a wall is to the laws.
-  static const Body& wall_body() {
-    static const Body kWall{};
-    return kWall;
-  }
+  static const Body& wall_body() { return kWall; }
 
   bool overlap(const Shape& shapes, int i, const Body& a, int j, const Body& b, Feature& feature,
                Overlap& o) const {
@@ -76,11 +73,16 @@ class Interaction {
   static ContactForce<dim> force(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
                                  double dt, Memory& memory) {
     const ContactMotion<dim> motion = motion_at<central>(a, b, o);
+    if constexpr (dim == 3) {
+      turn_with_contact(memory.spring, o.normal, 0.5 * dt * (a.spin + b.spin).dot(o.normal), o);
+    }
     const LawForce<dim> f = rule.law(o, motion, rule.friction, dt, memory);
     return forces_at<central>(o, f.normal, f.tangential);
   }
 
  private:
+  inline static const Body kWall{};
+
   Rules<Law> rules_;
   std::vector<bool> grains_;      // kinds that are there
   std::vector<int> wall_kinds_;   // of the walls in their order

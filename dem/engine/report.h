@@ -192,7 +192,7 @@ class Report {
     c.friction = rule(i, pair, wall).friction;
     c.sliding = is_sliding(f, o, c.friction);
     const bool turned = !wall && c.j < c.i;
-    tell_spring(seen_from(pair.memory, turned), c);
+    tell_spring(seen_from(pair.memory, turned).spring, c);
     if (turned) {
       std::swap(c.i, c.j);
       c.normal = -c.normal;

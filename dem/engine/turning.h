@@ -1,6 +1,6 @@
 // Rotation, spin and springs of two dimensions in the words of a snapshot.
 #pragma once
-#include "dem/laws/contact.h"
+#include "dem/engine/engine.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/space/body.h"
 
@@ -16,7 +16,14 @@ inline void tell_turning(const Body<2>& b, double rotation, const Inertia<2>& in
   g.inertia = inertia.moments;
 }
 
-inline void tell_spring(const SpringMemory<2>& memory, Contact& c) { c.spring = memory.spring; }
-inline SpringMemory<2> spring_told(const Contact& c, const SpringMemory<2>*) { return {c.spring}; }
+/// Rotation of a new grain, and its spin and moment where it may turn.
+inline double rotation_told(const NewGrain& g, const Inertia<2>&) { return g.angle; }
+inline void take_turning(const NewGrain& g, const Inertia<2>& inertia, Body<2>& b) {
+  b.spin = g.spin;
+  b.inverse_inertia = 1 / inertia.moments;
+}
+
+inline void tell_spring(double spring, Contact& c) { c.spring = spring; }
+inline void take_spring(const Contact& c, double& spring) { spring = c.spring; }
 
 }  // namespace grainfield::dem

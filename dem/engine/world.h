@@ -70,7 +70,7 @@ struct World {
     applied_index = at == grains.ids.end() ? -1 : static_cast<int>(at - grains.ids.begin());
   }
   const auto& pair_rule(int i, int j) const {
-    return acting.rule(grains.kinds[i], grains.kinds[j]);
+    return acting.kinds() == 1 ? acting.rule(0, 0) : acting.rule(grains.kinds[i], grains.kinds[j]);
   }
   const auto& wall_rule(int i, int wall) const { return acting.wall_rule(grains.kinds[i], wall); }
   const auto& rotation(int i) const { return grains.memory[i].rotation; }

@@ -39,11 +39,11 @@ concept LawEntry = requires(const L& law, double x) {
   { L::name } -> std::convertible_to<const char*>;
   { L::feels_edges } -> std::convertible_to<bool>;
   { L::of(MaterialSetup{}) } -> std::same_as<L>;
-  { law.stiffness() } -> std::same_as<double>;             // largest, N/m
-  { law.tangential_stiffness() } -> std::same_as<double>;  // N/m
-  { law.viscous_rate(x) } -> std::same_as<double>;         // of grains of mass x, kg: 1/s
-  { law.edge_stiffness(x) } -> std::same_as<double>;       // of steepness x: N/m
-  { law.edge_rate(x, x) } -> std::same_as<double>;         // of mass and steepness: 1/s
+  { law.stiffness(x) } -> std::same_as<double>;  // largest, of grains of radius x: N/m
+  { law.tangential_stiffness(x) } -> std::same_as<double>;
+  { law.viscous_rate(x, x) } -> std::same_as<double>;  // of mass (kg) and radius: 1/s
+  { law.edge_stiffness(x) } -> std::same_as<double>;   // of steepness x: N/m
+  { law.edge_rate(x, x) } -> std::same_as<double>;     // of mass and steepness: 1/s
 };
 
 }  // namespace grainfield::dem

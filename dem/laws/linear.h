@@ -23,12 +23,14 @@ struct LinearLaw {
     return {m.normal_stiffness, m.tangential_stiffness, m.normal_damping, m.tangential_damping};
   }
 
-  double stiffness() const { return std::max(normal_stiffness, tangential_stiffness_); }
-  double tangential_stiffness() const { return tangential_stiffness_; }
+  double stiffness(double /*radius*/ = 0) const {
+    return std::max(normal_stiffness, tangential_stiffness_);
+  }
+  double tangential_stiffness(double /*radius*/ = 0) const { return tangential_stiffness_; }
 
   /// Decay rate of the fastest dashpot mode of a packing of equal disks, 1/s: six neighbours
   /// spinning alike (24 c/m with c = gamma_t m/2), or moving against each other (6 c/m).
-  double viscous_rate(double) const {
+  double viscous_rate(double, double /*radius*/ = 0) const {
     return std::max(12 * tangential_damping, 3 * normal_damping);
   }
 

@@ -6,10 +6,11 @@
 namespace grainfield::dem {
 
 struct MaterialSetup {
-  std::string law = "overlap_area";       ///< overlap_area | linear
+  std::string law = "overlap_area";       ///< overlap_area | linear | hertz (3D)
   double density = 5000;                  ///< kg/m2
-  double young = 1e7;                     ///< N/m; overlap_area
+  double young = 1e7;                     ///< N/m; overlap_area; Pa: hertz
   double damping = 0.75;                  ///< gamma of overlap_area, -
+  double poisson = 0.3;                   ///< of hertz, -
   double normal_stiffness = 1e7;          ///< N/m; linear
   double tangential_stiffness = 2e7 / 7;  ///< N/m; linear
   double normal_damping = 500;            ///< 1/s; linear: force m_eff * gamma_n * v_n

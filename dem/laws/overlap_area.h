@@ -22,13 +22,13 @@ struct OverlapAreaLaw {
   static OverlapAreaLaw of(const MaterialSetup& m) { return {m.young, m.damping}; }
 
   /// Stiffness that bounds the time step, N/m.
-  double stiffness() const { return young; }
-  double tangential_stiffness() const { return young * (2.0 / 7); }
+  double stiffness(double /*radius*/ = 0) const { return young; }
+  double tangential_stiffness(double /*radius*/ = 0) const { return young * (2.0 / 7); }
 
   /// Decay rate of the fastest dashpot mode of a packing of equal disks of mass m, 1/s: six
   /// neighbours spinning alike, 24 c/m with c = sqrt((2/7) E m/6), or moving against each other,
   /// 6 c/m with c = gamma (chord/l) sqrt(E m/2) and a chord of 0.6 l (an overlap of 2 % of r).
-  double viscous_rate(double mass) const {
+  double viscous_rate(double mass, double /*radius*/ = 0) const {
     return std::max(24 * std::sqrt(tangential_stiffness() / (6 * mass)),
                     6 * 0.6 * damping * std::sqrt(young / (2 * mass)));
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <variant>
 
+#include "dem/laws/hertz.h"
 #include "dem/laws/law.h"
 #include "dem/laws/linear.h"
 #include "dem/laws/overlap_area.h"
@@ -9,13 +10,19 @@
 
 namespace grainfield::dem {
 
-using AnyLaw = std::variant<OverlapAreaLaw, LinearLaw>;
+using AnyLaw = std::variant<OverlapAreaLaw, LinearLaw, HertzLaw>;
 
 /// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
 /// material.law.
 inline AnyLaw law_of(const MaterialSetup& material) {
   return kind_named<AnyLaw>("material.law", material.law,
                             [&]<LawEntry Law>() { return AnyLaw(Law::of(material)); });
+}
+
+/// Words of the laws that hold in D dimensions.
+template <int D>
+std::vector<std::string> laws_in() {
+  return words_where<AnyLaw>([]<LawEntry Law>() { return ContactLaw<Law, D>; });
 }
 
 /// Words of the laws whose force grows with the width of a contact: those that polygons need.

@@ -24,7 +24,7 @@ class GearIntegrator<2> {
   /// Per grain: angle and the higher derivatives.
   struct Memory {
     double rotation = 0;
-    Derivatives<Eigen::Vector2d> place;
+    Derivatives<VectorOf<2>> place;
     Derivatives<double> turning;
   };
 
@@ -40,7 +40,7 @@ class GearIntegrator<2> {
     predict(m.rotation, b.spin, m.turning);
   }
   void end(Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
-    const Eigen::Vector2d a = acceleration_of(b, load);
+    const VectorOf<2> a = acceleration_of(b, load);
     const double rate = spin_rate_of(b, load);
     correct(b.position, b.velocity, m.place, a);
     correct(m.rotation, b.spin, m.turning, rate);

@@ -15,7 +15,7 @@ class VerletIntegrator<2> {
   /// Per grain: angle and acceleration.
   struct Memory {
     double rotation = 0;
-    Eigen::Vector2d acceleration{0, 0};
+    VectorOf<2> acceleration{0, 0};
     double spin_rate = 0;
   };
 
@@ -35,11 +35,14 @@ class VerletIntegrator<2> {
     m.rotation += dt_ * b.spin;
   }
   /// After the forces: accelerations at the new position.
-  void end(Body<2>& b, Memory& m, const Inertia<2>& inertia, const Load<2>& load) const {
+  void end(Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
     const double half = 0.5 * dt_;
-    start(b, m, inertia, load);
-    b.velocity += half * m.acceleration;
-    b.spin += half * m.spin_rate;
+    const VectorOf<2> acceleration = acceleration_of(b, load);
+    const double spin_rate = spin_rate_of(b, load);
+    m.acceleration = acceleration;
+    m.spin_rate = spin_rate;
+    b.velocity += half * acceleration;
+    b.spin += half * spin_rate;
   }
 
  private:

@@ -15,8 +15,7 @@ constexpr int kMaxLevels = 24;
 }  // namespace
 
 template <int D>
-auto HierarchicalGrid<D>::cell_at(const Level& level, const Eigen::Matrix<double, D, 1>& at) const
-    -> Cell {
+auto HierarchicalGrid<D>::cell_at(const Level& level, const PlainVector<D>& at) const -> Cell {
   Cell cell;
   for (int a = 0; a < D; ++a) {
     cell[a] =
@@ -43,7 +42,7 @@ void HierarchicalGrid<D>::build(std::span<const Reach<D>> grains) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   double least = inf, most = 0;
   low_.setConstant(inf);
-  Eigen::Matrix<double, D, 1> high = Eigen::Matrix<double, D, 1>::Constant(-inf);
+  PlainVector<D> high = PlainVector<D>::Constant(-inf);
   for (const Reach<D>& g : grains) {
     low_ = low_.cwiseMin(g.centre);
     high = high.cwiseMax(g.centre);
@@ -93,8 +92,7 @@ template <class Visit>
 void HierarchicalGrid<D>::visit_cells(const Level& level, const Reach<D>& grain,
                                       Visit visit) const {
   // A partner on this level reaches at most half a cell.
-  const Eigen::Matrix<double, D, 1> reach =
-      Eigen::Matrix<double, D, 1>::Constant(grain.reach + 0.5 * level.cell);
+  const PlainVector<D> reach = PlainVector<D>::Constant(grain.reach + 0.5 * level.cell);
   const Cell low = cell_at(level, grain.centre - reach),
              high = cell_at(level, grain.centre + reach);
   // Runs of cells along the first axis; the others count up like a clock.

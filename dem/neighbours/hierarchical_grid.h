@@ -19,9 +19,9 @@ namespace grainfield::dem {
 /// A grain as the search sees it.
 template <int D>
 struct Reach {
-  Eigen::Matrix<double, D, 1> centre = Eigen::Matrix<double, D, 1>::Zero();  ///< m
-  double reach = 0;    ///< radius and the gap that it keeps, m
-  bool fixed = false;  ///< never partner of another fixed one
+  PlainVector<D> centre = PlainVector<D>::Zero();  ///< m
+  double reach = 0;                                ///< radius and the gap that it keeps, m
+  bool fixed = false;                              ///< never partner of another fixed one
 };
 
 template <int D>
@@ -51,13 +51,13 @@ class HierarchicalGrid {
     std::vector<int> start;    // of each cell in `members`
     std::vector<int> members;  // grain indices, ascending within a cell
   };
-  Cell cell_at(const Level& level, const Eigen::Matrix<double, D, 1>& at) const;
+  Cell cell_at(const Level& level, const PlainVector<D>& at) const;
   /// Number of a cell: the first axis runs fastest.
   static int number_of(const Level& level, const Cell& cell);
   template <class Visit>
   void visit_cells(const Level& level, const Reach<D>& grain, Visit visit) const;
 
-  Eigen::Matrix<double, D, 1> low_ = Eigen::Matrix<double, D, 1>::Zero();
+  PlainVector<D> low_ = PlainVector<D>::Zero();
   double finest_ = 0;
   std::vector<Reach<D>> grains_;
   std::vector<Level> levels_;

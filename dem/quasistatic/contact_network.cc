@@ -1,9 +1,13 @@
 #include "dem/quasistatic/contact_network.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 
 #include "dem/neighbours/hierarchical_grid.h"
 
@@ -22,9 +26,15 @@ constexpr double kFloor = 1e-6;
 ContactNetwork::ContactNetwork(const Snapshot& start, const Materials& materials)
     : law_(materials.law), friction_(materials.friction), walls_(start.walls) {
   std::visit(
-      [this](const auto& l) {
-        stiffness_ = l.stiffness();
-        tangential_stiffness_ = l.tangential_stiffness();
+      [this]<class Law>(const Law& l) {
+        if constexpr (ContactLaw<Law, 2>) {
+          stiffness_ = l.stiffness();
+          tangential_stiffness_ = l.tangential_stiffness();
+        } else {
+          throw std::invalid_argument(
+              fmt::format("material.law: found {}, allowed for quasi-static relaxation: {}",
+                          Law::name, fmt::join(laws_in<2>(), ", ")));
+        }
       },
       law_);
   const std::size_t n = start.grains.size();

@@ -58,11 +58,14 @@ bool ContactNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) con
   Overlap o;
   if (!overlap(pair, p, o)) return false;
   g.normal = std::visit(
-      [&](const auto& law) {
-        SpringMemory<2> none;
-        ContactMotion<2> at_rest;
-        at_rest.inverse_mass_i = 1;  // any: there is no velocity to damp
-        return law(o, at_rest, 0.0, 0.0, none).normal;
+      [&]<class Law>(const Law& law) {
+        if constexpr (ContactLaw<Law, 2>) {
+          typename Law::template Memory<2> none;
+          ContactMotion<2> at_rest;
+          at_rest.inverse_mass_i = 1;  // any: there is no velocity to damp
+          return law(o, at_rest, 0.0, 0.0, none).normal;
+        }
+        return 0.0;  // refused by the constructor
       },
       law_);
   g.nx = o.nx;

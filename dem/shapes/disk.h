@@ -52,7 +52,8 @@ inline bool overlap_of_disks(double dx, double dy, double ri, double rj, Overlap
     overlap.nx = distance > 0 ? dx * inverse : 1.0;
     overlap.ny = distance > 0 ? dy * inverse : 0.0;
     const double small = ri < rj ? ri : rj;
-    overlap.arm_i = overlap.arm_j = 0.5 * small;
+    overlap.arm_i = ri < rj ? 0 : distance;
+    overlap.arm_j = distance - overlap.arm_i;
     overlap.area = std::numbers::pi * small * small;
     overlap.chord = 0;
     overlap.length = 0.25 * small;

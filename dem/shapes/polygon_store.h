@@ -48,9 +48,10 @@ class PolygonStore {
     const auto [c, s] = rotation_of(angle);
     const double *bx = block, *by = block + stride_;
     double *x = block + 2 * stride_, *y = block + 3 * stride_;
+    const double cx = b.position.x(), cy = b.position.y();
     for (int k = 0; k <= n; ++k) {
-      x[k] = b.position.x() + (c * bx[k] - s * by[k]);
-      y[k] = b.position.y() + (s * bx[k] + c * by[k]);
+      x[k] = cx + (c * bx[k] - s * by[k]);
+      y[k] = cy + (s * bx[k] + c * by[k]);
     }
   }
 

@@ -7,6 +7,7 @@ namespace grainfield::dem {
 
 class DiskStore;
 class PolygonStore;
+class SphereStore;
 
 struct Disks {
   static constexpr const char* name = "disk";
@@ -20,13 +21,20 @@ struct Polygons {
   using Store = PolygonStore;
 };
 
-using AnyShape = std::variant<Disks, Polygons>;
+struct Spheres {
+  static constexpr const char* name = "sphere";
+  static constexpr int dim = 3;
+  using Store = SphereStore;
+};
+
+using AnyShape = std::variant<Disks, Polygons, Spheres>;
 
 struct ShapeKind : Choice<AnyShape> {
   using Choice::Choice;
-  static const ShapeKind disk, polygon;
+  static const ShapeKind disk, polygon, sphere;
 };
 inline constexpr ShapeKind ShapeKind::disk{AnyShape(Disks{})};
 inline constexpr ShapeKind ShapeKind::polygon{AnyShape(Polygons{})};
+inline constexpr ShapeKind ShapeKind::sphere{AnyShape(Spheres{})};
 
 }  // namespace grainfield::dem

@@ -85,7 +85,7 @@ class Sleepers {
                    long step, const SleepSettings& settings) {
     Quiet& q = quiet_[i];
     const double limit = settings.quiet_move * 2 * radius;
-    const double turn = angle_between(rotation, q.rotation) * radius;
+    const double turn = Space<D>::angle_between(rotation, q.rotation) * radius;
     if (!((position - q.position).squaredNorm() <= limit * limit) || !(turn <= limit)) {
       q = {position, rotation, step};
       return -1;

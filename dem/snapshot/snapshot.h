@@ -2,6 +2,7 @@
 // The HDF5 layout is documented in docs/file-formats.md.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -25,7 +26,11 @@ struct Grain {
   double inertia = 0;      ///< polar moment about the centroid, kg m2
   double volume = 0;       ///< m2 in 2D
   bool fixed = false;      ///< part of the apparatus (rough floor): takes force, does not move
-  Outline outline;         ///< corners in the body frame (rotate by `angle`); empty: a disk
+  Outline outline;         ///< corners in the body frame (rotate by `angle`); empty: round
+  /// In 3D; angle is not used, spin and inertia are the z component and the mean then.
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z: body to space
+  Vec3 angular_velocity{0, 0, 0};                 ///< rad/s
+  Vec3 moments{0, 0, 0};                          ///< principal moments, kg m2
 };
 
 /// A rigid immobile half plane: the grains are on the side the normal points to.
@@ -47,6 +52,7 @@ struct Contact {
   double spring = 0;            ///< elastic part of tangential_force (the contact's memory), N
   double friction = 0;          ///< Coulomb coefficient of this contact
   bool sliding = false;         ///< |tangential| at mu * normal
+  Vec3 spring_vector{0, 0, 0};  ///< in 3D: the spring on grain i, N; `spring` is its size
 };
 
 struct Snapshot {

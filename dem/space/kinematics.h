@@ -61,19 +61,19 @@ inline ContactForce<2> forces_at(const Overlap& o, double normal, double tangent
 
 /// The contact point, m.
 template <bool central>
-inline Eigen::Vector2d point_at(const Body<2>& a, const Overlap& o) {
+inline VectorOf<2> point_at(const Body<2>& a, const Overlap& o) {
   const double x = a.position.x(), y = a.position.y();
   if constexpr (central) return {x + o.arm_i * o.nx, y + o.arm_i * o.ny};
   return {x + o.lever_i * o.nx - o.shift_i * o.ny, y + o.lever_i * o.ny + o.shift_i * o.nx};
 }
 
-inline Eigen::Vector2d normal_of(const Overlap& o) { return {o.nx, o.ny}; }
+inline VectorOf<2> normal_of(const Overlap& o) { return {o.nx, o.ny}; }
 
 /// Parts of a force on the first body: repulsion, and along t.
-inline double repulsion_of(const Eigen::Vector2d& force, const Overlap& o) {
+inline double repulsion_of(const VectorOf<2>& force, const Overlap& o) {
   return -(force.x() * o.nx + force.y() * o.ny);
 }
-inline double tangential_of(const Eigen::Vector2d& force, const Overlap& o) {
+inline double tangential_of(const VectorOf<2>& force, const Overlap& o) {
   return force.y() * o.nx - force.x() * o.ny;
 }
 

@@ -7,16 +7,23 @@
 
 namespace grainfield::dem {
 
+/// A vector whose layout is the same in every file, whatever Eigen's alignment there.
+template <int D>
+using PlainVector = Eigen::Matrix<double, D, 1, D == 2 ? Eigen::DontAlign : Eigen::AutoAlign>;
+
 template <int D>
 struct Space;
 
 template <>
 struct Space<2> {
-  using Vector = Eigen::Vector2d;
+  using Vector = PlainVector<2>;
   using Spin = double;        ///< about z: angular velocity, torque
   using Tangential = double;  ///< along (-n_y, n_x): slip, friction
   using Rotation = double;    ///< angle, rad
   using Moments = double;     ///< polar moment about the centroid
+
+  /// How far apart two rotations are, rad.
+  static double angle_between(double a, double b) { return std::fabs(a - b); }
 };
 
 template <int D>
@@ -48,9 +55,6 @@ T no_rotation() {
   }
 }
 
-/// How far apart two rotations are, rad.
-inline double angle_between(double a, double b) { return std::fabs(a - b); }
-
 /// Length of a vector, without overflow in the plane.
 template <class Derived>
 double length_of(const Eigen::MatrixBase<Derived>& v) {
@@ -64,7 +68,7 @@ VectorOf<D> in_space(const Eigen::Vector3d& v) {
   return v.template head<D>();
 }
 /// A vector with 0 for what the plane does not have.
-inline Eigen::Vector3d to_three(const Eigen::Vector2d& v) { return {v[0], v[1], 0}; }
+inline Eigen::Vector3d to_three(const PlainVector<2>& v) { return {v[0], v[1], 0}; }
 inline Eigen::Vector3d to_three(const Eigen::Vector3d& v) { return v; }
 
 /// Size of a spin, a torque or a tangential force.

@@ -132,8 +132,8 @@ std::string smaller_step(const MotionSetup& m) {
 }
 
 std::string describe(const MaterialSetup& m) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", m.law, m.density, m.young, m.damping,
-                     m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", m.law, m.density, m.young, m.damping,
+                     m.poisson, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
                      m.tangential_damping, m.friction, m.floor_friction, m.wall_friction,
                      m.gravity);
 }

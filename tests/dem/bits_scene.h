@@ -48,6 +48,9 @@ inline std::uint64_t hash_of(const Snapshot& s) {
     h.add(g.velocity);
     h.add(g.angle);
     h.add(g.spin);
+    if (s.dim == 2) continue;
+    for (const double q : g.orientation) h.add(q);
+    h.add(g.angular_velocity);
   }
   for (const Contact& c : s.contacts) {
     h.add(static_cast<std::uint64_t>(c.i));
@@ -57,6 +60,7 @@ inline std::uint64_t hash_of(const Snapshot& s) {
     h.add(c.force);
     h.add(c.spring);
     h.add(static_cast<std::uint64_t>(c.sliding));
+    if (s.dim == 3) h.add(c.spring_vector);
   }
   return h.value();
 }

@@ -52,6 +52,17 @@ TEST(Disk, AreaChangesByTheChord) {
   }
 }
 
+// Arms that add up to the distance: else friction would make angular momentum.
+TEST(Disk, OneInsideTheOtherTouchesAtTheInnerOnesCentre) {
+  for (const auto& [r, s] : {std::pair(1.0, 0.3), std::pair(0.3, 1.0)}) {
+    Overlap o;
+    ASSERT_TRUE(overlap_of_disks<true>(0.2, 0, r, s, o));
+    EXPECT_DOUBLE_EQ(o.arm_i, r > s ? 0.2 : 0);
+    EXPECT_DOUBLE_EQ(o.arm_j, r > s ? 0 : 0.2);
+    EXPECT_DOUBLE_EQ(o.area, std::numbers::pi * 0.09);
+  }
+}
+
 TEST(Disk, SegmentFunctionIsContinuousWhereItsFormChanges) {
   const double below = segment_function(std::nextafter(0.2, 0.0)), above = segment_function(0.2);
   EXPECT_NEAR(below, above, 1e-14 * above + 3e-17);

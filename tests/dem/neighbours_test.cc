@@ -65,6 +65,44 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
   }
 }
 
+TEST(Neighbours, FindsExactlyThePairsInSpace) {
+  for (const double ratio : {1.0, 20.0}) {
+    for (int seed = 0; seed < 10; ++seed) {
+      Random random(seed);
+      std::vector<Reach<3>> grains(250);
+      for (Reach<3>& g : grains) {
+        g.reach = 0.05 * std::pow(ratio, -random.uniform());
+        const double high = seed % 3 == 0 ? 3 : 0.3;  // a column, and a box
+        g.centre = {0.3 * random.uniform(), 0.3 * random.uniform(), high * random.uniform()};
+        g.fixed = random.uniform() < 0.1;
+      }
+      std::vector<std::pair<int, int>> expected, found;
+      for (int i = 0; i < 250; ++i) {
+        for (int j = i + 1; j < 250; ++j) {
+          const double sum = grains[i].reach + grains[j].reach;
+          if ((grains[i].centre - grains[j].centre).squaredNorm() < sum * sum &&
+              !(grains[i].fixed && grains[j].fixed)) {
+            expected.emplace_back(i, j);
+          }
+        }
+      }
+      HierarchicalGrid<3> grid;
+      grid.build(grains);
+      grid.pairs(found);
+      EXPECT_EQ(found, expected) << "ratio " << ratio << ", seed " << seed;
+      std::vector<int> near;
+      grid.near(grains[7], near);
+      for (const int j : near) {
+        const double sum = grains[7].reach + grains[j].reach;
+        EXPECT_LT((grains[7].centre - grains[j].centre).norm(), sum);
+      }
+      std::vector<int> order = grid.order();
+      std::sort(order.begin(), order.end());
+      for (int i = 0; i < 250; ++i) ASSERT_EQ(order[i], i);
+    }
+  }
+}
+
 TEST(Neighbours, EmptyAndSingle) {
   HierarchicalGrid<2> grid;
   std::vector<Reach<2>> grains;

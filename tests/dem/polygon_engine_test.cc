@@ -200,7 +200,7 @@ TEST(PolygonEngine, TheSpringOutlivesAChangeOfFeatures) {
   box.vx = 1;
   engine->add(box);
   const double stiffness =
-      std::visit([](const auto& l) { return l.tangential_stiffness(); }, settings.law);
+      std::visit([](const auto& l) { return l.tangential_stiffness(0); }, settings.law);
   double spring = 0, largest = 0, first_angle = 0, last_angle = 0;
   int steps = 0;
   for (int k = 0; k < 10500; ++k) {

@@ -60,9 +60,9 @@ struct SquareLaw {
   double k = 1e9;
 
   static SquareLaw of(const MaterialSetup&) { return {}; }
-  double stiffness() const { return k; }
-  double tangential_stiffness() const { return 0; }
-  double viscous_rate(double) const { return 0; }
+  double stiffness(double) const { return k; }
+  double tangential_stiffness(double) const { return 0; }
+  double viscous_rate(double, double) const { return 0; }
   double edge_stiffness(double) const { return k; }
   double edge_rate(double, double) const { return 0; }
   template <int D>

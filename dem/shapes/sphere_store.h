@@ -1,0 +1,73 @@
+// Spheres as the engine keeps them: all is in the bodies.
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "dem/image/image.h"
+#include "dem/shapes/solid.h"
+#include "dem/space/body.h"
+#include "dem/space/overlap.h"
+#include "dem/space/plane.h"
+#include "dem/space/space3.h"
+
+namespace grainfield::dem {
+
+/// Two spheres that overlap share a lens; its edge is a circle, whose centre is the contact point,
+/// on the line of centres. Of a sphere inside another the contact point is its centre.
+class SphereStore {
+ public:
+  static constexpr int dim = 3;
+  static constexpr bool outlines = false;
+  static constexpr bool offers_area = false, offers_curvature = true;
+  using Overlap = Overlap3;
+  struct Feature {};
+
+  Solid<3> add(const ShapeInput& shape) {
+    if (!shape.outline.empty()) throw std::invalid_argument("a sphere has no outline");
+    const double r = shape.radius, volume = 4.0 / 3 * std::numbers::pi * r * r * r;
+    return {r, volume, Eigen::Vector3d::Constant(0.4 * volume * r * r)};
+  }
+  void place(int, const Body<3>&, const RotationOf<3>&) {}
+  void swap(int, int) {}
+  void sort(const std::vector<int>&) {}
+  Outline outline(int) const { return {}; }
+
+  template <bool>
+  bool overlap(int, const Body<3>& a, int, const Body<3>& b, Feature&, Overlap& o) const {
+    const Eigen::Vector3d across = b.position - a.position;
+    const double squared = across.squaredNorm(), reach = a.radius + b.radius;
+    if (squared >= reach * reach) return false;
+    const double distance = std::sqrt(squared);
+    o.depth = reach - distance;
+    o.normal = distance > 0 ? Eigen::Vector3d(across / distance) : Eigen::Vector3d::UnitX();
+    o.radius = a.radius * b.radius / reach;
+    double arm_i = 0;  // from a, along the normal
+    if (distance > std::fabs(a.radius - b.radius)) {
+      // Without cancellation, as of two disks: r_i - arm_i = depth (2 r_j - depth) / (2 d).
+      arm_i = a.radius - o.depth * (2 * b.radius - o.depth) / (2 * distance);
+    } else if (a.radius > b.radius) {
+      arm_i = distance;
+    }
+    o.arm_i = arm_i * o.normal;
+    o.arm_j = (arm_i - distance) * o.normal;
+    return true;
+  }
+  template <bool>
+  bool overlap_plane(int, const Body<3>& a, const Plane<3>& plane, Overlap& o) const {
+    const double height = plane.height(a.position);
+    if (height >= a.radius) return false;
+    o.normal = -plane.normal;
+    o.depth = a.radius - height;
+    o.radius = a.radius;
+    o.arm_i = -height * plane.normal;
+    o.arm_j = Eigen::Vector3d::Zero();  // a wall does not turn
+    return true;
+  }
+
+  void write(ImageWriter&) const {}
+  void read(ImageReader&, std::size_t) {}
+};
+
+}  // namespace grainfield::dem
