@@ -89,7 +89,8 @@ void OutputFolder::require_other_than(const std::vector<std::string>& inputs) co
 std::string OutputFolder::staging(const std::string& inner) const {
   const fs::path file = partial_ / inner;
   std::error_code error;
-  fs::create_directories(inner.empty() ? partial_ : file.parent_path(), error);
+  unless_stopping(
+      [&] { fs::create_directories(inner.empty() ? partial_ : file.parent_path(), error); });
   if (error) fail(file.parent_path(), error);
   return inner.empty() ? partial_.string() : file.string();
 }

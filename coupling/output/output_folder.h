@@ -29,7 +29,8 @@ class OutputFolder {
 
   /// Throws std::invalid_argument when one of these files is a result that publish() would replace.
   void require_other_than(const std::vector<std::string>& inputs) const;
-  /// Path of a file to be written: staging area / inner. Folders on the way are made.
+  /// Path of a file to be written: staging area / inner. Folders on the way are made, and one whose
+  /// name ends with a slash.
   std::string staging(const std::string& inner = "") const;
   /// Removes the results of an earlier command, summary.json before all, and moves everything from
   /// the staging area to its place, summary.json last: a summary never stands beside another run's

@@ -234,8 +234,8 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
     options.note("outputs");
     on_first_rank(ranks, [&] {
       for (std::size_t m = 0; m < members.size(); ++m) {
-        const std::string folder = place.staging(members[m].suffix);
-        fs::create_directories(folder);
+        const std::string& suffix = members[m].suffix;
+        const std::string folder = place.staging(suffix.empty() ? "" : suffix + "/");
         times(m, results[m].summary);
         write_study(folder, results[m]);
       }

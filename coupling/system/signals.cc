@@ -134,6 +134,11 @@ OnSignal::~OnSignal() {
   state().undoes.erase(number_);
 }
 
+void unless_stopping(const std::function<void()>& work) {
+  const std::lock_guard lock(state().mutex);
+  work();
+}
+
 void wait_if_stopping() { const std::lock_guard lock(state().mutex); }
 
 }  // namespace grainfield::coupling

@@ -63,6 +63,9 @@ class OnSignal {
   int number_;
 };
 
+/// Does the work while no signal can end the program in between; when one is just ending it, never
+/// returns. For what must not be made again once `undo` has removed it.
+void unless_stopping(const std::function<void()>& work);
 /// Returns at once, or, when a signal is just ending the program, never. Whoever reports a failure
 /// asks first: it may come from what `undo` took away.
 void wait_if_stopping();

@@ -129,6 +129,25 @@ TEST(Signals, WhoFailsMeanwhileWaitsForTheEnd) {
             130);
 }
 
+TEST(Signals, WhatIsUndoneIsNotMadeAgain) {
+  const testing::Folder folder;
+  const std::string made = folder / "made";
+  EXPECT_EQ(in_child([&] {
+              const OnSignal undo([&] {
+                testing::fs::remove(made);
+                std::this_thread::sleep_for(300ms);
+              });
+              raise(SIGTERM);
+              const auto limit = std::chrono::steady_clock::now() + kSoon;
+              while (std::chrono::steady_clock::now() < limit) {
+                unless_stopping([&] { testing::fs::create_directory(made); });
+              }
+              return 0;
+            }),
+            130);
+  EXPECT_FALSE(testing::fs::exists(made));
+}
+
 TEST(Signals, WritesThatCannotBeDoneSayItThemselves) {
   EXPECT_EQ(in_child([] {
               int ends[2];
