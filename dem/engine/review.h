@@ -89,7 +89,7 @@ class Review {
   /// visit(i, j or wall, is a wall, force, memory) for every contact of the awake in which one of
   /// the marked grains takes part, with the force that it would have at zero velocity.
   template <class Visit>
-  void visit_at_rest(const std::vector<unsigned char>& marked, Visit visit) {
+  [[gnu::flatten]] void visit_at_rest(const std::vector<unsigned char>& marked, Visit visit) {
     const auto& acting = world_.acting;
     const auto& shapes = world_.grains.shapes;
     auto& contacts = world_.contacts;

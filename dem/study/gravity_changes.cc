@@ -133,35 +133,16 @@ void GravityChanges::keep(std::size_t k, Snapshot state, const Reached& reached)
   reached_[k] = reached;
 }
 
-void GravityChanges::save(ImageWriter& image, NamedSnapshots& snapshots) const {
-  std::vector<int> there;
-  for (std::size_t k = 0; k < changed_.size(); ++k) {
-    there.push_back(changed_[k] ? 1 : 0);
-    if (changed_[k]) snapshots.emplace_back(name(k), *changed_[k]);
-  }
-  image.put(there);
-  image.put(reached_);
-  image.put(steps_);
-  image.put(engine_ ? engine_->image() : std::string());
-}
-
-void GravityChanges::restore(ImageReader& image, const std::string& file) {
-  std::vector<int> there;
-  std::string moving;
-  image.get(there);
-  image.get(reached_);
-  image.get(steps_);
-  image.get(moving);
-  image.require(there.size() == changed_.size() && reached_.size() == changed_.size());
-  for (std::size_t k = 0; k < changed_.size(); ++k) {
-    changed_[k].reset();
-    if (there[k] != 0) changed_[k] = read_snapshot(file, fmt::format("/{}", name(k)));
-  }
-  engine_.reset();
-  if (moving.empty()) return;
-  engine_ = make_engine(settings_);
-  for (const Wall& wall : packing_.walls) engine_->add_wall(wall);
-  engine_->restore(moving);
+void GravityChanges::visit(Archive& archive) {
+  for (std::size_t k = 0; k < changed_.size(); ++k) archive.snapshot(changed_[k], name(k));
+  archive(reached_);
+  archive.require(reached_.size() == changed_.size());
+  archive(steps_);
+  archive.engine(engine_, [this] {
+    std::unique_ptr<Engine> engine = make_engine(settings_);
+    for (const Wall& wall : packing_.walls) engine->add_wall(wall);
+    return engine;
+  });
 }
 
 void GravityChanges::add_to(RunResult& result) const {

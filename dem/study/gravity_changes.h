@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dem/engine/engine.h"
-#include "dem/image/image.h"
+#include "dem/study/archive.h"
 #include "dem/study/common.h"
 #include "dem/study/run.h"
 #include "dem/study/setup.h"
@@ -40,9 +40,8 @@ class GravityChanges {
   const Engine* engine() const { return engine_.get(); }
   bool is_known(std::size_t k) const { return changed_[k].has_value(); }
 
-  void save(ImageWriter& image, NamedSnapshots& snapshots) const;
-  /// From what save() wrote, its snapshots in `file`. `image` is positioned where save() began.
-  void restore(ImageReader& image, const std::string& file);
+  /// Shows all that changes; reading, start_from() must have been called before.
+  void visit(Archive& archive);
 
   /// Adds the snapshots "gravity_G" and the figures "change.gravity_G.*".
   void add_to(RunResult& result) const;

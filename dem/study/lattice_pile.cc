@@ -9,8 +9,7 @@
 #include <optional>
 
 #include "dem/snapshot/contact_changes.h"
-#include "dem/study/common.h"
-#include "dem/study/run.h"
+#include "dem/study/phases.h"
 
 namespace grainfield::dem {
 namespace {
@@ -18,45 +17,54 @@ namespace {
 // Rest is judged every so many steps: cheap beside the steps themselves.
 constexpr long kCheckEvery = 200;
 
-class LatticePileRun final : public Run {
+enum class Phase : int { rest, done };
+
+class LatticePileRun final : public ArchivedRun {
  public:
   LatticePileRun(const LatticePileSetup& setup, std::uint64_t seed, int threads)
       : setup_(setup), seed_(seed) {
     check_lattice(setup_.lattice);
     const double r = setup_.lattice.radius;
     const double mass = setup_.material.density * std::numbers::pi * r * r;
-    const EngineSettings settings =
-        engine_settings(setup_.material, setup_.motion, {mass, 0}, threads);
-    check_background_damping(setup_.rest, settings.time_step);
-    engine_ = make_engine(settings);
-    engine_->add_wall({"floor", Vec3(0, 0, 0), Vec3(0, 1, 0), setup_.material.floor_friction});
+    settings_ = engine_settings(setup_.material, setup_.motion, {mass, 0}, threads);
+    check_background_damping(setup_.rest, settings_.time_step);
+    engine_ = empty_engine();
     for (const NewGrain& g : lattice_pile_grains(setup_.lattice, setup_.material.density)) {
       engine_->add(g);
     }
-    engine_->set_background_damping(setup_.rest.background_damping);
+    engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
   }
 
   void advance(long steps) override {
     while (steps > 0 && !done()) {
-      const long chunk = std::min(steps, kCheckEvery - engine_->steps() % kCheckEvery);
-      engine_->step(chunk);
-      steps -= chunk;
-      if (engine_->steps() % kCheckEvery == 0) decide();
+      steps -= phases_.step(*engine_, steps, kCheckEvery);
+      if (phases_.is_due(kCheckEvery)) decide();
     }
   }
 
-  bool done() const override { return pile_.has_value(); }
+  bool done() const override { return phases_.done(); }
   Progress progress() const override;
-  void save(const std::string& file) const override;
-  void restore(const std::string& file) override;
   RunResult result() const override;
 
  private:
   void decide();
-  std::string fingerprint() const;
+  void visit(Archive& archive) override {
+    phases_.visit(archive);
+    archive.engine(engine_, [this] { return empty_engine(); });
+    archive.snapshot(pile_, "pile");
+    archive.require(done() == pile_.has_value());
+  }
+  std::string fingerprint() const override;
+  std::unique_ptr<Engine> empty_engine() const {
+    std::unique_ptr<Engine> engine = make_engine(settings_);
+    engine->add_wall({"floor", Vec3(0, 0, 0), Vec3(0, 1, 0), setup_.material.floor_friction});
+    return engine;
+  }
 
   LatticePileSetup setup_;
   std::uint64_t seed_;
+  EngineSettings settings_;
+  Phases<Phase> phases_{{{"rest", true, 0, 1}, {"done", true, 1, 1}}};
   std::unique_ptr<Engine> engine_;
   std::optional<Snapshot> pile_;
 };
@@ -68,6 +76,7 @@ void LatticePileRun::decide() {
     pile_->attributes["state"] = "pile";
     pile_->attributes["seed"] = fmt::format("{}", seed_);
     pile_->attributes["packing"] = "lattice";
+    phases_.enter(Phase::done);
   } else if (engine_->time() > setup_.rest.max_time) {
     fail_to_rest(d, setup_.rest, "lattice pile", ", or lattice.slope_deg if the pile collapsed");
   }
@@ -76,8 +85,8 @@ void LatticePileRun::decide() {
 Progress LatticePileRun::progress() const {
   const Diagnostics d = engine_->measure();
   Progress p;
-  p.phase = done() ? "done" : "rest";
-  p.fraction = done() ? 1 : rest_progress(d, setup_.rest);
+  p.phase = phases_.info().name;
+  p.fraction = phases_.fraction(rest_progress(d, setup_.rest));
   p.simulated_time = engine_->time();
   p.steps = engine_->steps();
   p.grains = p.awake = engine_->grains();
@@ -91,28 +100,6 @@ std::string LatticePileRun::fingerprint() const {
   return fmt::format("lattice pile {} {} {} {} | {} | {} | {} | {}", l.base_grains, l.slope_deg,
                      l.radius, l.gap, describe(setup_.material),
                      describe(setup_.motion, engine_->time_step()), describe(setup_.rest), seed_);
-}
-
-void LatticePileRun::save(const std::string& file) const {
-  ImageWriter w;
-  w.put(done());
-  w.put(engine_->image());
-  NamedSnapshots snapshots;
-  if (pile_) snapshots.emplace_back("pile", *pile_);
-  write_checkpoint(file, fingerprint(), w, snapshots);
-}
-
-void LatticePileRun::restore(const std::string& file) {
-  const std::string bits = read_checkpoint(file, fingerprint());
-  ImageReader r(bits);
-  bool finished = false;
-  std::string image;
-  r.get(finished);
-  r.get(image);
-  r.finish();
-  engine_->restore(image);
-  pile_.reset();
-  if (finished) pile_ = read_snapshot(file, "/pile");
 }
 
 RunResult LatticePileRun::result() const {

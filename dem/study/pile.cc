@@ -15,10 +15,20 @@ constexpr long kCheckEvery = 200;
 // Settled: mean kinetic energy of the grains that moved last below this share of m g r.
 constexpr double kSettledShare = 0.01;
 
+// In the order of PilePhase.
+std::vector<PhaseInfo> phases_of(const PileSetup& setup) {
+  const double rested = setup.change.gravity.empty() ? 1 : kEndOfRest;
+  return {{"pour", false, 0, 0.7},
+          {"settle", false, 0.7, 0.7},
+          {"rest", true, 0.7, rested},
+          {"change", true, rested, 1},
+          {"done", true, 1, 1}};
+}
+
 }  // namespace
 
 PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), random_(seed) {
+    : setup_(setup), seed_(seed), random_(seed), phases_(phases_of(setup)) {
   check_pile(setup_);
   draw();
   std::vector<ShapedGrain> all = grains_;
@@ -91,35 +101,34 @@ void PileRun::add_floor_grains() {
 }
 
 void PileRun::enter(PilePhase phase) {
-  phase_ = phase;
-  phase_steps_ = 0;
-  const bool damped = phase != PilePhase::pour && phase != PilePhase::settle;
-  engine_->set_background_damping(damped ? setup_.rest.background_damping : 0);
+  phases_.enter(phase);
+  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
 }
 
 void PileRun::advance(long steps) {
-  while (phase_ != PilePhase::done) {
-    if (phase_ == PilePhase::change) {
+  while (!done()) {
+    if (phases_.now() == PilePhase::change) {
       change(steps);
       return;
     }
     const long next = next_event();
-    if (next > phase_steps_) {
+    if (next > phases_.steps()) {
       if (steps <= 0) return;
-      const long chunk = std::min(steps, next - phase_steps_);
+      const long chunk = std::min(steps, next - phases_.steps());
       engine_->step(chunk);
-      phase_steps_ += chunk;
+      phases_.advance(chunk);
       steps -= chunk;
     }
-    if (phase_steps_ >= next) act();
+    if (phases_.steps() >= next) act();
   }
 }
 
 // The step, within the phase, at which something is decided. act() moves it on.
 long PileRun::next_event() const {
-  const auto after = [this](long every) { return (phase_steps_ / every + 1) * every; };
-  if (phase_ != PilePhase::pour || setup_.source.kind == "line") {
-    return phase_ == PilePhase::pour && poured_ == 0 ? phase_steps_ : after(kCheckEvery);
+  const bool pours = phases_.now() == PilePhase::pour;
+  if (!pours || setup_.source.kind == "line") {
+    const long due = phases_.steps() + phases_.until_due(kCheckEvery);
+    return pours && poured_ == 0 ? phases_.steps() : due;
   }
   long next = (awake_samples_ + 1) * kSampleEvery;
   if (poured_ < setup_.source.grains) next = std::min(next, point_->release_step(poured_));
@@ -128,7 +137,7 @@ long PileRun::next_event() const {
 }
 
 void PileRun::act() {
-  switch (phase_) {
+  switch (phases_.now()) {
     case PilePhase::pour:
       return setup_.source.kind == "line" ? pour_line() : pour_point();
     case PilePhase::settle:

@@ -22,7 +22,7 @@ constexpr double kSame = 1e-9;  // relative: numbers that went through a file
 
 bool same(double a, double b) { return std::fabs(a - b) <= kSame * std::max(a, b); }
 
-class PileChangeRun final : public Run {
+class PileChangeRun final : public ArchivedRun {
  public:
   PileChangeRun(const PileSetup& setup, const std::string& file, const std::string& group,
                 int threads)
@@ -72,20 +72,6 @@ class PileChangeRun final : public Run {
     return p;
   }
 
-  void save(const std::string& file) const override {
-    ImageWriter w;
-    NamedSnapshots snapshots;
-    changes_->save(w, snapshots);
-    write_checkpoint(file, fingerprint(), w, snapshots);
-  }
-
-  void restore(const std::string& file) override {
-    const std::string bytes = read_checkpoint(file, fingerprint());
-    ImageReader r(bytes);
-    changes_->restore(r, file);
-    r.finish();
-  }
-
   RunResult result() const override {
     RunResult out;
     if (!done()) return out;
@@ -100,6 +86,8 @@ class PileChangeRun final : public Run {
   }
 
  private:
+  void visit(Archive& archive) override { changes_->visit(archive); }
+
   int free_grains() const {
     return static_cast<int>(std::count_if(pile_.grains.begin(), pile_.grains.end(),
                                           [](const Grain& g) { return !g.fixed; }));
@@ -171,7 +159,7 @@ class PileChangeRun final : public Run {
     }
   }
 
-  std::string fingerprint() const {
+  std::string fingerprint() const override {
     return fmt::format("pile change {} | {} | {} | {} | {}", where_, changes_->describe(),
                        describe(setup_.material), describe(setup_.motion, settings_.time_step),
                        describe(setup_.rest));

@@ -25,20 +25,21 @@ constexpr double kPlateauDrop = 1.5, kPoint = 3;
 }  // namespace
 
 void PileRun::pour_point() {
-  if (!in_flight_.empty() && in_flight_.front().step <= phase_steps_) {
+  if (!in_flight_.empty() && in_flight_.front().step <= phases_.steps()) {
     if (join(in_flight_.front())) {
       in_flight_.pop_front();
     } else {
-      in_flight_.front().step = phase_steps_ + kRetryEvery;
-      check_not_waiting(setup_, static_cast<double>(
-                                    phase_steps_ - point_->release_step(in_flight_.front().grain)) *
-                                    engine_->time_step());
+      in_flight_.front().step = phases_.steps() + kRetryEvery;
+      check_not_waiting(
+          setup_,
+          static_cast<double>(phases_.steps() - point_->release_step(in_flight_.front().grain)) *
+              engine_->time_step());
     }
   }
-  if (poured_ < setup_.source.grains && point_->release_step(poured_) == phase_steps_) {
+  if (poured_ < setup_.source.grains && point_->release_step(poured_) == phases_.steps()) {
     release_grain();
   }
-  if (phase_steps_ == (awake_samples_ + 1) * kSampleEvery) {
+  if (phases_.steps() == (awake_samples_ + 1) * kSampleEvery) {
     awake_sum_ += engine_->motion().awake;
     ++awake_samples_;
   }
@@ -59,7 +60,7 @@ void PileRun::release_grain() {
   f.step = point_->arrival_step(poured_, entry);
   // One after the other, and not before those that are to join at this very step.
   if (!in_flight_.empty()) f.step = std::max(f.step, in_flight_.back().step + 1);
-  f.step = std::max(f.step, phase_steps_ + 1);
+  f.step = std::max(f.step, phases_.steps() + 1);
   in_flight_.push_back(f);
   ++poured_;
 }
@@ -70,7 +71,7 @@ bool PileRun::join(const Flight& f) {
   NewGrain g = shaped.at(f.x, 0, setup_.material.density);
   // Between plates it waits at the top for its turn; free flight goes on.
   const bool waits = setup_.source.opening > 0;
-  point_->place(g, f.grain, waits ? point_->release_step(f.grain) : phase_steps_);
+  point_->place(g, f.grain, waits ? point_->release_step(f.grain) : phases_.steps());
   const Snapshot now = engine_->snapshot();
   for (const Grain& other : now.grains) {
     if (other.fixed) continue;
@@ -91,7 +92,7 @@ void PileRun::pour_line() {
     ++awake_samples_;
     const double fall =
         std::sqrt(2 * (setup_.source.clearance + largest_diameter_) / setup_.material.gravity);
-    const double since = static_cast<double>(phase_steps_ - layer_start_) * engine_->time_step();
+    const double since = static_cast<double>(phases_.steps() - layer_start_) * engine_->time_step();
     if (since < 1.5 * fall) return;
     if (!settled(layer_grains_) && since < kMaxSettleTime) return;
   }
@@ -130,7 +131,7 @@ void PileRun::drop_layer() {
     g.vy = -setup_.source.speed;
     engine_->add(g);
   }
-  layer_start_ = phase_steps_;
+  layer_start_ = phases_.steps();
   layer_grains_ = static_cast<int>(layer.size());
 }
 

@@ -10,9 +10,8 @@
 #include "dem/heap/grain_family.h"
 #include "dem/heap/source.h"
 #include "dem/random/random.h"
-#include "dem/study/common.h"
 #include "dem/study/gravity_changes.h"
-#include "dem/study/run.h"
+#include "dem/study/phases.h"
 
 namespace grainfield::dem {
 
@@ -23,15 +22,13 @@ inline constexpr long kSampleEvery = 3000;
 
 enum class PilePhase : int { pour, settle, rest, change, done };
 
-class PileRun final : public Run {
+class PileRun final : public ArchivedRun {
  public:
   PileRun(const PileSetup& setup, std::uint64_t seed, int threads);
 
   void advance(long steps) override;
-  bool done() const override { return phase_ == PilePhase::done; }
+  bool done() const override { return phases_.done(); }
   Progress progress() const override;
-  void save(const std::string& file) const override;
-  void restore(const std::string& file) override;
   RunResult result() const override;
 
   /// No grain sleeps from now on: what sleeping saves is measured so.
@@ -47,6 +44,7 @@ class PileRun final : public Run {
     double x = 0;
   };
 
+  void visit(Archive& archive) override;
   void draw();
   std::unique_ptr<Engine> empty_engine() const;
   void add_floor_grains();
@@ -63,9 +61,9 @@ class PileRun final : public Run {
   void rest();
   void change(long steps);
   bool settled(int grains) const;
-  double in_phase() const { return static_cast<double>(phase_steps_) * engine_->time_step(); }
+  double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
   Snapshot named(Snapshot snapshot, const std::string& state) const;
-  std::string fingerprint() const;
+  std::string fingerprint() const override;
 
   PileSetup setup_;
   std::uint64_t seed_;
@@ -76,8 +74,7 @@ class PileRun final : public Run {
   std::optional<PointSource> point_;
   std::unique_ptr<Engine> engine_;
 
-  PilePhase phase_ = PilePhase::pour;
-  long phase_steps_ = 0;
+  Phases<PilePhase> phases_;
   int poured_ = 0;  // released by the point source, dropped by the line source
   double top_ = 0;  // of the grains at rest when the last one joined, m
   std::deque<Flight> in_flight_;

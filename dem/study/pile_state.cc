@@ -26,27 +26,22 @@ Progress PileRun::progress() const {
   p.awake = d.awake;
   p.kinetic_energy = d.kinetic_energy;
   p.unbalanced_force_ratio = d.unbalanced_force_ratio;
-  const double end_of_rest = setup_.change.gravity.empty() ? 1 : kEndOfRest;
-  switch (phase_) {
+  p.phase = phases_.info().name;
+  switch (phases_.now()) {
     case PilePhase::pour:
       p.phase = fmt::format("pour {}/{}", poured_, setup_.source.grains);
-      p.fraction = 0.7 * poured_ / setup_.source.grains;
-      break;
-    case PilePhase::settle:
-      p.phase = "settle";
-      p.fraction = 0.7;
+      p.fraction = phases_.fraction(static_cast<double>(poured_) / setup_.source.grains);
       break;
     case PilePhase::rest:
-      p.phase = "rest";
-      p.fraction = 0.7 + (end_of_rest - 0.7) * rest_progress(d, setup_.rest);
+      p.fraction = phases_.fraction(rest_progress(d, setup_.rest));
       break;
     case PilePhase::change:
       p.phase = changes_->phase();
-      p.fraction = kEndOfRest + (1 - kEndOfRest) * changes_->fraction();
+      p.fraction = phases_.fraction(changes_->fraction());
       break;
+    case PilePhase::settle:
     case PilePhase::done:
-      p.phase = "done";
-      p.fraction = 1;
+      p.fraction = phases_.fraction(1);
       break;
   }
   return p;
@@ -68,60 +63,27 @@ std::string PileRun::fingerprint() const {
       describe(setup_.rest), seed_);
 }
 
-void PileRun::save(const std::string& file) const {
-  ImageWriter w;
-  w.put(phase_);
-  w.put(phase_steps_);
-  w.put(poured_);
-  w.put(top_);
-  w.put(std::vector<Flight>(in_flight_.begin(), in_flight_.end()));
-  w.put(line_);
-  w.put(layer_start_);
-  w.put(layer_grains_);
-  w.put(awake_sum_);
-  w.put(awake_samples_);
-  w.put(pour_time_);
-  w.put(at_pile_);
-  w.put(random_.state());
-  w.put(engine_->image());
-  NamedSnapshots snapshots;
-  if (pile_) snapshots.emplace_back("pile", *pile_);
-  changes_->save(w, snapshots);
-  write_checkpoint(file, fingerprint(), w, snapshots);
-}
-
-void PileRun::restore(const std::string& file) {
-  const std::string bytes = read_checkpoint(file, fingerprint());
-  ImageReader r(bytes);
-  std::vector<Flight> flights;
-  std::uint64_t random_state = 0;
-  std::string image;
-  r.get(phase_);
-  r.get(phase_steps_);
-  r.get(poured_);
-  r.get(top_);
-  r.get(flights);
-  r.get(line_);
-  r.get(layer_start_);
-  r.get(layer_grains_);
-  r.get(awake_sum_);
-  r.get(awake_samples_);
-  r.get(pour_time_);
-  r.get(at_pile_);
-  r.get(random_state);
-  r.get(image);
-  r.require(poured_ <= setup_.source.grains);
+void PileRun::visit(Archive& archive) {
+  phases_.visit(archive);
+  archive(poured_);
+  archive.require(poured_ <= setup_.source.grains);
+  archive(top_);
+  std::vector<Flight> flights(in_flight_.begin(), in_flight_.end());
+  archive(flights);
   in_flight_.assign(flights.begin(), flights.end());
-  random_.set_state(random_state);
-  engine_ = empty_engine();
-  engine_->restore(image);
-  pile_.reset();
-  if (phase_ > PilePhase::rest) {
-    pile_ = read_snapshot(file, "/pile");
-    changes_->start_from(*pile_);
-  }
-  changes_->restore(r, file);
-  r.finish();
+  archive(line_);
+  archive(layer_start_);
+  archive(layer_grains_);
+  archive(awake_sum_);
+  archive(awake_samples_);
+  archive(pour_time_);
+  archive(at_pile_);
+  archive(random_);
+  archive.engine(engine_, [this] { return empty_engine(); });
+  archive.snapshot(pile_, "pile");
+  archive.require(pile_.has_value() == (phases_.now() > PilePhase::rest));
+  if (archive.is_reading() && pile_) changes_->start_from(*pile_);
+  changes_->visit(archive);
 }
 
 RunResult PileRun::result() const {

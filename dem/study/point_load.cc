@@ -10,8 +10,7 @@
 #include "dem/packing/packing.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/snapshot/contact_changes.h"
-#include "dem/study/common.h"
-#include "dem/study/run.h"
+#include "dem/study/phases.h"
 
 namespace grainfield::dem {
 namespace {
@@ -26,18 +25,18 @@ constexpr double kMaxSettleTime = 2.0;
 
 enum class Phase : int { deposit, rest, load, hold, done };
 
-class PointLoadRun final : public Run {
+class PointLoadRun final : public ArchivedRun {
  public:
   PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads);
 
   void advance(long steps) override;
-  bool done() const override { return phase_ == Phase::done; }
+  bool done() const override { return phases_.done(); }
   Progress progress() const override;
-  void save(const std::string& file) const override;
-  void restore(const std::string& file) override;
   RunResult result() const override;
 
  private:
+  void visit(Archive& archive) override;
+  std::unique_ptr<Engine> empty_engine() const;
   void enter(Phase phase);
   void decide();
   void solve();
@@ -45,7 +44,7 @@ class PointLoadRun final : public Run {
   bool by_newton() const { return setup_.load.method == "newton"; }
   void drop_row();
   void add(const std::vector<NewGrain>& grains);
-  std::string fingerprint() const;
+  std::string fingerprint() const override;
   Snapshot take_snapshot(const char* state) const;
   std::int64_t choose_loaded_grain(const Snapshot& snapshot) const;
 
@@ -56,12 +55,22 @@ class PointLoadRun final : public Run {
   double width_ = 0;
   EngineSettings settings_;
   std::unique_ptr<Engine> engine_;
-  Phase phase_ = Phase::deposit;
-  long phase_steps_ = 0;
+  Phases<Phase> phases_;
   int rows_dropped_ = 0;
   std::optional<Snapshot> unloaded_, loaded_;
   Reached reached_;  // by Newton's method
 };
+
+// In the order of Phase. Layered packings are built first, which takes a good part of the time.
+std::vector<PhaseInfo> phases_of(const PackingSetup& packing) {
+  const double built = packing.kind == "layered" ? 0.4 : 0, rested = 0.5 + 0.5 * built;
+  const double loaded = rested + 0.4 * (1 - rested);
+  return {{"deposit", false, 0, built},
+          {"rest", true, built, rested},
+          {"load", true, rested, loaded},
+          {"hold", true, loaded, 1},
+          {"done", true, 1, 1}};
+}
 
 const PackingSetup& checked(const PackingSetup& packing) {
   check_packing(packing);
@@ -69,7 +78,11 @@ const PackingSetup& checked(const PackingSetup& packing) {
 }
 
 PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), random_(seed), supply_(checked(setup_.packing), random_) {
+    : setup_(setup),
+      seed_(seed),
+      random_(seed),
+      supply_(checked(setup_.packing), random_),
+      phases_(phases_of(setup_.packing)) {
   const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
@@ -79,8 +92,7 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   if (!by_newton()) {
     check_countable("load.ramp_time", setup_.load.ramp_time, settings_.time_step);
   }
-  engine_ = make_engine(settings_);
-  for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine_->add_wall(wall);
+  engine_ = empty_engine();
   add(floor_grains(setup_.packing, supply_, density, random_));
   if (setup_.packing.kind == "layered") {
     enter(Phase::deposit);
@@ -89,6 +101,12 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
     add(lattice_grains(setup_.packing, density, random_));
     enter(Phase::rest);
   }
+}
+
+std::unique_ptr<Engine> PointLoadRun::empty_engine() const {
+  std::unique_ptr<Engine> engine = make_engine(settings_);
+  for (const Wall& wall : layer_walls(setup_.packing, setup_.material)) engine->add_wall(wall);
+  return engine;
 }
 
 void PointLoadRun::add(const std::vector<NewGrain>& grains) {
@@ -103,25 +121,21 @@ void PointLoadRun::drop_row() {
 }
 
 void PointLoadRun::enter(Phase phase) {
-  phase_ = phase;
-  phase_steps_ = 0;
-  engine_->set_background_damping(phase == Phase::deposit ? 0 : setup_.rest.background_damping);
+  phases_.enter(phase);
+  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
 }
 
 void PointLoadRun::advance(long steps) {
-  while (steps > 0 && phase_ != Phase::done) {
-    if (phase_ == Phase::load && by_newton()) return solve();
-    const long chunk = std::min(steps, kCheckEvery - phase_steps_ % kCheckEvery);
-    engine_->step(chunk);
-    phase_steps_ += chunk;
-    steps -= chunk;
-    if (phase_steps_ % kCheckEvery == 0) decide();
+  while (steps > 0 && !done()) {
+    if (phases_.now() == Phase::load && by_newton()) return solve();
+    steps -= phases_.step(*engine_, steps, kCheckEvery);
+    if (phases_.is_due(kCheckEvery)) decide();
   }
 }
 
 void PointLoadRun::decide() {
-  const double in_phase = static_cast<double>(phase_steps_) * engine_->time_step();
-  switch (phase_) {
+  const double in_phase = static_cast<double>(phases_.steps()) * engine_->time_step();
+  switch (phases_.now()) {
     case Phase::deposit: {
       const Diagnostics d = engine_->measure();
       const double r = 0.5 * (smallest_radius(setup_.packing) + largest_radius(setup_.packing));
@@ -135,16 +149,16 @@ void PointLoadRun::decide() {
         enter(Phase::rest);
       } else {
         drop_row();
-        phase_steps_ = 0;
+        phases_.restart();
       }
       return;
     }
     case Phase::rest:
     case Phase::hold:
       if (const Diagnostics d = engine_->measure(); at_rest(d, setup_.rest)) {
-        if (phase_ == Phase::hold) {
+        if (phases_.now() == Phase::hold) {
           loaded_ = take_snapshot("loaded");
-          phase_ = Phase::done;
+          phases_.enter(Phase::done);
           return;
         }
         unloaded_ = take_snapshot("unloaded");
@@ -155,7 +169,8 @@ void PointLoadRun::decide() {
         force.ramp = setup_.load.ramp_time;
         engine_->apply(force);
       } else if (in_phase > setup_.rest.max_time) {
-        fail_to_rest(d, setup_.rest, phase_ == Phase::hold ? "after the load" : "before the load",
+        fail_to_rest(d, setup_.rest,
+                     phases_.now() == Phase::hold ? "after the load" : "before the load",
                      ", or lower load.force");
       }
       return;
@@ -193,7 +208,7 @@ void PointLoadRun::solve() {
                 static_cast<double>(r.iterations)};
     loaded_ = std::move(r.state);
     loaded_->attributes["state"] = "loaded";
-    phase_ = Phase::done;
+    phases_.enter(Phase::done);
   } catch (const RelaxationStopped&) {
     return;
   } catch (const ComputationFailed& failure) {
@@ -240,32 +255,21 @@ Progress PointLoadRun::progress() const {
   p.awake = d.awake;
   p.kinetic_energy = d.kinetic_energy;
   p.unbalanced_force_ratio = d.unbalanced_force_ratio;
-  const bool layered = setup_.packing.kind == "layered";
-  const double in_phase = static_cast<double>(phase_steps_) * engine_->time_step();
-  const double rest = rest_progress(d, setup_.rest);
-  const double built = layered ? 0.4 : 0.0;
-  switch (phase_) {
+  const double in_phase = static_cast<double>(phases_.steps()) * engine_->time_step();
+  p.phase = phases_.info().name;
+  switch (phases_.now()) {
     case Phase::deposit:
       p.phase = fmt::format("deposit row {}", rows_dropped_);
-      p.fraction =
-          built *
-          std::clamp((d.height - setup_.packing.drop_height) / setup_.packing.depth, 0.0, 1.0);
+      p.fraction = phases_.fraction((d.height - setup_.packing.drop_height) / setup_.packing.depth);
       break;
     case Phase::rest:
-      p.phase = "rest";
-      p.fraction = built + (0.5 - 0.5 * built) * rest;
+    case Phase::hold:
+      p.fraction = phases_.fraction(rest_progress(d, setup_.rest));
       break;
     case Phase::load:
-      p.phase = "load";
-      p.fraction = 0.5 + 0.5 * built +
-                   0.2 * std::min(1.0, in_phase / std::max(setup_.load.ramp_time, 1e-300));
-      break;
-    case Phase::hold:
-      p.phase = "hold";
-      p.fraction = 0.7 + 0.3 * rest;
+      p.fraction = phases_.fraction(in_phase / std::max(setup_.load.ramp_time, 1e-300));
       break;
     case Phase::done:
-      p.phase = "done";
       p.fraction = 1;
       break;
   }
@@ -283,42 +287,18 @@ std::string PointLoadRun::fingerprint() const {
       setup_.load.unbalanced_force_ratio, setup_.load.ramp_time, setup_.load.position, seed_);
 }
 
-void PointLoadRun::save(const std::string& file) const {
-  ImageWriter w;
-  w.put(phase_);
-  w.put(phase_steps_);
-  w.put(rows_dropped_);
-  w.put(random_.state());
-  w.put(supply_.taken());
-  w.put(reached_);
-  w.put(engine_->image());
-  NamedSnapshots snapshots;
-  if (unloaded_) snapshots.emplace_back("unloaded", *unloaded_);
-  if (loaded_) snapshots.emplace_back("loaded", *loaded_);
-  write_checkpoint(file, fingerprint(), w, snapshots);
-}
-
-void PointLoadRun::restore(const std::string& file) {
-  const std::string bytes = read_checkpoint(file, fingerprint());
-  ImageReader r(bytes);
-  std::string image;
-  std::uint64_t random_state = 0;
-  long taken = 0;
-  r.get(phase_);
-  r.get(phase_steps_);
-  r.get(rows_dropped_);
-  r.get(random_state);
-  r.get(taken);
-  r.get(reached_);
-  r.get(image);
-  r.finish();
-  random_.set_state(random_state);
+void PointLoadRun::visit(Archive& archive) {
+  phases_.visit(archive);
+  archive(rows_dropped_);
+  archive(random_);
+  long taken = supply_.taken();
+  archive(taken);
   supply_.set_taken(taken);
-  engine_->restore(image);
-  unloaded_.reset();
-  loaded_.reset();
-  if (phase_ >= Phase::load) unloaded_ = read_snapshot(file, "/unloaded");
-  if (phase_ == Phase::done) loaded_ = read_snapshot(file, "/loaded");
+  archive(reached_);
+  archive.engine(engine_, [this] { return empty_engine(); });
+  archive.snapshot(unloaded_, "unloaded");
+  archive.snapshot(loaded_, "loaded");
+  archive.require((phases_.now() < Phase::load || unloaded_) && (!done() || loaded_));
 }
 
 RunResult PointLoadRun::result() const {
