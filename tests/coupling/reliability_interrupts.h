@@ -221,7 +221,7 @@ class InterruptedRun {
       ADD_FAILURE() << "ended by itself: " << ending << history_;
       return false;
     }
-    const bool unborn = !caught && ending.signal == blow.signal && blow.aim == Aim::anywhere;
+    const bool unborn = !caught && ending.signal == blow.signal && ending.err.empty();
     if (blow.signal == SIGKILL) {
       EXPECT_EQ(ending.signal, SIGKILL) << ending << history_;
       EXPECT_EQ(mixture(before_, study_.whole, found), "") << history_;
