@@ -86,7 +86,7 @@ struct ContactList {
     const auto within = [](int count) {
       return [count](const Pair& p) { return p.j >= 0 && p.j < count; };
     };
-    return pairs.all(within(grains)) && walls.all(within(wall_count)) &&
+    return pairs.are_sound(grains, within(grains)) && walls.are_sound(grains, within(wall_count)) &&
            pair_forces.size() == pairs.with_idle() && felt.size() == pairs.with_idle() &&
            wall_forces.size() == walls.with_idle() &&
            (!searched || (pairs.fits(rows, kAhead) && walls.fits(rows, 0)));

@@ -41,9 +41,14 @@ class Rows {
            pairs_.size() ==
                static_cast<std::size_t>(start_.back()) + static_cast<std::size_t>(idle);
   }
+  /// Rows within the pairs, at most `rows` of them, and holds(pair) for every pair of a row.
   template <class Holds>
-  bool all(Holds holds) const {
-    return std::all_of(pairs_.begin(), pairs_.end(), holds);
+  bool are_sound(int rows, Holds holds) const {
+    if (start_.empty()) return true;
+    return start_.size() <= static_cast<std::size_t>(rows) + 1 && start_.front() == 0 &&
+           std::is_sorted(start_.begin(), start_.end()) &&
+           static_cast<std::size_t>(start_.back()) <= pairs_.size() &&
+           std::all_of(pairs_.begin(), pairs_.begin() + start_.back(), holds);
   }
 
  private:
