@@ -1,5 +1,5 @@
 // average, strain, import, model, reproduce, compare, fit, structure under signals: the short form
-// of reliability_commands_slow_test.cc.
+// of reliability_commands_long_test.cc.
 #include "reliability_commands.h"
 
 namespace grainfield::coupling::testing {

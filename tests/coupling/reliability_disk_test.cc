@@ -1,4 +1,4 @@
-// Full disks: the short form of reliability_disk_slow_test.cc.
+// Full disks: the short form of reliability_disk_long_test.cc.
 #include "reliability_disk.h"
 
 namespace grainfield::coupling::testing {

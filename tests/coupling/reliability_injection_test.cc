@@ -1,5 +1,5 @@
 // Text that wants to be run or to steer the terminal: the short form of
-// reliability_injection_slow_test.cc.
+// reliability_injection_long_test.cc.
 #include "reliability_injection.h"
 
 namespace grainfield::coupling::testing {

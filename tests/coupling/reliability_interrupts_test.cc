@@ -1,5 +1,5 @@
 // Runs that are interrupted anywhere lose nothing: the short form of
-// reliability_interrupts_slow_test.cc.
+// reliability_interrupts_long_test.cc.
 #include "reliability_interrupts.h"
 
 namespace grainfield::coupling::testing {
