@@ -177,9 +177,4 @@ void OutputFolder::abandon() noexcept {
   }
 }
 
-bool is_reserved_name(const std::string& name) {
-  return name.empty() || name.front() == '.' || name == "checkpoint" || name == "case.toml" ||
-         left_by_older_version(name);
-}
-
 }  // namespace grainfield::coupling

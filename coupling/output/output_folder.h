@@ -36,7 +36,6 @@ class OutputFolder {
   /// the staging area to its place, summary.json last: a summary never stands beside another run's
   /// data. Whatever else is in the folder stays. Throws dem::StorageFailed.
   void publish();
-  const std::filesystem::path& path() const { return folder_; }
 
  private:
   void abandon() noexcept;
@@ -46,8 +45,5 @@ class OutputFolder {
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<OnSignal> undo_;
 };
-
-/// Whether a command keeps this name, directly below its folder, for itself.
-bool is_reserved_name(const std::string& name);
 
 }  // namespace grainfield::coupling

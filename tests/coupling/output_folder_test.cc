@@ -163,13 +163,5 @@ TEST(OutputFolder, ALockIsWaitedForWhoseHolderIsDead) {
   EXPECT_EQ(found(folder), (Files{{"x.csv", "new"}}));
 }
 
-TEST(OutputFolder, ReservedNames) {
-  for (const std::string name : {"checkpoint", "report.html", "case.toml", ".results", ".x", "",
-                                 "summary.json", "profiles.csv"}) {
-    EXPECT_TRUE(is_reserved_name(name)) << name;
-  }
-  EXPECT_FALSE(is_reserved_name("friction_0.3"));
-}
-
 }  // namespace
 }  // namespace grainfield::coupling
