@@ -48,23 +48,30 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: cannot write there: {}", folder_.string(), why));
   };
+  undo_ = std::make_unique<OnSignal>([this] { abandon(); });
   std::error_code error;
-  // The topmost folder that we make goes again if nothing comes of it.
-  for (fs::path p = fs::absolute(folder_, error);
-       !error && !fs::exists(p, error) && !error && p.has_relative_path(); p = p.parent_path()) {
-    made_ = p;
-  }
-  fs::create_directories(folder_, error);
+  unless_stopping([&] {
+    // The topmost folder that we make goes again if nothing comes of it.
+    for (fs::path p = fs::absolute(folder_, error);
+         !error && !fs::exists(p, error) && !error && p.has_relative_path(); p = p.parent_path()) {
+      made_ = p;
+    }
+    fs::create_directories(folder_, error);
+  });
   const bool is_folder = fs::is_directory(folder_);
   if (error && !is_folder) refuse(error.message());
   if (!is_folder) refuse("it is a file");
   if (access(folder_.c_str(), W_OK | X_OK) != 0) refuse("no write permission");
-  lock_ = std::make_unique<FileLock>((folder_ / ".lock").string(), folder_.string(),
-                                     "wait for it, or name another folder with -o", command);
-  undo_ = std::make_unique<OnSignal>([this] { abandon(); });
-  fs::remove_all(partial_, error);
-  if (!error) fs::create_directories(partial_, error);
-  if (error) refuse(error.message());
+  unless_stopping([&] {
+    lock_ = std::make_unique<FileLock>((folder_ / ".lock").string(), folder_.string(),
+                                       "wait for it, or name another folder with -o", command);
+    fs::remove_all(partial_, error);
+    if (!error) fs::create_directories(partial_, error);
+  });
+  if (error) {
+    abandon();
+    refuse(error.message());
+  }
 }
 
 OutputFolder::~OutputFolder() {
@@ -164,10 +171,12 @@ void OutputFolder::publish() {
 
 void OutputFolder::abandon() noexcept {
   std::error_code error;
-  // Under another name first: whoever still writes there meets a missing folder.
-  const fs::path gone = folder_ / ".partial-gone";
-  fs::rename(partial_, gone, error);
-  fs::remove_all(gone, error);
+  if (lock_) {  // else it is somebody else's
+    // Under another name first: whoever still writes there meets a missing folder.
+    const fs::path gone = folder_ / ".partial-gone";
+    fs::rename(partial_, gone, error);
+    fs::remove_all(gone, error);
+  }
   lock_.reset();
   if (made_.empty()) return;
   for (fs::path p = fs::absolute(folder_, error);; p = p.parent_path()) {

@@ -15,7 +15,9 @@
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include "coupling/system/signals.h"
 
@@ -67,6 +69,18 @@ class MemoryFile {
   int descriptor_;
 };
 
+// Ours without what steers gnuplot (GNUTERM is a command to it) and with a language that is there.
+std::vector<std::string> environment() {
+  std::vector<std::string> out{"LC_ALL=C.UTF-8"};
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    if (!text.starts_with("GNU") && !text.starts_with("LC_") && !text.starts_with("LANG")) {
+      out.emplace_back(text);
+    }
+  }
+  return out;
+}
+
 // gnuplot in a process group of its own: Ctrl-C on the terminal is meant for us, who decide what
 // becomes of the picture. It starts with the signals as they are by default.
 pid_t start(const std::string& program, const MemoryFile& script, const MemoryFile& picture,
@@ -87,11 +101,17 @@ pid_t start(const std::string& program, const MemoryFile& script, const MemoryFi
   posix_spawnattr_setpgroup(&attributes, 0);
   posix_spawnattr_setflags(&attributes,
                            POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  // /dev/stdin as a file to load: an error ends gnuplot, as it would not in a dialogue.
-  std::string path = program, argument = "/dev/stdin";
-  char* arguments[] = {path.data(), argument.data(), nullptr};
+  // Without the user's own settings of gnuplot. /dev/stdin as a file to load: an error ends
+  // gnuplot, as it would not in a dialogue.
+  std::string path = program, plain = "--default-settings", argument = "/dev/stdin";
+  char* arguments[] = {path.data(), plain.data(), argument.data(), nullptr};
+  std::vector<std::string> variables = environment();
+  std::vector<char*> names;
+  for (std::string& variable : variables) names.push_back(variable.data());
+  names.push_back(nullptr);
   pid_t child = -1;
-  const int failed = posix_spawn(&child, program.c_str(), &files, &attributes, arguments, environ);
+  const int failed =
+      posix_spawn(&child, program.c_str(), &files, &attributes, arguments, names.data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   if (failed != 0) {

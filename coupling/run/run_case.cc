@@ -73,6 +73,8 @@ class Workplace {
 
   bool finished() const { return fs::exists(folder_ / "summary.json"); }
 
+  bool was_stopped() const { return fs::exists(checkpoint_); }
+
   // Finished or half-done realizations that --resume could go on from.
   bool holds_work() const noexcept {
     std::error_code error;
@@ -297,7 +299,8 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
     on_first_rank(ranks, [&] {
       const bool unfinished = place.holds_work(), finished = place.finished();
       if (options.resume && !unfinished) {
-        if (finished) {
+        // A study of models alone that was stopped has nothing to go on from, but is not finished.
+        if (finished && !place.was_stopped()) {
           const std::string again = fmt::format(
               ", or analyse its piles again in another folder: --set "
               "'grains.files=[\"{}/snapshots.h5\"]'",
