@@ -111,12 +111,14 @@ int run(const Given& given) {
     throw std::invalid_argument(fmt::format("--checkpoint-seconds: found {:g}, allowed: 0 to {:g}",
                                             given.checkpoint_seconds, kMostBetweenCheckpoints));
   }
-  Case value = read_case(find_case(given.file), given.quick, given.sets);
+  const std::string case_file = find_case(given.file);
+  Case value = read_case(case_file, given.quick, given.sets);
   value.command = command_of(given);
   const Ranks ranks;
   if (ranks.first()) warn_of_idle_keys(value);
   ProgressLine line(!ranks.first());
   RunOptions options;
+  options.case_file = case_file;
   options.folder = !given.output.empty() ? given.output
                                          : "results/" + value.name + (given.quick ? "-quick" : "");
   while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();

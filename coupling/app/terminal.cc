@@ -1,6 +1,7 @@
 #include "coupling/app/terminal.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,15 +15,21 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr std::size_t kLongestLine = 1500;  // bytes
+constexpr int kPatience = 1000;             // ms, for a line that is no result
 
 std::string kept;
 int failure = 0;  // errno of standard output; afterwards nothing more is written to it
 
-/// errno, or 0. `done` counts the bytes.
-int write_all(int stream, const std::string& text, std::size_t& done) {
+/// errno, or 0. `done` counts the bytes; `patience`: ms for a reader that does not read, -1: all.
+int write_all(int stream, const std::string& text, std::size_t& done, int patience = -1) {
   for (done = 0; done < text.size();) {
     const ssize_t n = write(stream, text.data() + done, text.size() - done);
     if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) {  // a pipe that does not block: until its reader has read
+      pollfd ready{stream, POLLOUT, 0};
+      if (poll(&ready, 1, patience) != 0) continue;
+      return EAGAIN;
+    }
     if (n < 0) return errno;
     done += static_cast<std::size_t>(n);
   }
@@ -31,7 +38,7 @@ int write_all(int stream, const std::string& text, std::size_t& done) {
 
 void put_error(const std::string& text) {
   std::size_t done = 0;
-  if (write_all(STDERR_FILENO, text, done) != 0) {
+  if (write_all(STDERR_FILENO, text, done, kPatience) != 0) {
     // What goes to standard error is no result.
   }
 }

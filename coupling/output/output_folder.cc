@@ -38,7 +38,10 @@ bool inside(const fs::path& name) {
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::error_code& error) {
-  throw dem::StorageFailed(fmt::format("{}: {}", file.string(), error.message()));
+  const std::string what =
+      fmt::format("{}: cannot write there: {}", file.string(), error.message());
+  if (dem::means_storage_failed(error)) throw dem::StorageFailed(what);
+  throw std::invalid_argument(what);
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
     fs::create_directories(folder_, error);
   });
   const bool is_folder = fs::is_directory(folder_);
-  if (error && !is_folder) refuse(error.message());
+  if (error && !is_folder) fail(folder_, error);
   if (!is_folder) refuse("it is a file");
   if (access(folder_.c_str(), W_OK | X_OK) != 0) refuse("no write permission");
   unless_stopping([&] {
@@ -70,7 +73,7 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
   });
   if (error) {
     abandon();
-    refuse(error.message());
+    fail(folder_, error);
   }
 }
 
@@ -123,7 +126,7 @@ std::vector<fs::path> OutputFolder::earlier_results() const {
 }
 
 void OutputFolder::publish() {
-  const HeldSignals held;
+  const HeldSignals held(AfterHold::forget);
   std::vector<fs::path> results;
   for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
     if (entry.is_regular_file()) results.push_back(entry.path().lexically_relative(partial_));
@@ -131,6 +134,17 @@ void OutputFolder::publish() {
   std::sort(results.begin(), results.end());
   std::stable_partition(results.begin(), results.end(),
                         [](const fs::path& file) { return file.filename() != kSummary; });
+  // What could go wrong goes wrong before anything is removed.
+  std::error_code error;
+  for (const fs::path& name : results) {
+    const fs::path target = folder_ / name;
+    fs::create_directories(target.parent_path(), error);
+    if (error) fail(target.parent_path(), error);
+    if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
+      throw std::invalid_argument(
+          fmt::format("{}: is in the way of a result of that name", target.string()));
+    }
+  }
   // Where we are killed in between, the list names what is left of both.
   const std::vector<fs::path> earlier = earlier_results();
   const auto list = [&](const std::set<fs::path>& names) {
@@ -142,9 +156,17 @@ void OutputFolder::publish() {
   both.insert(earlier.begin(), earlier.end());
   list(both);
 
-  std::error_code error;
   fs::remove(folder_ / kSummary, error);
+  const std::set<fs::path> fresh(results.begin(), results.end());
+  const auto move = [&](bool summaries) {
+    for (const fs::path& name : results) {
+      if ((name.filename() == kSummary) != summaries) continue;
+      dem::replace_file((partial_ / name).string(), (folder_ / name).string());
+    }
+  };
+  move(false);
   for (const fs::path& name : earlier) {
+    if (fresh.contains(name)) continue;
     const fs::path file = folder_ / name;
     if (!fs::is_regular_file(fs::symlink_status(file, error))) continue;
     // A folder of results that has become a link is somebody else's.
@@ -159,12 +181,8 @@ void OutputFolder::publish() {
       fs::remove(up, error);
     }
   }
-  for (const fs::path& name : results) {
-    fs::create_directories((folder_ / name).parent_path(), error);
-    if (error) fail((folder_ / name).parent_path(), error);
-    dem::replace_file((partial_ / name).string(), (folder_ / name).string());
-  }
-  list({results.begin(), results.end()});
+  move(true);
+  list(fresh);
   fs::remove_all(partial_, error);
   made_.clear();
 }

@@ -288,10 +288,18 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
     pool.reserve(static_cast<std::size_t>(workers));
     for (int w = 0; w < workers; ++w) {
       const int share = threads / workers + (w < threads % workers ? 1 : 0);
-      pool.emplace_back([&, share] {
-        worker.work(mine, share);
-        --running;
-      });
+      try {
+        pool.emplace_back([&, share] {
+          worker.work(mine, share);
+          --running;
+        });
+      } catch (const std::system_error& error) {
+        // Those that could be started do all of the work.
+        running -= workers - w;
+        if (w > 0) break;
+        throw std::runtime_error(
+            fmt::format("--threads: no thread can be started: {}", error.code().message()));
+      }
     }
     const auto start = Clock::now();
     bool told = false;

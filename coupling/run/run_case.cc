@@ -60,13 +60,14 @@ class Workplace {
     results_ = std::make_unique<OutputFolder>(
         folder_.string(), value.command.empty() ? "grainfield run" : value.command);
     results_->require_other_than(value.grains.files);
-    if (holds_work()) take_up(value, options);
-    std::error_code error;
-    fs::create_directories(checkpoint_, error);
-    if (error) {
-      throw std::invalid_argument(
-          fmt::format("{}: cannot write there: {}", checkpoint_.string(), error.message()));
+    std::error_code unknown;
+    if (fs::equivalent(folder_ / "case.toml", options.case_file, unknown)) {
+      throw std::invalid_argument(fmt::format(
+          "-o: {}/case.toml is the case itself and would be replaced; name another folder",
+          folder_.string()));
     }
+    if (holds_work()) take_up(value, options);
+    fs::create_directories(checkpoint_);
     write_text_file((checkpoint_ / "case.toml").string(), write_case(value));
     write_text_file((checkpoint_ / kIdentity).string(), identity(value));
   }
@@ -87,10 +88,15 @@ class Workplace {
   }
 
   void publish() {
+    const HeldSignals held(AfterHold::forget);
     results_->publish();
+    // Under another name first: half a checkpoint would be taken for an unfinished run.
+    const fs::path gone = folder_ / ".checkpoint-gone";
     std::error_code error;
-    fs::remove_all(checkpoint_, error);
+    fs::rename(checkpoint_, gone, error);
+    fs::remove_all(gone, error);
     close();
+    say_when_stopped(fmt::format("stopped; the results in {} are complete", folder_.string()));
   }
 
   // What --resume needs stays.
@@ -321,7 +327,6 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
     if (ranks.first()) say_when_stopped(how_to_go_on(options));
     compute(value, place, ranks, options);
     on_first_rank(ranks, [&] { place.publish(); });
-    say_when_stopped(fmt::format("stopped; the results in {} are complete", options.folder));
   } catch (const Interrupted&) {
     if (opened) place.abandon(true);
     throw Interrupted(how_to_go_on(options));

@@ -10,7 +10,8 @@
 namespace grainfield::coupling {
 
 struct RunOptions {
-  std::string folder;  ///< of the outputs; made where missing
+  std::string folder;     ///< of the outputs; made where missing
+  std::string case_file;  ///< that was read; the outputs never replace it
   int threads = 1;
   bool resume = false;             ///< continue from FOLDER/checkpoint where there is one
   double checkpoint_seconds = 30;  ///< see EnsembleOptions

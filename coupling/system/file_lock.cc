@@ -71,8 +71,10 @@ FileLock::FileLock(const std::string& file, const std::string& what, const std::
   while (descriptor_ < 0) {
     const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) {
-      throw std::invalid_argument(
-          fmt::format("{}: cannot write {}: {}", what, file, std::strerror(errno)));
+      const std::error_code error(errno, std::generic_category());
+      const std::string why = fmt::format("{}: cannot write {}: {}", what, file, error.message());
+      if (dem::means_storage_failed(error)) throw dem::StorageFailed(why);
+      throw std::invalid_argument(why);
     }
     const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
     const bool known = locked || errno == EWOULDBLOCK;

@@ -6,16 +6,19 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr int kStopping[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kStopping[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
+constexpr std::chrono::seconds kOneSignal{1};  // those that come within it are one
 constexpr int kPatience = 200;  // ms, for the line on a standard error that nobody reads
 
 int bell = -1;  // an eventfd: the handler rings it, the watcher waits for it
@@ -24,6 +27,8 @@ std::atomic<bool> flag = false;
 struct State {
   std::mutex mutex;  // of all below; for ever locked once a signal ends the program
   int polled = 0, held = 0;
+  bool waiting = false;                         // a signal came while held
+  std::chrono::steady_clock::time_point first;  // when the flag was set
   std::string line = "stopped";
   std::map<int, std::function<void()>> undoes;
   int next_undo = 0;
@@ -44,9 +49,7 @@ extern "C" void ring(int) {
 }
 
 [[noreturn]] void stop() {
-  // The last registered first: as destructors would.
   State& s = state();
-  for (auto at = s.undoes.rbegin(); at != s.undoes.rend(); ++at) at->second();
   std::string line = isatty(STDERR_FILENO) != 0 ? "\n" : "";
   line += "grainfield: " + s.line + "\n";
   pollfd ready{STDERR_FILENO, POLLOUT, 0};
@@ -54,6 +57,8 @@ extern "C" void ring(int) {
       write(STDERR_FILENO, line.data(), line.size()) < 0) {
     // Nobody is left to be told.
   }
+  // The last registered first: as destructors would.
+  for (auto at = s.undoes.rbegin(); at != s.undoes.rend(); ++at) at->second();
   _exit(kExitInterrupted);
 }
 
@@ -63,10 +68,13 @@ void watch() {
   while (true) {
     if (read(bell, &rings, sizeof rings) < 0) continue;
     std::unique_lock lock(s.mutex);
-    if (s.held > 0) continue;
-    if (s.polled > 0 && !flag && rings == 1) {
+    const auto now = std::chrono::steady_clock::now();
+    if (s.held > 0) {
+      s.waiting = true;
+    } else if (s.polled > 0 && !flag) {
       flag = true;
-    } else {
+      s.first = now;
+    } else if (s.polled == 0 || now - s.first > kOneSignal) {
       lock.release();  // never unlocked: whoever meets the mutex now waits for the exit
       stop();
     }
@@ -82,7 +90,11 @@ void watch_signals() {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     if (bell < 0) return;
-    std::thread(watch).detach();
+    try {
+      std::thread(watch).detach();
+    } catch (const std::system_error&) {
+      return;  // no thread to be had: signals do what they do by default
+    }
     struct sigaction action = {};
     action.sa_handler = ring;
     action.sa_flags = SA_RESTART;
@@ -113,14 +125,16 @@ PolledSignals::~PolledSignals() {
 
 bool interrupted() { return flag; }
 
-HeldSignals::HeldSignals() {
+HeldSignals::HeldSignals(AfterHold after) : after_(after) {
   const std::lock_guard lock(state().mutex);
   ++state().held;
 }
 
 HeldSignals::~HeldSignals() {
   const std::lock_guard lock(state().mutex);
-  --state().held;
+  if (--state().held > 0 || !state().waiting) return;
+  state().waiting = false;
+  if (after_ == AfterHold::take) ring(0);
 }
 
 OnSignal::OnSignal(std::function<void()> undo) {

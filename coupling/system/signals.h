@@ -1,4 +1,4 @@
-// What SIGINT, SIGTERM and SIGHUP do.
+// What SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU do.
 //
 // As a rule a signal ends the program at once, with exit code 130: what would be left half done is
 // undone (OnSignal) and one line says what remains. Two kinds of work ask for something else while
@@ -27,8 +27,9 @@ void watch_signals();
 /// The line that a signal leaves on standard error, after "grainfield: ", from now on.
 void say_when_stopped(const std::string& line);
 
-/// While it lives, the first signal only sets the flag that interrupted() tells; a second one ends
-/// the program at once.
+/// While it lives, the first signal only sets the flag that interrupted() tells; another one ends
+/// the program at once, but not within a second of the first: a terminal that closes, or a batch
+/// system, sends several.
 class PolledSignals {
  public:
   PolledSignals();
@@ -40,14 +41,20 @@ class PolledSignals {
 /// Whether a signal has come while PolledSignals lived.
 bool interrupted();
 
-/// While it lives, a signal waits; afterwards it is forgotten: the work it would have stopped is
-/// done.
+/// What becomes of a signal that had to wait: it is taken then, or forgotten, because the work it
+/// would have stopped is done.
+enum class AfterHold { take, forget };
+
+/// While it lives, a signal waits. Of nested ones the outermost decides what becomes of it.
 class HeldSignals {
  public:
-  HeldSignals();
+  explicit HeldSignals(AfterHold after = AfterHold::take);
   ~HeldSignals();
   HeldSignals(const HeldSignals&) = delete;
   HeldSignals& operator=(const HeldSignals&) = delete;
+
+ private:
+  AfterHold after_;
 };
 
 /// While it lives, `undo` runs before a signal ends the program: on another thread, once, while the

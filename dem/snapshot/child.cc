@@ -1,6 +1,7 @@
 #include "dem/snapshot/child.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@ namespace {
 
 // On a busy machine, or a slow disk, the clock runs so many times faster than the CPU's.
 constexpr double kWallShare = 30;
+constexpr std::array<int, 4> kStopping{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 // What the child says at its end.
 constexpr char kTrue = 't', kFalse = 'f';
 
@@ -37,7 +39,7 @@ void take_signals() {
   for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM, SIGXCPU, SIGPIPE}) {
     std::signal(s, SIG_DFL);
   }
-  for (const int s : {SIGINT, SIGTERM, SIGHUP}) std::signal(s, SIG_IGN);
+  for (const int s : kStopping) std::signal(s, SIG_IGN);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -51,8 +53,11 @@ void lower(decltype(RLIMIT_CPU) what, double to) {
   setrlimit(what, &limit);
 }
 
-[[noreturn]] void be_the_child(const ChildLimits& limits, double in_use, int answer,
+[[noreturn]] void be_the_child(pid_t parent, const ChildLimits& limits, double in_use, int answer,
                                const std::function<bool()>& work) {
+  // It holds what its parent holds, locks too: it must not outlive it.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
   take_signals();
   const int nothing = open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -81,8 +86,15 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<bool()>&
   std::array<int, 2> answer{};
   if (pipe2(answer.data(), O_CLOEXEC) != 0) return {ChildEnd::unknown, ""};
   const double in_use = memory_in_use();
+  const pid_t parent = getpid();
+  // What asks to stop waits until the child ignores it.
+  sigset_t stopping, before;
+  sigemptyset(&stopping);
+  for (const int s : kStopping) sigaddset(&stopping, s);
+  pthread_sigmask(SIG_BLOCK, &stopping, &before);
   const pid_t child = fork();
-  if (child == 0) be_the_child(limits, in_use, answer[1], work);
+  if (child == 0) be_the_child(parent, limits, in_use, answer[1], work);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(answer[1]);
   char letter = 0;
   while (child > 0 && read(answer[0], &letter, 1) < 0 && errno == EINTR) {

@@ -113,6 +113,23 @@ TEST(OutputFolder, AFolderThatHasBecomeALinkIsLeftAlone) {
   EXPECT_EQ(testing::read_text(folder / "elsewhere/x.csv"), "old");
 }
 
+TEST(OutputFolder, WhatIsInTheWayIsSeenBeforeAnythingGoes) {
+  const testing::Folder folder;
+  publish(folder, {{"summary.json", "old"}, {"x.csv", "old"}});
+  folder.write("out/member", "mine");
+  EXPECT_THAT(refusal([&] {
+                publish(folder, {{"member/y.csv", "new"}});
+              }),
+              HasSubstr("out/member: cannot write there: "));
+  testing::fs::create_directory(folder / "out/z.csv");
+  EXPECT_THAT(refusal([&] {
+                publish(folder, {{"z.csv", "new"}});
+              }),
+              HasSubstr("out/z.csv: is in the way of a result"));
+  EXPECT_EQ(found(folder),
+            (Files{{"summary.json", "old\n"}, {"x.csv", "old"}, {"member", "mine"}}));
+}
+
 TEST(OutputFolder, ResultsThatAreInputsAreNotReplaced) {
   const testing::Folder folder;
   publish(folder, {{"snapshots.h5", "grains"}});

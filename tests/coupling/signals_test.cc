@@ -93,6 +93,7 @@ TEST(Signals, PolledOnesSetAFlagAndTheSecondEnds) {
               const PolledSignals polled;
               raise(SIGINT);
               if (!becomes_true(interrupted)) return 2;
+              std::this_thread::sleep_for(1500ms);
               raise(SIGINT);
               std::this_thread::sleep_for(kSoon);
               return 0;
@@ -100,10 +101,46 @@ TEST(Signals, PolledOnesSetAFlagAndTheSecondEnds) {
             130);
 }
 
-TEST(Signals, HeldOnesAreForgotten) {
+TEST(Signals, SeveralAtOnceAreOne) {
+  EXPECT_EQ(in_child([] {
+              const PolledSignals polled;
+              for (const int number : {SIGHUP, SIGTERM, SIGHUP}) {
+                raise(number);
+                std::this_thread::sleep_for(50ms);
+              }
+              return interrupted() ? 7 : 2;
+            }),
+            7);
+}
+
+TEST(Signals, HeldOnesAreTakenAfterwards) {
   EXPECT_EQ(in_child([] {
               {
                 const HeldSignals held;
+                raise(SIGINT);
+                std::this_thread::sleep_for(300ms);
+              }
+              std::this_thread::sleep_for(kSoon);
+              return 0;
+            }),
+            130);
+  EXPECT_EQ(in_child([] {
+              const PolledSignals polled;
+              {
+                const HeldSignals held;
+                raise(SIGINT);
+                std::this_thread::sleep_for(100ms);
+                if (interrupted()) return 2;
+              }
+              return becomes_true(interrupted) ? 7 : 3;
+            }),
+            7);
+}
+
+TEST(Signals, HeldOnesAreForgottenWhenTheWorkIsDone) {
+  EXPECT_EQ(in_child([] {
+              {
+                const HeldSignals held(AfterHold::forget);
                 raise(SIGINT);
                 raise(SIGTERM);
                 std::this_thread::sleep_for(300ms);
