@@ -5,16 +5,20 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-TEST(Interrupts, NothingIsLost) { interrupt_runs(12, 2, 0.3).print("interrupts"); }
+TEST(Interrupts, NothingIsLost) { interrupt_runs(8, 2, 0.3).print("interrupts"); }
 
 // Each of these lost something once.
 TEST(Interrupts, AtEverySpot) {
   Tally tally;
   std::mt19937 random(attack_seed());
-  for (const Blow& blow :
-       {Blow{Aim::pictures, SIGINT, true, 1, 0.02}, Blow{Aim::analysis, SIGTERM, false, 1, 0},
-        Blow{Aim::publishing, SIGHUP, false, 2, 0}, Blow{Aim::publishing, SIGKILL, false, 1, 0}}) {
-    InterruptedRun run(reference("layer"), true, random, tally);
+  const std::vector<std::pair<const char*, Blow>> spots{
+      {"layer", {Aim::pictures, SIGINT, true, 1, 0.02}},
+      {"layer", {Aim::analysis, SIGTERM, false, 1, 0}},
+      {"layer", {Aim::publishing, SIGHUP, false, 2, 0}},
+      {"layer", {Aim::publishing, SIGKILL, false, 1, 0}},
+      {"models", {Aim::analysis, SIGINT, false, 1, 0}}};
+  for (const auto& [study, blow] : spots) {
+    InterruptedRun run(reference(study), true, random, tally);
     run.strike(blow);
     run.resume_to_the_end();
   }

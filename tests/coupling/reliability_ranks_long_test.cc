@@ -139,7 +139,7 @@ void fail_on_second(const std::vector<std::string>& second, const std::string& w
 
 TEST(Ranks, OneFailsAlone) {
   if (!has_mpirun()) GTEST_SKIP() << "no mpirun";
-  fail_on_second({"--set", "average.width=1e-9"}, "no point has enough grains");
+  fail_on_second({"--set", "average.width=1e-6"}, "no point has enough grains");
   fail_on_second({"--set", "rest.max_time=1e-3"}, "rest.max_time");
 }
 
