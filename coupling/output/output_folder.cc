@@ -192,6 +192,7 @@ void OutputFolder::abandon() noexcept {
   if (lock_) {  // else it is somebody else's
     // Under another name first: whoever still writes there meets a missing folder.
     const fs::path gone = folder_ / ".partial-gone";
+    fs::remove_all(gone, error);  // a kill may have left one
     fs::rename(partial_, gone, error);
     fs::remove_all(gone, error);
   }

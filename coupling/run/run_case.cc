@@ -93,6 +93,7 @@ class Workplace {
     // Under another name first: half a checkpoint would be taken for an unfinished run.
     const fs::path gone = folder_ / ".checkpoint-gone";
     std::error_code error;
+    fs::remove_all(gone, error);  // a kill may have left one
     fs::rename(checkpoint_, gone, error);
     fs::remove_all(gone, error);
     close();
