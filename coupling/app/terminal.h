@@ -10,8 +10,8 @@ namespace grainfield::coupling {
 inline constexpr int kExitStorage = 74;  ///< an output cannot be written (EX_IOERR of sysexits.h)
 inline constexpr int kExitPipe = 141;    ///< as the shell reports a program ended by SIGPIPE
 
-/// Puts something harmless where a standard stream is closed, before all else: the next file that is
-/// opened would take its place, and get what is meant for the terminal.
+/// Puts something harmless where a standard stream is closed, before all else: the next file that
+/// is opened would take its place, and get what is meant for the terminal.
 void hold_standard_streams();
 
 /// Text for standard output, with what could steer a terminal written out. It is kept until
