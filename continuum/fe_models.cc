@@ -12,6 +12,7 @@
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
 #include "continuum/settings.h"
+#include "continuum/size.h"
 
 namespace grainfield::continuum {
 namespace {
@@ -69,6 +70,13 @@ std::vector<Parameter> common_parameters() {
           number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
 }
 
+Parameter most_unknowns() {
+  return number("most_unknowns", "-",
+                "of equations that adaptive refinement may come to; a million take about a "
+                "gigabyte of memory",
+                "numerics", kMostUnknowns, 100, 1e9);
+}
+
 std::vector<Parameter> numerical_parameters(const std::string& tolerances, int refinements) {
   return {
       whole_number(
@@ -81,6 +89,7 @@ std::vector<Parameter> numerical_parameters(const std::string& tolerances, int r
              "numerics", 0, 0, 1),
       number("refinements", "-", "most cycles of adaptive refinement", "numerics", refinements, 1,
              20),
+      most_unknowns(),
       whole_number("iterations", "most iterations of conjugate gradients in a solve", "numerics",
                    500, 1, 100000)};
 }
@@ -207,6 +216,7 @@ ModelInfo fe_cantelaube_core_info() {
        whole_number("refinement", "halvings of the three cells of the half core", "numerics", 4, 0,
                     10),
        whole_number("adaptive", "further cycles of adaptive refinement", "numerics", 0, 0, 20),
+       most_unknowns(),
        whole_number("iterations", "most iterations of conjugate gradients in a solve", "numerics",
                     2000, 1, 100000),
        whole_number("axis_iterations", "most solves for a yielding axis on a mesh", "numerics", 100,
@@ -266,6 +276,7 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
                     "times that the triangles with the largest estimated errors of stress are cut "
                     "and the heap is laid anew; figure stress_error says what is left",
                     "numerics", 0, 0, 12),
+       most_unknowns(),
        number(
            "tolerance", "-",
            "residual over a cell's weight at which Newton's method ends; where it stalls 1e-5 will "

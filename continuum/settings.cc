@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
+#include <optional>
+
+#include "continuum/number.h"
 
 namespace grainfield::continuum {
 namespace {
@@ -34,12 +36,11 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 
 double parse(const ModelInfo& info, const Parameter& parameter, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value))
+  const std::optional<double> value = parse_number(text);
+  if (!value || !std::isfinite(*value))
     throw BadParameter(fmt::format("model {}: {} = '{}' is not a number; allowed: {}", info.name,
                                    parameter.name, text, allowed(parameter)));
-  return value;
+  return *value;
 }
 
 /// The allowed range for a message about this text.
@@ -163,7 +164,7 @@ Settings complete(const ModelInfo& info, const Settings& settings) {
 }
 
 double number_of(const Settings& settings, const std::string& name) {
-  return std::strtod(settings.at(name).c_str(), nullptr);
+  return parse_number(settings.at(name)).value_or(0);
 }
 
 }  // namespace grainfield::continuum

@@ -12,9 +12,6 @@
 namespace grainfield::continuum {
 namespace {
 
-// One to two gigabytes of matrices.
-constexpr double kMostUnknowns = 2e6;
-
 // The settings by name; 0 for a parameter that the model does not have or that is unset.
 class Numbers {
  public:
@@ -78,6 +75,14 @@ void require_possible(const ModelInfo& info, const Settings& complete) {
   throw BadParameter(fmt::format(
       "model {}: {} ask for {:.2g} unknowns; allowed: up to {:g}; lower {}", info.name,
       fmt::join(given, ", "), mesh.unknowns, kMostUnknowns, fmt::join(mesh.parameters, ", ")));
+}
+
+void require_unknowns(const std::string& name, double unknowns, double most, const char* by) {
+  if (unknowns <= most) return;
+  throw ComputationFailed(fmt::format(
+      "{}: the next refinement would have about {:.2g} unknowns, allowed: up to most_unknowns = "
+      "{:g}; lower {}, or raise most_unknowns where there is memory",
+      name, unknowns, most, by));
 }
 
 }  // namespace grainfield::continuum

@@ -16,6 +16,9 @@ struct Column {
   Eigen::MatrixXd samples;  ///< points x realizations: the single values; empty: not kept
 };
 
+/// The components of stress in the plane, in the order of tables.
+inline const std::vector<std::string> kPlaneStress{"sigma_xx", "sigma_yy", "sigma_xy"};
+
 /// Points with columns. A regular grid also knows its shape, so that it can be drawn as a map.
 struct Field {
   Eigen::MatrixXd points;  ///< n x dim, m

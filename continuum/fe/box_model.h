@@ -33,7 +33,8 @@ class BoxModel : public SolvedModel<dim> {
                          static_cast<int>(number_of(s, "iterations"))),
         load_(number_of(s, "F")),
         tolerance_(number_or(s, "tolerance", tolerance)),
-        refinements_(static_cast<int>(number_of(s, "refinements"))) {}
+        refinements_(static_cast<int>(number_of(s, "refinements"))),
+        most_unknowns_(number_of(s, "most_unknowns")) {}
 
   Stresses stress(const Points& points) override {
     this->solve_once([this] {
@@ -112,7 +113,7 @@ class BoxModel : public SolvedModel<dim> {
               name_, change, cycle, tolerance_));
       }
       before = after;
-      solver_->refine_worst(kRefinedShare,
+      solver_->refine_worst(kRefinedShare, most_unknowns_, "refinements",
                             [this](const dealii::Point<dim>& p) { return refinement_weight(p); });
     }
   }
@@ -145,6 +146,7 @@ class BoxModel : public SolvedModel<dim> {
 
   double tolerance_;
   int refinements_;
+  double most_unknowns_;
 };
 
 }  // namespace grainfield::continuum::fe

@@ -89,6 +89,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
         springs_(number_of(s, "base_stiffness")),
         cells_(static_cast<int>(number_of(s, "refinement"))),
         cycles_(static_cast<int>(number_of(s, "adaptive"))),
+        most_unknowns_(number_of(s, "most_unknowns")),
         axis_iterations_(static_cast<int>(number_of(s, "axis_iterations"))) {
     const std::string& branch = s.at("branch");
     beta_hat_ = core_angle(phi_, branch == "zero"   ? CoreBranch::zero
@@ -257,7 +258,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
       build_mesh();
       solve_axis();
       for (int cycle = 0; cycle < cycles_; ++cycle) {
-        solver_->refine_worst(fe::kRefinedShare);
+        solver_->refine_worst(fe::kRefinedShare, most_unknowns_, "adaptive");
         solve_axis();
       }
       measure();
@@ -311,7 +312,9 @@ class CantelaubeCore : public fe::SolvedModel<2> {
   double h_, rho_g_, nu_, phi_, beta_hat_ = 0, t_ = 0, ratio_ = 1, young_ = 1;
   std::string base_;
   double springs_;
-  int cells_, cycles_, axis_iterations_;
+  int cells_, cycles_;
+  double most_unknowns_;
+  int axis_iterations_;
   bool yields_ = false;
   LinearStress core_, flank_;
   Eigen::VectorXd axis_stress_;

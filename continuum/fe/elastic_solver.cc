@@ -19,6 +19,7 @@
 #include <chrono>
 
 #include "continuum/model.h"
+#include "continuum/size.h"
 
 namespace grainfield::continuum::fe {
 namespace {
@@ -344,7 +345,7 @@ void ElasticSolver<dim>::solve(const ElasticProblem<dim>& problem) {
 }
 
 template <int dim>
-void ElasticSolver<dim>::refine_worst(double share,
+void ElasticSolver<dim>::refine_worst(double share, double most, const char* by,
                                       const std::function<double(const Point<dim>&)>& weight) {
   dealii::Vector<float> indicator(mesh_.n_active_cells());
   KellyErrorEstimator<dim>::estimate(mapping_, dofs_, QGauss<dim - 1>(degree_ + 1), {}, solution_,
@@ -356,6 +357,13 @@ void ElasticSolver<dim>::refine_worst(double share,
   }
   parallel::distributed::GridRefinement::refine_and_coarsen_fixed_fraction(mesh_, indicator, share,
                                                                            0);
+  double cut = 0;
+  for (const auto& cell : mesh_.active_cell_iterators())
+    if (cell->is_locally_owned() && cell->refine_flag_set()) ++cut;
+  cut = dealii::Utilities::MPI::sum(cut, comm_);
+  const auto cells = static_cast<double>(mesh_.n_global_active_cells());
+  const double more = (1 << dim) - 1;
+  require_unknowns(name_, static_cast<double>(dofs_.n_dofs()) * (1 + more * cut / cells), most, by);
   mesh_.execute_coarsening_and_refinement();
 }
 

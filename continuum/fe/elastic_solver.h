@@ -88,8 +88,9 @@ class ElasticSolver {
   /// Assembles and solves on the present mesh, recovers the stress C eps. Throws ComputationFailed.
   void solve(const ElasticProblem<dim>& problem);
   /// Refines the cells that carry `share` of the jumps of the gradient (Kelly et al. 1983), each
-  /// weighted by the function at the cell's centre.
-  void refine_worst(double share,
+  /// weighted by the function at the cell's centre. Throws ComputationFailed, naming most_unknowns
+  /// and `by`, the parameter that asks for it, before the mesh has more than `most` unknowns.
+  void refine_worst(double share, double most, const char* by,
                     const std::function<double(const dealii::Point<dim>&)>& weight = {});
   /// Recovered stress at points inside the mesh, one row each; the same on every rank.
   Eigen::MatrixXd stress_at(const std::vector<dealii::Point<dim>>& points) const;

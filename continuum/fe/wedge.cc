@@ -11,6 +11,7 @@
 #include "continuum/constants.h"
 #include "continuum/fe/triangle_refinement.h"
 #include "continuum/model.h"
+#include "continuum/size.h"
 
 namespace grainfield::continuum {
 namespace {
@@ -361,7 +362,11 @@ WedgeResult solve_wedge(const WedgeProblem& p) {
       return out;
     }
     std::vector<int> parent;
+    const auto before = static_cast<double>(mesh.triangles.size());
     mesh = fe::refined(mesh, fe::largest_errors(out.errors, p.refine_share), parent);
+    require_unknowns("fe_mohr_coulomb_wedge",
+                     out.unknowns * static_cast<double>(mesh.triangles.size()) / before,
+                     p.most_unknowns, "refinements");
     std::vector<int> cell(parent.size());
     for (std::size_t t = 0; t < parent.size(); ++t)
       cell[t] = lattice_cell[static_cast<std::size_t>(parent[t])];

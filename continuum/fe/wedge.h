@@ -14,6 +14,7 @@
 
 #include "continuum/fe/plastic_solver.h"
 #include "continuum/model.h"
+#include "continuum/size.h"
 
 namespace grainfield::continuum {
 
@@ -45,6 +46,7 @@ struct WedgeProblem {
   /// Adaptive refinement: so many times the triangles with the largest estimated errors of stress,
   /// which hold `refine_share` of the sum of squares, are cut, and the heap is laid anew.
   int refinements = 0;
+  double most_unknowns = kMostUnknowns;  ///< that refinement may come to
   double refine_share = 0.5;
   /// Measured Young's modulus (N/m^2; 2D N/m) and Poisson's ratio at a place in place of young and
   /// poisson; empty: those. The springs of the ground go by young all the same.

@@ -106,6 +106,7 @@ class WedgeModel : public Model {
     p.cells = whole("cells");
     p.iterations = whole("iterations");
     p.refinements = whole("refinements");
+    p.most_unknowns = number_of(s, "most_unknowns");
     p.viscous_step = number_of(s, "viscous_step");
     p.work = whole("work");
     p.tolerance = number_of(s, "tolerance");

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "continuum/model.h"
+#include "continuum/number.h"
 
 namespace grainfield::continuum::osl {
 namespace {
@@ -50,6 +52,16 @@ std::vector<std::string> read_header(const std::string& file, int line, const st
   return names;
 }
 
+// It is read more than once, and a pipe would have to be waited for.
+void require_regular_file(const std::string& file) {
+  std::error_code error;
+  const auto there = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(there) || std::filesystem::is_regular_file(there)) return;
+  throw BadParameter(
+      fmt::format("{}: is {}, expected a file", file,
+                  std::filesystem::is_directory(there) ? "a folder" : "a pipe or device"));
+}
+
 struct Row {
   int line;
   std::vector<double> values;
@@ -59,10 +71,10 @@ Row read_row(const std::string& file, int line, const std::string& text, std::si
              bool may_lack) {
   Row row{line, {}};
   for (const auto& word : split(text)) {
-    char* end = nullptr;
-    row.values.push_back(std::strtod(word.c_str(), &end));
+    const std::optional<double> number = parse_number(word);
+    row.values.push_back(number.value_or(0));
     const bool lacks = may_lack && row.values.size() > 2 && std::isnan(row.values.back());
-    if (word.empty() || *end != '\0' || !(lacks || std::isfinite(row.values.back())))
+    if (!number || !(lacks || std::isfinite(*number)))
       refuse(file, line, fmt::format("\"{}\" is not a finite number", word));
   }
   if (row.values.size() != columns)
@@ -81,6 +93,7 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
   FieldMap map;
   map.file = file;
   if (file.empty()) return map;
+  require_regular_file(file);
   std::ifstream stream(file);
   if (!stream) throw BadParameter(file + ": cannot be opened");
   std::vector<std::string> names;
@@ -130,6 +143,7 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
 
 std::vector<std::string> map_columns(const std::string& file) {
   if (file.empty()) return {};
+  require_regular_file(file);
   std::ifstream stream(file);
   for (std::string text; std::getline(stream, text);) {
     if (is_comment(text)) continue;

@@ -13,6 +13,7 @@
 #include "coupling/case/keys.h"
 #include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 
@@ -35,7 +36,7 @@ void add_check(CLI::App& app, Action& action) {
       *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
       warn_of_idle_keys(value);
-      say("{}: ok ({}, {} model{})\n", *file, value.study, value.models.size(),
+      say("{}: ok ({}, {} model{})\n", printable_name(*file), value.study, value.models.size(),
           value.models.size() == 1 ? "" : "s");
       say("{}", outlook_text(value));
       return 0;

@@ -26,6 +26,9 @@ void add_strain(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 
+/// The option -o,--output of a command; an empty name is refused.
+CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning);
+
 /// One line on standard error for every key of the case that has no effect.
 void warn_of_idle_keys(const Case& value);
 

@@ -15,6 +15,7 @@
 #include "coupling/output/other_file.h"
 #include "coupling/run/average_files.h"
 #include "coupling/run/compare_field.h"
+#include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -70,8 +71,8 @@ void print_balance(const std::vector<SnapshotName>& names, AverageOptions option
     options.width = width > 0 ? width / diameter : 1;
     say("{}:{}: {} grains, {} contacts, mean diameter {:.4g} m; residual of div sigma + rho "
         "g over rho g\n{}",
-        name.file, name.group, snapshot.grains.size(), snapshot.contacts.size(), diameter,
-        balance_markdown(balance_table(snapshot, options)));
+        printable_name(name.file), name.group, snapshot.grains.size(), snapshot.contacts.size(),
+        diameter, balance_markdown(balance_table(snapshot, options)));
   }
 }
 
@@ -91,7 +92,7 @@ void add_average(CLI::App& app, Action& action) {
   AverageOptions& options = wanted.options;
   command->add_option("snapshots", given->snapshots, "FILE.h5 (all in it) or FILE.h5:group")
       ->required();
-  command->add_option("-o,--output", given->output, "FIELD.h5; FIELD.xdmf comes beside it");
+  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it");
   command->add_flag("--response", wanted.response, "loaded - unloaded of the snapshots so named");
   command->add_option("--method", options.method, "coarse_graining | particle_centre | area_exact");
   auto* kernel = command->add_option(
@@ -186,7 +187,7 @@ void add_compare(CLI::App& app, Action& action) {
                    "X,Y of the models' origin in a field of frame packing, m")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("-o,--output", request->folder, "folder; default results/compare-FIELD");
+  add_output(*command, request->folder, "folder; default results/compare-FIELD");
   command->callback([=, &action] {
     action = [=] {
       request->models = parse_choices(*models);
@@ -194,9 +195,10 @@ void add_compare(CLI::App& app, Action& action) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
       const CompareOutcome outcome = compare_field(*request);
+      if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.note.empty()) say("{}\n", outcome.note);
       say("{}\n", outcome.verdict);
-      say("report: {}/report.html\n", request->folder);
+      say("report: {}/report.html\n", printable_name(request->folder));
       return 0;
     };
   });

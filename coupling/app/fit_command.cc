@@ -10,6 +10,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/fit/fit_files.h"
+#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -59,7 +60,7 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", request.folder, "folder; default results/fit-INPUT");
+  add_output(*command, request.folder, "folder; default results/fit-INPUT");
   add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
@@ -86,7 +87,8 @@ void add_fit(CLI::App& app, Action& action) {
         note("warning: {}", text);
       }
       say("fitted to {}\n", shown(outcome.packings));
-      say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict, wanted.folder);
+      say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,
+          printable_name(wanted.folder));
       return 0;
     };
   });

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
 #include "coupling/import/doubts.h"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 struct Given {
   ImportOptions options;
   std::string output, gravity, fixed, load;
-  std::vector<std::string> walls, steps;
+  std::vector<std::string> walls, steps, periodic;
   bool add = false;
 };
 
@@ -55,6 +56,7 @@ void parse(Given& given) {
   ImportOptions& options = given.options;
   if (!given.gravity.empty()) options.gravity = parse_vector(given.gravity, "--gravity");
   for (const std::string& wall : given.walls) options.walls.push_back(parse_wall(wall));
+  for (const std::string& axis : given.periodic) options.periodic.push_back(parse_periodic(axis));
   for (const std::string& step : given.steps) {
     if (step == "last") continue;
     if (step == "all") {
@@ -111,6 +113,7 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   for (const auto& c : s.contacts) at_walls += c.j < 0 ? 1 : 0;
   say("{}: {}D, {} grains ({} fixed), {} contacts ({} with walls), {} walls\n", imported.group,
       s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls, s.walls.size());
+  if (s.cell.is_periodic()) say("  {}\n", cell_text(s.cell));
   const GrainSizes sizes = grain_sizes(s);
   say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as SI)\n", sizes.diameter,
       sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
@@ -155,7 +158,7 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("files", o.files, "grains and contacts (walls): told apart by what they hold")
       ->required();
   command->add_option("--from", o.format, "lammps | liggghts | yade | csv")->required();
-  command->add_option("-o,--output", given->output, "SNAPSHOT.h5")->required();
+  add_output(*command, given->output, "SNAPSHOT.h5")->required();
   command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
   command
       ->add_option("--column", o.columns,
@@ -168,7 +171,11 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--friction", o.friction, "Coulomb coefficient, without a column friction");
   command
       ->add_option("--wall", given->walls,
-                   "NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID], such as floor:y=0")
+                   "NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID][:material=M], such as floor:y=0")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--periodic", given->periodic,
+                   "AXIS=LOW:HIGH, such as x=0:0.1; default: as a dump tells")
       ->allow_extra_args(false);
   command->add_option("--fixed", given->fixed, "COLUMN=VALUE,...: those grains are apparatus");
   command->add_option("--step", given->steps, "last (default) | all | N | N=GROUP, repeatable")
@@ -179,7 +186,7 @@ void add_import(CLI::App& app, Action& action) {
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
   command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
   command->add_flag("--leave-out-distant", o.leave_out_distant,
-                    "leave out contacts across periodic boundaries");
+                    "leave out contacts across periodic boundaries, and the cell");
   command->callback([=, &action] {
     action = [=] {
       parse(*given);
@@ -191,7 +198,8 @@ void add_import(CLI::App& app, Action& action) {
       AtomicFile file(given->output);
       if (given->add && fs::exists(given->output)) {
         dem::list_snapshots(given->output);  // an HDF5 file of ours, or a clear refusal
-        fs::copy_file(given->output, file.temporary());
+        file.write_with(
+            [&](const std::string& temporary) { fs::copy_file(given->output, temporary); });
       }
       std::set<std::string> groups;
       if (given->add && fs::exists(given->output))
@@ -203,7 +211,9 @@ void add_import(CLI::App& app, Action& action) {
           throw std::invalid_argument(fmt::format(
               "{}: holds a snapshot {} already; --group or --step N=GROUP names another",
               given->output, group));
-        dem::write_snapshot(file.temporary(), group, imported.snapshot);
+        file.write_with([&](const std::string& temporary) {
+          dem::write_snapshot(temporary, group, imported.snapshot);
+        });
         show(imported, !options.gravity);
       });
       file.commit();

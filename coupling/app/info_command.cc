@@ -1,8 +1,11 @@
 // info: what an HDF5 file of ours holds.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
+#include <set>
 
+#include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
 #include "coupling/output/field_io.h"
@@ -17,6 +20,15 @@ void show_snapshot(const std::string& file, const std::string& group) {
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
   say("snapshot {}: {}D, {} grains ({} fixed), {} contacts, {} walls, time {:g} s\n", group, s.dim,
       s.grains.size(), fixed, s.contacts.size(), s.walls.size(), s.time);
+  if (s.cell.is_periodic()) say("  {}\n", cell_text(s.cell));
+  std::set<std::string> materials;
+  for (const auto& g : s.grains) materials.insert(g.material);
+  for (const auto& w : s.walls) materials.insert(w.material);
+  materials.erase("");
+  if (!materials.empty()) say("  materials: {}\n", fmt::join(materials, ", "));
+  for (const auto& w : s.walls) {
+    if (w.shape != "plane") say("  wall {}: {}\n", w.name, w.shape);
+  }
   say("  units: m, s, kg, N, rad{}\n", s.dim == 2 ? "; volume m2" : "; volume m3");
   if (s.loaded_grain >= 0) {
     say("  load on grain {}: {:g} {:g} {:g} N\n", s.loaded_grain, s.applied_force.x(),

@@ -88,7 +88,7 @@ void add_model(CLI::App& app, Action& action) {
   command->add_option("name", given->name, "model; without it the models are listed");
   command->add_option("--set", given->sets, "parameter=value")->allow_extra_args(false);
   command->add_option("--points", given->points, "CSV with columns x,y or x,y,z (m, load at 0,0)");
-  command->add_option("-o,--output", given->output, "CSV of stresses; without it on the terminal");
+  add_output(*command, given->output, "CSV of stresses; without it on the terminal");
   command->add_flag("--all", given->all,
                     "also what the model knows besides the stress, e.g. displacements");
   command->add_flag("--figures", given->figures,

@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -15,6 +13,9 @@
 #pragma GCC diagnostic ignored "-Wstringop-truncation"
 #include <libfccp/csv.h>
 #pragma GCC diagnostic pop
+
+#include "coupling/system/read_input.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -26,22 +27,21 @@ using Reader = io::CSVReader<dim, io::trim_chars<' ', '\t'>, io::no_quote_escape
                              io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
 
 double number(const char* text, const char* column, const std::string& file, unsigned line) {
-  const char* end = text + std::strlen(text);
-  double value = 0;
-  const auto [stop, error] = std::from_chars(text + (*text == '+' ? 1 : 0), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+  const std::optional<double> value = dem::parse_number(text);
+  if (!value || !std::isfinite(*value)) {
     throw std::invalid_argument(
         fmt::format("{}:{}: column {}: found \"{}\", expected a number", file, line, column, text));
   }
-  return value;
+  return *value;
 }
 
 template <unsigned dim>
 Eigen::MatrixXd read(const std::string& file) {
+  const std::string content = read_input(file, "a CSV file");
   std::vector<double> values;
   unsigned line = 0;
   try {
-    Reader<dim> in(file);
+    Reader<dim> in(file, content.data(), content.data() + content.size());
     const char *x = nullptr, *y = nullptr, *z = nullptr;
     const auto take = [&](const char* text, const char* column) {
       values.push_back(number(text, column, file, in.get_file_line()));
@@ -70,8 +70,6 @@ Eigen::MatrixXd read(const std::string& file) {
     throw std::invalid_argument(fmt::format("{}:{}: too few columns", file, line));
   } catch (const io::error::too_many_columns&) {
     throw std::invalid_argument(fmt::format("{}:{}: too many columns", file, line));
-  } catch (const io::error::can_not_open_file& e) {
-    throw std::invalid_argument(fmt::format("{}: {}", file, std::strerror(e.errno_value)));
   } catch (const io::error::base& e) {
     throw std::invalid_argument(fmt::format("{}: {}", file, e.what()));
   }
@@ -83,10 +81,6 @@ Eigen::MatrixXd read(const std::string& file) {
 }  // namespace
 
 Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw std::invalid_argument(file + ": is a folder, expected a CSV file");
-  }
   return dim == 2 ? read<2>(file) : read<3>(file);
 }
 

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
 
 #include "coupling/app/points_csv.h"
+#include "dem/snapshot/number.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -15,14 +16,17 @@ namespace {
 
 // Points of a grid; and on how many points and snapshots a field may be averaged, each value some
 // hundred bytes.
-constexpr double kMostPoints = 1e6, kMostValues = 1e7;
+constexpr double kMostPoints = 1e6, kMostNumbers = 1e7;
 
 void parse_grid(const std::string& text, int& columns, int& rows) {
   const auto whole = [](std::string_view part, int& number) {
-    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), number);
     // Too many for an int are many.
-    if (error == std::errc::result_out_of_range) number = std::numeric_limits<int>::max();
-    return error != std::errc::invalid_argument && stop == part.data() + part.size() && number >= 2;
+    const bool digits = part.find_first_not_of("0123456789") == std::string_view::npos;
+    const long long most = std::numeric_limits<int>::max();
+    number = digits && !part.empty()
+                 ? static_cast<int>(std::min(dem::parse_integer(part).value_or(most), most))
+                 : 0;
+    return number >= 2;
   };
   const std::size_t x = text.find('x');
   if (x == std::string::npos || !whole(std::string_view(text).substr(0, x), columns) ||
@@ -57,10 +61,10 @@ Eigen::MatrixXd PointsOptions::read(const std::vector<SnapshotName>& snapshots) 
   const double places =
       points.empty() ? static_cast<double>(columns) * rows : static_cast<double>(out.rows());
   const auto many = static_cast<double>(snapshots.size());
-  if (places * many > kMostValues) {
+  if (places * many > kMostNumbers) {
     throw std::invalid_argument(
         fmt::format("{}: found {:g} points for {:g} snapshots, allowed: up to {:g} together",
-                    points.empty() ? "--grid" : "--points", places, many, kMostValues));
+                    points.empty() ? "--grid" : "--points", places, many, kMostNumbers));
   }
   return out;
 }

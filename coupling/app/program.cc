@@ -113,6 +113,13 @@ int act(int argc, char** argv) {
 
 }  // namespace
 
+CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning) {
+  const auto complaint = [](const std::string& name) {
+    return std::string(name.empty() ? "found no name, expected that of a file or folder" : "");
+  };
+  return command.add_option("-o,--output", output, meaning)->check(CLI::Validator(complaint, ""));
+}
+
 int run_program(int argc, char** argv) {
   hold_standard_streams();
   watch_signals();

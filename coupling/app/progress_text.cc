@@ -12,6 +12,10 @@ std::string duration_text(double seconds) {
 }
 
 std::string progress_text(const EnsembleProgress& p) {
+  if (p.phase.empty()) {
+    return fmt::format("{:3.0f} %  {}/{} done{}", 100 * p.fraction, p.done, p.total,
+                       p.done < p.total ? "  starting" : "");
+  }
   const std::string awake =
       p.awake > 0 && p.awake < p.grains ? fmt::format(", {} awake", p.awake) : "";
   // The quasi-static solver has neither time nor speeds.

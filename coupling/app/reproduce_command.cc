@@ -10,6 +10,7 @@
 #include "coupling/output/atomic_file.h"
 #include "coupling/reproduce/page.h"
 #include "coupling/reproduce/record.h"
+#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 
@@ -25,18 +26,18 @@ void add_reproduce(CLI::App& app, Action& action) {
       ->add_option("--add", *add,
                    "folder of a finished run: its summary, profiles and pictures come first")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", *output, "page to write; default: print it");
+  add_output(*command, *output, "page to write; default: print it");
   command->callback([=, &action] {
     action = [=] {
       for (const std::string& run : *add) {
-        for (const std::string& file : record_run(run, *folder)) say("{}\n", file);
+        for (const std::string& file : record_run(run, *folder)) say("{}\n", printable_name(file));
       }
       const std::string page = reproduction_page(Results(*folder));
       if (output->empty()) {
         say("{}", page);
       } else {
         write_text_file(*output, page);
-        say("{}\n", *output);
+        say("{}\n", printable_name(*output));
       }
       return 0;
     };

@@ -15,6 +15,7 @@
 #include "coupling/case/case.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/run_case.h"
+#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -102,8 +103,8 @@ void say_result(const Case& value, const std::string& folder) {
         "contact law of small overlaps; raise material.young",
         100 * *overlap);
   }
-  say("results: {}\n", folder);
-  if (value.output.report) say("report: {}/report.html\n", folder);
+  say("results: {}\n", printable_name(folder));
+  if (value.output.report) say("report: {}/report.html\n", printable_name(folder));
 }
 
 int run(const Given& given) {
@@ -130,6 +131,7 @@ int run(const Given& given) {
   options.stop_after_steps = given.stop_after_steps;
   options.progress = [&](const EnsembleProgress& p) { line.show(p); };
   options.note = [&](const std::string& text) { line.note(text); };
+  options.warn = [&](const std::string& text) { line.note("grainfield: warning: " + text); };
   try {
     run_case(value, ranks, options);
   } catch (...) {
@@ -150,7 +152,7 @@ void add_run(CLI::App& app, Action& action) {
   auto given = std::make_shared<Given>();
   command->add_option("case", given->file, "case file (TOML), or the name of a shipped case")
       ->required();
-  command->add_option("-o,--output", given->output, "folder; default results/CASE (CASE-quick)");
+  add_output(*command, given->output, "folder; default results/CASE (CASE-quick)");
   command->add_flag("--quick", given->quick, "with the case's quick setting");
   command->add_option("--set", given->sets, "override: key.path=value")->allow_extra_args(false);
   add_threads(*command, given->threads,

@@ -39,8 +39,7 @@ void add_strain(CLI::App& app, Action& action) {
   StrainOptions& options = given->request.options;
   command->add_option("before", given->before, "FILE.h5:group")->required();
   command->add_option("after", given->after, "FILE.h5:group")->required();
-  command->add_option("-o,--output", given->output, "FIELD.h5; FIELD.xdmf comes beside it")
-      ->required();
+  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--measure", options.measure,
                       fmt::format("{} (docs/strain.md)", fmt::join(strain_measures(), " | ")));
   auto* width = command->add_option(

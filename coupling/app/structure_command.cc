@@ -18,6 +18,7 @@
 #include "coupling/structure/histogram.h"
 #include "coupling/structure/size_factor.h"
 #include "coupling/structure/tensor_axes.h"
+#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -62,7 +63,7 @@ void show(const std::string& title, const dem::Snapshot& s, const std::string& f
   const CoordinationCounts counts = coordination_counts(s);
   const SizeFactor size = size_factor(s);
   const ForceChains chains = force_chains(s);
-  say("{}: {} free grains, {} rattlers\n", title, counts.grains, counts.rattlers);
+  say("{}: {} free grains, {} rattlers\n", printable_name(title), counts.grains, counts.rattlers);
   say("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
   say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", size.measured,
       size.theory);
@@ -104,9 +105,9 @@ void add_structure(CLI::App& app, Action& action) {
   auto names = std::make_shared<std::vector<std::string>>();
   auto folder = std::make_shared<std::string>();
   command->add_option("snapshots", *names, "FILE.h5 (all in it) or FILE.h5:group")->required();
-  command->add_option("-o,--output", *folder,
-                      "folder for grains.csv, coordination.csv, base_forces.csv, one below it per "
-                      "snapshot where there are several");
+  add_output(*command, *folder,
+             "folder for grains.csv, coordination.csv, base_forces.csv, one below it per "
+             "snapshot where there are several");
   command->callback([=, &action] {
     action = [=] {
       const auto snapshots = parse_snapshot_names(*names);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -10,10 +10,8 @@ namespace {
 constexpr int kMostThreads = 1024;
 
 std::string complaint(const std::string& text) {
-  int threads = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), threads);
-  const bool good = error == std::errc() && stop == text.data() + text.size() && threads >= 1 &&
-                    threads <= kMostThreads;
+  const std::optional<long long> threads = dem::parse_integer(text);
+  const bool good = threads && *threads >= 1 && *threads <= kMostThreads;
   return good ? "" : fmt::format("found {}, allowed: 1 to {}", text, kMostThreads);
 }
 

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/nearest.h"
+#include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
+#include "coupling/statistics/parallel.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -39,21 +40,32 @@ void check(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
     refuse("the snapshot is 3D; a normalised free surface needs a 2D one");
 }
 
-Field average_in(const dem::Snapshot& snapshot, const Region& region, const Eigen::MatrixXd& points,
+/// Grains with their facts, and where they are.
+struct Packing {
+  explicit Packing(const dem::Snapshot& s) : snapshot(s), facts(grain_facts(s)) {}
+
+  const dem::Snapshot& snapshot;
+  std::vector<GrainFacts> facts;
+};
+
+// How far from a point grains count.
+double reach_of(const AverageOptions& options, int dim) {
+  if (options.method != "coarse_graining") return 2 * options.width;  // the half diagonal of a cube
+  return make_kernel(options.kernel, options.width, dim)->range();
+}
+
+Field average_in(const Packing& packing, const Region& region, const Eigen::MatrixXd& points,
                  const AverageOptions& options, Gaps* gaps) {
+  const dem::Snapshot& snapshot = packing.snapshot;
   const Method& method = find_method(options);
   const Layout layout(snapshot.dim, options.quantities);
-  const RowMatrix carried = layout.carried_by(grain_facts(snapshot));
+  const RowMatrix carried = layout.carried_by(packing.facts);
   const Job job{snapshot, region, points, options, layout, carried};
-  const Eigen::Index n = points.rows(),
-                     bands = std::max<Eigen::Index>(1, std::min<Eigen::Index>(options.threads, n));
+  const Eigen::Index n = points.rows();
   Sums sums{RowMatrix::Zero(n, layout.size()), std::vector<char>(static_cast<std::size_t>(n), 0)};
   // Every point belongs to one thread.
-  std::vector<std::thread> threads;
-  for (Eigen::Index b = 1; b < bands; ++b)
-    threads.emplace_back([&, b] { method.add(job, n * b / bands, n * (b + 1) / bands, sums); });
-  method.add(job, 0, n / bands, sums);
-  for (std::thread& thread : threads) thread.join();
+  in_parts(n, options.threads,
+           [&](Eigen::Index first, Eigen::Index last) { method.add(job, first, last, sums); });
 
   std::vector<char> empty = sums.outside;
   Gaps found;
@@ -86,6 +98,39 @@ Field average_in(const dem::Snapshot& snapshot, const Region& region, const Eige
   return field;
 }
 
+// act(packing): the snapshot, a periodic one with the images around the points. Facts are of the
+// original: its contacts are complete.
+template <class Act>
+auto with_images(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
+                 const AverageOptions& options, Act act) {
+  Packing packing(snapshot);
+  if (!snapshot.cell.is_periodic()) return act(packing);
+  const Surrounded around = surround(snapshot, points, reach_of(options, snapshot.dim));
+  Packing wide(around.snapshot);
+  for (std::size_t g = 0; g < wide.facts.size(); ++g) {
+    wide.facts[g] = packing.facts[around.source[g]];
+    wide.facts[g].grain = &around.snapshot.grains[g];
+  }
+  return act(wide);
+}
+
+// loaded - unloaded, in the region of the unloaded one.
+Field difference(const Packing& unloaded, const Packing& loaded, const Eigen::MatrixXd& points,
+                 const AverageOptions& options, Gaps* gaps) {
+  const Region region(unloaded.snapshot);
+  const Field before = average_in(unloaded, region, points, options, gaps);
+  Field change = average_in(loaded, region, points, options, gaps);
+  for (std::size_t c = 0; c < change.columns.size(); ++c) {
+    Eigen::VectorXd& value = change.columns[c].value;
+    if (change.columns[c].name == "grains")
+      value = value.cwiseMin(before.columns[c].value);
+    else
+      value -= before.columns[c].value;
+  }
+  change.attributes["what"] = "loaded - unloaded";
+  return change;
+}
+
 }  // namespace
 
 const std::vector<Method>& methods() {
@@ -113,7 +158,9 @@ const Method& find_method(const AverageOptions& options) {
 Field average(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
               const AverageOptions& options, Gaps* gaps) {
   check(snapshot, points, options);
-  return average_in(snapshot, Region(snapshot), points, options, gaps);
+  return with_images(snapshot, points, options, [&](const Packing& packing) {
+    return average_in(packing, Region(packing.snapshot), points, options, gaps);
+  });
 }
 
 void require_same_grains(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {
@@ -144,18 +191,11 @@ Field response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                const Eigen::MatrixXd& points, const AverageOptions& options, Gaps* gaps) {
   require_same_grains(unloaded, loaded);
   check(unloaded, points, options);
-  const Region region(unloaded);
-  const Field before = average_in(unloaded, region, points, options, gaps);
-  Field change = average_in(loaded, region, points, options, gaps);
-  for (std::size_t c = 0; c < change.columns.size(); ++c) {
-    Eigen::VectorXd& value = change.columns[c].value;
-    if (change.columns[c].name == "grains")
-      value = value.cwiseMin(before.columns[c].value);
-    else
-      value -= before.columns[c].value;
-  }
-  change.attributes["what"] = "loaded - unloaded";
-  return change;
+  return with_images(unloaded, points, options, [&](const Packing& before) {
+    return with_images(loaded, points, options, [&](const Packing& after) {
+      return difference(before, after, points, options, gaps);
+    });
+  });
 }
 
 }  // namespace grainfield::coupling

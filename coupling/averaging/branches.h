@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "coupling/averaging/region.h"
+#include "dem/snapshot/images.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -17,8 +18,9 @@ struct BranchEnds {
 
 /// Calls branch(a, b, force) for every piece from a to b that carries `force` on the grain at its
 /// start, and end(point, force) where a branch ends on the apparatus. Between free grains: centroid
-/// to centroid. Wall or fixed grain: centroid to contact point, and with `extend` on into the wall
-/// (for fixed grains along gravity, from above the floor so much farther).
+/// to centroid (of the image that is touched). Wall or fixed grain: centroid to contact point, and
+/// with `extend` on into the wall (for fixed grains along gravity, from above the floor so much
+/// farther).
 template <class Branch, class End>
 void for_each_branch(const dem::Snapshot& snapshot, const BranchEnds& ends, Branch&& branch,
                      End&& end) {
@@ -31,12 +33,12 @@ void for_each_branch(const dem::Snapshot& snapshot, const BranchEnds& ends, Bran
         contact.j >= 0 ? &snapshot.grains[static_cast<std::size_t>(contact.j)] : nullptr;
     if (gi.fixed && (!gj || gj->fixed)) continue;
     if (gj && !gi.fixed && !gj->fixed) {
-      branch(gi.position, gj->position, contact.force);
+      branch(gi.position, dem::second_place(snapshot, contact), contact.force);
       continue;
     }
-    const dem::Grain& free = gi.fixed ? *gj : gi;
+    const dem::Vec3 free = gi.fixed ? dem::second_place(snapshot, contact) : dem::Vec3(gi.position);
     const dem::Vec3 force = gi.fixed ? dem::Vec3(-contact.force) : contact.force;
-    branch(free.position, contact.point, force);
+    branch(free, contact.point, force);
     if (!ends.extend) {
       end(contact.point, force);
       continue;
@@ -44,8 +46,11 @@ void for_each_branch(const dem::Snapshot& snapshot, const BranchEnds& ends, Bran
     dem::Vec3 far = contact.point;
     if (gj)
       far += (ends.beyond + std::max(0.0, contact.point.dot(up) - ends.floor)) * down;
+    else if (const auto& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
+             wall.shape == "plane")
+      far -= ends.beyond * wall.normal;
     else
-      far -= ends.beyond * snapshot.walls[static_cast<std::size_t>(-1 - contact.j)].normal;
+      far += ends.beyond * contact.normal;
     branch(contact.point, far, force);
     end(far, force);
   }

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "dem/shapes/polygon.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -90,9 +91,9 @@ std::vector<GrainFacts> grain_facts(const dem::Snapshot& snapshot) {
   }
   for (const dem::Contact& contact : snapshot.contacts) {
     const auto i = static_cast<std::size_t>(contact.i);
-    const auto add = [&](std::size_t grain, double sign, bool bearing) {
+    const auto add = [&](std::size_t grain, const Vector3d& place, double sign, bool bearing) {
       GrainFacts& fact = facts[grain];
-      const Vector3d x = contact.point - fact.grain->position;
+      const Vector3d x = contact.point - place;
       fact.virial += sign * contact.force * x.transpose();
       const double length = x.norm();
       const Vector3d n = length > 0 ? Vector3d(x / length) : Vector3d(sign * contact.normal);
@@ -104,9 +105,9 @@ std::vector<GrainFacts> grain_facts(const dem::Snapshot& snapshot) {
     if (contact.j >= 0) {
       const auto j = static_cast<std::size_t>(contact.j);
       bearing = bearing && !loose[j];
-      add(j, -1, bearing);
+      add(j, dem::second_place(snapshot, contact), -1, bearing);
     }
-    add(i, 1, bearing);
+    add(i, facts[i].grain->position, 1, bearing);
   }
   return facts;
 }

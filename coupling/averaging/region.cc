@@ -107,6 +107,7 @@ Region::Region(const dem::Snapshot& snapshot)
   for (std::size_t w = 0; w < snapshot.walls.size(); ++w)
     for (int a = 0; a < 3; ++a) {
       const dem::Wall& wall = snapshot.walls[w];
+      if (wall.shape != "plane") continue;
       if (wall.normal[a] > 1 - 1e-9) low_[a] = wall.point[a];
       if (wall.normal[a] < -1 + 1e-9 && (a < 2 || touched(snapshot, w))) high_[a] = wall.point[a];
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "coupling/run/studies.h"
+#include "coupling/system/memory.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // Grain-steps per CPU second of settled polygons, all awake (docs/benchmarks.md): an estimate.
 constexpr double kRate = 5e6;
 // A year of one core is 1.5e14 grain steps.
-constexpr double kMostSteps = 1e12, kMostGrainSteps = 1e16;
+constexpr double kMostGrainSteps = 1e16;
 // Averaged values that an analysis holds at a time: points times realizations, each of a few
 // hundred bytes in all its columns.
 constexpr double kMostAveraged = 1e7;
@@ -37,10 +38,10 @@ double grain_steps(const dem::Outlook& o) { return 0.5 * o.grains * o.time / o.t
 void check_steps(const Draft& draft, const dem::Outlook& o) {
   if (o.time == 0 || o.time_step == 0) return;
   const double steps = o.time / o.time_step, work = grain_steps(o);
-  if (steps <= kMostSteps && work <= kMostGrainSteps) return;
+  if (steps <= dem::kMostSteps && work <= kMostGrainSteps) return;
   const Key& key = *find_key(o.time_key);
-  const std::string most = steps > kMostSteps
-                               ? fmt::format("up to {:g} steps", kMostSteps)
+  const std::string most = steps > dem::kMostSteps
+                               ? fmt::format("up to {:g} steps", dem::kMostSteps)
                                : fmt::format("up to {:g} steps of single grains", kMostGrainSteps);
   reject(
       written(draft, key.path()), key.path(),
@@ -48,6 +49,17 @@ void check_steps(const Draft& draft, const dem::Outlook& o) {
                   "core; allowed: {}",
                   value_text(key, draft.value), o.time, steps, o.time_step,
                   duration(std::max(work, steps) / kRate), most));
+}
+
+void check_memory(const Draft& draft, const dem::Outlook& o) {
+  const double limit = memory_limit();
+  if (o.bytes <= limit) return;
+  const Key& key = *find_key(o.bytes_key);
+  reject(
+      written(draft, key.path()), key.path(),
+      fmt::format("found {}: {:.3g} grains take about {:.2g} GB of memory in a realization, "
+                  "allowed: up to {:.2g} GB, what a process may take here",
+                  value_text(key, draft.value), o.grains + o.fixed, 1e-9 * o.bytes, 1e-9 * limit));
 }
 
 void check_points(const Draft& draft) {

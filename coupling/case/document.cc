@@ -4,16 +4,17 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "coupling/system/read_input.h"
+
 namespace grainfield::coupling {
 namespace {
+
+// A check answers within ten.
+constexpr double kSecondsOfAPipe = 8;
 
 bool read_scalar(const toml::node& node, Scalar& out) {
   if (const auto* b = node.as_boolean())
@@ -83,18 +84,6 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
     }
     out.emplace_back(line, std::move(a));
   }
-}
-
-// The file as far as it is not too large, and a byte more.
-std::string read_start(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kMostBytes + 1, '\0');
-  if (in) in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in.eof() && (!in || in.bad())) {
-    throw std::invalid_argument(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
-  }
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
 }
 
 std::string first_line(std::string_view text) {
@@ -183,15 +172,7 @@ void check_nesting(std::string_view text, const std::string& origin, bool lines)
 }
 
 std::vector<Assignment> read_document(const std::string& file) {
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (status.type() == std::filesystem::file_type::not_found) {
-    throw std::invalid_argument(file + ": no such file");
-  }
-  if (std::filesystem::is_directory(status)) {
-    throw std::invalid_argument(file + ": is a folder, expected a case file");
-  }
-  const std::string text = read_start(file);
+  const std::string text = read_input(file, "a case file", {kMostBytes, kSecondsOfAPipe});
   if (text.size() > kMostBytes) {
     throw std::invalid_argument(fmt::format("{}: is larger than {} MB, expected a case file", file,
                                             kMostBytes / 1'000'000));
@@ -228,7 +209,12 @@ Assignment parse_override(const std::string& text) {
   out.path = trimmed(text.substr(0, at));
   out.text = trimmed(text.substr(at + 1));
   check_nesting(text, out.origin, false);
-  if (out.path.empty() || out.text.empty()) {
+  if (!out.path.empty() && out.text.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--set: {}: found no value, expected {}=VALUE (a text may be empty: {}='\"\"')",
+                    out.path, out.path, out.path));
+  }
+  if (out.path.empty()) {
     throw std::invalid_argument(fmt::format("--set: found \"{}\", expected key.path=value", text));
   }
   try {

@@ -254,6 +254,7 @@ void check_grains(const Draft& draft) {
   dem::Outlook outlook;
   blame(draft, [&] { outlook = study.foresee(draft.value, draws); });
   check_steps(draft, outlook);
+  check_memory(draft, outlook);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace {
 using std::string;
 constexpr const char* kRoul = "Roul table 5.1";
 constexpr const char* kBoth = "Roul tables 5.1, 2";
+constexpr const char* kLuding = "Luding 2008";
 
 bool is_pile(const Case& value) { return section_applies("source", value.study); }
 bool is_lattice(const Case& value) { return section_applies("lattice", value.study); }
@@ -82,7 +83,8 @@ void packing(Section s) {
 
 void material(Section s) {
   s.word("law", +SHARED(string, material.law), dem::laws_in<2>(),
-         "contact law: elastic force from the overlap area, or linear spring and dashpot",
+         "contact law: elastic force from the overlap area, the same as the gradient of an energy, "
+         "or linear spring and dashpot",
          "Roul 2.3");
   s.number("density", "kg/m2", +SHARED(double, material.density), {1e-3, 1e6},
            "areal density of the grains; heavier grains: longer time step", kBoth);
@@ -90,10 +92,22 @@ void material(Section s) {
            "Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
            "time step",
            kBoth);
-  s.only("material.law", {"overlap_area"});
+  s.only("material.law", {"overlap_area", "energy"});
   s.number("damping", "-", +SHARED(double, material.damping), {0, 1000},
            "gamma of the normal dashpot; more dissipates faster", kBoth);
-  s.only("material.law", {"overlap_area"});
+  s.only("material.law", {"overlap_area", "energy"});
+  s.number("tangential_ratio", "-", +SHARED(double, material.tangential_ratio), {0, 1000},
+           "tangential spring over young; Roul's formula as printed amounts to about 38 times 2/7");
+  s.only("material.law", {"overlap_area", "energy"});
+  s.word("energy", +SHARED(string, material.energy), {"square", "power"},
+         "energy of an overlap: of the square of its area, or of its 5/3 power, which is "
+         "overlap_area for disks");
+  s.only("material.law", {"energy"});
+  s.number(
+      "linear_share", "-", +SHARED(double, material.linear_share), {1e-6, 1},
+      "power: below this overlap area over l0^2 the force per chord is linear; less is stiffer "
+      "edge on edge, and a shorter time step");
+  s.only("material.energy", {"power"});
   s.number("normal_stiffness", "N/m", +SHARED(double, material.normal_stiffness), kStiffness,
            "normal spring");
   s.only("material.law", {"linear"});
@@ -118,6 +132,17 @@ void material(Section s) {
   s.number("wall_friction", "-", +SHARED(double, material.wall_friction), {0, 10},
            "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
   s.number("gravity", "m/s2", +SHARED(double, material.gravity), kAcceleration, "downwards", kBoth);
+  s.number(
+      "rolling_friction", "-", +SHARED(double, material.rolling_friction), {0, 10},
+      "rolling resistance of disks: the pseudo-force against rolling is at most this times the "
+      "normal force, so a disk rests on slopes up to this tangent; 0: none. Not with sleep.on, "
+      "polygons or Newton's method",
+      kLuding);
+  s.number("rolling_stiffness", "N/m", +SHARED(double, material.rolling_stiffness), {0, 1e15},
+           "rolling spring: pseudo-force per rolling displacement; stiffer: shorter time step",
+           kLuding);
+  s.number("rolling_damping", "kg/s", +SHARED(double, material.rolling_damping), {0, 1e12},
+           "rolling dashpot: pseudo-force per rolling velocity", kLuding);
 }
 
 void motion(Section s) {
@@ -133,11 +158,18 @@ void motion(Section s) {
            "on edge",
            "Roul 2.10");
   s.only("motion.time_step", {"0.0"});
+  s.number(
+      "local_damping", "-", +SHARED(double, motion.local_damping), {0, 0.99},
+      "Cundall's alpha: against each component of the motion this share of the force along it; "
+      "moves no equilibrium, but makes falling slower. With verlet",
+      "Cundall 1987");
 }
 
 void rest(Section s) {
   s.number("unbalanced_force_ratio", "-", +SHARED(double, rest.unbalanced_force_ratio),
-           kRatioOfForces, "at rest: mean resultant over mean contact force is below this");
+           kRatioOfForces,
+           "at rest: mean resultant over mean contact force, and mean moment over radius likewise, "
+           "are below this");
   s.number("kinetic_to_elastic_energy", "-", +SHARED(double, rest.kinetic_to_elastic_energy),
            {1e-28, 0.1}, "at rest: kinetic over elastic energy is below this");
   s.number("background_damping", "1/s", +SHARED(double, rest.background_damping), kRate,

@@ -16,14 +16,14 @@ constexpr double least_relative_prominence =
     0.05;                           // of the largest value: what an eye calls a peak
 constexpr double least_errors = 2;  // prominence in standard errors: about 95 %
 
-struct Sample {
+struct Resampled {
   double x, value, error;
 };
 
 // Height of `at` above the higher of the lowest points that separate it from higher ground. Of two
 // equal heights the left one is the higher: else a dent between them, however shallow, would make
 // two peaks of one.
-double prominence(const std::vector<Sample>& s, std::size_t at) {
+double prominence(const std::vector<Resampled>& s, std::size_t at) {
   const double height = s[at].value;
   double left = height, right = height;
   for (std::size_t k = at; k-- > 0 && s[k].value < height;) left = std::min(left, s[k].value);
@@ -32,7 +32,7 @@ double prominence(const std::vector<Sample>& s, std::size_t at) {
   return height - std::max(left, right);
 }
 
-int count_peaks(const std::vector<Sample>& s, double largest) {
+int count_peaks(const std::vector<Resampled>& s, double largest) {
   int peaks = 0;
   for (std::size_t k = 1; k + 1 < s.size(); ++k) {
     if (s[k].value <= s[k - 1].value) continue;
@@ -45,11 +45,11 @@ int count_peaks(const std::vector<Sample>& s, double largest) {
   return peaks;
 }
 
-double crossing(const Sample& low, const Sample& high, double level) {
+double crossing(const Resampled& low, const Resampled& high, double level) {
   return low.x + (high.x - low.x) * (level - low.value) / (high.value - low.value);
 }
 
-double half_width(const std::vector<Sample>& s, double level) {
+double half_width(const std::vector<Resampled>& s, double level) {
   std::size_t first = 0, last = s.size() - 1;
   while (s[first].value < level) ++first;
   while (s[last].value < level) --last;
@@ -64,7 +64,7 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
   if (x.size() != value.size() || (error.size() != 0 && error.size() != x.size()))
     throw std::invalid_argument(fmt::format("a profile of {} positions, {} values and {} errors",
                                             x.size(), value.size(), error.size()));
-  std::vector<Sample> s;
+  std::vector<Resampled> s;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     if (k > 0 && !(x[k] > x[k - 1]))
       throw std::invalid_argument(
@@ -77,7 +77,7 @@ ProfileShape profile_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& valu
 
   ProfileShape shape;
   const auto top = std::max_element(
-      s.begin(), s.end(), [](const Sample& a, const Sample& b) { return a.value < b.value; });
+      s.begin(), s.end(), [](const Resampled& a, const Resampled& b) { return a.value < b.value; });
   shape.peak = top->value;
   shape.peak_at = top->x;
   shape.fwhm = shape.peak > 0 ? half_width(s, shape.peak / 2) : kNan;

@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "coupling/elastic_constants/elastic_map.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/system/read_input.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -28,13 +32,15 @@ struct Row {
 
 Row parse(const std::string& file, int line, const std::string& text) {
   Row row{line, {}};
-  const char *at = text.data(), *end = at + text.size();
+  std::string_view left = text;
   for (int k = 0; k < 6; ++k) {
-    const auto [rest, error] = std::from_chars(at, end, row.v[k]);
-    const bool last = k == 5;
-    if (error != std::errc() || (last ? rest != end : rest == end || *rest != ','))
+    const std::size_t end = k < 5 ? left.find(',') : left.size();
+    const auto number =
+        end == std::string_view::npos ? std::nullopt : dem::parse_number(left.substr(0, end));
+    if (!number)
       refuse(file, line, fmt::format("\"{}\" is not six numbers separated by commas", text));
-    at = rest + 1;
+    row.v[k] = *number;
+    left.remove_prefix(std::min(end + 1, left.size()));
   }
   if (!std::isfinite(row.v[0]) || !std::isfinite(row.v[1]))
     refuse(file, line, "a node's place is not finite");
@@ -47,8 +53,7 @@ Row parse(const std::string& file, int line, const std::string& text) {
 }
 
 std::vector<Row> read_rows(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw std::invalid_argument(fmt::format("{}: cannot be opened", file));
+  std::istringstream stream(read_input(file, "an elastic map"));
   std::vector<Row> rows;
   bool headed = false;
   int line = 0;

@@ -23,7 +23,7 @@ constexpr double kOutlier = 3, kOutlierShare = 0.05;
 constexpr int kLeastPiles = 3;
 // Draws per point of the map: its errors need fewer digits than the heap's.
 constexpr int kMapDraws = 200;
-constexpr int kBins = 12;
+constexpr int kClasses = 12;
 
 enum { kBulk, kShear, kYoung, kPoisson, kConstants };
 constexpr std::array<const char*, kConstants> kNames{"bulk", "shear", "young", "poisson"};
@@ -228,7 +228,7 @@ Picture against_fabric(const PileSet& piles, const Fits& fits, Summary& summary)
     std::vector<double> x, y;
     maps_of(everyone, q, x, y);
     frames.push_back({fmt::format("{}: r = {:.2f}", kLabels[q], r[0].value),
-                      {binned("mean of points with like tr F", x, y, kBins)}});
+                      {binned("mean of points with like tr F", x, y, kClasses)}});
   }
   Picture out =
       curves("Elastic constants against the trace of the fabric", "tr F", "constant", frames);

@@ -27,14 +27,14 @@ constexpr double kMostForce = 5;
 constexpr int kForceBins = 20;
 // The tail begins at the mean force (Roul 3.2).
 constexpr double kTail = 1;
-constexpr int kBins = 15;
+constexpr int kTraceBins = 15;
 // A point is at the limit when it mobilises this share of the angle of repose.
 constexpr double kAtLimit = 0.95;
 // Share of the half base within which a point belongs to the core.
 constexpr double kCore = 0.25;
 // Strains are drawn in units of 1e-4.
 constexpr double kPlotted = 1e4;
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kPerRadian = 180 / std::numbers::pi;
 
 // What all piles leave together.
 struct Gathered {
@@ -57,7 +57,7 @@ std::pair<double, double> order_of(const dem::Snapshot& s, bool by_force) {
     sum += w * std::polar(1.0, 2 * std::atan2(c.normal.y(), c.normal.x()));
     weight += w;
   }
-  return {2 * std::abs(sum) / weight, std::arg(sum) / 2 * kDegrees};
+  return {2 * std::abs(sum) / weight, std::arg(sum) / 2 * kPerRadian};
 }
 
 Gathered gather(const PileSet& piles) {
@@ -157,7 +157,7 @@ void add_yield(const PileSet& piles, TopicResult& out) {
   // Heaps without a slope to measure: the grains' own friction.
   const double phi = std::isfinite(repose) && repose > 0
                          ? repose
-                         : std::atan(piles.setup().pile.material.friction) * kDegrees;
+                         : std::atan(piles.setup().pile.material.friction) * kPerRadian;
   Ensemble stresses;
   std::vector<double> core, flank, limit;
   for (int r = 0; r < piles.count(); ++r) {
@@ -223,8 +223,8 @@ void add_invariants(const PileSet& piles, TopicResult& out) {
     shear.push_back(kPlotted * std::hypot(exx - eyy, 2 * exy));
     deviator.push_back(std::hypot(sxx - syy, 2 * sxy));
   }
-  const Series trace = binned("points inside the heap", volume, pressure, kBins),
-               dev = binned("points inside the heap", shear, deviator, kBins);
+  const Series trace = binned("points inside the heap", volume, pressure, kTraceBins),
+               dev = binned("points inside the heap", shear, deviator, kTraceBins);
   // Slope of the upper third of the bins over that of the lower third: 1 is linear.
   const Eigen::Index n = trace.x.size(), third = n / 3;
   double ratio = NAN;

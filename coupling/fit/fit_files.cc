@@ -192,7 +192,9 @@ FitOutcome fit_files(const FitRequest& request) {
   write_profiles(results.staging(), result.comparison);
   for (const auto& [name, text] : result.texts) write_text_file(results.staging(name), text);
   write_text_file(results.staging("fit.toml"), settings);
-  write_report(results.staging("report.html"), result.page(result, nullptr));
+  const std::string lacks =
+      write_report(results.staging("report.html"), result.page(result, nullptr)).complaint();
+  if (!lacks.empty()) out.warnings.push_back(lacks);
   write_summary(results.staging("summary.json"), result.summary);
   results.publish();
   return out;

@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kRange = 2;     // of the Lucy kernel, widths
 constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
-const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
   const dem::Snapshot heap = heaps.read(k);  // its messages name the file
@@ -110,9 +109,9 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) 
   for (std::size_t r = 0; r < heaps.count; ++r) {
     const PileFrame& frame = out.frames[r];
     const Field field = average(heaps.read(r), frame.to_packing(both), options);
-    for (std::size_t c = 0; c < kComponents.size(); ++c) {
+    for (std::size_t c = 0; c < kPlaneStress.size(); ++c) {
       const auto component = static_cast<Eigen::Index>(c), heap = static_cast<Eigen::Index>(r);
-      const Eigen::VectorXd values = field.find(kComponents[c])->value / frame.pressure();
+      const Eigen::VectorXd values = field.find(kPlaneStress[c])->value / frame.pressure();
       all.block(component * n, heap, n, 1) = values.head(n);
       grid.block(component * cells, heap, cells, 1) = values.tail(cells);
     }

@@ -20,11 +20,6 @@ namespace {
 
 constexpr double kNearRow = 0.05;  // of h: a row further from a height than this is another one
 constexpr double kSameRow = 1e-6;  // of h
-const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(where + ": " + what);
-}
 
 const FieldRow& row_at(const std::vector<FieldRow>& rows, double share, const std::string& where) {
   const FieldRow& best = nearest_row(rows, share - 1);
@@ -46,11 +41,11 @@ std::string kernel_name(const Field& field, const std::string& where) {
 }  // namespace
 
 HeapData heap_data(const FitSetup& setup, const Field& field, const std::string& where) {
-  if (field.points.cols() != 2) refuse(where, "is 3D; fits of heaps need a 2D field");
+  if (field.points.cols() != 2) refuse_field(where, "is 3D; fits of heaps need a 2D field");
   std::vector<std::string> missing;
   std::vector<const Column*> columns;
   bool single = true;
-  for (const std::string& name : kComponents) {
+  for (const std::string& name : kPlaneStress) {
     columns.push_back(field.find(name));
     const bool wanted =
         std::find(setup.components.begin(), setup.components.end(), name) != setup.components.end();
@@ -58,8 +53,8 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
     if (wanted && columns.back() != nullptr && columns.back()->samples.size() == 0) single = false;
   }
   if (!missing.empty()) {
-    refuse(where, fmt::format("has no column {}, which the fit needs (fit.components)",
-                              fmt::join(missing, ", ")));
+    refuse_field(where, fmt::format("has no column {}, which the fit needs (fit.components)",
+                                    fmt::join(missing, ", ")));
   }
   const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
   require_compression(field, where);

@@ -11,10 +11,9 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr int kLeastValues = 10;
+constexpr int kLeastRows = 10;
 constexpr double kRounding = 1e-9;  // of the largest value
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
-const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
 
 double tangent(double degrees) { return std::tan(degrees * std::numbers::pi / 180); }
 
@@ -196,8 +195,8 @@ void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::
   data.components = setup.components;
   std::vector<Eigen::Index> rows;
   for (std::size_t c = 0; c < setup.components.size(); ++c) {
-    const auto at = std::find(kComponents.begin(), kComponents.end(), setup.components[c]);
-    const Eigen::Index first = (at - kComponents.begin()) * n;
+    const auto at = std::find(kPlaneStress.begin(), kPlaneStress.end(), setup.components[c]);
+    const Eigen::Index first = (at - kPlaneStress.begin()) * n;
     for (Eigen::Index p = 0; p < n; ++p) {
       if (!all.row(first + p).allFinite()) {
         ++out.left_out;
@@ -208,11 +207,11 @@ void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::
       data.level.push_back(level[static_cast<std::size_t>(p)]);
     }
   }
-  if (static_cast<int>(rows.size()) < kLeastValues) {
+  if (static_cast<int>(rows.size()) < kLeastRows) {
     throw std::invalid_argument(fmt::format(
         "fit.heights: found {} values in the heaps, needed: {} or more; choose lower heights, a "
         "smaller fit.width_diameters or larger piles",
-        rows.size(), kLeastValues));
+        rows.size(), kLeastRows));
   }
   data.points.resize(static_cast<Eigen::Index>(rows.size()), 2);
   data.samples.resize(static_cast<Eigen::Index>(rows.size()), all.cols());

@@ -17,17 +17,12 @@ using continuum::OrthotropicWaves;
 using continuum::Orthotropy;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Seen = std::function<MatrixXd(const VectorXd&)>;  // parameters -> at all points of the sight
+using Prediction =
+    std::function<MatrixXd(const VectorXd&)>;  // parameters -> at all points of the sight
 
 constexpr double kMostPoisson = 0.499;
 constexpr double kLeastRho = -0.95, kMostRho = 20;  // below, the waves of a layer reach too far
 constexpr double kLeastWidth = 0.1;  // of the load, h: narrower ones are blurred by any kernel
-
-VectorXd numbers(std::initializer_list<double> values) {
-  VectorXd out(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), out.data());
-  return out;
-}
 
 double value_of(const Fit& fit, const std::string& name) {
   for (const FittedParameter& p : fit.parameters) {
@@ -45,7 +40,7 @@ class List {
   explicit List(std::shared_ptr<const LayerSight> sight) : sight_(std::move(sight)) {}
 
   void add(const std::string& name, const std::string& label, std::vector<FitParameter> parameters,
-           std::vector<VectorXd> starts, const Seen& seen) {
+           std::vector<VectorXd> starts, const Prediction& seen) {
     models.push_back({name, label, std::move(parameters), std::move(starts),
                       [sight = sight_, seen](const MatrixXd& points, const VectorXd& p) {
                         return sight->pick(seen(p), points);
@@ -53,7 +48,7 @@ class List {
                       ""});
   }
   // A model without parameters is evaluated once.
-  void add_fixed(const std::string& name, const std::string& label, const Seen& seen) {
+  void add_fixed(const std::string& name, const std::string& label, const Prediction& seen) {
     const auto kept = std::make_shared<MatrixXd>();
     add(name, label, {}, {VectorXd(0)}, [kept, seen](const VectorXd& p) {
       if (kept->size() == 0) *kept = seen(p);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,11 @@ struct FitModel {
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> stress;
   std::string absent;  ///< why there is no such field for this heap; empty: there is
 };
+
+/// A vector of these numbers.
+inline Eigen::VectorXd numbers(std::initializer_list<double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.begin(),
+                                           static_cast<Eigen::Index>(values.size()));
+}
 
 }  // namespace grainfield::coupling

@@ -23,12 +23,6 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd numbers(std::initializer_list<double> values) {
-  VectorXd out(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), out.data());
-  return out;
-}
-
 MatrixXd nothing(const MatrixXd& points) {
   return MatrixXd::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
 }

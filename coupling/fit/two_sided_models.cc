@@ -21,12 +21,6 @@ constexpr double kMostFriction = 75;  // deg
 constexpr double kLeastWindow = 0.5;  // deg: of yield rays worth a search
 constexpr double kLeastCoefficient = 0.02, kMostCoefficient = 5;  // of a flank; active: below 1
 
-VectorXd numbers(std::initializer_list<double> values) {
-  VectorXd out(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), out.data());
-  return out;
-}
-
 MatrixXd stress_of(const std::optional<continuum::SectorField>& field, const MatrixXd& points) {
   if (field) return field->stress(points);
   return MatrixXd::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());

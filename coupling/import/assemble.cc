@@ -11,8 +11,33 @@
 
 #include "coupling/import/outline_text.h"
 #include "dem/shapes/polygon.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
+
+namespace {
+
+// Of a quaternion's length from 1: what is written with six digits.
+constexpr double kUnit = 1e-5;
+
+std::array<double, 4> orientation_of(const ForeignRow& row,
+                                     const std::array<ForeignColumn, 4>& columns, std::int64_t id) {
+  std::array<double, 4> q{};
+  double squared = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    q[k] = row.number(columns[k]);
+    squared += q[k] * q[k];
+  }
+  const double size = std::sqrt(squared);
+  if (std::abs(size - 1) > kUnit)
+    row.refuse(fmt::format("grain {}: found a quaternion of length {:g}, allowed: 1", id, size));
+  // One that is a unit up to rounding keeps its bits.
+  if (std::abs(size - 1) > 1e-12)
+    for (double& part : q) part /= size;
+  return q;
+}
+
+}  // namespace
 
 std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file, line); }
 
@@ -23,6 +48,12 @@ void Assembly::add_grains(const ForeignTable& table) {
   has_z_ = has_z_ || z;
   const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
   const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
+  const ForeignColumn spin_x = columns.find("spin_x"), spin_y = columns.find("spin_y");
+  std::array<ForeignColumn, 4> quaternion{columns.find("qw")};
+  if (quaternion[0])
+    quaternion = {quaternion[0], columns.need("qx"), columns.need("qy"), columns.need("qz")};
+  const ForeignColumn material = columns.find("material");
+  cell_ = table.cell;
   const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
   const ForeignColumn diameter = radius ? ForeignColumn{} : columns.find("diameter");
   if (!radius && !diameter && !outline) columns.missing("radius");
@@ -54,6 +85,9 @@ void Assembly::add_grains(const ForeignTable& table) {
     g.velocity = {value(vx), value(vy), value(vz)};
     g.angle = value(angle);
     g.spin = value(spin);
+    g.angular_velocity = {value(spin_x), value(spin_y), g.spin};
+    if (quaternion[0]) g.orientation = orientation_of(row, quaternion, g.id);
+    g.material = row.text(material);
     if (!row.empty(outline)) {
       try {
         g.outline = parse_outline(row.text(outline));
@@ -99,7 +133,8 @@ void Assembly::add_walls(const ForeignTable& table) {
   const TableColumns columns(table, names_);
   const ForeignColumn name = columns.need("name"), x = columns.need("x"), y = columns.need("y"),
                       nx = columns.need("nx"), ny = columns.need("ny"), z = columns.find("z"),
-                      nz = columns.find("nz"), friction = columns.find("friction");
+                      nz = columns.find("nz"), friction = columns.find("friction"),
+                      material = columns.find("material");
   reader_.read(table, [&](const ForeignRow& row) {
     dem::Wall wall;
     wall.name = std::string(row.text(name));
@@ -107,6 +142,7 @@ void Assembly::add_walls(const ForeignTable& table) {
     wall.point = {row.number(x), row.number(y), z ? row.number(z) : 0};
     wall.normal = {row.number(nx), row.number(ny), nz ? row.number(nz) : 0};
     wall.friction = row.empty(friction) ? options_.friction : row.number(friction);
+    wall.material = row.text(material);
     const double length = wall.normal.norm();
     if (!(length > 0)) row.refuse(fmt::format("wall {}: its normal has length 0", wall.name));
     // A normal that is a unit vector up to rounding keeps its bits.
@@ -132,6 +168,25 @@ void Assembly::settle_dimension() {
   if (s.dim == 3 && polygon != rows_.end())
     throw std::invalid_argument(fmt::format("{}: grain {} is a polygon; 3D takes spheres",
                                             polygon->source.where(), polygon->grain.id));
+}
+
+// The axes that repeat, of the packing's dimension.
+void Assembly::settle_cell() {
+  dem::Snapshot& s = out_.snapshot;
+  if (options_.leave_out_distant) return;
+  s.cell = cell_;
+  if (!options_.periodic.empty()) s.cell = {};
+  for (const PeriodicAxis& p : options_.periodic) {
+    if (p.axis >= s.dim) throw std::invalid_argument("--periodic z: the packing is in 2D");
+    s.cell.periodic[static_cast<std::size_t>(p.axis)] = true;
+    s.cell.low[p.axis] = p.low;
+    s.cell.edges(p.axis, p.axis) = p.high - p.low;
+  }
+  if (s.dim == 2) s.cell.periodic[2] = false;
+  for (int a = 0; a < 3; ++a)
+    if (!s.cell.periodic[static_cast<std::size_t>(a)]) s.cell.edges.col(a).setZero();
+  if (s.dim == 2) s.cell.low.z() = 0;
+  if (!s.cell.is_periodic()) s.cell = {};
 }
 
 // Outline to the body frame, then volume, mass and inertia that the file does not give.
@@ -161,12 +216,19 @@ void Assembly::complete(GrainRow& row) const {
   if (g.volume == 0) g.volume = volume;
   if (row.density > 0) g.mass = row.density * g.volume;
   if (!row.has_inertia) g.inertia = g.mass * gyration;
+  if (out_.snapshot.dim == 2) {
+    g.angular_velocity.setZero();
+    g.orientation = {1, 0, 0, 0};
+  } else {
+    g.moments = dem::Vec3::Constant(g.inertia);
+  }
 }
 
 void Assembly::settle() {
   dem::Snapshot& s = out_.snapshot;
   if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
   settle_dimension();
+  settle_cell();
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });
   for (std::size_t k = 1; k < rows_.size(); ++k)
@@ -178,6 +240,7 @@ void Assembly::settle() {
   for (GrainRow& row : rows_) {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
+    row.grain.position = dem::wrapped(s.cell, row.grain.position);
     middle += row.grain.position / static_cast<double>(rows_.size());
     s.grains.push_back(std::move(row.grain));
   }
@@ -194,6 +257,7 @@ void Assembly::settle() {
     wall.point[choice.axis] = choice.position;
     wall.normal[choice.axis] = middle[choice.axis] < choice.position ? -1 : 1;
     wall.friction = options_.friction;
+    wall.material = choice.material;
     s.walls.push_back(wall);
   }
   for (const WallForce& force : wall_forces_) {
@@ -203,6 +267,7 @@ void Assembly::settle() {
     row.contact.force = (options_.flip_forces ? -1 : 1) * force.force;
     row.contact.point = force.point;
     row.contact.friction = options_.friction;
+    set_spring(std::nullopt, row.contact);
     add_contact(std::move(row), false, true, true);
   }
   wall_forces_ = {};

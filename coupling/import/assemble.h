@@ -48,9 +48,12 @@ class Assembly {
   };
 
   void settle_dimension();
+  void settle_cell();
   void complete(GrainRow& row) const;
   std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
   std::int64_t wall_of(std::string_view text) const;  ///< -1 - w; 0: unknown
+  /// nan where the file tells no spring.
+  void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
   void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
   std::string known_grains() const;
 
@@ -62,6 +65,7 @@ class Assembly {
   std::vector<WallForce> wall_forces_;
   std::vector<ContactRow> contacts_;
   bool has_z_ = false;
+  dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;
 };
 

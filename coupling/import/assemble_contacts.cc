@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "coupling/import/assemble.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -60,6 +62,7 @@ void Assembly::add_contacts(const ForeignTable& table) {
   const Triple point = find_triple(columns, "p", s.dim), normal = find_triple(columns, "n", s.dim);
   const ForeignColumn friction = columns.find("friction"), spring = columns.find("spring"),
                       sliding = columns.find("sliding");
+  const Triple springs = find_triple(columns, "s", s.dim);
   reader_.read(table, [&](const ForeignRow& row) {
     ContactRow r{{}, {row.file, row.line}};
     dem::Contact& c = r.contact;
@@ -91,8 +94,8 @@ void Assembly::add_contacts(const ForeignTable& table) {
     } else {
       c.j = grain_or_wall(j);
     }
-    c.force = format_.force_sign * (options_.flip_forces ? -1 : 1) *
-              (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
+    const double sign = format_.force_sign * (options_.flip_forces ? -1 : 1);
+    c.force = sign * (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
     if (s.dim == 2 && c.force.z() != 0)
       row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                              c.force.z()));
@@ -101,10 +104,19 @@ void Assembly::add_contacts(const ForeignTable& table) {
     if (normal) c.normal = normal.of(row);
     if (s.dim == 2) c.normal.z() = 0;
     c.friction = row.empty(friction) ? options_.friction : row.number(friction);
-    c.spring = row.empty(spring) ? std::numeric_limits<double>::quiet_NaN() : row.number(spring);
+    set_spring(springs ? std::optional<Vec3>(sign * springs.of(row)) : std::nullopt, c);
+    if (!row.empty(spring) && s.dim == 2) c.spring = row.number(spring);
     c.sliding = !row.empty(sliding) && row.number(sliding) != 0;
     add_contact(std::move(r), bool(normal), bool(point), row.empty(sliding));
   });
+}
+
+void Assembly::set_spring(const std::optional<Vec3>& spring, dem::Contact& c) const {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  c.spring = nan;
+  if (out_.snapshot.dim == 2) return;
+  c.spring_vector = spring.value_or(Vec3(nan, nan, nan));
+  if (spring) c.spring = spring->norm();
 }
 
 void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding) {
@@ -121,7 +133,11 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
     std::swap(c.i, c.j);
     c.force = -c.force;
     c.normal = -c.normal;
+    c.spring_vector = -c.spring_vector;
   }
+  // The file's point is near some image of the grain.
+  if (has_point)
+    c.point += dem::shift_to(s.cell, dem::nearest_image(s.cell, c.point - at(c.i).position));
   const dem::Grain& a = at(c.i);
   if (c.j < 0) {
     const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
@@ -139,7 +155,8 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
           a.id, a.radius, wall.name, arm));
   } else {
     const dem::Grain& b = at(c.j);
-    const Vec3 branch = b.position - a.position;
+    c.image = dem::nearest_image(s.cell, b.position - a.position);
+    const Vec3 second = dem::second_place(s, c), branch = second - a.position;
     const double d = branch.norm();
     const bool polygons = !a.outline.empty() || !b.outline.empty();
     if (polygons && !(has_normal && has_point))
@@ -151,14 +168,15 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
     const double arm = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
     if (!has_point) c.point = a.position + arm * c.normal;
     if ((c.point - a.position).norm() > kDistant * a.radius ||
-        (c.point - b.position).norm() > kDistant * b.radius) {
+        (c.point - second).norm() > kDistant * b.radius) {
       if (options_.leave_out_distant) {
         ++out_.left_out;
         return;
       }
       refuse(fmt::format(
           "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
-          "periodic boundary? --leave-out-distant imports the packing without such contacts",
+          "periodic boundary? --periodic AXIS=LOW:HIGH says where, --leave-out-distant imports the "
+          "packing without such contacts",
           a.id, b.id, a.radius, b.radius, d));
     }
   }

@@ -2,10 +2,13 @@
 // rows.
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "coupling/import/format.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -54,9 +57,10 @@ class DumpScan {
     std::string_view line;
     if (!next(line, what)) return false;
     line = trimmed(line);
-    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-    if (error != std::errc() || stop != line.data() + line.size() || value < 0)
+    const std::optional<long long> number = dem::parse_integer(line);
+    if (!number || *number < 0)
       refuse(fmt::format("found \"{}\", expected {}", line.substr(0, 60), what));
+    value = *number;
     return true;
   }
 
@@ -65,6 +69,7 @@ class DumpScan {
     if (name == "TIMESTEP") {
       long long step = 0;
       table_.time.reset();
+      table_.cell = {};
       rows_ = -1;
       table_.columns = std::make_shared<const std::vector<std::string>>();
       if (!whole(step, "the number of the time step")) return false;
@@ -75,11 +80,9 @@ class DumpScan {
     if (name == "TIME") {
       if (!next(line, "the time")) return false;
       line = trimmed(line);
-      double time = 0;
-      const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), time);
-      if (error != std::errc() || stop != line.data() + line.size())
-        refuse(fmt::format("found \"{}\", expected the time", line.substr(0, 60)));
-      table_.time = time;
+      const std::optional<double> time = dem::parse_number(line);
+      if (!time) refuse(fmt::format("found \"{}\", expected the time", line.substr(0, 60)));
+      table_.time = *time;
       return true;
     }
     if (name == "UNITS") {
@@ -90,12 +93,69 @@ class DumpScan {
     }
     if (name.starts_with("LABEL")) return next(line, "the label");
     if (name.starts_with("NUMBER OF ")) return whole(rows_, "the number of rows");
-    if (name.starts_with("BOX BOUNDS")) {
-      for (int k = 0; k < 3; ++k)
-        if (!next(line, "the box bounds")) return false;
-      return true;
-    }
+    if (name.starts_with("BOX BOUNDS")) return bounds(name);
     return rows(name);
+  }
+
+  // "BOX BOUNDS pp pp ff" and three lines "low high"; tilted ones "BOX BOUNDS xy xz yz pp pp ff"
+  // with the tilt as a third number, or "BOX BOUNDS abc origin pp pp ff" with an edge and a
+  // coordinate of the corner in each line.
+  bool bounds(const std::string& name) {
+    std::vector<std::string_view> words, fields;
+    split(name, ' ', words);
+    words.erase(words.begin(), words.begin() + 2);
+    const bool tilted = words.size() == 6, general = words.size() == 5;
+    if (words.size() > 3) words.erase(words.begin(), words.end() - 3);
+    dem::Cell<3> cell;
+    for (std::size_t a = 0; a < words.size(); ++a) cell.periodic[a] = words[a] == "pp";
+    const std::size_t wanted = general ? 4 : tilted ? 3 : 2;
+    std::array<std::array<double, 4>, 3> rows{};
+    for (auto& row : rows) {
+      std::string_view line;
+      if (!next(line, "the box bounds")) return false;
+      if (!cell.is_periodic()) continue;
+      split(line, ' ', fields);
+      bool good = fields.size() == wanted;
+      for (std::size_t k = 0; good && k < wanted; ++k) {
+        const auto number = dem::parse_number(fields[k]);
+        good = number && std::isfinite(*number);
+        if (good) row[k] = *number;
+      }
+      if (!good)
+        refuse(fmt::format("found \"{}\", expected {} finite numbers of the box bounds",
+                           line.substr(0, 60), wanted));
+    }
+    if (cell.is_periodic()) set_box(rows, tilted, general, cell);
+    table_.cell = cell;
+    return true;
+  }
+
+  void set_box(const std::array<std::array<double, 4>, 3>& rows, bool tilted, bool general,
+               dem::Cell<3>& cell) const {
+    if (general) {
+      for (int a = 0; a < 3; ++a) {
+        const auto& row = rows[static_cast<std::size_t>(a)];
+        cell.edges.col(a) = Eigen::Vector3d(row[0], row[1], row[2]);
+        cell.low[a] = row[3];
+      }
+      return;
+    }
+    // Tilted boxes are given by the rectangular box around them.
+    const double xy = tilted ? rows[0][2] : 0, xz = tilted ? rows[1][2] : 0,
+                 yz = tilted ? rows[2][2] : 0;
+    cell.low = {rows[0][0] - std::min({0.0, xy, xz, xy + xz}), rows[1][0] - std::min(0.0, yz),
+                rows[2][0]};
+    const Eigen::Vector3d high(rows[0][1] - std::max({0.0, xy, xz, xy + xz}),
+                               rows[1][1] - std::max(0.0, yz), rows[2][1]);
+    for (int a = 0; a < 3; ++a) {
+      if (!(high[a] > cell.low[a]))
+        refuse(fmt::format("found a box from {} to {} m along {}, expected low below high",
+                           cell.low[a], high[a], "xyz"[a]));
+      cell.edges(a, a) = high[a] - cell.low[a];
+    }
+    cell.edges(0, 1) = xy;
+    cell.edges(0, 2) = xz;
+    cell.edges(1, 2) = yz;
   }
 
   // "ATOMS id x y ..." and its rows.
@@ -155,6 +215,12 @@ std::vector<std::pair<std::string, std::string>> dump_columns(
       {"vy", "vy"},
       {"vz", "vz"},
       {"spin", "omegaz"},
+      {"spin_x", "omegax"},
+      {"spin_y", "omegay"},
+      {"qw", "quatw"},
+      {"qx", "quati"},
+      {"qy", "quatj"},
+      {"qz", "quatk"},
       {"radius", "radius"},
       {"diameter", "diameter"},
       {"mass", "mass"},

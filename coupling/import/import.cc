@@ -4,12 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
 #include "coupling/import/assemble.h"
+#include "dem/snapshot/images.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -68,11 +69,9 @@ WallChoice parse_wall(const std::string& text) {
   if (good) {
     wall.name = std::string(parts[0]);
     wall.axis = parts[1][0] - 'x';
-    const std::string_view number = parts[1].substr(2);
-    const auto [stop, error] =
-        std::from_chars(number.data(), number.data() + number.size(), wall.position);
-    good = error == std::errc() && stop == number.data() + number.size() &&
-           std::isfinite(wall.position);
+    const std::optional<double> position = dem::parse_number(parts[1].substr(2));
+    good = position && std::isfinite(*position);
+    if (good) wall.position = *position;
   }
   for (std::size_t k = 2; good && k < parts.size(); ++k) {
     const std::string_view part = parts[k];
@@ -82,15 +81,34 @@ WallChoice parse_wall(const std::string& text) {
       wall.ids.assign(ids.begin(), ids.end());
     } else if (part.starts_with("fix=")) {
       wall.fix = std::string(part.substr(4));
+    } else if (part.starts_with("material=")) {
+      wall.material = std::string(part.substr(9));
     } else {
       good = false;
     }
   }
   if (!good)
-    throw std::invalid_argument(fmt::format(
-        "--wall: found \"{}\", expected NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID], such as floor:y=0",
-        text));
+    throw std::invalid_argument(
+        fmt::format("--wall: found \"{}\", expected "
+                    "NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID][:material=M], such as "
+                    "floor:y=0",
+                    text));
   return wall;
+}
+
+PeriodicAxis parse_periodic(const std::string& text) {
+  PeriodicAxis out;
+  const std::size_t colon = text.find(':');
+  if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z' &&
+      colon != std::string::npos) {
+    const auto low = dem::parse_number(std::string_view(text).substr(2, colon - 2));
+    const auto high = dem::parse_number(std::string_view(text).substr(colon + 1));
+    if (low && high && std::isfinite(*low) && std::isfinite(*high) && *low < *high)
+      return {text[0] - 'x', *low, *high};
+  }
+  throw std::invalid_argument(fmt::format(
+      "--periodic: found \"{}\", expected AXIS=LOW:HIGH with LOW below HIGH, such as x=0:0.1",
+      text));
 }
 
 void import_snapshots(const ImportOptions& options,
@@ -163,23 +181,24 @@ PackingCheck check_packing(const dem::Snapshot& s) {
   const auto free = [&](std::int64_t g) {
     return g >= 0 && !s.grains[static_cast<std::size_t>(g)].fixed;
   };
-  const auto add = [&](Eigen::Matrix3d& sum, std::int64_t grain, const dem::Vec3& point,
+  const auto add = [&](Eigen::Matrix3d& sum, std::int64_t grain, const dem::Vec3& arm,
                        const dem::Vec3& f) {
     const auto g = static_cast<std::size_t>(grain);
-    sum += f * (point - s.grains[g].position).transpose();
+    sum += f * arm.transpose();
     resultant[g] += f;
     touched[g] = true;
   };
   for (const dem::Contact& c : s.contacts) {
     Eigen::Matrix3d& sum = c.j >= 0 ? check.pairs : check.walls;
-    add(sum, c.i, c.point, c.force);
-    if (c.j >= 0) add(sum, c.j, c.point, -c.force);
+    add(sum, c.i, c.point - s.grains[static_cast<std::size_t>(c.i)].position, c.force);
+    if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
     if (c.j < 0) {
       const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
-      const double off = std::abs((c.point - wall.point).dot(wall.normal));
       ++check.wall_contacts;
+      if (wall.shape != "plane") continue;
+      const double off = std::abs((c.point - wall.point).dot(wall.normal));
       check.off_wall_contacts += off > kOffWall * s.grains[static_cast<std::size_t>(c.i)].radius;
     }
     if (!free(c.i) && free(c.j)) support -= c.force;

@@ -16,10 +16,19 @@ struct WallChoice {
   int axis = 1;                  ///< 0, 1, 2: x, y, z
   double position = 0;           ///< m
   std::vector<std::string> ids;  ///< what contacts call it; its name always counts
+  std::string material;          ///< "": that of each grain
   std::string fix;  ///< LAMMPS "fix wall/gran ... contacts": columns FIX[1..7] of the grains' dump
 };
-/// "NAME:AXIS=POSITION[:ids=3,4][:fix=f_floor]". Throws std::invalid_argument.
+/// "NAME:AXIS=POSITION[:ids=3,4][:fix=f_floor][:material=M]". Throws std::invalid_argument.
 WallChoice parse_wall(const std::string& text);
+
+/// "AXIS=LOW:HIGH", such as x=0:0.1: what leaves at one comes in at the other. Throws
+/// std::invalid_argument.
+struct PeriodicAxis {
+  int axis = 0;
+  double low = 0, high = 1;  ///< m
+};
+PeriodicAxis parse_periodic(const std::string& text);
 
 /// A time step to import.
 struct StepChoice {
@@ -42,11 +51,12 @@ struct ImportOptions {
   bool all_steps = false;
   double time_step = 0;  ///< s; a dump's time = step times this, where it gives no time itself
   std::string group;     ///< of a single snapshot; default /step_N, or /packing without steps
-  bool without_contacts = false;     ///< grains alone are enough
-  bool flip_forces = false;          ///< the files' forces act on j: all are turned
-  bool leave_out_distant = false;    ///< pairs across periodic boundaries are left out, not refused
-  std::int64_t loaded_grain = -1;    ///< id of the grain that carries the applied force, or -1
-  dem::Vec3 applied_force{0, 0, 0};  ///< N
+  bool without_contacts = false;   ///< grains alone are enough
+  bool flip_forces = false;        ///< the files' forces act on j: all are turned
+  bool leave_out_distant = false;  ///< pairs across periodic boundaries are left out, and no cell
+  std::vector<PeriodicAxis> periodic;  ///< instead of those that a dump tells
+  std::int64_t loaded_grain = -1;      ///< id of the grain that carries the applied force, or -1
+  dem::Vec3 applied_force{0, 0, 0};    ///< N
 };
 
 struct ImportedSnapshot {

@@ -4,14 +4,14 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
+
+#include "coupling/system/read_input.h"
 
 namespace grainfield::coupling {
 
 Lines::Lines(const std::string& file) : file_(file), buffer_(longest) {
-  if (std::filesystem::is_directory(file))
-    throw std::invalid_argument(file + ": is a folder, expected a text file");
+  require_regular_file(file, "a text file");
   errno = 0;
   in_.open(file, std::ios::binary);
   if (!in_) throw std::invalid_argument(fmt::format("{}: {}", file, std::strerror(errno)));

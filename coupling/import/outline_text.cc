@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "coupling/import/lines.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 
@@ -20,9 +20,9 @@ dem::Outline parse_outline(std::string_view text) {
     std::array<double, 2> corner{};
     bool good = numbers.size() == 2;
     for (std::size_t d = 0; good && d < 2; ++d) {
-      const char* end = numbers[d].data() + numbers[d].size();
-      const auto [stop, error] = std::from_chars(numbers[d].data(), end, corner[d]);
-      good = error == std::errc() && stop == end && std::isfinite(corner[d]);
+      const std::optional<double> number = dem::parse_number(numbers[d]);
+      good = number && std::isfinite(*number);
+      if (good) corner[d] = *number;
     }
     if (!good)
       throw std::invalid_argument(

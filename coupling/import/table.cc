@@ -103,6 +103,12 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"vz", "m/s", "velocity, default 0"},
       {"angle", "rad", "rotation about z, default 0"},
       {"spin", "rad/s", "about z, default 0"},
+      {"spin_x", "rad/s", "3D: about x, default 0"},
+      {"spin_y", "rad/s", "3D: about y, default 0"},
+      {"qw", "1", "3D: orientation, a unit quaternion; default 1, 0, 0, 0"},
+      {"qx", "1", "3D: orientation"},
+      {"qy", "1", "3D: orientation"},
+      {"qz", "1", "3D: orientation"},
       {"radius", "m", "of a disk or sphere"},
       {"diameter", "m", "instead of radius"},
       {"mass", "kg", "2D: with an areal density"},
@@ -110,6 +116,7 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"inertia", "kg m2", "about the centroid; default: of a disk, sphere or polygon"},
       {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon"},
       {"fixed", "1", "1: part of the apparatus, default 0"},
+      {"material", "", "name; default: the only one, without a name"},
       {"outline", "m", "x1 y1;x2 y2;... of a convex polygon about (x, y), turned by angle"},
   };
   static const std::vector<OurColumn> contacts{
@@ -133,6 +140,9 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"ftz", "N", "tangential part"},
       {"friction", "1", "Coulomb coefficient of the contact; default nan (unknown)"},
       {"spring", "N", "elastic part of the tangential force; default nan (unknown)"},
+      {"sx", "N", "3D: elastic part of the tangential force on i; default nan (unknown)"},
+      {"sy", "N", "3D: elastic part"},
+      {"sz", "N", "3D: elastic part"},
       {"sliding", "1", "1: at the Coulomb limit; default: told from friction"},
   };
   static const std::vector<OurColumn> walls{
@@ -144,6 +154,7 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"ny", "1", "normal"},
       {"nz", "1", "normal"},
       {"friction", "1", "grain against wall; default nan (unknown)"},
+      {"material", "", "name; default: that of each grain, with the friction"},
   };
   static const std::vector<OurColumn> none;
   switch (kind) {

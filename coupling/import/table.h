@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coupling/import/lines.h"
+#include "dem/space/cell.h"
 
 namespace grainfield::coupling {
 
@@ -23,6 +24,7 @@ struct ForeignTable {
   TableKind kind = TableKind::unknown;                      ///< unknown: told from the columns
   std::optional<long long> step;                            ///< time step of a dump
   std::optional<double> time;                               ///< s, where the file says it
+  dem::Cell<3> cell;                                        ///< of a dump with periodic boundaries
   std::shared_ptr<const std::vector<std::string>> columns;  ///< names in the file's order
   long long header_line = 0;                                ///< line that holds the names
   Lines::Place first;                                       ///< of the rows

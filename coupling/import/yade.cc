@@ -64,11 +64,12 @@ ImportFormat yade_format() {
   format.summary = "text of the bodies and of the interactions (docs/import.md has the script)";
   format.scan = scan;
   format.force_sign = -1;
-  const char* same[] = {"id",    "x",    "y",       "z",    "vx",      "vy",      "vz",
-                        "angle", "spin", "radius",  "mass", "density", "inertia", "volume",
-                        "fixed", "px",   "py",      "pz",   "nx",      "ny",      "nz",
-                        "fx",    "fy",   "fz",      "fnx",  "fny",     "fnz",     "ftx",
-                        "fty",   "ftz",  "friction"};
+  const char* same[] = {"id",     "x",    "y",        "z",    "vx",      "vy",      "vz",
+                        "angle",  "spin", "radius",   "mass", "density", "inertia", "volume",
+                        "fixed",  "px",   "py",       "pz",   "nx",      "ny",      "nz",
+                        "fx",     "fy",   "fz",       "fnx",  "fny",     "fnz",     "ftx",
+                        "fty",    "ftz",  "friction", "sx",   "sy",      "sz",      "spin_x",
+                        "spin_y", "qw",   "qx",       "qy",   "qz"};
   for (const char* name : same) format.columns.emplace_back(name, name);
   format.columns.insert(format.columns.end(), {{"radius", "r"}, {"i", "id1"}, {"j", "id2"}});
   return format;

@@ -1,5 +1,7 @@
 // Files as whole texts; one that is written appears complete or not at all.
 #pragma once
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,7 +16,8 @@ namespace grainfield::coupling {
 /// it leads to is written. A file that is replaced hands on its permissions. The folder must exist.
 /// Throws std::invalid_argument naming the path when the folder is missing or cannot be written, or
 /// something stands there that is no regular file (a folder, a device, a pipe); dem::StorageFailed
-/// when it cannot take its place on the disk.
+/// when it cannot take its place on the disk. Only the process that is to write it and this host
+/// are in the temporary name: what a killed process left can be told (remove_orphans).
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -25,6 +28,9 @@ class AtomicFile {
   const std::string& temporary() const { return temporary_; }
   /// All of the temporary file. Throws dem::StorageFailed.
   void write(const std::string& text) const;
+  /// Lets `work` write it under its temporary name. A signal that would end the program waits for
+  /// it: what it has removed must not be made anew.
+  void write_with(const std::function<void(const std::string& temporary)>& work) const;
   void commit();
 
  private:
@@ -39,7 +45,13 @@ void write_text_file(const std::string& path, const std::string& text);
 /// The same for files that belong together, as pairs of path and text: all are written before the
 /// first appears.
 void write_text_files(const std::vector<std::pair<std::string, std::string>>& files);
-/// All of a file; empty when it cannot be read.
+/// Removes the temporary files in this folder, not below it, of AtomicFiles whose process has ended
+/// on this host without removing them (kill -9).
+void remove_orphans(const std::string& folder);
+/// "a folder", "a device", "a pipe", "a socket", "a file", for messages.
+const char* kind_of(std::filesystem::file_type type);
+/// All of a file; empty when there is none. Throws std::invalid_argument naming one that is there
+/// and cannot be read.
 std::string read_text_file(const std::string& path);
 
 }  // namespace grainfield::coupling

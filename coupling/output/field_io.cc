@@ -134,14 +134,14 @@ std::string unit_of(hid_t group, const std::string& dataset) {
 void write_fields(const std::string& file, const NamedFields& fields) {
   check(fields);
   AtomicFile target(file);
-  {
-    h5::Handle out = h5::open_for_adding(target.temporary());
+  target.write_with([&](const std::string& temporary) {
+    h5::Handle out = h5::open_for_adding(temporary);
     h5::write_attribute(out, "program", "grainfield");
     h5::write_attribute(out, "version", version_and_commit());
     h5::write_attribute(out, "field_format", format_version);
     for (const auto& [name, field] : fields) write_one(out, name, field);
     h5::finish(std::move(out), file);
-  }
+  });
   const std::filesystem::path path(file);
   std::filesystem::path description = path;
   description.replace_extension(".xdmf");

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kList = ".results";
 
-// What versions without a list of results left at the top of the folder.
+// What versions without a list of results left at the top of the folder and were not to keep.
 bool left_by_older_version(const std::string& name) {
   constexpr std::array<std::string_view, 7> whole{"report.html", "snapshots.h5",    "fields.h5",
                                                   "fields.xdmf", "elastic_map.csv", "heaps.csv",
@@ -39,7 +39,7 @@ bool inside(const fs::path& name) {
 
 [[noreturn]] void fail(const fs::path& file, const std::error_code& error) {
   const std::string what =
-      fmt::format("{}: cannot write there: {}", file.string(), error.message());
+      fmt::format("{}: cannot write there: {}", dem::final_name(file.string()), error.message());
   if (dem::means_storage_failed(error)) throw dem::StorageFailed(what);
   throw std::invalid_argument(what);
 }
@@ -53,6 +53,15 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
   };
   undo_ = std::make_unique<OnSignal>([this] { abandon(); });
   std::error_code error;
+  const fs::file_status there = fs::status(folder_, error);
+  if (fs::exists(there) && !fs::is_directory(there)) {
+    refuse(fmt::format("it is {}", kind_of(there.type())));
+  }
+  if (!fs::exists(there) && fs::is_symlink(fs::symlink_status(folder_, error))) {
+    refuse(fmt::format("it is a link to {}, which leads nowhere",
+                       fs::read_symlink(folder_, error).string()));
+  }
+  error.clear();
   unless_stopping([&] {
     // The topmost folder that we make goes again if nothing comes of it.
     for (fs::path p = fs::absolute(folder_, error);
@@ -65,15 +74,19 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
   if (error && !is_folder) fail(folder_, error);
   if (!is_folder) refuse("it is a file");
   if (access(folder_.c_str(), W_OK | X_OK) != 0) refuse("no write permission");
-  unless_stopping([&] {
+  const auto begin = [&] {
     lock_ = std::make_unique<FileLock>((folder_ / ".lock").string(), folder_.string(),
                                        "wait for it, or name another folder with -o", command);
+    remove_orphans(folder_.string());
     fs::remove_all(partial_, error);
     if (!error) fs::create_directories(partial_, error);
-  });
-  if (error) {
+  };
+  try {
+    unless_stopping(begin);
+    if (error) fail(folder_, error);
+  } catch (...) {
     abandon();
-    fail(folder_, error);
+    throw;
   }
 }
 
@@ -103,6 +116,35 @@ std::string OutputFolder::staging(const std::string& inner) const {
       [&] { fs::create_directories(inner.empty() ? partial_ : file.parent_path(), error); });
   if (error) fail(file.parent_path(), error);
   return inner.empty() ? partial_.string() : file.string();
+}
+
+bool OutputFolder::is_ours(const fs::path& name, const std::vector<fs::path>& earlier) const {
+  std::error_code error;
+  if (std::find(earlier.begin(), earlier.end(), name) != earlier.end()) return true;
+  if (fs::exists(folder_ / kList, error)) return false;
+  // A version without a list: whatever has the name of a result beside its summary is one, and so
+  // are the three tables of `structure`, which had none.
+  const fs::path beside = (folder_ / name).parent_path();
+  return fs::exists(beside / kSummary, error) || (fs::exists(beside / "grains.csv", error) &&
+                                                  fs::exists(beside / "coordination.csv", error));
+}
+
+void OutputFolder::require_free(const std::vector<fs::path>& names) const {
+  std::error_code error;
+  const std::vector<fs::path> earlier = earlier_results();
+  for (const fs::path& name : names) {
+    const fs::path target = folder_ / name;
+    if (!fs::exists(fs::symlink_status(target, error))) continue;
+    if (!fs::is_regular_file(target, error)) {
+      throw std::invalid_argument(
+          fmt::format("{}: is in the way of a result of that name", target.string()));
+    }
+    if (is_ours(name, earlier)) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: is no result of an earlier command and would be replaced by one of that "
+                    "name; move it, or name another folder with -o",
+                    target.string()));
+  }
 }
 
 std::vector<fs::path> OutputFolder::earlier_results() const {
@@ -140,11 +182,8 @@ void OutputFolder::publish() {
     const fs::path target = folder_ / name;
     fs::create_directories(target.parent_path(), error);
     if (error) fail(target.parent_path(), error);
-    if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
-      throw std::invalid_argument(
-          fmt::format("{}: is in the way of a result of that name", target.string()));
-    }
   }
+  require_free(results);
   // Where we are killed in between, the list names what is left of both.
   const std::vector<fs::path> earlier = earlier_results();
   const auto list = [&](const std::set<fs::path>& names) {

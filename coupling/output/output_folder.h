@@ -29,17 +29,23 @@ class OutputFolder {
 
   /// Throws std::invalid_argument when one of these files is a result that publish() would replace.
   void require_other_than(const std::vector<std::string>& inputs) const;
+  /// Throws std::invalid_argument when something stands where one of these results would come and
+  /// is none of an earlier command: the user's own file. publish() looks at all results; who knows
+  /// some names before hours of work asks before.
+  void require_free(const std::vector<std::filesystem::path>& names) const;
   /// Path of a file to be written: staging area / inner. Folders on the way are made, and one whose
   /// name ends with a slash.
   std::string staging(const std::string& inner = "") const;
   /// Removes the results of an earlier command, summary.json before all, and moves everything from
   /// the staging area to its place, summary.json last: a summary never stands beside another run's
-  /// data. Whatever else is in the folder stays. Throws dem::StorageFailed.
+  /// data. Whatever else is in the folder stays. Throws dem::StorageFailed, and as require_free.
   void publish();
 
  private:
   void abandon() noexcept;
   std::vector<std::filesystem::path> earlier_results() const;
+  bool is_ours(const std::filesystem::path& name,
+               const std::vector<std::filesystem::path>& earlier) const;
 
   std::filesystem::path folder_, partial_, made_;
   std::unique_ptr<FileLock> lock_;

@@ -225,9 +225,11 @@ void write_summary(const std::string& file, const Summary& summary) {
 }
 
 Summary read_summary(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::invalid_argument(fmt::format("{}: no such file or not readable", file));
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    throw std::invalid_argument(fmt::format("{}: no such file or not readable", file));
+  }
+  const nlohmann::json json = nlohmann::json::parse(read_text_file(file), nullptr, false);
   if (!json.is_object())
     throw std::invalid_argument(fmt::format("{}: not a JSON object (broken or truncated)", file));
   Summary summary;

@@ -2,29 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
 
 // VTK's cell types.
-constexpr int vtk_line = 3, vtk_polygon = 7, vtk_quad = 9;
+constexpr int vtk_vertex = 1, vtk_line = 3, vtk_polygon = 7, vtk_quad = 9;
 
-/// An unstructured grid in the making: cells that share no points.
+/// An unstructured grid in the making: cells that share no points. Its data are of the cells, or
+/// the same at every point of one: glyphs and tubes take them from there.
 class Grid {
  public:
+  explicit Grid(bool on_points = false) : on_points_(on_points) {}
+
   void add_cell(const std::vector<dem::Vec3>& corners, int type) {
     for (const dem::Vec3& c : corners)
       fmt::format_to(std::back_inserter(points_), "{:.9g} {:.9g} {:.9g}\n", c.x(), c.y(), c.z());
     for (std::size_t k = 0; k < corners.size(); ++k) connectivity_ += fmt::format("{} ", count_++);
     offsets_ += fmt::format("{} ", count_);
     types_ += fmt::format("{} ", type);
-    ++cells_;
+    corners_.push_back(corners.size());
   }
 
   /// `of` gives the text of cell k's value.
@@ -33,7 +38,10 @@ class Grid {
     data_ += fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", type,
         name, components);
-    for (std::size_t k = 0; k < cells_; ++k) data_ += of(k) + "\n";
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+      const std::string text = of(k) + "\n";
+      for (std::size_t times = on_points_ ? corners_[k] : 1; times > 0; --times) data_ += text;
+    }
     data_ += "</DataArray>\n";
   }
   template <class Of>
@@ -55,6 +63,7 @@ class Grid {
   }
 
   void write(const std::string& file) const {
+    const char* place = on_points_ ? "PointData" : "CellData";
     write_text_file(
         file,
         fmt::format(
@@ -67,22 +76,37 @@ class Grid {
             "format=\"ascii\">{}</DataArray>\n"
             "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{}</DataArray>\n"
             "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray></Cells>\n"
-            "<CellData>\n{}</CellData>\n</Piece></UnstructuredGrid></VTKFile>\n",
-            count_, cells_, points_, connectivity_, offsets_, types_, data_));
+            "<{}>\n{}</{}>\n</Piece></UnstructuredGrid></VTKFile>\n",
+            count_, corners_.size(), points_, connectivity_, offsets_, types_, place, data_,
+            place));
   }
 
  private:
   std::string points_, connectivity_, offsets_, types_, data_;
-  std::size_t count_ = 0, cells_ = 0;
+  std::size_t count_ = 0;
+  std::vector<std::size_t> corners_;  // of each cell
+  bool on_points_;
 };
 
 const dem::Grain& grain(const dem::Snapshot& snapshot, std::int64_t index) {
   return snapshot.grains[static_cast<std::size_t>(index)];
 }
 
-// From the centre of i to the centre of j, or to the contact point on a wall.
+// From the centre of i to the centre of j (of its image), or to the contact point on a wall.
 dem::Vec3 branch_end(const dem::Snapshot& snapshot, const dem::Contact& contact) {
-  return contact.j >= 0 ? grain(snapshot, contact.j).position : contact.point;
+  return contact.j >= 0 ? dem::second_place(snapshot, contact) : contact.point;
+}
+
+// The shortest rotation from one orientation to another, rad along its axis.
+dem::Vec3 turn_between(const dem::Grain& from, const dem::Grain& to) {
+  const auto quaternion = [](const dem::Grain& g) {
+    const auto& q = g.orientation;
+    return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  };
+  const Eigen::AngleAxisd turn(quaternion(to) * quaternion(from).conjugate());
+  const double angle =
+      turn.angle() > std::numbers::pi ? turn.angle() - 2 * std::numbers::pi : turn.angle();
+  return angle * turn.axis();
 }
 
 }  // namespace
@@ -110,24 +134,38 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
   std::vector<int> coordination(grains.size(), 0);
   std::vector<dem::Vec3> force(grains.size(), dem::Vec3::Zero());
   std::vector<Eigen::Matrix3d> stress(grains.size(), Eigen::Matrix3d::Zero());
-  const auto add = [&](std::int64_t index, const dem::Vec3& point, const dem::Vec3& f) {
+  const auto add = [&](std::int64_t index, const dem::Vec3& arm, const dem::Vec3& f) {
     const auto g = static_cast<std::size_t>(index);
     ++coordination[g];
     force[g] += f;
-    stress[g] += f * (point - grains[g].position).transpose() / grains[g].volume;
+    stress[g] += f * arm.transpose() / grains[g].volume;
   };
   for (const dem::Contact& c : snapshot.contacts) {
-    add(c.i, c.point, c.force);
-    if (c.j >= 0) add(c.j, c.point, -c.force);
+    add(c.i, c.point - grain(snapshot, c.i).position, c.force);
+    if (c.j >= 0) add(c.j, c.point - dem::second_place(snapshot, c), -c.force);
   }
-  Grid grid;
-  for (const dem::Grain& g : grains) grid.add_cell(outline(g), vtk_polygon);
+  const bool spheres = snapshot.dim == 3;
+  Grid grid(spheres);
+  for (const dem::Grain& g : grains) {
+    if (spheres)
+      grid.add_cell({g.position}, vtk_vertex);
+    else
+      grid.add_cell(outline(g), vtk_polygon);
+  }
   grid.add_integer("id", [&](std::size_t k) { return grains[k].id; });
   grid.add_number("radius", [&](std::size_t k) { return grains[k].radius; });
   grid.add_number("mass", [&](std::size_t k) { return grains[k].mass; });
   grid.add_integer("fixed", [&](std::size_t k) { return grains[k].fixed; });
   grid.add_integer("coordination", [&](std::size_t k) { return coordination[k]; });
-  grid.add_number("angle", [&](std::size_t k) { return grains[k].angle; });
+  if (spheres) {
+    grid.add_data("orientation", "Float64", 4, [&](std::size_t k) {
+      const auto& q = grains[k].orientation;
+      return fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}", q[0], q[1], q[2], q[3]);
+    });
+    grid.add_vector("angular_velocity", [&](std::size_t k) { return grains[k].angular_velocity; });
+  } else {
+    grid.add_number("angle", [&](std::size_t k) { return grains[k].angle; });
+  }
   grid.add_vector("force", [&](std::size_t k) { return force[k]; });
   grid.add_vector("velocity", [&](std::size_t k) { return grains[k].velocity; });
   grid.add_number("pressure", [&](std::size_t k) { return -stress[k].trace() / snapshot.dim; });
@@ -138,11 +176,17 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     return row;
   });
   if (reference) {
+    const bool counted = dem::counts_images(*reference) || dem::counts_images(snapshot);
     grid.add_vector("displacement", [&](std::size_t k) -> dem::Vec3 {
-      return grains[k].position - reference->grains[k].position;
+      return dem::displacement(reference->grains[k], grains[k], reference->cell, snapshot.cell,
+                               counted);
     });
-    grid.add_number("rotation",
-                    [&](std::size_t k) { return grains[k].angle - reference->grains[k].angle; });
+    if (spheres)
+      grid.add_vector("rotation",
+                      [&](std::size_t k) { return turn_between(reference->grains[k], grains[k]); });
+    else
+      grid.add_number("rotation",
+                      [&](std::size_t k) { return grains[k].angle - reference->grains[k].angle; });
   }
   grid.write(file);
 }
@@ -168,21 +212,27 @@ void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot) 
 void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot) {
   double largest = 0;
   for (const dem::Contact& c : snapshot.contacts) largest = std::max(largest, c.normal_force);
-  Grid grid;
-  std::vector<double> force;
+  const bool tubes = snapshot.dim == 3;
+  Grid grid(tubes);
+  std::vector<double> force, width;
   for (const dem::Contact& c : snapshot.contacts) {
     const dem::Grain& gi = grain(snapshot, c.i);
     const dem::Vec3 end = branch_end(snapshot, c), along = end - gi.position;
     if (!(along.norm() > 0) || !(c.normal_force > 0)) continue;
     double radius = gi.radius;
     if (c.j >= 0) radius = std::min(radius, grain(snapshot, c.j).radius);
-    const dem::Vec3 side =
-        dem::Vec3(-along.y(), along.x(), 0).normalized() * (radius / 2 * c.normal_force / largest);
-    grid.add_cell({gi.position - side, end - side, end + side, gi.position + side}, vtk_quad);
     force.push_back(c.normal_force);
+    width.push_back(radius / 2 * c.normal_force / largest);
+    if (tubes) {
+      grid.add_cell({gi.position, end}, vtk_line);
+      continue;
+    }
+    const dem::Vec3 side = dem::Vec3(-along.y(), along.x(), 0).normalized() * width.back();
+    grid.add_cell({gi.position - side, end - side, end + side, gi.position + side}, vtk_quad);
   }
   grid.add_number("normal_force", [&](std::size_t k) { return force[k]; });
   grid.add_number("relative_force", [&](std::size_t k) { return force[k] / largest; });
+  if (tubes) grid.add_number("tube_radius", [&](std::size_t k) { return width[k]; });
   grid.write(file);
 }
 

@@ -12,17 +12,22 @@ namespace grainfield::coupling {
 /// its own corners, or `sides` points on a disk.
 std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides = 32);
 
-/// One polygon per grain. Cell data: id, radius, mass, fixed, coordination, force (sum of contact
-/// forces), pressure and stress (sum x F / V, tension positive), velocity, angle; with `reference`
-/// (the same grains earlier) also displacement and rotation.
+/// In 2D one polygon per grain. Cell data: id, radius, mass, fixed, coordination, force (sum of
+/// contact forces), pressure and stress (sum x F / V, tension positive), velocity, angle; with
+/// `reference` (the same grains earlier) also displacement and rotation. In 3D one vertex per
+/// sphere with the same as point data, for glyphs scaled by `radius`; instead of angle orientation
+/// (quaternion w, x, y, z) and angular_velocity, and rotation is a vector (rad along its axis).
+/// Displacements across periodic boundaries are as the images tell, else the shortest.
 void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
                       const dem::Snapshot* reference = nullptr);
-/// One line from centre to centre (centre to contact point for walls) per contact. Cell data:
-/// i, j (ids of the two grains; j is -1 for a wall), force (on grain i), normal_force,
-/// tangential_force, sliding, wall (-1: a pair).
+/// One line from centre to centre (centre to contact point for walls) per contact; across a
+/// periodic boundary it goes to the image of the second grain, beyond the cell. Cell data: i, j
+/// (ids of the two grains; j is -1 for a wall), force (on grain i), normal_force, tangential_force,
+/// sliding, wall (-1: a pair).
 void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot);
 /// One quadrilateral per contact along the branch whose width grows with the normal force (that of
-/// the largest force is the smaller grain's radius). Cell data: normal_force, relative_force.
+/// the largest force is the smaller grain's radius). Cell data: normal_force, relative_force. In 3D
+/// lines for tubes: both as point data, with tube_radius (m).
 void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot);
 
 }  // namespace grainfield::coupling

@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -16,7 +18,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "coupling/system/signals.h"
@@ -31,42 +33,32 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kTries = 5;  // of a picture whose drawing a signal ended
 
-/// A file in memory without a name: what a child reads or writes, and nobody else finds.
-class MemoryFile {
+/// A pipe between us and a child: no file, so that neither a disk nor a limit on files matters.
+class Pipe {
  public:
-  explicit MemoryFile(const char* what) : descriptor_(memfd_create(what, MFD_CLOEXEC)) {
-    if (descriptor_ < 0) {
-      throw std::runtime_error(fmt::format("cannot pass on {}: {}", what, std::strerror(errno)));
+  Pipe() {
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0) {
+      throw std::runtime_error(fmt::format("cannot talk to gnuplot: {}", std::strerror(errno)));
     }
   }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  int descriptor() const { return descriptor_; }
+  ~Pipe() {
+    shut(0);
+    shut(1);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
 
-  void put(const std::string& text) {
-    std::size_t done = 0;
-    while (done < text.size()) {
-      const ssize_t n = write(descriptor_, text.data() + done, text.size() - done);
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) throw std::runtime_error("cannot pass on a plot program: out of memory?");
-      done += static_cast<std::size_t>(n);
-    }
-  }
-  std::string text() const {
-    std::string out;
-    char block[65536];
-    for (off_t at = 0;;) {
-      const ssize_t n = pread(descriptor_, block, sizeof block, at);
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return out;
-      out.append(block, static_cast<std::size_t>(n));
-      at += n;
-    }
-  }
+  int reading() const { return ends_[0]; }
+  int writing() const { return ends_[1]; }
+  void shut_reading() { shut(0); }
+  void shut_writing() { shut(1); }
 
  private:
-  int descriptor_;
+  void shut(std::size_t end) {
+    if (ends_[end] >= 0) close(ends_[end]);
+    ends_[end] = -1;
+  }
+  std::array<int, 2> ends_{-1, -1};
 };
 
 // Ours without what steers gnuplot (GNUTERM is a command to it) and with a language that is there.
@@ -83,13 +75,13 @@ std::vector<std::string> environment() {
 
 // gnuplot in a process group of its own: Ctrl-C on the terminal is meant for us, who decide what
 // becomes of the picture. It starts with the signals as they are by default.
-pid_t start(const std::string& program, const MemoryFile& script, const MemoryFile& picture,
-            const MemoryFile& messages) {
+pid_t start(const std::string& program, const Pipe& script, const Pipe& picture,
+            const Pipe& messages) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, script.descriptor(), 0);
-  posix_spawn_file_actions_adddup2(&files, picture.descriptor(), 1);
-  posix_spawn_file_actions_adddup2(&files, messages.descriptor(), 2);
+  posix_spawn_file_actions_adddup2(&files, script.reading(), 0);
+  posix_spawn_file_actions_adddup2(&files, picture.writing(), 1);
+  posix_spawn_file_actions_adddup2(&files, messages.writing(), 2);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none, standard;
@@ -120,22 +112,99 @@ pid_t start(const std::string& program, const MemoryFile& script, const MemoryFi
   return child;
 }
 
-constexpr int kSignal = 128;  // added to the signal that ended a child
+constexpr int kSignal = 128;        // added to the signal that ended a child
+constexpr int kTooLong = -1;        // instead of an exit status
+constexpr int kPoll = 5;            // ms
+constexpr double kLastWords = 0.1;  // s, for what a child that has ended left in its pipes
 
-// Exit status, -1 after the time limit, or kSignal + the signal that ended it.
-int wait_for(pid_t child, double seconds) {
-  const OnSignal end_it([child] { kill(child, SIGKILL); });
-  const auto limit = Clock::now() + std::chrono::duration<double>(seconds);
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (Clock::now() > limit) {
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      return -1;
+struct Answer {
+  int status = 0;  ///< exit status, kTooLong, or kSignal + the signal that ended it
+  std::string picture, messages;
+};
+
+// What is there now; false when nothing more will come.
+bool take(int from, std::string& to) {
+  std::array<char, 65536> block{};
+  while (true) {
+    const ssize_t n = read(from, block.data(), block.size());
+    if (n > 0) {
+      to.append(block.data(), static_cast<std::size_t>(n));
+    } else {
+      return n < 0 && (errno == EAGAIN || errno == EINTR);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : kSignal + WTERMSIG(status);
+}
+
+// As write(), but a reader that has gone is an error (EPIPE) and not a signal, whatever the process
+// does with SIGPIPE.
+ssize_t write_to_reader(int to, const char* data, std::size_t size) {
+  sigset_t pipe_signal, before;
+  sigemptyset(&pipe_signal);
+  sigaddset(&pipe_signal, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
+  const ssize_t n = write(to, data, size);
+  const int why = errno;
+  if (n < 0 && why == EPIPE) {
+    const timespec at_once{};
+    sigtimedwait(&pipe_signal, nullptr, &at_once);
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  errno = why;
+  return n;
+}
+
+// gnuplot reads, draws and complains at the same time.
+Answer converse(const std::string& program, const std::string& text, double seconds) {
+  Pipe script, picture, messages;
+  for (const int ours : {script.writing(), picture.reading(), messages.reading()}) {
+    fcntl(ours, F_SETFL, O_NONBLOCK);
+  }
+  const pid_t child = start(program, script, picture, messages);
+  const OnSignal end_it([child] { kill(child, SIGKILL); });
+  script.shut_reading();
+  picture.shut_writing();
+  messages.shut_writing();
+  Answer answer;
+  std::size_t given = 0;
+  auto limit = Clock::now() + std::chrono::duration<double>(seconds);
+  bool drawing = true, talking = true, ended = false;
+  while (drawing || talking || !ended) {
+    if (given == text.size()) script.shut_writing();
+    std::array<pollfd, 3> ready{{{script.writing(), POLLOUT, 0},
+                                 {drawing ? picture.reading() : -1, POLLIN, 0},
+                                 {talking ? messages.reading() : -1, POLLIN, 0}}};
+    poll(ready.data(), ready.size(), kPoll);
+    if (ready[0].revents != 0) {
+      const ssize_t n = write_to_reader(script.writing(), text.data() + given, text.size() - given);
+      if (n > 0) given += static_cast<std::size_t>(n);
+      // It has stopped reading: an error, about which it says more than we could.
+      if (n < 0 && errno != EAGAIN && errno != EINTR) given = text.size();
+    }
+    if (ready[1].revents != 0) drawing = take(picture.reading(), answer.picture);
+    if (ready[2].revents != 0) talking = take(messages.reading(), answer.messages);
+    if (!ended) {
+      int status = 0;
+      ended = waitpid(child, &status, WNOHANG) == child;
+      if (ended) {
+        answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : kSignal + WTERMSIG(status);
+        limit = std::min(limit, Clock::now() + std::chrono::duration<double>(kLastWords));
+      }
+    }
+    if (Clock::now() <= limit) continue;
+    if (ended) break;  // something that it started holds the pipes
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    answer.status = kTooLong;
+    break;
+  }
+  return answer;
+}
+
+// A signal to our group may meet gnuplot before it has left the group. What else ends it, such as a
+// crash or want of memory, would end it again.
+bool was_meant_for_us(int status) {
+  return status == kSignal + SIGINT || status == kSignal + SIGTERM || status == kSignal + SIGHUP ||
+         status == kSignal + SIGQUIT;
 }
 
 }  // namespace
@@ -155,30 +224,32 @@ std::optional<std::string> find_gnuplot() {
 
 Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
              double seconds) {
-  MemoryFile script("a plot program");
-  script.put("set terminal " + terminal + "\nset output\n" + program + "\nunset output\n");
+  const std::string text =
+      "set terminal " + terminal + "\nset output\n" + program + "\nunset output\n";
   Drawing result;
-  std::string said;
-  int status = 0;
-  // A signal to our group may meet gnuplot before it has left the group.
+  Answer answer;
   for (int k = 0; k < kTries; ++k) {
-    const MemoryFile picture("a picture"), messages("gnuplot's messages");
-    status = wait_for(start(gnuplot, script, picture, messages), seconds);
-    if (status == 0) result.bytes = picture.text();
-    said = messages.text();
-    if (status < kSignal) break;
+    answer = converse(gnuplot, text, seconds);
+    if (!was_meant_for_us(answer.status)) break;
   }
-  if (!result.bytes.empty()) return result;
-  if (status == -1) {
+  if (answer.status == 0 && !answer.picture.empty()) {
+    result.bytes = std::move(answer.picture);
+    return result;
+  }
+  if (answer.status == kTooLong) {
     result.error = fmt::format("gnuplot took longer than {:g} s", seconds);
     return result;
   }
   // gnuplot shows the line, a caret, and then the message.
-  std::istringstream lines(said);
+  std::istringstream lines(answer.messages);
   for (std::string line; std::getline(lines, line);)
     if (line.find("/dev/stdin") != std::string::npos && line.find("line ") != std::string::npos)
       result.error = line.substr(line.find("line "));
-  if (result.error.empty()) result.error = fmt::format("gnuplot ended with status {}", status);
+  if (!result.error.empty()) return result;
+  const int number = answer.status - kSignal;
+  const char* name = number > 0 ? sigabbrev_np(number) : nullptr;
+  result.error = name != nullptr ? fmt::format("SIG{} ended gnuplot", name)
+                                 : fmt::format("gnuplot ended with status {}", answer.status);
   return result;
 }
 

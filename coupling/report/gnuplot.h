@@ -13,8 +13,9 @@ struct Drawing {
   std::string error;  ///< why it failed: gnuplot's own first line, or the time limit
 };
 
-/// Runs gnuplot on the program, without a shell or any file, and kills it after `seconds`. A signal
-/// to our process group does not reach it. `terminal`: e.g. "svg size 900,500". Throws
+/// Runs gnuplot on the program, through pipes, without a shell or any file, and kills it after
+/// `seconds`. A signal to our process group does not reach it; one that stops it as it starts makes
+/// it start again. `terminal`: e.g. "svg size 900,500". Throws
 /// std::runtime_error only when no process can be made.
 Drawing draw(const std::string& gnuplot, const std::string& terminal, const std::string& program,
              double seconds = 60);

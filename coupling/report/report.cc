@@ -118,6 +118,7 @@ class Page {
  private:
   std::string missing(const std::string& why) {
     result_.why_missing = why;
+    ++result_.missing;
     return "<p class=\"missing\">No picture: " + escape(why) + ".</p>";
   }
 
@@ -135,6 +136,13 @@ class Page {
 };
 
 }  // namespace
+
+std::string ReportResult::complaint() const {
+  if (missing == 0) return "";
+  const int all = pictures + missing;
+  return fmt::format("report.html: {} of {} picture{} missing: {}", missing, all,
+                     all == 1 ? " is" : "s are", why_missing);
+}
 
 ReportResult write_report(const std::string& file, const Report& report) {
   ReportResult result;

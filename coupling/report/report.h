@@ -32,8 +32,12 @@ struct Report {
 /// What became of the pictures.
 struct ReportResult {
   int pictures = 0;  ///< drawn
+  int missing = 0;   ///< that could not be drawn
   std::string
-      why_missing;  ///< empty, or why some were not: "gnuplot not found: install gnuplot-nox"
+      why_missing;  ///< of the last of these, such as "gnuplot not found: install gnuplot-nox"
+
+  /// "report.html: 2 of 5 pictures are missing: WHY"; empty when all are there.
+  std::string complaint() const;
 };
 
 /// Writes the page complete or not at all. Pictures that cannot be drawn are replaced by the

@@ -270,7 +270,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
 
-  CompareOutcome out{comparison.verdict.sentence, ""};
+  CompareOutcome out{comparison.verdict.sentence, "", ""};
   if (kernels.size() > 1) {
     out.note = fmt::format(
         "fields seen through different kernels, models through each one's own: "
@@ -281,8 +281,9 @@ CompareOutcome compare_field(const CompareRequest& request) {
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
                         {"version", version_and_commit()}};
   write_profiles(results.staging(), comparison);
-  write_report(results.staging("report.html"),
-               page_of(request, scene, comparison, map, model_maps, made));
+  out.lacks = write_report(results.staging("report.html"),
+                           page_of(request, scene, comparison, map, model_maps, made))
+                  .complaint();
   write_summary(results.staging("summary.json"), summary);
   results.publish();
   return out;

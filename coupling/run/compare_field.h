@@ -18,7 +18,8 @@ struct CompareRequest {
 
 struct CompareOutcome {
   std::string verdict;
-  std::string note;  ///< fields seen through different kernels; empty: all through one
+  std::string note;   ///< fields seen through different kernels; empty: all through one
+  std::string lacks;  ///< of the report (ReportResult::complaint)
 };
 
 /// Compares any models of the registry with any field whose origin is known: responses to a load

@@ -19,6 +19,7 @@
 
 #include "coupling/run/realization_file.h"
 #include "coupling/system/signals.h"
+#include "dem/cannot_read_now.h"
 #include "dem/storage_failed.h"
 #include "dem/study/run.h"
 
@@ -60,6 +61,14 @@ std::string starts_again(const std::string& file, const std::invalid_argument& e
   return fmt::format("{} is broken ({}): this realization starts again", file, why);
 }
 
+// Nothing is known of what is in the file: hours of work, perhaps.
+dem::CannotReadNow kept_as_it_is(const dem::CannotReadNow& error) {
+  return dem::CannotReadNow(
+      fmt::format("{}; it is kept as it is: continue with --resume once it can be read, or remove "
+                  "it to compute that realization again",
+                  error.what()));
+}
+
 class Worker {
  public:
   Worker(const std::vector<Task>& tasks, const EnsembleOptions& options)
@@ -84,9 +93,13 @@ class Worker {
     }
   }
 
-  EnsembleProgress progress(const std::vector<std::size_t>& mine, double seconds) {
+  // Of this rank's tasks, `done_before` of which are none of `mine`, after so many seconds.
+  EnsembleProgress progress(const std::vector<std::size_t>& mine, std::size_t done_before,
+                            double seconds) {
     EnsembleProgress out;
-    out.total = static_cast<int>(mine.size());
+    out.total = static_cast<int>(mine.size() + done_before);
+    out.done = static_cast<int>(done_before);
+    out.fraction = static_cast<double>(out.done) / out.total;
     const std::lock_guard lock(mutex_);
     double least = 2, done_now = 0;
     for (const std::size_t task : mine) {
@@ -142,6 +155,8 @@ class Worker {
       return true;
     } catch (const dem::OtherSetup&) {
       throw;
+    } catch (const dem::CannotReadNow& error) {
+      throw kept_as_it_is(error);
     } catch (const std::invalid_argument& error) {
       add_note(starts_again(checkpoint, error));
       return false;
@@ -237,6 +252,8 @@ bool finished(const std::string& file, Worker& worker) {
   try {
     read_realization(file);
     return true;
+  } catch (const dem::CannotReadNow& error) {
+    throw kept_as_it_is(error);
   } catch (const std::invalid_argument& error) {
     worker.add_note(starts_again(file, error));
     return false;
@@ -275,9 +292,22 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
     }
   };
   std::vector<std::size_t> mine;
-  for (std::size_t t = 0; t < tasks.size(); ++t) {
-    const bool here = static_cast<int>(t % static_cast<std::size_t>(ranks.size())) == ranks.rank();
-    if (here && !finished(tasks[t].file, worker)) mine.push_back(t);
+  std::exception_ptr unreadable;
+  std::size_t done_before = 0;
+  try {
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      const auto size = static_cast<std::size_t>(ranks.size());
+      if (static_cast<int>(t % size) != ranks.rank()) continue;
+      if (finished(tasks[t].file, worker)) {
+        ++done_before;
+      } else {
+        mine.push_back(t);
+      }
+    }
+  } catch (...) {
+    // The other ranks are told at the end, where they meet this one.
+    unreadable = std::current_exception();
+    mine.clear();
   }
   pass_notes();
   if (!mine.empty()) {
@@ -303,6 +333,7 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
     }
     const auto start = Clock::now();
     bool told = false;
+    Clock::time_point reported;
     while (running > 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
       if (ranks.stopped_elsewhere()) worker.stop();
@@ -311,22 +342,22 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
         told = true;
       }
       pass_notes();
-      static thread_local Clock::time_point reported;
       if (options.progress && Clock::now() - reported > kReportEvery) {
         reported = Clock::now();
-        options.progress(worker.progress(mine, seconds_since(start)));
+        options.progress(worker.progress(mine, done_before, seconds_since(start)));
       }
     }
     for (auto& thread : pool) thread.join();
     pass_notes();
-    if (options.progress) options.progress(worker.progress(mine, seconds_since(start)));
+    if (options.progress)
+      options.progress(worker.progress(mine, done_before, seconds_since(start)));
   }
   const std::vector<std::string> all_notes = ranks.gather(noted);
   for (std::size_t r = 1; ranks.first() && options.note && r < all_notes.size(); ++r) {
     std::istringstream lines(all_notes[r]);
     for (std::string text; std::getline(lines, text);) options.note(text);
   }
-  throw_together(ranks, worker.outcome());
+  throw_together(ranks, unreadable ? unreadable : worker.outcome());
 }
 
 double cpu_seconds(const std::string& file) {

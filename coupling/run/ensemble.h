@@ -29,7 +29,7 @@ struct Task {
 
 struct EnsembleProgress {
   std::string phase;          ///< of the realization that is least far
-  int done = 0, total = 0;    ///< realizations of this rank
+  int done = 0, total = 0;    ///< realizations of this rank, with those of earlier starts
   double fraction = 0;        ///< of all work of this rank
   double simulated_time = 0;  ///< s, of the same realization
   int grains = 0;
@@ -51,7 +51,8 @@ struct EnsembleOptions {
 /// rank t mod size) and waits for all ranks. With fewer tasks than threads each run gets several.
 /// Continues from checkpoints beside the files. A file or a checkpoint that is broken counts as
 /// none, which is noted (on the first rank those of all): the realization starts again
-/// and ends in the same bits. Throws what the first failing task (by number) threw, on every rank;
+/// and ends in the same bits. One that cannot be read now (dem/cannot_read_now.h) stays as it is
+/// and is thrown. Throws what the first failing task (by number) threw, on every rank;
 /// Interrupted, after all runs are saved, when stopped. Beside each file it leaves FILE.cpu, what
 /// cpu_seconds reads.
 void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const EnsembleOptions& options);

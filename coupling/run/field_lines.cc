@@ -16,11 +16,6 @@ namespace {
 constexpr double kSameRow = 1e-9;  // of h
 constexpr double kNearRow = 0.05;  // of h: a row further from a height than this is another one
 constexpr int kLeastPoints = 3;
-const std::vector<std::string> kComponents{"sigma_xx", "sigma_yy", "sigma_xy"};
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(where + ": " + what);
-}
 
 Eigen::VectorXd picked(const Eigen::VectorXd& all, const std::vector<Eigen::Index>& at) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(at.size()));
@@ -52,8 +47,8 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
   const Column& column = *scene.field.find(component);
   const double sign = component == "sigma_xy" ? 1 : -1;
   FieldLine out;
-  out.component = static_cast<int>(std::find(kComponents.begin(), kComponents.end(), component) -
-                                   kComponents.begin());
+  out.component = static_cast<int>(std::find(kPlaneStress.begin(), kPlaneStress.end(), component) -
+                                   kPlaneStress.begin());
   out.kernel = scene.kernel;
   out.base = whole && is_base(scene.name);
   const auto n = static_cast<Eigen::Index>(row.at.size());
@@ -82,7 +77,7 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
 
 SceneField scene_field(Field field, const std::string& name, const LineOptions& options,
                        const std::string& where) {
-  if (field.points.cols() != 2) refuse(where, "is 3D; a field in two dimensions is needed");
+  if (field.points.cols() != 2) refuse_field(where, "is 3D; a field in two dimensions is needed");
   SceneField out;
   out.name = name;
   const bool coarse = field_attribute(field, "method", where) == "coarse_graining";
@@ -116,9 +111,10 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
     out.unit = loaded ? out.facts.force / out.facts.height : 1;
     const auto frame = field.attributes.find("frame");
     if (frame != field.attributes.end() && frame->second == "packing" && options.origin.empty()) {
-      refuse(where,
-             "is in the packing's own axes, where models do not know their origin; give --origin "
-             "X,Y (heaps: the apex; layers: the load), or average with --frame heap or layer");
+      refuse_field(
+          where,
+          "is in the packing's own axes, where models do not know their origin; give --origin "
+          "X,Y (heaps: the apex; layers: the load), or average with --frame heap or layer");
     }
   }
   if (!options.origin.empty()) {
@@ -134,12 +130,12 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
   const std::vector<FieldRow> rows = horizontal_rows(scene.field.points, kSameRow * h);
   for (const std::string& component : options.components) {
     if (scene.field.find(component) == nullptr) {
-      refuse(where, fmt::format("has no column \"{}\"", component));
+      refuse_field(where, fmt::format("has no column \"{}\"", component));
     }
   }
   if (scene.field.nx == 0 &&
       rows.size() * kLeastPoints > static_cast<std::size_t>(scene.field.points.rows())) {
-    refuse(where, "its points are neither horizontal lines nor a grid");
+    refuse_field(where, "its points are neither horizontal lines nor a grid");
   }
   std::vector<const FieldRow*> chosen;
   if (scene.field.nx == 0) {
@@ -153,8 +149,9 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
     for (const double share : heights) {
       const FieldRow& row = nearest_row(rows, (share - 1) * h);
       if (options.heights.size() > 0 && std::fabs(row.y - (share - 1) * h) > kNearRow * h) {
-        refuse(where, fmt::format("has no row at height {:g} h; its rows go from {:.3g} to {:.3g}",
-                                  share, 1 + rows.front().y / h, 1 + rows.back().y / h));
+        refuse_field(where,
+                     fmt::format("has no row at height {:g} h; its rows go from {:.3g} to {:.3g}",
+                                 share, 1 + rows.front().y / h, 1 + rows.back().y / h));
       }
       chosen.push_back(&row);
     }
@@ -173,7 +170,7 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
       out.push_back(std::move(line));
     }
   }
-  if (out.empty()) refuse(where, "has no line with three values or more");
+  if (out.empty()) refuse_field(where, "has no line with three values or more");
   return out;
 }
 

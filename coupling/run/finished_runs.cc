@@ -4,39 +4,91 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "coupling/run/ensemble.h"
+#include "dem/cannot_read_now.h"
+#include "dem/snapshot/hdf5_probe.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// Of grains.files, in all, that a check reads: a second's worth.
-constexpr std::uintmax_t kReadBytes = 64'000'000;
+// Numbers of grains.files, in all, that a check reads, bytes in memory; and s that a process spends
+// on looking into such files before it computes.
+constexpr double kReadBytes = 16e6, kLookSeconds = 4;
 
-std::vector<std::string> groups_of(const std::string& file) {
+using Clock = std::chrono::steady_clock;
+
+// Tells when a check has looked long enough. Of all members of a sweep together.
+class Patience {
+ public:
+  bool over() const { return spent() > kLookSeconds; }
+  void begin() { since_ = Clock::now(); }
+  void end() { before_ += Clock::now() - since_; }
+
+ private:
+  double spent() const {
+    return std::chrono::duration<double>(before_ + (Clock::now() - since_)).count();
+  }
+  Clock::time_point since_;
+  Clock::duration before_{};
+};
+
+Patience& patience() {
+  static Patience one;
+  return one;
+}
+
+// The snapshots of a file, listed once as long as it stays the same.
+const std::vector<std::string>& groups_of(const std::string& file) {
+  struct Listed {
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type time;
+    std::vector<std::string> groups;
+  };
+  static std::map<std::string, Listed> all;
+  std::error_code error;
+  Listed now{std::filesystem::file_size(file, error), {}, {}};
+  if (!error) now.time = std::filesystem::last_write_time(file, error);
+  const auto at = all.find(file);
+  if (!error && at != all.end() && at->second.bytes == now.bytes && at->second.time == now.time) {
+    return at->second.groups;
+  }
   try {
-    return dem::list_snapshots(file);
+    now.groups = dem::list_snapshots(file);
+  } catch (const dem::CannotReadNow& e) {
+    throw dem::CannotReadNow(std::string("grains.files: ") + e.what());
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(std::string("grains.files: ") + e.what());
   }
+  return (all[file] = std::move(now)).groups;
 }
 
-// All that the files hold, at least as many as the case wants.
-std::vector<FinishedRun> finished_runs(const Case& value, const std::vector<std::string>& snapshots,
-                                       const std::string& study) {
+// All that the files hold, at least as many as the case wants. `go_on` is asked before every file:
+// where it says no, nothing is returned.
+std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
+                                                  const std::vector<std::string>& snapshots,
+                                                  const std::string& study,
+                                                  const std::function<bool()>& go_on) {
   std::vector<FinishedRun> there;
   for (const std::string& file : value.grains.files) {
+    if (!go_on()) return std::nullopt;
     const std::size_t before = there.size();
-    const std::vector<std::string> groups = groups_of(file);
+    const std::vector<std::string>& groups = groups_of(file);
+    const std::set<std::string> names(groups.begin(), groups.end());
     const std::string first = "/" + snapshots.front();
     for (const std::string& group : groups) {
       if (!group.ends_with(first)) continue;
       const std::string above = group.substr(0, group.size() - first.size());
       const bool all = std::all_of(snapshots.begin(), snapshots.end(), [&](const auto& name) {
-        return std::find(groups.begin(), groups.end(), above + "/" + name) != groups.end();
+        return names.contains(above + "/" + name);
       });
       if (all) there.push_back({file, above});
     }
@@ -60,21 +112,40 @@ std::vector<FinishedRun> finished_runs(const Case& value, const std::vector<std:
 
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study) {
-  return finished_runs(value, snapshots, study)[static_cast<std::size_t>(number)];
+  const auto runs = find_runs(value, snapshots, study, [] { return true; });
+  return (*runs)[static_cast<std::size_t>(number)];
 }
 
 void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
                        const std::string& study,
                        const std::function<void(const FinishedRun&)>& make) {
-  std::uintmax_t bytes = 0;
-  std::string last;
-  for (const FinishedRun& run : finished_runs(value, snapshots, study)) {
-    std::error_code error;
-    if (run.file != last) bytes += std::filesystem::file_size(run.file, error);
-    if (error || bytes > kReadBytes) return;
-    last = run.file;
-    make(run);
+  patience().begin();
+  try {
+    const auto go_on = [] { return !patience().over(); };
+    // First what the files hold, then how much that is, and only then any of it.
+    std::optional<std::vector<FinishedRun>> runs;
+    double bytes = 0;
+    {
+      const dem::hdf5::StructureOnly alone;
+      runs = find_runs(value, snapshots, study, go_on);
+      for (const std::string& file : value.grains.files) {
+        if (!runs || !go_on() || bytes > kReadBytes) break;
+        bytes += dem::hdf5::content_bytes(file);
+      }
+    }
+    if (runs && bytes <= kReadBytes) {
+      for (const FinishedRun& run : *runs) {
+        if (!go_on()) break;
+        make(run);
+      }
+    }
+  } catch (const dem::hdf5::TooMuchToLookAt&) {
+    // The run itself will see.
+  } catch (...) {
+    patience().end();
+    throw;
   }
+  patience().end();
 }
 
 std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,

@@ -25,8 +25,9 @@ struct FinishedRun {
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study);
 
-/// Makes the run of every realization in grains.files and lets it go again, as far as the files are
-/// no larger than a check may read. Throws as finished_run and as `make`.
+/// Makes the run of every realization in grains.files and lets it go again, as far as a check may:
+/// within 4 s in all, and where the files hold no more than 16 MB of numbers. Throws as
+/// finished_run and as `make`.
 void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
                        const std::string& study,
                        const std::function<void(const FinishedRun&)>& make);

@@ -15,10 +15,6 @@ namespace {
 
 constexpr const char* kMetres = "floor y = -h";
 
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(where + ": " + what);
-}
-
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -41,7 +37,7 @@ std::string from_first(const std::string& text) {
 
 double number_in(const std::string& text, const std::string& name, const std::string& where) {
   if (const std::optional<double> value = dem::parse_number(from_first(text))) return *value;
-  refuse(where, fmt::format("attribute \"{}\": found \"{}\", expected a number", name, text));
+  refuse_field(where, fmt::format("attribute \"{}\": found \"{}\", expected a number", name, text));
 }
 
 // One number per realization, separated by commas; one alone holds for all.
@@ -52,12 +48,12 @@ std::vector<double> numbers(const Field& field, const std::string& name, std::si
   for (std::string item; std::getline(text, item, ',');) {
     out.push_back(number_in(item, name, where));
   }
-  if (out.empty()) refuse(where, fmt::format("attribute \"{}\" is empty", name));
+  if (out.empty()) refuse_field(where, fmt::format("attribute \"{}\" is empty", name));
   if (out.size() == 1) out.resize(count, out.front());
   if (count == 1 && out.size() > 1) out = {mean(out)};
   if (out.size() != count) {
-    refuse(where,
-           fmt::format("attribute \"{}\": found {} numbers, expected {}", name, out.size(), count));
+    refuse_field(where, fmt::format("attribute \"{}\": found {} numbers, expected {}", name,
+                                    out.size(), count));
   }
   return out;
 }
@@ -76,9 +72,10 @@ double HeapFieldFacts::mean_pressure() const { return mean(pressure); }
 std::string field_attribute(const Field& field, const std::string& name, const std::string& where) {
   const auto at = field.attributes.find(name);
   if (at != field.attributes.end()) return at->second;
-  refuse(where, fmt::format("has no attribute \"{}\"; fields come from `grainfield run` or "
-                            "`grainfield average` (of heaps: --frame heap; of loads: --response)",
-                            name));
+  refuse_field(where,
+               fmt::format("has no attribute \"{}\"; fields come from `grainfield run` or "
+                           "`grainfield average` (of heaps: --frame heap; of loads: --response)",
+                           name));
 }
 
 double field_number(const Field& field, const std::string& name, const std::string& where) {
@@ -96,17 +93,19 @@ void require_compression(const Field& field, const std::string& where) {
   double sum = 0;
   for (const double v : column->value) sum += std::isfinite(v) ? v : 0;
   if (!(sum > 0)) return;
-  refuse(where,
-         "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "
-         "count on grain i, by j; turn their sign (import --flip-forces) and average anew");
+  refuse_field(
+      where,
+      "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "
+      "count on grain i, by j; turn their sign (import --flip-forces) and average anew");
 }
 
 HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std::string& where) {
   const std::string frame = field_attribute(field, "frame", where);
   if (!is_heap_field(field)) {
-    refuse(where, fmt::format("found frame \"{}\", needed: that of a heap (`grainfield average "
-                              "--frame heap`)",
-                              frame));
+    refuse_field(where,
+                 fmt::format("found frame \"{}\", needed: that of a heap (`grainfield average "
+                             "--frame heap`)",
+                             frame));
   }
   HeapFieldFacts out;
   out.in_metres = frame.find(kMetres) != std::string::npos;
@@ -116,7 +115,7 @@ HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std
   out.right_deg = slopes(field, "right_deg", count, where);
   for (std::size_t r = 0; r < count; ++r) {
     if (!(out.height[r] > 0 && out.pressure[r] > 0)) {
-      refuse(where, "attributes \"h\" and \"rho_g_h\" must be above 0");
+      refuse_field(where, "attributes \"h\" and \"rho_g_h\" must be above 0");
     }
   }
   return out;

@@ -1,11 +1,17 @@
 // The attributes of a field in the heaps' frame (average_files.h, pile.cc), read back.
 #pragma once
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "coupling/field.h"
 
 namespace grainfield::coupling {
+
+/// Throws std::invalid_argument: "where: what", of a field that cannot be used.
+[[noreturn]] inline void refuse_field(const std::string& where, const std::string& what) {
+  throw std::invalid_argument(where + ": " + what);
+}
 
 /// One number per realization; of a field without single values one mean each.
 struct HeapFieldFacts {

@@ -21,9 +21,9 @@ namespace {
 // lattice lines rise by about 0.87.
 constexpr double kRowRise = 0.5;
 
-class Analysis {
+class LatticePileAnalysis {
  public:
-  Analysis(const Case& value, const std::vector<std::string>& files)
+  LatticePileAnalysis(const Case& value, const std::vector<std::string>& files)
       : value_(value), files_(files), lattice_(value.lattice_pile.lattice) {
     const dem::MaterialSetup& material = value.lattice_pile.material;
     rows_ = dem::lattice_rows(lattice_);
@@ -268,7 +268,7 @@ class Analysis {
 StudyResult analyse_lattice_pile(const Case& value, const std::vector<std::string>& realizations,
                                  int) {
   const auto start = std::chrono::steady_clock::now();
-  StudyResult out = Analysis(value, realizations).run();
+  StudyResult out = LatticePileAnalysis(value, realizations).run();
   out.summary["time.analysis_s"] =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

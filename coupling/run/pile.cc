@@ -20,9 +20,9 @@
 namespace grainfield::coupling {
 namespace {
 
-class Analysis {
+class PileAnalysis {
  public:
-  Analysis(const Case& value, const std::vector<std::string>& files, int threads)
+  PileAnalysis(const Case& value, const std::vector<std::string>& files, int threads)
       : value_(value), files_(files), piles_(value, files, threads) {}
 
   StudyResult run() {
@@ -365,7 +365,7 @@ class Analysis {
 StudyResult analyse_pile(const Case& value, const std::vector<std::string>& realizations,
                          int threads) {
   const auto start = std::chrono::steady_clock::now();
-  StudyResult out = Analysis(value, realizations, threads).run();
+  StudyResult out = PileAnalysis(value, realizations, threads).run();
   out.summary["time.analysis_s"] =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -71,10 +71,10 @@ Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny
   return field;
 }
 
-class Analysis {
+class PointLoadAnalysis {
  public:
-  Analysis(const Case& value, const std::vector<std::string>& files, int threads,
-           const ModelEvaluator& evaluate)
+  PointLoadAnalysis(const Case& value, const std::vector<std::string>& files, int threads,
+                    const ModelEvaluator& evaluate)
       : value_(value),
         files_(files),
         evaluate_(evaluate),
@@ -277,7 +277,7 @@ class Analysis {
 StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
                                int threads, const ModelEvaluator& evaluate) {
   const auto start = std::chrono::steady_clock::now();
-  StudyResult out = Analysis(value, realizations, threads, evaluate).run();
+  StudyResult out = PointLoadAnalysis(value, realizations, threads, evaluate).run();
   out.summary["time.analysis_s"] =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -47,10 +47,6 @@ Ranks::Ranks() {
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
 }
 
-void Ranks::barrier() const {
-  if (size_ > 1) MPI_Barrier(MPI_COMM_WORLD);
-}
-
 std::vector<std::string> Ranks::gather(const std::string& text) const {
   if (size_ == 1) return {text};
   const int mine = static_cast<int>(text.size());

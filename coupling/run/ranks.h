@@ -15,8 +15,6 @@ class Ranks {
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool first() const { return rank_ == 0; }
-  /// Waits for all ranks.
-  void barrier() const;
   /// Every rank's text, in the order of ranks, on every rank.
   std::vector<std::string> gather(const std::string& text) const;
 

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "continuum/fe/elastic.h"
+#include "continuum/model.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/run/studies.h"
@@ -66,15 +67,52 @@ class Workplace {
           "-o: {}/case.toml is the case itself and would be replaced; name another folder",
           folder_.string()));
     }
+    results_->require_free(names_of_results(value));
+    require_own_checkpoint();
     if (holds_work()) take_up(value, options);
+    std::error_code error;
+    const bool fresh = !fs::exists(checkpoint_, error);
     fs::create_directories(checkpoint_);
-    write_text_file((checkpoint_ / "case.toml").string(), write_case(value));
-    write_text_file((checkpoint_ / kIdentity).string(), identity(value));
+    remove_orphans(checkpoint_.string());
+    try {
+      write_text_file((checkpoint_ / "case.toml").string(), write_case(value));
+      write_text_file((checkpoint_ / kIdentity).string(), identity(value));
+    } catch (...) {
+      // Without them nobody could tell which case it is of.
+      if (fresh) fs::remove_all(checkpoint_, error);
+      throw;
+    }
   }
 
   bool finished() const { return fs::exists(folder_ / "summary.json"); }
 
   bool was_stopped() const { return fs::exists(checkpoint_); }
+
+  // Whether a run has begun here, though perhaps not got as far as its first checkpoint.
+  bool was_begun() const {
+    std::error_code error;
+    return was_stopped() || fs::exists(folder_ / ".lock", error) ||
+           fs::exists(folder_ / ".partial", error);
+  }
+
+  // What is there instead of something to resume, for a message.
+  std::string instead() const {
+    std::error_code error;
+    if (fs::is_directory(folder_, error)) {
+      return fs::is_empty(folder_, error) ? "an empty folder" : "a folder without checkpoint/";
+    }
+    const fs::path above = folder_.has_parent_path() ? folder_.parent_path() : ".";
+    std::vector<std::string> begun;
+    for (fs::directory_iterator at(above, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
+      if (fs::is_directory(at->path() / "checkpoint", error)) {
+        begun.push_back(at->path().filename().string());
+      }
+    }
+    const std::string near = continuum::misspelt(folder_.filename().string(), begun);
+    return near.empty() ? "no such folder"
+                        : fmt::format("no such folder; nearest with an unfinished run: {}", near);
+  }
 
   // Finished or half-done realizations that --resume could go on from.
   bool holds_work() const noexcept {
@@ -114,6 +152,35 @@ class Workplace {
 
  private:
   static constexpr const char* kIdentity = "grains.txt";
+
+  // Results that this run leaves for certain, as far as their names are known beforehand.
+  static std::vector<fs::path> names_of_results(const Case& value) {
+    std::vector<fs::path> names{"case.toml", "summary.json"};
+    const bool one = value.sweep.key.empty();
+    if (value.output.report) names.emplace_back("report.html");
+    if (one && value.output.fields) names.insert(names.end(), {"fields.h5", "fields.xdmf"});
+    if (one && value.output.snapshots && study_of(value).has_grains()) {
+      names.emplace_back("snapshots.h5");
+    }
+    return names;
+  }
+
+  // The folder goes when the run is done: nothing of the user's may be in it.
+  void require_own_checkpoint() const {
+    std::error_code error;
+    for (fs::directory_iterator at(checkpoint_, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      const std::string kind = at->path().extension().string();
+      const bool own = name == "case.toml" || name == kIdentity || kind == ".h5" ||
+                       kind == ".checkpoint" || kind == ".cpu" || kind == ".part";
+      if (own) continue;
+      throw std::invalid_argument(fmt::format(
+          "{}: is no file of a run, which would remove it with its checkpoint; move it, or name "
+          "another folder with -o",
+          at->path().string()));
+    }
+  }
 
   void close() noexcept { results_.reset(); }
 
@@ -225,6 +292,9 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
                    "alone, also with other keys of analysis and output",
                    options.folder)
              : "";
+  const auto warn = [&](const std::string& inner, const std::string& what) {
+    if (!what.empty() && options.warn) options.warn(inner + what);
+  };
   std::vector<StudyResult> results;
   std::exception_ptr error;
   try {
@@ -246,9 +316,11 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
         const std::string& suffix = members[m].suffix;
         const std::string folder = place.staging(suffix.empty() ? "" : suffix + "/");
         times(m, results[m].summary);
-        write_study(folder, results[m]);
+        warn(suffix.empty() ? "" : suffix + "/", write_study(folder, results[m]));
       }
-      if (!value.sweep.key.empty()) write_sweep(place.staging(), value, members, results);
+      if (!value.sweep.key.empty()) {
+        warn("", write_sweep(place.staging(), value, members, results));
+      }
     });
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(e.what() + kept);
@@ -316,7 +388,12 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
               "--resume: the run in {} is finished; leave --resume out to run anew in its place{}",
               options.folder, value.study.starts_with("pile") ? again : ""));
         }
-        options.note(fmt::format("nothing to resume in {}: starting anew", options.folder));
+        if (!place.was_begun()) {
+          throw std::invalid_argument(fmt::format(
+              "--resume: nothing to resume in {}: found {}; leave --resume out to start anew",
+              options.folder, place.instead()));
+        }
+        options.note(fmt::format("nothing to resume in {} yet: starting anew", options.folder));
       }
       if (!options.resume && finished && !unfinished) {
         options.note(

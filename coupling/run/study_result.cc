@@ -71,12 +71,13 @@ Report layer_page(const StudyResult& result, const Realization* first) {
   return point_load_report(page);
 }
 
-void write_page(const std::string& folder, const StudyResult& result) {
+std::string write_page(const std::string& folder, const StudyResult& result) {
   Realization first;
   if (!result.realizations.empty()) first = read_realization(result.realizations.front());
   const auto page = result.page ? result.page : layer_page;
-  write_report(folder + "/report.html",
-               page(result, result.realizations.empty() ? nullptr : &first));
+  return write_report(folder + "/report.html",
+                      page(result, result.realizations.empty() ? nullptr : &first))
+      .complaint();
 }
 
 }  // namespace
@@ -166,15 +167,17 @@ void add_figures(Summary& summary, const std::map<std::string, std::vector<doubl
   }
 }
 
-void write_study(const std::string& folder, const StudyResult& result) {
+std::string write_study(const std::string& folder, const StudyResult& result) {
   require_documented(result.summary);
   write_profiles(folder, result.comparison);
   if (result.value.output.fields) write_fields(folder + "/fields.h5", result.fields);
   for (const auto& [name, text] : result.texts) write_text_file(folder + "/" + name, text);
   write_grains(folder, result);
-  if (result.value.output.report) write_page(folder, result);
+  std::string lacks;
+  if (result.value.output.report) lacks = write_page(folder, result);
   write_text_file(folder + "/case.toml", write_case(result.value));
   write_summary(folder + "/summary.json", result.summary);
+  return lacks;
 }
 
 }  // namespace grainfield::coupling

@@ -62,7 +62,7 @@ void add_comparison(Summary& summary, const Comparison& comparison, std::size_t 
 void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures);
 
 /// Writes summary.json, profiles.*, fields.h5 + .xdmf, snapshots.h5, *.vtu, report.html and
-/// case.toml into a folder that exists.
-void write_study(const std::string& folder, const StudyResult& result);
+/// case.toml into a folder that exists. Returns what the report lacks (ReportResult::complaint).
+std::string write_study(const std::string& folder, const StudyResult& result);
 
 }  // namespace grainfield::coupling

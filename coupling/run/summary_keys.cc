@@ -39,6 +39,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"dem.steps", "-", "time steps"},
       {"dem.time_step", "s", "time step"},
       {"dem.unbalanced_force_ratio", "-", "mean resultant over mean contact force at the end"},
+      {"dem.unbalanced_moment_ratio", "-",
+       "mean |moment| on a grain over its radius, over mean contact force, at the end"},
       {"dem.unbalanced_force_max_ratio", "-",
        "largest resultant over mean contact force at the end"},
       {"dem.kinetic_to_elastic_energy", "-", "kinetic over elastic energy at the end"},

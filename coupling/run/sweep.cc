@@ -153,8 +153,9 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
 
 }  // namespace
 
-void write_sweep(const std::string& folder, const Case& value,
-                 const std::vector<SweepCase>& members, const std::vector<StudyResult>& results) {
+std::string write_sweep(const std::string& folder, const Case& value,
+                        const std::vector<SweepCase>& members,
+                        const std::vector<StudyResult>& results) {
   Summary all;
   add_identity(all, value);
   all["sweep.key"] = value.sweep.key;
@@ -200,9 +201,11 @@ void write_sweep(const std::string& folder, const Case& value,
   report.sections.emplace_back(overview(value, members, results));
   if (!differences.empty()) report.sections.emplace_back(table_of(differences, names));
   own(&StudyResult::sweep_tables);
-  if (value.output.report) write_report(folder + "/report.html", report);
+  std::string lacks;
+  if (value.output.report) lacks = write_report(folder + "/report.html", report).complaint();
   write_text_file(folder + "/case.toml", write_case(value));
   write_summary(folder + "/summary.json", all);
+  return lacks;
 }
 
 }  // namespace grainfield::coupling

@@ -8,8 +8,10 @@
 namespace grainfield::coupling {
 
 /// Writes summary.json (every member's keys with ".SUFFIX" at the end), report.html and case.toml
-/// of a sweep whose members' outputs are in folder/SUFFIX.
-void write_sweep(const std::string& folder, const Case& value,
-                 const std::vector<SweepCase>& members, const std::vector<StudyResult>& results);
+/// of a sweep whose members' outputs are in folder/SUFFIX. Returns what the report lacks
+/// (ReportResult::complaint).
+std::string write_sweep(const std::string& folder, const Case& value,
+                        const std::vector<SweepCase>& members,
+                        const std::vector<StudyResult>& results);
 
 }  // namespace grainfield::coupling

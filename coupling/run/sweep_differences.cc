@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLevel = 0.05;
 
-double number(const Summary& summary, const std::string& key) {
+double figure_in(const Summary& summary, const std::string& key) {
   const auto at = summary.find(key);
   if (at == summary.end()) return kNan;
   if (const auto* value = std::get_if<double>(&at->second)) return *value;
@@ -55,11 +55,11 @@ std::vector<SweepDifference> sweep_differences(const std::vector<OverviewColumn>
   for (const OverviewColumn& column : columns) {
     for (std::size_t m = 1; m < members.size(); ++m) {
       const Summary &one = members.front(), &other = members[m];
-      const double s1 = number(one, column.error()), s2 = number(other, column.error());
-      const double n1 = number(one, "ensemble.realizations"),
-                   n2 = number(other, "ensemble.realizations");
+      const double s1 = figure_in(one, column.error()), s2 = figure_in(other, column.error());
+      const double n1 = figure_in(one, "ensemble.realizations"),
+                   n2 = figure_in(other, "ensemble.realizations");
       SweepDifference d{column.heading, column.key, m};
-      d.difference = number(other, column.key) - number(one, column.key);
+      d.difference = figure_in(other, column.key) - figure_in(one, column.key);
       d.error = std::hypot(s1, s2);
       if (std::isnan(n1) || std::isnan(n2)) continue;
       d.p_value = welch_p_value(d.difference, s1, static_cast<int>(n1), s2, static_cast<int>(n2));

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -13,6 +13,7 @@
 #include "continuum/settings.h"
 #include "continuum/size.h"
 #include "coupling/run/wedge_analysis.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -33,10 +34,8 @@ double relative(const Eigen::VectorXd& of, const Eigen::VectorXd& from) {
 
 /// The angle a base stands for: none where it is a word.
 bool is_angle(const std::string& base) {
-  double angle = -1;
-  const char* end = base.data() + base.size();
-  const auto [stop, error] = std::from_chars(base.data(), end, angle);
-  return error == std::errc() && stop == end && angle >= 0 && angle <= 80;
+  const std::optional<double> angle = dem::parse_number(base);
+  return angle && *angle >= 0 && *angle <= 80;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupling/averaging/average.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 
@@ -27,12 +28,14 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
   motion.displacement.resize(grains, dim);
   motion.mass.resize(grains);
   Eigen::VectorXd turn(grains);
+  const bool counted = dem::counts_images(before) || dem::counts_images(after);
   for (std::size_t g = 0; g < before.grains.size(); ++g) {
     const Eigen::Index k = row[g];
     if (k < 0) continue;
     const dem::Grain &a = before.grains[g], &b = after.grains[g];
     motion.position.row(k) = a.position.head(dim).transpose();
-    motion.displacement.row(k) = (b.position - a.position).head(dim).transpose();
+    motion.displacement.row(k) =
+        dem::displacement(a, b, before.cell, after.cell, counted).head(dim).transpose();
     motion.mass[k] = a.mass;
     turn[k] = std::remainder(b.angle - a.angle, 2 * std::numbers::pi);
   }
@@ -46,11 +49,17 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
     const Eigen::Index p = row_of(contact.i), q = row_of(contact.j);
     if (p < 0 || q < 0) continue;
     const Eigen::RowVectorXd point = contact.point.head(dim).transpose();
-    const Eigen::RowVectorXd arm_p = point - motion.position.row(p),
-                             arm_q = point - motion.position.row(q);
+    const Eigen::RowVectorXd second = dem::second_place(before, contact).head(dim).transpose();
+    const Eigen::RowVectorXd arm_p = point - motion.position.row(p), arm_q = point - second;
     motion.contact_point.row(c) = point;
-    motion.branch.row(c) = motion.position.row(q) - motion.position.row(p);
+    motion.branch.row(c) = second - motion.position.row(p);
     motion.relative.row(c) = motion.displacement.row(q) - motion.displacement.row(p);
+    if (before.cell.is_periodic())  // the image moves with the cell's edges
+      motion.relative.row(c) +=
+          (dem::shift_to(after.cell, dem::image_in(after.cell, before.cell, contact.image)) -
+           dem::shift_to(before.cell, contact.image))
+              .head(dim)
+              .transpose();
     if (dim == 2)  // dw x r = dw (-r_y, r_x)
       motion.slip.row(c) = motion.relative.row(c) +
                            turn[q] * Eigen::RowVector2d(-arm_q[1], arm_q[0]) -

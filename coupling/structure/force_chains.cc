@@ -12,6 +12,7 @@
 #include "continuum/constants.h"
 #include "coupling/averaging/grain_facts.h"
 #include "coupling/structure/tensor_axes.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -68,10 +69,12 @@ ForceChains force_chains(const dem::Snapshot& s, const ChainOptions& options) {
   const std::vector<Stressed> grains = stresses(s, options, out);
   const double least = std::cos(options.largest_turn_deg * std::numbers::pi / 180);
 
-  // Which end of grain g's direction the other grain lies at; -1: outside both sectors.
-  const auto end_towards = [&](std::int64_t g, std::int64_t other) {
-    const Vec3 branch = s.grains[static_cast<std::size_t>(other)].position -
-                        s.grains[static_cast<std::size_t>(g)].position;
+  // Which end of its first (second) grain's direction the other grain lies at; -1: outside both
+  // sectors.
+  const auto end_towards = [&](const dem::Contact& c, bool second) {
+    const std::int64_t g = second ? c.j : c.i;
+    const Vec3 branch = (second ? -1 : 1) * (dem::second_place(s, c) -
+                                             s.grains[static_cast<std::size_t>(c.i)].position);
     const double along = branch.dot(grains[static_cast<std::size_t>(g)].direction) / branch.norm();
     if (!(std::abs(along) > least)) return -1;
     return along > 0 ? 0 : 1;
@@ -83,7 +86,7 @@ ForceChains force_chains(const dem::Snapshot& s, const ChainOptions& options) {
     if (!grains[static_cast<std::size_t>(c.i)].chosen ||
         !grains[static_cast<std::size_t>(c.j)].chosen)
       continue;
-    const int at_i = end_towards(c.i, c.j), at_j = end_towards(c.j, c.i);
+    const int at_i = end_towards(c, false), at_j = end_towards(c, true);
     if (at_i < 0 || at_j < 0) continue;
     for (auto [grain, end] : {std::pair(c.i, at_i), std::pair(c.j, at_j)}) {
       std::int64_t& best =

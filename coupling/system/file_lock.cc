@@ -89,12 +89,18 @@ FileLock::FileLock(const std::string& file, const std::string& what, const std::
     close(descriptor);
     const auto waited = std::chrono::steady_clock::now() - begin;
     if (!ours && waited > (alive ? kForTheLiving : kForTheDead)) {
-      throw std::invalid_argument(fmt::format(
-          "{}: in use by {}; {}", what,
-          holder.process > 0 ? fmt::format("process {} on {} ({})", holder.process, holder.host,
-                                           one_line(holder.command, kLongestCommand))
-                             : "another process",
-          hint));
+      // Where the holder's word is all there is, nobody else can tell that it has ended.
+      const std::string word =
+          known ? ""
+                : fmt::format(" (this file system has no locks: if nobody works there, remove {})",
+                              file);
+      throw std::invalid_argument(
+          fmt::format("{}: in use by {}; {}{}", what,
+                      alive ? fmt::format("process {} on {} ({})", holder.process,
+                                          one_line(holder.host, kLongestCommand),
+                                          one_line(holder.command, kLongestCommand))
+                            : "another process, which has not yet said its name",
+                      hint, word));
     }
     if (!ours) std::this_thread::sleep_for(kPause);
   }

@@ -64,6 +64,18 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string printable_name(std::string_view name) {
+  std::string out;
+  for (const char ch : printable(name)) {
+    if (ch == '\n' || ch == '\t') {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(ch));
+    } else {
+      out += ch;
+    }
+  }
+  return out;
+}
+
 std::string one_line(std::string_view text, std::size_t most) {
   std::string line = printable(text);
   std::replace(line.begin(), line.end(), '\n', ' ');

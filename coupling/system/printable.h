@@ -11,6 +11,9 @@ namespace grainfield::coupling {
 /// writing direction and the other line ends of Unicode as \u{NNNN}.
 std::string printable(std::string_view text);
 
+/// A name, of a folder for example, within a line: likewise, and new line and tab as \xNN too.
+std::string printable_name(std::string_view name);
+
 /// At most about `most` bytes of it in one line, whole characters: of a longer one the beginning
 /// and the end, and between them how much is left out.
 std::string one_line(std::string_view text, std::size_t most);

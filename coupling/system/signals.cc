@@ -14,11 +14,14 @@
 #include <system_error>
 #include <thread>
 
+#include "coupling/system/printable.h"
+
 namespace grainfield::coupling {
 namespace {
 
 constexpr int kStopping[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
 constexpr std::chrono::seconds kOneSignal{1};  // those that come within it are one
+constexpr std::size_t kLongestLine = 1500;     // bytes
 constexpr int kPatience = 200;  // ms, for the line on a standard error that nobody reads
 
 int bell = -1;  // an eventfd: the handler rings it, the watcher waits for it
@@ -109,7 +112,7 @@ void watch_signals() {
 
 void say_when_stopped(const std::string& line) {
   const std::lock_guard lock(state().mutex);
-  state().line = line;
+  state().line = one_line(line, kLongestLine);
 }
 
 PolledSignals::PolledSignals() {

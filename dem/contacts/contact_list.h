@@ -8,6 +8,7 @@
 #include "dem/contacts/kept.h"
 #include "dem/contacts/rows.h"
 #include "dem/space/body.h"
+#include "dem/space/moving_cell.h"
 
 namespace grainfield::dem {
 
@@ -29,19 +30,27 @@ struct ContactList {
   using Pair = NearPair<Law, Shape>;
 
   Rows<Pair> pairs, walls;
+  /// Of the second grains, by pair; those that are images come last in a row. Empty without a cell.
+  std::vector<PairImage> images;
   std::vector<ContactForce<D>> pair_forces, wall_forces;  ///< of the last step of step(n)
   std::vector<ForceSum<D>> felt;  ///< by sleepers, by pair, since the last search
-  Blocks blocks;                  ///< not in the image: divide() makes them again
+  /// Of the walls' contacts in the step before, towards the grain; 0: none, or a plane at rest.
+  std::vector<VectorOf<D>> wall_normals;
+  Blocks blocks;  ///< not in the image: divide() makes them again
 
   void clear() {
     pairs.clear();
     walls.clear();
+    images.clear();
+    wall_normals.clear();
   }
-  /// After the last pair.
-  void finish() {
+  /// After the last pair. `with_images`: in a cell.
+  void finish(bool with_images = false) {
     pairs.pad(kAhead);
+    if (with_images) images.resize(pairs.with_idle());
     pair_forces.assign(pairs.with_idle(), {});
     wall_forces.assign(walls.with_idle(), {});
+    wall_normals.resize(walls.with_idle(), zero<VectorOf<D>>());
     felt.assign(pairs.with_idle(), {});
   }
 
@@ -54,6 +63,18 @@ struct ContactList {
         const Pair& pair = pairs[k];
         if (pair.memory.empty() || skip(i, pair.j)) continue;
         kept.add(pair_key(ids[i], ids[pair.j]), seen_from(pair.memory, ids[i] > ids[pair.j]));
+      }
+    }
+    kept.sort();
+    return kept;
+  }
+  /// Directions of contacts with walls that have a memory.
+  Kept<VectorOf<D>> kept_normals(const std::vector<std::int64_t>& ids) const {
+    Kept<VectorOf<D>> kept;
+    for (int i = 0; i < walls.rows(); ++i) {
+      for (int k = walls.first(i); k < walls.last(i); ++k) {
+        if (walls[k].memory.empty() || wall_normals[k].isZero(0)) continue;
+        kept.add(wall_key(ids[i], walls[k].j), wall_normals[k]);
       }
     }
     kept.sort();
@@ -77,9 +98,11 @@ struct ContactList {
   static void visit(Self& self, Each each) {
     Rows<Pair>::visit(self.pairs, each);
     Rows<Pair>::visit(self.walls, each);
+    each(self.images);
     each(self.pair_forces);
     each(self.wall_forces);
     each(self.felt);
+    each(self.wall_normals);
   }
   /// That a broken image has not made nonsense of it. `searched`: rows of that many grains.
   bool fits(bool searched, int rows, int grains, int wall_count) const {
@@ -88,7 +111,8 @@ struct ContactList {
     };
     return pairs.are_sound(grains, within(grains)) && walls.are_sound(grains, within(wall_count)) &&
            pair_forces.size() == pairs.with_idle() && felt.size() == pairs.with_idle() &&
-           wall_forces.size() == walls.with_idle() &&
+           wall_forces.size() == walls.with_idle() && wall_normals.size() == walls.with_idle() &&
+           (images.empty() || images.size() == pairs.with_idle()) &&
            (!searched || (pairs.fits(rows, kAhead) && walls.fits(rows, 0)));
   }
 };

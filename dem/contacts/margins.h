@@ -68,9 +68,23 @@ struct Margin {
   /// counts at all.
   template <bool turns>
   bool is_left(const VectorOf<D>& now, const RotationOf<D>& rotation_now) const {
-    double left = way;
+    return is_beyond<turns>(now - position, rotation_now, way);
+  }
+  /// The same in a space that flows: it would have carried the grain to `carried`, and has changed
+  /// distances by up to `strain` times themselves. Two grains at a distance of more than the sum of
+  /// their reaches (radius + way) are still apart while each is off that place by less than
+  /// way - strain reach.
+  template <bool turns>
+  bool is_left_in_flow(const VectorOf<D>& now, const RotationOf<D>& rotation_now,
+                       const VectorOf<D>& carried, double strain, double radius) const {
+    return is_beyond<turns>(now - carried, rotation_now, way - strain * (radius + way));
+  }
+
+ private:
+  template <bool turns>
+  bool is_beyond(const VectorOf<D>& moved, const RotationOf<D>& rotation_now, double left) const {
     if constexpr (turns) left -= turning * Space<D>::angle_between(rotation_now, rotation);
-    return !(left >= 0 && (now - position).squaredNorm() <= left * left);
+    return !(left >= 0 && moved.squaredNorm() <= left * left);
   }
 };
 

@@ -14,9 +14,7 @@ namespace grainfield::dem {
 
 /// The shape offers what the law reads.
 template <class Law, class Store>
-concept GoesWith = Shape<Store> && ContactLaw<Law, Store::dim> &&
-                   (!Law::needs_area || Store::offers_area) &&
-                   (!Law::needs_curvature || Store::offers_curvature);
+concept GoesWith = Shape<Store> && ContactLaw<Law, Store::dim> && Store::offers(Law::measures);
 
 template <class Store>
 std::unique_ptr<Engine> engine_of(const EngineSettings& settings) {
@@ -27,6 +25,7 @@ std::unique_ptr<Engine> engine_of(const EngineSettings& settings) {
         fmt::format("{}: found \"{}\", allowed for grains of this shape: {}", key, found,
                     fmt::join(allowed, ", ")));
   };
+  if (Store::outlines && settings.resist_rolling()) refuse_rolling_polygons();
   const AnyLaw& any =
       settings.material_pairs.empty() ? settings.law : settings.material_pairs.front().law;
   std::unique_ptr<Engine> engine;

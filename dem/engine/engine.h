@@ -20,6 +20,7 @@
 #include "dem/shapes/registry.h"
 #include "dem/sleep/sleep_settings.h"
 #include "dem/snapshot/snapshot.h"
+#include "dem/walls/wall_motion.h"
 
 namespace grainfield::dem {
 
@@ -32,6 +33,14 @@ struct EngineSettings : Materials {
   int threads = 1;
   ShapeKind shape;  ///< polygons are disks too, but slower
   SleepSettings sleep;
+  /// Axes that repeat, and the flow of their space (moving_cell.h). Walls must lie along the
+  /// periodic edges. In a cell that flows no grain is fixed or sleeps.
+  Cell<3> cell;
+  /// Every contact accounts for what it loses (Diagnostics::dissipated_energy); steps take longer.
+  /// With verlet, and without sleeping.
+  bool energy_balance = false;
+  /// Cundall's alpha in [0, 1): dem/motion/local_damping.h. With verlet.
+  double local_damping = 0;
 };
 
 /// A grain to be added.
@@ -46,26 +55,47 @@ struct NewGrain {
   /// In 3D; `spin` is about z, `angle` is not used, `density` is in kg/m3.
   double z = 0, vz = 0, spin_x = 0, spin_y = 0;
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+  std::array<int, 3> image{0, 0, 0};              ///< as Grain::image, to count on from
+  double mass = 0;                                ///< kg; 0: density times what the shape fills
+  std::array<double, 3> moments{};  ///< principal, in 2D the third, kg m2; 0: of the shape
 };
 
 /// State of rest and energy, from the forces of the last step.
 struct Diagnostics {
-  double kinetic_energy = 0;          ///< J
+  double kinetic_energy = 0;          ///< J; in a cell that flows, of the motion against the flow
   double elastic_energy = 0;          ///< J
   double mean_contact_force = 0;      ///< N
   double mean_unbalanced_force = 0;   ///< N, mean resultant on the free grains
   double max_unbalanced_force = 0;    ///< N
   double unbalanced_force_ratio = 0;  ///< mean resultant / mean contact force
-  double max_overlap_ratio = 0;       ///< largest depth / smaller radius
-  double height = 0;                  ///< top of the highest free grain, m
-  int contacts = 0;                   ///< that carry force, with walls
+  /// Mean over the free grains that turn of |moment| / radius, over the mean contact force.
+  double unbalanced_moment_ratio = 0;
+  double max_overlap_ratio = 0;  ///< largest depth / smaller radius
+  double height = 0;             ///< top of the highest free grain, m
+  int contacts = 0;              ///< that carry force, with walls
   int sliding = 0;
-  int awake = 0;  ///< free grains that do not sleep
+  int awake = 0;                ///< free grains that do not sleep
+  double potential_energy = 0;  ///< J, of free grains in gravity; 0 at the origin
+  double wall_work = 0;         ///< J, done on the grains by walls that move, since the start
+  /// Done by the cell's flow since the start, J: the integral of V sigma : L, sigma as in
+  /// cell_stress.h, each step's power held for that step. With walls, gravity or an applied force
+  /// also what these take from motion with the flow.
+  double cell_work = 0;
+  double dissipated_energy = 0;  ///< J, lost in contacts; with EngineSettings::energy_balance, as
+  double damped_energy = 0;      ///< J, by background and local damping, and
+  double applied_work = 0;       ///< J, of the applied force
+
+  /// Constant to second order in the time step (dem/engine/energy_balance.h), to first order in a
+  /// cell that flows, J.
+  double energy_balance() const {
+    return kinetic_energy + elastic_energy + potential_energy + dissipated_energy + damped_energy -
+           wall_work - cell_work - applied_work;
+  }
 };
 
 /// What measure() says of the motion alone: read without looking at a contact.
 struct Motion {
-  double kinetic_energy = 0;  ///< J
+  double kinetic_energy = 0;  ///< J; in a cell that flows, of the motion against the flow
   int awake = 0;              ///< free grains that do not sleep
 };
 
@@ -73,13 +103,24 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Adds a grain and returns its id (0, 1, 2, ...). Radius and density must be positive.
+  /// Adds a grain and returns its id (0, 1, 2, ...). Radius and density (or mass) must be positive.
+  /// In a cell its place may be any image; velocities are of the laboratory's frame. Throws
+  /// std::invalid_argument when it is fixed in a cell that flows or too large for the cell.
   virtual std::int64_t add(const NewGrain& grain) = 0;
   /// `material`: "": the wall has the friction of `wall` and the law of each grain with its like;
   /// else one of EngineSettings::materials, and all is the pair's. Throws std::invalid_argument
   /// when nothing is known of a pair that can meet.
   virtual void add_wall(const Wall& wall, const std::string& material) = 0;
-  void add_wall(const Wall& wall) { add_wall(wall, ""); }
+  void add_wall(const Wall& wall) { add_wall(wall, wall.material); }
+  /// From now on, instead of any earlier motion; every grain wakes. `wall`: in the order of adding.
+  /// add_wall sets a wall with a velocity or angular velocity in motion, about its point. Throws
+  /// std::invalid_argument naming the wall: a servo without a target and the like (wall_motion.h);
+  /// step() throws it for a given speed of more than half the smallest radius a step.
+  virtual void set_wall_motion(int wall, const WallMotion& motion) = 0;
+  /// Of the wall with this name. Throws std::invalid_argument when there is none.
+  void set_wall_motion(const std::string& name, const WallMotion& motion);
+  /// Where they are, how they move, and the force of all grains on each in the last step.
+  virtual std::vector<Wall> walls() const = 0;
   /// Applies this force from now on instead of any earlier one.
   virtual void apply(const AppliedForce& force) = 0;
   /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
@@ -87,10 +128,19 @@ class Engine {
   /// From now on; every grain wakes.
   virtual void set_gravity(double gx, double gy, double gz) = 0;
   void set_gravity(double gx, double gy) { set_gravity(gx, gy, 0); }
+  /// The flow of the cell from now on, 1/s: its edges follow edges' = L edges, exactly for simple
+  /// shear and any L with L^2 = 0, to second order in the time step otherwise (moving_cell.h). Of
+  /// every grain the velocity against the flow stays; so no wave starts from the faces. In the
+  /// plane the third row and column are 0. Throws std::invalid_argument when the cell cannot flow
+  /// so, or some grain is fixed or may sleep.
+  virtual void set_velocity_gradient(const Eigen::Matrix3d& gradient) = 0;
+  /// The cell now; without periodic axes an empty one.
+  virtual Cell<3> cell() const = 0;
   /// Switches sleeping on or off; off wakes every grain.
   virtual void set_sleep(bool on) = 0;
   /// Without any threads' influence on the bits. Throws ComputationFailed when it diverges: a grain
-  /// moves by more than half its radius in a step, or its place, speed or spin is not finite.
+  /// moves by more than half its radius in a step (against the cell's flow), its place, speed or
+  /// spin is not finite, or the cell has become too small for its grains.
   virtual void step(long n) = 0;
 
   virtual double time() const = 0;
@@ -117,7 +167,8 @@ class Engine {
 ///  - the integrator's limit for the dashpots (viscous_limit): their fastest mode in a packing
 ///    decays at the law's viscous_rate(m). For Roul's law this is what makes Gear need steps of
 ///    5e-6 s where Verlet takes 5e-5.
-/// Of several laws the one with the smallest step counts.
+/// Resistance against rolling counts like another spring and dashpot (rolling.h). Of several laws
+/// the one with the smallest step counts.
 double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius = 0);
 
 /// What of a population of grains bounds the time step.
@@ -126,6 +177,8 @@ struct GrainExtremes {
   double steepest_edge = 0;  ///< edge_steepness (polygon.h) of the polygon with the largest
                              ///< steepness / sqrt(mass); 0: disks only
   double steep_mass = 0;     ///< its mass, kg
+  double widest_edge = 0;    ///< edge_width of the polygon with the largest width / sqrt(mass)
+  double wide_mass = 0;      ///< its mass, kg
   double least_radius = 0;   ///< m; for laws whose stiffness goes by it (hertz)
 };
 /// The same with polygons: two parallel edges of length e at arms a give the contact the stiffness
@@ -141,12 +194,25 @@ double stable_time_step(const EngineSettings& settings, const GrainExtremes& ext
 /// is reported.
 inline constexpr double kMostOfLimit = 2.5;
 
-/// Throws std::invalid_argument for settings out of range.
+/// Throws std::invalid_argument for settings out of range; resistance against rolling of polygons
+/// (their corners resist) or of grains that may sleep; twisting in the plane.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
+/// What make_engine says of rolling resistance and local damping, before there is a shape. Throws
+/// std::invalid_argument: with grains that may sleep, twisting in the plane, local damping out of
+/// range or with gear.
+void check_rolling(const EngineSettings& settings);
+/// Throw std::invalid_argument: the two do not go together.
+[[noreturn]] void refuse_sleep_with_rolling();
+[[noreturn]] void refuse_rolling_polygons();
 /// The same, to go on from a snapshot of the shape's dimension, whose grains are numbered 0, 1, 2,
-/// ...: its walls, grains with their velocities, and springs. Time begins at 0; the settings'
-/// gravity is replaced by the snapshot's. Materials are not in a snapshot: there may be one only.
-/// Throws std::invalid_argument when the snapshot is of another dimension or numbered otherwise.
+/// ...: its walls and grains with their materials, mass, moments and velocities (one that never
+/// turns goes on so), the contacts' springs, and the applied force as it is. A spring that another
+/// program did not tell (nan) is taken for the tangential force, which it is at rest. Time begins
+/// at 0; the settings' gravity and cell are replaced by the snapshot's. Walls go on at the velocity
+/// and angular velocity of that moment, about their points: a servo, a ramp or another centre is
+/// for set_wall_motion to give anew. What a snapshot does not hold is the settings': laws, time
+/// step, sleep; and background damping is off. Throws std::invalid_argument when the snapshot is of
+/// another dimension or numbered otherwise, or names a material that the settings do not have.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapshot& start);
 
 }  // namespace grainfield::dem

@@ -3,12 +3,17 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dem/computation_failed.h"
+#include "dem/engine/cell_checks.h"
 #include "dem/engine/engine.h"
 #include "dem/engine/report.h"
 #include "dem/engine/review.h"
@@ -19,13 +24,10 @@
 #include "dem/engine/world.h"
 #include "dem/engine/world_image.h"
 #include "dem/image/image.h"
+#include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
 
 namespace grainfield::dem {
-
-// A grain that moves further than this share of its radius in one step has diverged: a contact
-// would be crossed before it is seen.
-inline constexpr double kMaxMoveShare = 0.5;
 
 template <class Shape, class Law, class Integrator>
 class EngineLoop final : public Engine {
@@ -40,18 +42,26 @@ class EngineLoop final : public Engine {
         search_(world_, settings.skin, settings.threads),
         review_(world_, search_),
         sweep_(world_),
-        team_(settings.threads) {}
+        team_(settings.threads) {
+    check_rest_in_flow(world_.cell.flows(), false, settings.sleep.on);
+  }
 
   std::int64_t add(const NewGrain& g) override {
     auto& grains = world_.grains;
     const int i = grains.size();
     const int kind = material_index(materials_, "grain", g.material);
     world_.acting.add_grain(kind);
+    check_rest_in_flow(world_.cell.flows(), g.fixed, false);
+    const double radius = g.outline.empty() ? g.radius : circumradius_of(g.outline);
+    if (!holds(world_.cell, radius)) refuse_small_cell(world_.cell.shortest(), radius);
+    largest_ = std::max(largest_, radius);
     const Solid<dim> solid = grains.shapes.add({g.radius, g.outline});
     typename State::Body b;
     b.position = in_space<dim>({g.x, g.y, g.z});
     b.radius = solid.radius;
-    const Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
+    Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
+    if (g.mass > 0) inertia.mass = g.mass;
+    take_moments(g, inertia);
     if (!g.fixed) {
       b.velocity = in_space<dim>({g.vx, g.vy, g.vz});
       b.inverse_mass = 1 / inertia.mass;
@@ -65,6 +75,11 @@ class EngineLoop final : public Engine {
     grains.inertias.push_back(inertia);
     grains.ids.push_back(i);
     grains.kinds.push_back(static_cast<std::uint8_t>(kind));
+    if (world_.cell.is_periodic()) {
+      auto& image = grains.images.emplace_back();
+      std::copy_n(g.image.begin(), dim, image.begin());
+      grains.cell_work.push_back(0);
+    }
     world_.sleepers.add(b.position, memory.rotation, world_.steps, g.fixed && world_.sleep.on);
     grains.shapes.place(i, b, memory.rotation);
     world_.search_needed = true;
@@ -72,11 +87,46 @@ class EngineLoop final : public Engine {
   }
 
   void add_wall(const Wall& wall, const std::string& material) override {
+    check_wall(world_.cell.told(), wall, dim);
+    check_wall_motion(world_.cell.told(), wall, {wall.velocity, wall.angular_velocity});
     const int kind = material.empty() ? -1 : material_index(materials_, wall.name, material);
-    world_.acting.add_wall(kind, wall.friction);
-    world_.walls.add(wall);
+    if (State::Shape::outlines && wall.shape != "plane") {
+      throw std::invalid_argument(fmt::format(
+          "wall {}: shape: found \"{}\", allowed for polygons: plane", wall.name, wall.shape));
+    }
+    auto surface = surface_of<dim>(wall);
+    for (int slot = 0; slot < surface->slots(); ++slot) {
+      world_.acting.add_wall(kind, wall.friction);
+    }
+    Wall given = wall;
+    given.material = material;
+    world_.walls.add(given, std::move(surface));
     world_.search_needed = true;
+    if (!wall.velocity.isZero(0) || !wall.angular_velocity.isZero(0)) {
+      set_wall_motion(world_.walls.size() - 1, {wall.velocity, wall.angular_velocity});
+    }
   }
+  void set_wall_motion(int wall, const WallMotion& motion) override {
+    if (wall >= 0 && wall < world_.walls.size()) {
+      check_wall_motion(world_.cell.told(), world_.walls.placed(wall), motion);
+    }
+    world_.walls.set_motion(wall, motion, time());
+    const auto [force, torque] =
+        Report(world_).on_wall(wall, to_three(world_.walls.state(wall).centre));
+    world_.walls.feel(wall, in_space<dim>(force), turning_in_space<dim>(torque));
+    if (motion.servo) {
+      Report(world_).visit_contacts(
+          [&](int i, const auto& pair, const auto&, bool at_wall, const auto&) {
+            if (!at_wall || world_.walls.wall_of(pair.j) != wall) return;
+            world_.walls.add_force(wall, State::Vector::Zero(), zero<SpinOf<dim>>(),
+                                   stiffness_at(i, pair.j), world_.grains.inertias[i].mass);
+          });
+    }
+    speeds_checked_ = false;
+    world_.search_needed = true;
+    world_.wake_all();
+  }
+  std::vector<Wall> walls() const override { return Report(world_).walls(); }
   void apply(const AppliedForce& force) override {
     world_.around.applied = force;
     world_.wake_all();
@@ -86,24 +136,59 @@ class EngineLoop final : public Engine {
     world_.around.gravity = in_space<dim>({gx, gy, gz});
     world_.wake_all();
   }
+  void set_velocity_gradient(const Eigen::Matrix3d& gradient) override {
+    Cell<3> cell = world_.cell.told();
+    cell.velocity_gradient = gradient;
+    check_cell(cell, dim, world_.time_step);
+    const bool fixed = free_ < world_.grains.size();
+    check_rest_in_flow(!gradient.isZero(0), fixed, world_.sleep.on);
+    const bool flowed = world_.cell.flows();
+    const typename MovingCell<dim>::Matrix l = gradient.template topLeftCorner<dim, dim>();
+    for (auto& b : world_.grains.bodies) {
+      if (b.inverse_mass == 0) continue;
+      b.velocity += world_.cell.change_of_flow(l, b.position);
+    }
+    world_.cell.set_gradient(l);
+    // Margins are counted in another way with a flow than without; within a flow by the edges.
+    if (flowed != world_.cell.flows()) world_.search_needed = true;
+  }
+  Cell<3> cell() const override { return world_.cell.told(); }
   void set_sleep(bool on) override {
+    check_rest_in_flow(world_.cell.flows(), false, on);
+    if (on && world_.balance.on) {
+      throw std::invalid_argument("energy_balance: found grains that may sleep, allowed: none");
+    }
+    if (on && world_.rolling.on) refuse_sleep_with_rolling();
     world_.sleep.on = on;
     world_.wake_all();
   }
 
   void step(long n) override {
     if (n <= 0) return;
+    check_wall_speeds();
     if (world_.search_needed) search(false);
     const long start = world_.steps;
     sweep_.clear_moved();
     if (first_new_ < world_.grains.size()) start_new_grains();
+    watch_walls();
+    const bool flows = world_.cell.flows();
+    if (flows) world_.cell.look_ahead();
     team_.run([&](int rank) {
       sweep_.begin_block(rank);
       for (long s = 0; s < n; ++s) {
         team_.meet();
+        if (rank == 0) {
+          if (s > 0) feel_walls();
+          move_walls(start + s);
+        }
+        if (flows) {
+          if (rank == 0) world_.cell.advance();
+          team_.meet();
+        }
         if (!between_steps(rank, start + s)) return;
         sweep_.incoming(rank, world_.time_step);
         team_.meet();
+        if (rank == 0) watch_walls();
         const auto applied =
             world_.around.applied_at(static_cast<double>(start + s + 1) * world_.time_step);
         if (s + 1 < n) {
@@ -114,8 +199,10 @@ class EngineLoop final : public Engine {
       }
     });
     if (!diverged_) {
+      if (flows) world_.cell.finish();
+      feel_walls();
       world_.steps = start + n;
-      diverged_ = first_diverged() >= 0;  // a grain that only spins is not searched for
+      diverged_ = has_diverged();  // a grain that only spins is not searched for
     }
     if (diverged_) report_divergence();
   }
@@ -130,13 +217,35 @@ class EngineLoop final : public Engine {
 
   /// As frozen contacts without force: the next search hands their memories on.
   void remember(const std::vector<Contact>& contacts) override {
+    const std::vector<int> index = world_.grains.index();
+    std::int64_t last_i = -1, last_j = -1;
+    int again = 0;
     for (const Contact& c : contacts) {
       typename State::Frozen frozen;
-      frozen.key = c.j < 0 ? wall_key(c.i, static_cast<int>(-1 - c.j)) : pair_key(c.i, c.j);
+      int other = c.j < 0 ? 0 : index[c.j];
+      if (c.j < 0) {  // of several contacts with one wall each has a slot, in their order
+        const int wall = static_cast<int>(-1 - c.j);
+        again = c.i == last_i && c.j == last_j ? again + 1 : 0;
+        last_i = c.i;
+        last_j = c.j;
+        if (again >= world_.walls.slots_of(wall)) continue;  // facets of another program
+        other = world_.walls.first_slot(wall) + again;
+        frozen.key = wall_key(c.i, other);
+      } else {
+        frozen.key = pair_key(c.i, c.j);
+      }
+      last_i = c.i;
+      last_j = c.j;
       typename State::Memory memory;
       take_spring(c, memory.spring);
-      frozen.memory = seen_from(memory, c.j >= 0 && c.j < c.i);
+      Report(world_).take_up(index[c.i], other, c.j < 0, memory);
+      const bool turned = c.j >= 0 && c.j < c.i;
+      frozen.memory = seen_from(memory, turned);
       world_.sleepers.frozen.keep(frozen);
+      if (!world_.rolling.on) continue;
+      RollingMemory<dim> rolling;
+      take_rolling(c, rolling);
+      if (!rolling.empty()) world_.rolling.told.push_back({frozen.key, seen_from(rolling, turned)});
     }
     world_.search_needed = true;
   }
@@ -155,7 +264,9 @@ class EngineLoop final : public Engine {
     read_world(world_, search_, r);
     r.finish();
     for (const int kind : world_.grains.kinds) world_.acting.add_grain(kind);
+    for (const auto& b : world_.grains.bodies) largest_ = std::max(largest_, b.radius);
     sweep_.reset();
+    speeds_checked_ = false;
   }
 
  private:
@@ -165,7 +276,11 @@ class EngineLoop final : public Engine {
     world.acting = typename State::Acting(rules);
     world.integrator = integrator;
     world.sleep = settings.sleep;
+    world.balance.on = settings.energy_balance;
+    world.rolling.on = settings.resist_rolling();
+    world.local_damping = settings.local_damping;
     world.time_step = settings.time_step;
+    world.cell = MovingCell<dim>(settings.cell, settings.time_step);
     world.around.gravity =
         in_space<dim>({settings.gravity_x, settings.gravity_y, settings.gravity_z});
     return world;
@@ -176,18 +291,70 @@ class EngineLoop final : public Engine {
     sweep_.reset();
   }
 
+  // Walls: by one thread, while the grains stand still (move_walls, between the sweeps of two
+  // steps) or after they have asked for all that moves them (feel_walls).
+
+  void move_walls(long step) {
+    if (!world_.walls.any_driven()) return;
+    world_.walls.advance(static_cast<double>(step) * world_.time_step, world_.time_step);
+  }
+  /// Asks for a search before a wall's next step may take it out of its margin.
+  void watch_walls() {
+    if (world_.walls.any_driven() && world_.walls.leaves_margin(world_.time_step)) {
+      sweep_.ask_for_search();
+    }
+  }
+  /// What the grains have done to the walls in the step that has ended, in the list's order.
+  void feel_walls() {
+    auto& walls = world_.walls;
+    if (!walls.any_driven()) return;
+    const auto& contacts = world_.contacts;
+    walls.clear_forces();
+    for (int i = 0; i < contacts.walls.rows(); ++i) {
+      for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
+        const int slot = contacts.walls[k].j, wall = walls.wall_of(slot);
+        const auto& f = contacts.wall_forces[k];
+        if (!walls.is_driven(wall) || contacts.wall_normals[k].isZero(0)) continue;
+        const double stiffness = walls.state(wall).servo.on != 0 ? stiffness_at(i, slot) : 0;
+        walls.add_force(wall, -f.force, f.torque_j, stiffness, world_.grains.inertias[i].mass);
+      }
+    }
+    walls.finish_forces(world_.time_step);
+  }
+  /// By how much the force of a contact may answer a wall that moves by a metre in a step: the
+  /// law's stiffness, and a dashpot. The law tells the decay rate of six neighbours, each with half
+  /// a grain's effective mass; a wall is one, with all of it: c is at most a third of m rate.
+  double stiffness_at(int i, int slot) const {
+    const auto& law = world_.wall_rule(i, slot).law;
+    const double mass = world_.grains.inertias[i].mass, radius = world_.grains.bodies[i].radius;
+    return law.stiffness(radius) +
+           2.0 / 3 * mass * law.viscous_rate(mass, radius) / world_.time_step;
+  }
+  void check_wall_speeds() {
+    if (speeds_checked_ && checked_grains_ == world_.grains.size()) return;
+    speeds_checked_ = true;
+    checked_grains_ = world_.grains.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < world_.grains.size(); ++i) {
+      if (!world_.grains.is_fixed(i)) least = std::min(least, world_.grains.bodies[i].radius);
+    }
+    world_.walls.check_speeds(kMaxMoveShare * least, world_.time_step);
+  }
+
   /// By all threads, between two steps: the first one decides about sleep and search. False when
   /// the motion has diverged.
   bool between_steps(int rank, long step) {
     const bool review_due = world_.sleep.on && step > 0 && step % kReviewEvery == 0;
-    const bool search_due = sweep_.moved() || search_.skin().is_too_large(step);
+    const bool search_due =
+        sweep_.moved() || search_.skin().is_too_large(step) || cell_may_be_too_small();
     if (!search_due && !review_due) return true;
     team_.meet();  // all have read the flags
     if (rank == 0) {
       world_.steps = step;
-      diverged_ = first_diverged() >= 0;
+      diverged_ = has_diverged();
       if (!diverged_ && review_due) review_.run();
       if (!diverged_ && (search_due || world_.search_needed)) search(search_due);
+      if (!diverged_ && !holds(world_.cell, largest_)) diverged_ = true;
       sweep_.clear_moved();
     }
     team_.meet();
@@ -199,6 +366,9 @@ class EngineLoop final : public Engine {
   void start_new_grains() {
     const auto pairs = world_.contacts.pairs;
     const auto walls = world_.contacts.walls;
+    const auto wall_forces = world_.contacts.wall_forces;
+    const auto wall_normals = world_.contacts.wall_normals;
+    const auto rolling = world_.rolling;
     const auto applied =
         world_.around.applied_at(static_cast<double>(world_.steps) * world_.time_step);
     team_.run([&](int rank) {
@@ -208,14 +378,24 @@ class EngineLoop final : public Engine {
     });
     world_.contacts.pairs = pairs;
     world_.contacts.walls = walls;
+    world_.contacts.wall_forces = wall_forces;
+    world_.contacts.wall_normals = wall_normals;
+    world_.rolling = rolling;
     first_new_ = world_.grains.size();
   }
+
+  /// By the flow since the last search.
+  bool cell_may_be_too_small() const {
+    const auto& cell = world_.cell;
+    return cell.flows() && !(cell.shortest() * (1 - cell.strain()) >= kLeastCell * largest_);
+  }
+  bool has_diverged() const { return sweep_.crossed() || first_diverged() >= 0; }
 
   /// The first body that moves too far in a step or is nowhere; -1: none.
   int first_diverged() const {
     for (int i = 0; i < world_.awake; ++i) {
       const auto& b = world_.grains.bodies[i];
-      const double move = length_of(b.velocity) * world_.time_step;
+      const double move = length_of(world_.fluctuation(i)) * world_.time_step;
       if (!(move <= kMaxMoveShare * b.radius) || !is_finite(b)) return i;
     }
     return -1;
@@ -229,8 +409,16 @@ class EngineLoop final : public Engine {
   }
 
   [[noreturn]] void report_divergence() const {
+    if (!holds(world_.cell, largest_)) {
+      report_small_cell(world_.cell.shortest(), largest_, time(), steps());
+    }
     const int i = first_diverged();
-    if (i < 0) throw ComputationFailed("diverged");
+    if (i < 0) {
+      throw ComputationFailed(fmt::format(
+          "diverged at t = {:.6g} s (step {}): a wall goes through grains by more than half a "
+          "radius a step; lower its speed or motion.time_step (now {:.3g} s)",
+          time(), steps(), world_.time_step));
+    }
     std::string place;
     for (const double x : world_.margins[i].position) {
       place += fmt::format("{}{:.4g}", place.empty() ? "" : ", ", x);
@@ -246,7 +434,7 @@ class EngineLoop final : public Engine {
     throw ComputationFailed(fmt::format(
         "diverged at t = {:.6g} s (step {}): grain {} last seen near ({}) m at {:.3g} m/s moves "
         "more than half its radius in a step; lower motion.time_step (now {:.3g} s) or the load",
-        time(), steps(), world_.grains.ids[i], place, length_of(world_.grains.bodies[i].velocity),
+        time(), steps(), world_.grains.ids[i], place, length_of(world_.fluctuation(i)),
         world_.time_step));
   }
 
@@ -257,8 +445,11 @@ class EngineLoop final : public Engine {
   Sweep<State> sweep_;
   ThreadTeam team_;
   int free_ = 0;                // grains that are not fixed
+  double largest_ = 0;          // radius, m
   std::int64_t first_new_ = 0;  // ids from here on have not been started yet
   std::atomic<bool> diverged_{false};
+  bool speeds_checked_ = true;  // of the walls that move, with so many grains
+  int checked_grains_ = 0;
 };
 
 }  // namespace grainfield::dem

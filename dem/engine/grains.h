@@ -1,6 +1,7 @@
 // All that is kept by body: kinematics, inertia, shape, what the integrator remembers.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -22,6 +23,9 @@ struct Grains {
   std::vector<Inertia<dim>> inertias;
   std::vector<std::int64_t> ids;
   std::vector<std::uint8_t> kinds;  ///< material
+  // Empty without a cell:
+  std::vector<std::array<int, dim>> images;  ///< whole edges that a body has been carried back by
+  std::vector<double> cell_work;             ///< done by the cell's flow, J
   Shape shapes;
 
   int size() const { return static_cast<int>(bodies.size()); }
@@ -30,6 +34,7 @@ struct Grains {
   /// The first order.size() bodies in this order.
   void sort(const std::vector<int>& order) {
     const auto permute = [&order](auto& values) {
+      if (values.empty()) return;
       std::vector sorted(values.begin(),
                          values.begin() + static_cast<std::ptrdiff_t>(order.size()));
       for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
@@ -40,6 +45,8 @@ struct Grains {
     permute(inertias);
     permute(ids);
     permute(kinds);
+    permute(images);
+    permute(cell_work);
     shapes.sort(order);
   }
   void swap(int i, int j) {
@@ -48,6 +55,10 @@ struct Grains {
     std::swap(inertias[i], inertias[j]);
     std::swap(ids[i], ids[j]);
     std::swap(kinds[i], kinds[j]);
+    if (!images.empty()) {
+      std::swap(images[i], images[j]);
+      std::swap(cell_work[i], cell_work[j]);
+    }
     shapes.swap(i, j);
   }
   /// Where each id is.
@@ -64,10 +75,13 @@ struct Grains {
     each(self.inertias);
     each(self.ids);
     each(self.kinds);
+    each(self.images);
+    each(self.cell_work);
   }
   bool fits() const {
     return memory.size() == bodies.size() && inertias.size() == bodies.size() &&
-           ids.size() == bodies.size() && kinds.size() == bodies.size();
+           ids.size() == bodies.size() && kinds.size() == bodies.size() &&
+           cell_work.size() == images.size();
   }
 };
 

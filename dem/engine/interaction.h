@@ -1,6 +1,7 @@
 // What acts between two bodies, or a body and a wall: overlap, law, force.
 #pragma once
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "dem/laws/contact.h"
@@ -52,6 +53,8 @@ class Interaction {
   }
 
   int kinds() const { return rules_.count(); }
+  /// Its name; "" where there is one without a name.
+  std::string material(int kind) const { return rules_.name(kind); }
   const Rule& rule(int kind_i, int kind_j) const { return rules_.of(kind_i, kind_j); }
   const Rule& wall_rule(int kind, int wall) const {
     return wall_rules_[static_cast<std::size_t>(wall) * rules_.count() + kind];
@@ -62,11 +65,23 @@ class Interaction {
 
   bool overlap(const Shape& shapes, int i, const Body& a, int j, const Body& b, Feature& feature,
                Overlap& o) const {
-    return shapes.template overlap<Law::needs_area>(i, a, j, b, feature, o);
+    return shapes.template overlap<Law::measures>(i, a, j, b, feature, o);
+  }
+  /// With the image of j that is `shift` away; b is there already.
+  bool overlap_image(const Shape& shapes, int i, const Body& a, int j, const Body& b,
+                     const VectorOf<dim>& shift, Feature& feature, Overlap& o) const {
+    if constexpr (requires {
+                    shapes.template overlap_image<Law::measures>(i, a, j, b, shift, feature, o);
+                  }) {
+      return shapes.template overlap_image<Law::measures>(i, a, j, b, shift, feature, o);
+    } else {
+      static_assert(!Shape::outlines, "a shape with corners must have overlap_image");
+      return overlap(shapes, i, a, j, b, feature, o);
+    }
   }
   bool overlap(const Shape& shapes, int i, const Body& a, const Plane<dim>& wall,
                Overlap& o) const {
-    return shapes.template overlap_plane<Law::needs_area>(i, a, wall, o);
+    return shapes.template overlap_plane<Law::measures>(i, a, wall, o);
   }
 
   /// Force of bodies that overlap. The memory advances by dt, s; with dt = 0 it stays.
@@ -78,6 +93,15 @@ class Interaction {
     }
     const LawForce<dim> f = rule.law(o, motion, rule.friction, dt, memory);
     return forces_at<central>(o, f.normal, f.tangential);
+  }
+  /// Adds the moments against rolling and twisting (rolling.h) to such a force `f`, N m, and
+  /// returns that on a. The memory advances by dt, s.
+  static SpinOf<dim> roll(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
+                          double dt, RollingMemory<dim>& memory, ContactForce<dim>& f) {
+    const SpinOf<dim> moment = rule.rolling.moment(a, b, o, repulsion_of(f.force, o), dt, memory);
+    f.torque_i += moment;
+    f.torque_j -= moment;
+    return moment;
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -27,31 +28,45 @@ class Report {
   /// the last step.
   template <class Visit>
   void visit_contacts(Visit visit) const {
+    visit_listed([&](int i, int /*k*/, const Pair& pair, const Force& f, bool wall,
+                     const Overlap& o) { visit(i, pair, f, wall, o); });
+  }
+  /// The same with its place in the list behind the first grain; -1: it is frozen.
+  template <class Visit>
+  void visit_listed(Visit visit) const {
     const auto& contacts = world_.contacts;
     Overlap o;
     for (int i = 0; i < contacts.pairs.rows(); ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
         const Force& f = contacts.pair_forces[k];
         if (pushes(f) && overlap(i, contacts.pairs[k].j, false, o)) {
-          visit(i, contacts.pairs[k], f, false, o);
+          visit(i, k, contacts.pairs[k], f, false, o);
         }
       }
       for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
-        const Force& f = contacts.wall_forces[k];
-        if (pushes(f) && overlap(i, contacts.walls[k].j, true, o)) {
-          visit(i, contacts.walls[k], f, true, o);
+        const int slot = contacts.walls[k].j;
+        if (!world_.walls.is_plain(slot)) {
+          visit_wall(world_, i, world_.grains.bodies[i], k,
+                     [&](int, int at, const Overlap& overlap, const auto&, const auto&) {
+                       const Force& f = contacts.wall_forces[at];
+                       if (pushes(f)) visit(i, at, contacts.walls[at], f, true, overlap);
+                     });
+          k += world_.walls.slots_of(world_.walls.wall_of(slot)) - 1;
+          continue;
         }
+        const Force& f = contacts.wall_forces[k];
+        if (pushes(f) && overlap(i, slot, true, o)) visit(i, k, contacts.walls[k], f, true, o);
       }
     }
     if (world_.sleepers.frozen.empty()) return;
     const std::vector<int> index = world_.grains.index();
     for (const auto& frozen : world_.sleepers.frozen.sorted()) {
-      const int i = index[first_of(frozen.key)], wall = wall_of(frozen.key, world_.walls.size());
+      const int i = index[first_of(frozen.key)], wall = wall_of(frozen.key, world_.walls.slots());
       Pair pair;
       pair.memory = frozen.memory;
       pair.j = wall >= 0 ? wall : index[second_of(frozen.key)];
       if (pushes(frozen.force) && overlap(i, pair.j, wall >= 0, o)) {
-        visit(i, pair, frozen.force, wall >= 0, o);
+        visit(i, -1, pair, frozen.force, wall >= 0, o);
       }
     }
   }
@@ -60,39 +75,71 @@ class Report {
     Diagnostics d;
     const auto& bodies = world_.grains.bodies;
     std::vector<typename World::Vector> resultant(bodies.size(), World::Vector::Zero());
+    std::vector<SpinOf<dim>> moment(bodies.size(), zero<SpinOf<dim>>());
     double force_sum = 0;
-    visit_contacts([&](int i, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
+    visit_listed([&](int i, int k, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
       ++d.contacts;
       force_sum += length_of(f.force);
       d.elastic_energy += rule(i, pair, wall).law.energy(o, pair.memory);
+      if (world_.rolling.on)
+        d.elastic_energy += rule(i, pair, wall).rolling.energy(rolling(k, wall));
       const double radius =
           wall ? bodies[i].radius : std::min(bodies[i].radius, bodies[pair.j].radius);
       d.max_overlap_ratio = std::max(d.max_overlap_ratio, o.depth / radius);
       if (is_sliding(f, o, rule(i, pair, wall).friction)) ++d.sliding;
       resultant[i] += f.force;
-      if (!wall) resultant[pair.j] -= f.force;
+      moment[i] += f.torque_i;
+      if (wall) return;
+      resultant[pair.j] -= f.force;
+      moment[pair.j] += f.torque_j;
     });
+    if (world_.balance.on) {  // bodies that part faster than their spring follows store energy, too
+      const auto& list = world_.contacts;
+      for (int k = 0; k < list.pairs.size(); ++k) {
+        if (!pushes(list.pair_forces[k])) d.elastic_energy += world_.balance.pairs[k].stored;
+      }
+      for (int k = 0; k < list.walls.size(); ++k) {
+        if (!pushes(list.wall_forces[k])) d.elastic_energy += world_.balance.walls[k].stored;
+      }
+    }
+    d.dissipated_energy = world_.balance.lost_in_contacts();
+    for (const auto& account : world_.balance.outer) {
+      d.damped_energy += account.damped;
+      d.applied_work += account.work;
+    }
+    d.wall_work = world_.walls.work();
     d.height = -std::numeric_limits<double>::infinity();
     const typename World::Vector applied = world_.around.applied_at(world_.time());
-    int free = 0;
+    int free = 0, turning = 0;
+    double moments = 0;
     for (int i = 0; i < world_.grains.size(); ++i) {
       if (world_.grains.is_fixed(i)) continue;
       ++free;
+      typename World::Vector place = bodies[i].position;
+      if (world_.cell.is_periodic()) place += world_.cell.shift(world_.grains.images[i]);
+      d.potential_energy -= world_.weight(i).dot(place);
       typename World::Vector force = resultant[i] + world_.weight(i);
       if (i == world_.applied_index) force += applied;
       const double size = length_of(force);
       d.mean_unbalanced_force += size;
       d.max_unbalanced_force = std::max(d.max_unbalanced_force, size);
+      if (bodies[i].inverse_inertia > 0) {
+        ++turning;
+        moments += size_of(moment[i]) / bodies[i].radius;
+      }
       d.height = std::max(d.height, bodies[i].position[dim - 1] + bodies[i].radius);
     }
     if (free > 0) d.mean_unbalanced_force /= free;
     if (d.contacts > 0) d.mean_contact_force = force_sum / d.contacts;
-    d.unbalanced_force_ratio = d.mean_contact_force > 0
-                                   ? d.mean_unbalanced_force / d.mean_contact_force
-                                   : std::numeric_limits<double>::infinity();
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    const bool pushes = d.mean_contact_force > 0;
+    d.unbalanced_force_ratio = pushes ? d.mean_unbalanced_force / d.mean_contact_force : inf;
+    d.unbalanced_moment_ratio =
+        pushes ? moments / std::max(turning, 1) / d.mean_contact_force : inf;
     const Motion m = motion();
     d.kinetic_energy = m.kinetic_energy;
     d.awake = m.awake;
+    for (const double work : world_.grains.cell_work) d.cell_work += work;
     if (!std::isfinite(d.kinetic_energy) || !std::isfinite(d.elastic_energy)) {
       throw ComputationFailed(fmt::format(
           "the energy is not a finite number at t = {:.6g} s (step {}): kinetic {:g} J, elastic "
@@ -110,10 +157,38 @@ class Report {
       const auto& b = world_.grains.bodies[i];
       if (world_.grains.is_fixed(i)) continue;
       if (!world_.sleepers.is_asleep(i)) ++m.awake;
-      m.kinetic_energy += 0.5 * world_.grains.inertias[i].mass * b.velocity.squaredNorm() +
-                          turning_energy(b, world_.rotation(i), world_.grains.inertias[i]);
+      m.kinetic_energy +=
+          0.5 * world_.grains.inertias[i].mass * world_.fluctuation(i).squaredNorm() +
+          turning_energy(b, world_.rotation(i), world_.grains.inertias[i]);
     }
     return m;
+  }
+
+  /// Force of all grains on a wall in the last step, and its torque about a place.
+  std::pair<Vec3, Vec3> on_wall(int wall, const Vec3& about) const {
+    Vec3 force(0, 0, 0), torque(0, 0, 0);
+    visit_contacts([&](int i, const Pair& pair, const Force& f, bool at_wall, const Overlap& o) {
+      if (!at_wall || world_.walls.wall_of(pair.j) != wall) return;
+      const Vec3 on_it = -to_three(f.force);
+      force += on_it;
+      torque += torque_of(Vec3(contact_point(i, o) - about), on_it) + rolling_on_wall(f, o);
+    });
+    return {force, torque};
+  }
+
+  /// Where they are, how they move, and the forces on them.
+  std::vector<Wall> walls() const {
+    std::vector<Wall> walls;
+    for (int w = 0; w < world_.walls.size(); ++w) walls.push_back(world_.walls.placed(w));
+    visit_contacts([&](int i, const Pair& pair, const Force& f, bool at_wall, const Overlap& o) {
+      if (!at_wall) return;
+      Wall& wall = walls[world_.walls.wall_of(pair.j)];
+      const Vec3 on_it = -to_three(f.force);
+      wall.force += on_it;
+      wall.torque +=
+          torque_of(Vec3(contact_point(i, o) - wall.point), on_it) + rolling_on_wall(f, o);
+    });
+    return walls;
   }
 
   Snapshot snapshot() const {
@@ -121,7 +196,8 @@ class Report {
     s.dim = dim;
     s.time = world_.time();
     s.gravity = to_three(world_.around.gravity);
-    s.walls = world_.walls.all();
+    s.walls = walls();
+    s.cell = world_.cell.told();
     s.grains.resize(world_.grains.bodies.size());
     for (int i = 0; i < world_.grains.size(); ++i) {
       Grain& g = s.grains[world_.grains.ids[i]];  // ids are 0..n-1
@@ -132,10 +208,12 @@ class Report {
       s.loaded_grain = world_.around.applied.id;
       s.applied_force = to_three(world_.around.applied_at(world_.time()));
     }
-    visit_contacts([&](int i, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
-      s.contacts.push_back(contact(i, pair, f, wall, o));
+    visit_listed([&](int i, int k, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
+      const RollingMemory<dim> memory = world_.rolling.on ? rolling(k, wall) : RollingMemory<dim>{};
+      s.contacts.push_back(contact(i, pair, f, wall, o, memory));
     });
-    std::sort(s.contacts.begin(), s.contacts.end(), [](const Contact& a, const Contact& b) {
+    // Stable: several contacts with one wall stay in their order, the nearest first.
+    std::stable_sort(s.contacts.begin(), s.contacts.end(), [](const Contact& a, const Contact& b) {
       return a.i != b.i ? a.i < b.i : a.j < b.j;
     });
     s.attributes["integrator"] = world_.integrator;
@@ -144,17 +222,56 @@ class Report {
     return s;
   }
 
+  /// What the law remembers of a contact beside its spring, from the overlap as it is.
+  void take_up(int i, int j, bool wall, typename World::Memory& memory) const {
+    if constexpr (requires(Overlap o) { World::Law::take_up(o, memory); }) {
+      Overlap o;
+      if (overlap(i, j, wall, o)) World::Law::take_up(o, memory);
+    }
+  }
+
  private:
   static bool pushes(const Force& f) { return !f.force.isZero(0); }
 
+  /// What contact k of a list remembers of rolling; none of them is frozen (make_engine).
+  const RollingMemory<dim>& rolling(int k, bool wall) const {
+    return wall ? world_.rolling.walls[k] : world_.rolling.pairs[k];
+  }
+  /// The moment against rolling that a grain's contact puts on a wall, N m.
+  Vec3 rolling_on_wall(const Force& f, const Overlap& o) const {
+    if (!world_.rolling.on) return {0, 0, 0};
+    const Force without =
+        forces_at<World::Acting::central>(o, repulsion_of(f.force, o), tangential_of(f.force, o));
+    return turning_to_three(SpinOf<dim>(without.torque_i - f.torque_i));
+  }
+
+  Vec3 contact_point(int i, const Overlap& o) const {
+    return to_three(point_at<World::Acting::central>(world_.grains.bodies[i], o));
+  }
+
+  /// `j`: of a wall the slot, or, where it has several, the rank of the contact behind the first.
   bool overlap(int i, int j, bool wall, Overlap& o) const {
     const auto& grains = world_.grains;
+    if (wall && !world_.walls.is_plain(j)) {
+      const int w = world_.walls.wall_of(j), rank = j - world_.walls.first_slot(w);
+      Patch<dim> patches[kMostPatches];
+      const auto& b = grains.bodies[i];
+      if (world_.walls.touching(w, b.position, b.radius, patches) <= rank) return false;
+      return world_.overlap_patch(i, b, patches[rank], o);
+    }
     if (wall) {
       return world_.acting.overlap(grains.shapes, i, grains.bodies[i], world_.walls.plane(j), o);
     }
     typename World::Shape::Feature feature;
-    return world_.acting.overlap(grains.shapes, i, grains.bodies[i], j, grains.bodies[j], feature,
-                                 o);
+    const PairImage image = image_at(i, j);
+    const typename World::Body other = world_.image_of(grains.bodies[j], image);
+    return world_.overlap(i, grains.bodies[i], j, other, image, feature, o);
+  }
+
+  /// Which image of grain j touches grain i: the nearest, because no cell is so small that two do.
+  PairImage image_at(int i, int j) const {
+    const auto& bodies = world_.grains.bodies;
+    return world_.cell.nearest(bodies[i].position, bodies[j].position);
   }
 
   const auto& rule(int i, const Pair& pair, bool wall) const {
@@ -175,28 +292,57 @@ class Report {
     g.mass = inertia.mass;
     g.volume = inertia.volume;
     g.fixed = world_.grains.is_fixed(i);
+    g.rotates = g.fixed || b.inverse_inertia != 0;
+    g.material = world_.acting.material(world_.grains.kinds[i]);
     tell_turning(b, world_.rotation(i), inertia, g);
     g.outline = world_.grains.shapes.outline(i);
+    if (!world_.cell.is_periodic()) return;
+    // Since the last search it may have gone out of the cell.
+    const auto home = world_.cell.home(b.position);
+    g.position -= to_three(world_.cell.shift(home));
+    g.velocity -= to_three(world_.cell.drift(home));
+    for (int a = 0; a < dim; ++a) g.image[a] = world_.grains.images[i][a] + home[a];
   }
 
-  Contact contact(int i, const Pair& pair, const Force& f, bool wall, const Overlap& o) const {
+  /// The contact of body i with the image of body j, as of the copies within the cell, seen from
+  /// the one that is named first.
+  void fill_image(Contact& c, int i, int j, bool turned) const {
+    const auto& cell = world_.cell;
+    const auto& bodies = world_.grains.bodies;
+    const PairImage n = image_at(i, j);
+    const auto home_i = cell.home(bodies[i].position), home_j = cell.home(bodies[j].position);
+    for (int a = 0; a < dim; ++a) {
+      c.image[a] = turned ? -n[a] - home_j[a] + home_i[a] : n[a] + home_j[a] - home_i[a];
+    }
+    c.point -= to_three(turned ? typename World::Vector(cell.shift(n) + cell.shift(home_j))
+                               : cell.shift(home_i));
+  }
+
+  Contact contact(int i, const Pair& pair, const Force& f, bool wall, const Overlap& o,
+                  const RollingMemory<dim>& rolling) const {
     const auto& ids = world_.grains.ids;
     Contact c;
     c.i = ids[i];
-    c.j = wall ? -1 - pair.j : ids[pair.j];
-    c.point = to_three(point_at<World::Acting::central>(world_.grains.bodies[i], o));
+    c.j = wall ? -1 - world_.walls.wall_of(pair.j) : ids[pair.j];
+    c.point = contact_point(i, o);
     c.normal = to_three(normal_of(o));
     c.force = to_three(f.force);
     c.normal_force = repulsion_of(f.force, o);
     c.tangential_force = signed_size_of(tangential_of(f.force, o));
     c.friction = rule(i, pair, wall).friction;
     c.sliding = is_sliding(f, o, c.friction);
+    tell_rolling(rolling, c);
     const bool turned = !wall && c.j < c.i;
     tell_spring(seen_from(pair.memory, turned).spring, c);
     if (turned) {
       std::swap(c.i, c.j);
       c.normal = -c.normal;
       c.force = -c.force;
+    }
+    if (wall) {
+      c.point -= to_three(world_.cell.shift(world_.cell.home(world_.grains.bodies[i].position)));
+    } else if (world_.cell.is_periodic()) {
+      fill_image(c, i, pair.j, turned);
     }
     return c;
   }

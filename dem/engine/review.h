@@ -7,14 +7,16 @@
 //          wake_reach d v / sqrt(g d) of a grain that comes near sleepers (has one among its
 //          candidate pairs) at such a speed v: the grains on which it falls must give way, and what
 //          they pass on moves those behind;
+//          A wall that moves wakes what it will touch before the next review.
 //   sleep  a grain that has moved and turned by less than quiet_move of its diameter during
 //          quiet_time, when its contacts' forces at zero velocity balance to quiet_force.
-// A contact between two sleepers, or of a sleeper with a wall, is frozen: it keeps its memory and
-// its force at zero velocity until one of them wakes.
+// A contact between two sleepers, or of a sleeper with a wall at rest, is frozen: it keeps its
+// memory and its force at zero velocity until one of them wakes.
 #pragma once
 #include <cmath>
 #include <vector>
 
+#include "dem/engine/flatten.h"
 #include "dem/engine/search.h"
 #include "dem/engine/world.h"
 
@@ -22,6 +24,9 @@ namespace grainfield::dem {
 
 // Sleeping and waking are decided every so many steps.
 inline constexpr long kReviewEvery = 50;
+// A moving wall wakes what it comes near: within this share of a radius, and its way until the next
+// review.
+inline constexpr double kNearWall = 0.1;
 
 template <class World>
 class Review {
@@ -68,14 +73,36 @@ class Review {
       }
     }
     world_.gather_touches();
+    const bool driven = world_.walls.any_driven();
     for (int j = world_.awake; j < world_.grains.size(); ++j) {
       if (!world_.grains.is_fixed(j) &&
           world_.sleepers.is_unbalanced(j, bodies[j].radius, kReviewEvery, sleep)) {
         wake_up(j);
       }
+      if (driven && is_reached_by_wall(j)) wake_up(j);
       world_.sleepers.forget_touches(j);
     }
     return any;
+  }
+
+  /// Near a wall that moves: what it does to a sleeper would go unnoticed.
+  bool is_at_driven_wall(int i) const {
+    const auto& walls = world_.contacts.walls;
+    if (!world_.walls.any_driven()) return false;
+    for (int k = walls.first(i); k < walls.last(i); ++k) {
+      if (world_.walls.is_driven(world_.walls.wall_of(walls[k].j))) return true;
+    }
+    return false;
+  }
+  /// A wall that moves may touch sleeper j before the next review.
+  bool is_reached_by_wall(int j) const {
+    const auto& b = world_.grains.bodies[j];
+    for (int w = 0; w < world_.walls.size(); ++w) {
+      if (!world_.walls.is_driven(w)) continue;
+      const double way = world_.walls.top_speed(w, b.position) * kReviewEvery * world_.time_step;
+      if (world_.walls.is_near(w, b.position, b.radius * (1 + kNearWall) + way)) return true;
+    }
+    return false;
   }
 
   bool has_sleepers_near(int i) const {
@@ -89,7 +116,7 @@ class Review {
   /// visit(i, j or wall, is a wall, force, memory) for every contact of the awake in which one of
   /// the marked grains takes part, with the force that it would have at zero velocity.
   template <class Visit>
-  [[gnu::flatten]] void visit_at_rest(const std::vector<unsigned char>& marked, Visit visit) {
+  GRAINFIELD_FLATTEN void visit_at_rest(const std::vector<unsigned char>& marked, Visit visit) {
     const auto& acting = world_.acting;
     const auto& shapes = world_.grains.shapes;
     auto& contacts = world_.contacts;
@@ -104,8 +131,14 @@ class Review {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
         auto& pair = contacts.pairs[k];
         if (!marked[i] && !marked[pair.j]) continue;
-        const auto a = at_rest(i), b = at_rest(pair.j);
-        if (!acting.overlap(shapes, i, a, pair.j, b, pair.feature, o)) continue;
+        const auto a = at_rest(i);
+        auto b = at_rest(pair.j);
+        PairImage image{};
+        if (world_.cell.is_periodic()) {
+          image = contacts.images[k];
+          b.position += world_.cell.shift(image);
+        }
+        if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) continue;
         Memory memory = pair.memory;
         const ContactForce<dim> f = acting.force(world_.pair_rule(i, pair.j), a, b, o, 0, memory);
         visit(i, pair.j, false, f, memory);
@@ -114,6 +147,17 @@ class Review {
       const auto a = at_rest(i);
       for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
         const int w = contacts.walls[k].j;
+        if (!world_.walls.is_plain(w)) {
+          visit_wall(world_, i, a, k,
+                     [&](int rank, int slot, const auto& overlap, const auto& wall, const auto&) {
+                       Memory memory = contacts.walls[slot].memory;
+                       const ContactForce<dim> f =
+                           acting.force(world_.wall_rule(i, w), a, wall, overlap, 0, memory);
+                       visit(i, w + rank, true, f, memory);
+                     });
+          k += world_.walls.slots_of(world_.walls.wall_of(w)) - 1;
+          continue;
+        }
         if (!acting.overlap(shapes, i, a, world_.walls.plane(w), o)) continue;
         Memory memory = contacts.walls[k].memory;
         const ContactForce<dim> f =
@@ -131,7 +175,8 @@ class Review {
       const long quiet = world_.sleepers.quiet_steps(i, b.position, world_.rotation(i), b.radius,
                                                      world_.steps, world_.sleep);
       if (quiet < 0 || static_cast<double>(quiet) * world_.time_step < world_.sleep.quiet_time ||
-          b.inverse_mass == 0 || i == world_.applied_index) {
+          b.inverse_mass == 0 || i == world_.applied_index || is_at_driven_wall(i) ||
+          (world_.walls.any_driven() && is_reached_by_wall(i))) {
         continue;
       }
       marked[i] = 1;

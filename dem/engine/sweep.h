@@ -1,14 +1,22 @@
 // One step: forces of the pairs in a fixed order, then the motion of the grains (see engine.h for
 // the algorithm).
 #pragma once
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "dem/engine/flatten.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
+#include "dem/motion/local_damping.h"
 
 namespace grainfield::dem {
+
+// A grain that moves further than this share of its radius in one step, or a wall that moves so far
+// through one, has diverged: a contact would be crossed before it is seen.
+inline constexpr double kMaxMoveShare = 0.5;
 
 enum class SweepKind {
   start,    ///< only the acceleration of new grains
@@ -23,7 +31,13 @@ class Sweep {
   using Force = ContactForce<dim>;
   using Vector = typename World::Vector;
 
-  explicit Sweep(World& world) : world_(world), integrator_(world.time_step) {}
+  explicit Sweep(World& world)
+      : world_(world),
+        integrator_(world.time_step),
+        books_(world.balance.on),
+        rolls_(world.rolling.on),
+        aside_(books_ || rolls_),
+        local_damping_(world.local_damping) {}
 
   /// After a search: nothing has been added up yet.
   void reset() { sums_.assign(world_.grains.bodies.size(), Sum{}); }
@@ -32,22 +46,35 @@ class Sweep {
   bool moved() const { return moved_.load(std::memory_order_relaxed); }
   void clear_moved() { moved_ = false; }
 
+  /// Before the next step there has to be a search: for a wall that leaves its margin.
+  void ask_for_search() { moved_.store(true, std::memory_order_relaxed); }
+  /// Some wall goes through a grain by more than half its radius a step.
+  bool crossed() const { return crossed_.load(std::memory_order_relaxed); }
+
   /// Begins a step for all grains of a thread's block.
-  [[gnu::flatten]] void begin_block(int rank) {
+  GRAINFIELD_FLATTEN void begin_block(int rank) {
     bool moved = false;
+    const bool flows = world_.cell.flows();
     const Blocks& blocks = world_.contacts.blocks;
     for (int i = blocks.first(rank); i < blocks.last(rank); ++i) {
-      if (world_.grains.bodies[i].inverse_mass != 0) begin(i, moved);
+      if (world_.grains.bodies[i].inverse_mass == 0) continue;
+      if (flows) {
+        moved |= begin_in_flow(i);
+      } else {
+        begin(i, moved);
+      }
     }
     if (moved) moved_.store(true, std::memory_order_relaxed);
   }
 
   /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
   /// their second grain, as they do when one thread sweeps all.
-  [[gnu::flatten]] void incoming(int rank, double dt) {
+  GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
+    const bool periodic = world_.cell.is_periodic();
     for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
       Force& f = world_.contacts.pair_forces[k];
-      if (!pair_force(i, k, dt, f)) {
+      const bool across = periodic && is_image(world_.contacts.images[k]);
+      if (!(across ? pair_force_across(i, k, dt, f) : pair_force(i, k, dt, f))) {
         f = Force{};
         continue;
       }
@@ -60,69 +87,135 @@ class Sweep {
   /// The sweep over a block: grain i is complete once its own pairs (i, j > i) are done, because
   /// those with j < i were done at j; so it moves at once and no later pair needs its old place.
   /// `applied`: the applied force. `first_new`: with SweepKind::start, ids from here on are new.
+  template <SweepKind kind>
+  void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
+    if (world_.cell.is_periodic()) {
+      sweep<kind, true>(rank, applied, dt, first_new);
+    } else {
+      sweep<kind, false>(rank, applied, dt, first_new);
+    }
+  }
+
+ private:
+  using Sum = ForceSum<dim>;
+
   /// Flattened: an overlap, a motion or a force that goes through memory to a function waits for
   /// its stores (a third of the time per step of 1,000 disks). Also begin_block and incoming, so
-  /// that all of a step is compiled here, with one order of every sum.
-  template <SweepKind kind>
-  [[gnu::flatten]] void run(int rank, const Vector& applied, double dt,
-                            std::int64_t first_new = 0) {
+  /// that all of a step is compiled here, with one order of every sum. `in_cell`: pairs may cross
+  /// and space may flow; the loop without knows nothing of it, which is worth 7 % to it.
+  template <SweepKind kind, bool in_cell>
+  GRAINFIELD_FLATTEN void sweep(int rank, const Vector& applied, double dt,
+                                std::int64_t first_new) {
     auto& grains = world_.grains;
     auto& contacts = world_.contacts;
     auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
-    const int awake = world_.awake;
+    const bool flows = in_cell && world_.cell.flows();
     bool moved = false;
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
       Vector force = sums_[i].force;
       SpinOf<dim> torque = sums_[i].torque;
       sums_[i] = Sum{};
-      const int end = pairs.last(i);
-      for (int k = pairs.first(i); k < end; ++k) {
-        const int j = pairs[k].j;
-        const int later = pairs[k + kAhead].j;
-        __builtin_prefetch(&grains.bodies[later], 1);
-        __builtin_prefetch(&sums_[later], 1);
-        Force f;
-        if (j >= last && j < awake) {
-          f = contacts.pair_forces[k];  // the block of j has evaluated it
-        } else {
-          const bool touches = pair_force(i, k, dt, f);
-          if constexpr (kind == SweepKind::last) contacts.pair_forces[k] = f;
-          if (!touches) continue;
-          if (j < awake) {
-            sums_[j].force -= f.force;
-            sums_[j].torque += f.torque_j;
-          } else if constexpr (kind != SweepKind::start) {
-            // A sleeper, or fixed: it only remembers what it feels.
-            Sum& felt = contacts.felt[k];
-            felt.force += f.force;
-            felt.torque += f.torque_j;
-            felt.press += sum_of_sizes(f.force);
-          }
-        }
-        force += f.force;
-        torque += f.torque_i;
+      const int end = in_cell ? first_across(i) : pairs.last(i);
+      sum_pairs<kind>(
+          pairs.first(i), end, last, [&](int k, Force& f) { return pair_force(i, k, dt, f); },
+          force, torque);
+      if (in_cell && end < pairs.last(i)) {
+        const Force across = sum_across<kind>(i, last, dt);
+        force += across.force;
+        torque += across.torque_i;
       }
       auto& b = grains.bodies[i];
       if (b.inverse_mass == 0) continue;
       walls<kind>(i, dt, force, torque);
       if (i == world_.applied_index) force += applied;
+      Damping damping;
+      if (local_damping_ > 0) [[unlikely]] {
+        damping = damping_of(i, force, torque);
+        force += damping.force;
+        torque += damping.torque;
+      }
+      if constexpr (kind != SweepKind::start) {
+        if (books_) [[unlikely]]
+          record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping,
+                       dt);
+      }
       const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
       if constexpr (kind == SweepKind::start) {
-        if (grains.ids[i] >= first_new) {
-          integrator_.start(b, grains.memory[i], grains.inertias[i], load);
-        }
+        if (grains.ids[i] >= first_new) start(i, load);
       } else {
-        integrator_.end(b, grains.memory[i], grains.inertias[i], load);
-        if constexpr (kind == SweepKind::move_on) begin(i, moved);
+        if (flows) {
+          end_in_flow(i, load);
+        } else {
+          integrator_.end(b, grains.memory[i], grains.inertias[i], load);
+        }
+        if constexpr (kind == SweepKind::move_on) {
+          if (flows) {
+            moved |= begin_in_flow(i);
+          } else {
+            begin(i, moved);
+          }
+        } else if constexpr (World::Shape::outlines && World::Integrator::end_moves) {
+          grains.shapes.place(i, b, grains.memory[i].rotation);
+        }
       }
     }
     if (moved) moved_.store(true, std::memory_order_relaxed);
   }
 
- private:
-  using Sum = ForceSum<dim>;
+  /// The pairs [first, end), of one row. `last`: the end of the block. evaluate(pair, force): false
+  /// when the two do not touch.
+  template <SweepKind kind, class Evaluate>
+  void sum_pairs(int first, int end, int last, Evaluate evaluate, Vector& force,
+                 SpinOf<dim>& torque) {
+    auto& contacts = world_.contacts;
+    const auto& pairs = contacts.pairs;
+    const int awake = world_.awake;
+    for (int k = first; k < end; ++k) {
+      const int j = pairs[k].j;
+      const int later = pairs[k + kAhead].j;
+      __builtin_prefetch(&world_.grains.bodies[later], 1);
+      __builtin_prefetch(&sums_[later], 1);
+      Force f;
+      if (j >= last && j < awake) {
+        f = contacts.pair_forces[k];  // the block of j has evaluated it
+      } else {
+        const bool touches = evaluate(k, f);
+        if constexpr (kind == SweepKind::last) contacts.pair_forces[k] = f;
+        if (!touches) continue;
+        if (j < awake) {
+          sums_[j].force -= f.force;
+          sums_[j].torque += f.torque_j;
+        } else if constexpr (kind != SweepKind::start) {
+          // A sleeper, or fixed: it only remembers what it feels.
+          Sum& felt = contacts.felt[k];
+          felt.force += f.force;
+          felt.torque += f.torque_j;
+          felt.press += sum_of_sizes(f.force);
+        }
+      }
+      force += f.force;
+      torque += f.torque_i;
+    }
+  }
+
+  /// The first pair of row i whose second grain is an image; these come last in a row.
+  int first_across(int i) const {
+    const auto& contacts = world_.contacts;
+    int k = contacts.pairs.last(i);
+    while (k > contacts.pairs.first(i) && is_image(contacts.images[k - 1])) --k;
+    return k;
+  }
+  /// What those add up to on grain i. Not in line: they are few.
+  template <SweepKind kind>
+  [[gnu::noinline]] GRAINFIELD_FLATTEN Force sum_across(int i, int last, double dt) {
+    Force sum;
+    sum_pairs<kind>(
+        first_across(i), world_.contacts.pairs.last(i), last,
+        [&](int k, Force& f) { return pair_force_across(i, k, dt, f); }, sum.force, sum.torque_i);
+    return sum;
+  }
 
   void begin(int i, bool& moved) {
     auto& grains = world_.grains;
@@ -133,10 +226,56 @@ class Sweep {
     if constexpr (outlines) grains.shapes.place(i, b, memory.rotation);
     moved |= world_.margins[i].template is_left<outlines>(b.position, memory.rotation);
   }
+  /// True when the grain may have left its margin.
+  [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_in_flow(int i) {
+    auto& grains = world_.grains;
+    const auto& cell = world_.cell;
+    auto& b = grains.bodies[i];
+    auto& memory = grains.memory[i];
+    b.velocity += cell.kick(b.position);
+    integrator_.begin(b, memory, grains.inertias[i]);
+    constexpr bool outlines = World::Shape::outlines;
+    if constexpr (outlines) grains.shapes.place(i, b, memory.rotation);
+    const auto& margin = world_.margins[i];
+    return margin.template is_left_in_flow<outlines>(
+        b.position, memory.rotation, cell.carried(margin.position), cell.strain(), b.radius);
+  }
+
+  /// With the drag against the flow, the rest of the acceleration that goes with the flow, and the
+  /// flow's work on the grain:
+  ///   d/dt (kinetic energy of the fluctuations u + elastic energy)
+  ///     = sum over contacts f . G l - sum over grains m u . G u,
+  /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
+  /// that cross by edges n (pair_force_across).
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load) {
+    auto& grains = world_.grains;
+    const auto& cell = world_.cell;
+    auto& b = grains.bodies[i];
+    load.gravity += load.drag * cell.flow_at(b.position);
+    integrator_.end(b, grains.memory[i], grains.inertias[i], load);
+    // The edges' speed lacks its second half kick too, so that u is that of every image.
+    const Vector flow = cell.flow_at(b.position), u = b.velocity - flow;
+    b.velocity += cell.kick(b.position);
+    const Vector force = load.force + world_.weight(i);
+    grains.cell_work[i] -=
+        world_.time_step * (force.dot(flow) + grains.inertias[i].mass * u.dot(cell.flow_of(u)) +
+                            world_.weight(i).dot(cell.drift(grains.images[i])));
+  }
+  void start(int i, Load<dim> load) {
+    auto& grains = world_.grains;
+    auto& b = grains.bodies[i];
+    load.gravity += load.drag * world_.cell.flow_at(b.position);
+    integrator_.start(b, grains.memory[i], grains.inertias[i], load);
+  }
 
   /// Force of pair k between grain i and its second one; 0 and an empty memory when they do not
   /// touch.
   bool pair_force(int i, int k, double dt, Force& force) {
+    if (aside_) [[unlikely]] {
+      const Evaluated r = pair_aside(i, k, dt);
+      force = r.force;
+      return r.touches;
+    }
     auto& pair = world_.contacts.pairs[k];
     const auto& grains = world_.grains;
     const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
@@ -149,6 +288,119 @@ class Sweep {
     return true;
   }
 
+  /// The same with an image of the second grain. By the thread that has the second grain's block,
+  /// which therefore keeps the flow's work.
+  [[gnu::noinline]] GRAINFIELD_FLATTEN bool pair_force_across(int i, int k, double dt,
+                                                              Force& force) {
+    auto& pair = world_.contacts.pairs[k];
+    auto& grains = world_.grains;
+    const PairImage image = world_.contacts.images[k];
+    const auto& a = grains.bodies[i];
+    const typename World::Body b = world_.image_of(grains.bodies[pair.j], image);
+    typename World::Overlap o;
+    const bool balance = world_.balance.on && dt > 0;
+    if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) {
+      pair.memory = {};
+      if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
+      if (balance) world_.balance.pairs[k].add({}, 0, a, b, dt);
+      return false;
+    }
+    const auto& rule = world_.pair_rule(i, pair.j);
+    force = world_.acting.force(rule, a, b, o, dt, pair.memory);
+    double rolling = 0;
+    if (rolls_) [[unlikely]] {
+      roll(rule, a, b, o, dt, world_.rolling.pairs[k], force);
+      rolling = rule.rolling.energy(world_.rolling.pairs[k]);
+    }
+    if (balance) {
+      world_.balance.pairs[k].add(force, rule.law.energy(o, pair.memory) + rolling, a, b, dt);
+    } else if (books_) {
+      world_.balance.pairs[k].begin(force, rule.law.energy(o, pair.memory) + rolling);
+    }
+    if (world_.cell.flows()) {
+      grains.cell_work[pair.j] += dt * force.force.dot(world_.cell.drift(image));
+    }
+    return true;
+  }
+
+  struct Evaluated {
+    Force force;
+    bool touches = false;
+  };
+  // With an energy balance or resistance against rolling the same is done out of line: nothing of
+  // it is in the step loop, and nothing that the loop keeps in registers has an address there.
+  [[gnu::noinline]] Evaluated pair_aside(int i, int k, double dt) {
+    auto& pair = world_.contacts.pairs[k];
+    const auto& grains = world_.grains;
+    const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
+    typename World::Overlap o;
+    Evaluated r;
+    double stored = 0;
+    r.touches = world_.acting.overlap(grains.shapes, i, a, pair.j, b, pair.feature, o);
+    if (r.touches) {
+      const auto& rule = world_.pair_rule(i, pair.j);
+      r.force = world_.acting.force(rule, a, b, o, dt, pair.memory);
+      if (books_) stored = rule.law.energy(o, pair.memory);
+      if (rolls_) {
+        auto& memory = world_.rolling.pairs[k];
+        roll(rule, a, b, o, dt, memory, r.force);
+        stored += rule.rolling.energy(memory);
+      }
+    } else {
+      pair.memory = {};
+      if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
+    }
+    if (!books_) return r;
+    auto& account = world_.balance.pairs[k];
+    if (dt > 0) {
+      account.add(r.force, stored, a, b, dt);
+    } else if (r.touches) {
+      account.begin(r.force, stored);
+    }
+    return r;
+  }
+  /// Moments against rolling and twisting, added to a contact's force; that on the first body.
+  SpinOf<dim> roll(const typename World::Acting::Rule& rule, const typename World::Body& a,
+                   const typename World::Body& b, const typename World::Overlap& o, double dt,
+                   RollingMemory<dim>& memory, Force& force) const {
+    if constexpr (World::Shape::outlines) {
+      return zero<SpinOf<dim>>();  // refused by make_engine
+    } else {
+      return world_.acting.roll(rule, a, b, o, dt, memory, force);
+    }
+  }
+
+  struct Damping {
+    Vector force = zero<Vector>();
+    SpinOf<dim> torque = zero<SpinOf<dim>>();
+  };
+  /// Cundall's, of all other forces on a grain.
+  [[gnu::noinline]] Damping damping_of(int i, const Vector force, const SpinOf<dim> torque) const {
+    const auto& b = world_.grains.bodies[i];
+    return {local_damping(Vector(force + world_.weight(i)), Vector(world_.fluctuation(i)),
+                          local_damping_),
+            local_damping(torque, b.spin, local_damping_)};
+  }
+
+  /// Damping and the applied force on a grain, before its step ends. `local`: its local damping.
+  [[gnu::noinline]] void record_outer(int i, const Vector applied, const Damping& local,
+                                      double dt) {
+    auto& account = world_.balance.outer[world_.grains.ids[i]];
+    const auto& b = world_.grains.bodies[i];
+    const Vector velocity = world_.fluctuation(i);  // damping is against the flow
+    const double rate = world_.around.drag;
+    const Vector drag = rate * world_.grains.inertias[i].mass * velocity - local.force;
+    SpinOf<dim> turning = zero<SpinOf<dim>>();
+    if (b.inverse_inertia > 0) turning = (rate / b.inverse_inertia) * b.spin - local.torque;
+    account.damped += 0.5 * dt *
+                      (Vector(account.drag + drag).dot(velocity) +
+                       power_of(SpinOf<dim>(account.drag_torque + turning), b.spin));
+    account.work += 0.5 * dt * Vector(account.applied + applied).dot(b.velocity);
+    account.drag = drag;
+    account.drag_torque = turning;
+    account.applied = applied;
+  }
+
   template <SweepKind kind>
   void walls(int i, double dt, Vector& force, SpinOf<dim>& torque) {
     auto& contacts = world_.contacts;
@@ -156,6 +408,13 @@ class Sweep {
     const auto& b = world_.grains.bodies[i];
     for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
       auto& pair = contacts.walls[k];
+      if (aside_ || !world_.walls.is_plain(pair.j)) [[unlikely]] {
+        const Sum sum = other_wall(i, k, dt);
+        force += sum.force;
+        torque += sum.torque;
+        k += world_.walls.slots_of(world_.walls.wall_of(pair.j)) - 1;
+        continue;
+      }
       typename World::Overlap o;
       Force f;
       if (acting.overlap(world_.grains.shapes, i, b, world_.walls.plane(pair.j), o)) {
@@ -169,10 +428,69 @@ class Sweep {
     }
   }
 
+  /// Forces of a wall that moves or is no plane (or of any, with an energy balance or resistance
+  /// against rolling), whose first slot is pair `first`.
+  [[gnu::noinline]] Sum other_wall(int i, int first, double dt) {
+    auto& contacts = world_.contacts;
+    const auto& b = world_.grains.bodies[i];
+    const int slot = contacts.walls[first].j, wall = world_.walls.wall_of(slot);
+    const int slots = world_.walls.slots_of(wall);
+    const auto& rule = world_.wall_rule(i, slot);
+    typename World::Body at_wall = world_.acting.wall_body();
+    at_wall.velocity = world_.walls.state(wall).velocity;
+    at_wall.spin = world_.walls.state(wall).spin;
+    Sum sum;
+    unsigned felt = 0;
+    std::array<Vector, kMostPatches> normals;
+    visit_wall(world_, i, b, first,
+               [&](int, int k, const typename World::Overlap& o, const typename World::Body& body,
+                   const Vector& normal) {
+                 auto& memory = contacts.walls[k].memory;
+                 Force f = world_.acting.force(rule, b, body, o, dt, memory);
+                 SpinOf<dim> moment = zero<SpinOf<dim>>();
+                 if (rolls_) moment = roll(rule, b, body, o, dt, world_.rolling.walls[k], f);
+                 world_.add_wall_torque(wall, b, o, f);
+                 if (rolls_) f.torque_j -= moment;
+                 sum.force += f.force;
+                 sum.torque += f.torque_i;
+                 felt |= 1U << (k - first);
+                 normals[k - first] = normal;
+                 contacts.wall_forces[k] = f;
+                 if (std::fabs(body.velocity.dot(normal)) * dt > kMaxMoveShare * b.radius) {
+                   crossed_ = moved_ = true;
+                 }
+                 if (books_) {
+                   double stored = rule.law.energy(o, memory);
+                   if (rolls_) stored += rule.rolling.energy(world_.rolling.walls[k]);
+                   auto& account = world_.balance.walls[k];
+                   if (dt > 0) {
+                     account.add(f, stored, b, at_wall, dt);
+                   } else {
+                     account.begin(f, stored);
+                   }
+                 }
+               });
+    for (int s = 0; s < slots; ++s) {
+      const int k = first + s;
+      const bool touches = (felt >> s & 1U) != 0;
+      contacts.wall_normals[k] = touches ? normals[s] : Vector(Vector::Zero());
+      if (touches) continue;
+      contacts.walls[k].memory = {};
+      if (rolls_ && dt > 0) world_.rolling.walls[k] = {};
+      contacts.wall_forces[k] = Force{};
+      if (books_ && dt > 0) world_.balance.walls[k].add({}, 0, b, at_wall, dt);
+    }
+    return sum;
+  }
+
   World& world_;
   typename World::Integrator integrator_;
-  std::vector<Sum> sums_;  // what earlier grains have left for a later one; 0 between steps
-  std::atomic<bool> moved_{false};
+  const bool books_;            // there is an energy balance
+  const bool rolls_;            // there is resistance against rolling or twisting
+  const bool aside_;            // contacts are evaluated out of line for either
+  const double local_damping_;  // Cundall's alpha
+  std::vector<Sum> sums_;       // what earlier grains have left for a later one; 0 between steps
+  std::atomic<bool> moved_{false}, crossed_{false};
 };
 
 }  // namespace grainfield::dem

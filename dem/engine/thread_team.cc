@@ -1,20 +1,36 @@
 #include "dem/engine/thread_team.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <system_error>
+
 namespace grainfield::dem {
 
 ThreadTeam::ThreadTeam(int size)
     : size_(size < 1 ? 1 : size),
       spins_(size_ <= static_cast<int>(std::thread::hardware_concurrency()) ? 60000 : 1000) {
-  for (int rank = 1; rank < size_; ++rank) threads_.emplace_back([this, rank] { serve(rank); });
+  threads_.reserve(static_cast<std::size_t>(size_ - 1));
+  try {
+    for (int rank = 1; rank < size_; ++rank) threads_.emplace_back([this, rank] { serve(rank); });
+  } catch (const std::system_error& error) {
+    const std::size_t started = threads_.size() + 1;
+    end();
+    throw std::runtime_error(fmt::format("--threads: only {} of {} threads can be started here: {}",
+                                         started, size_, error.code().message()));
+  }
 }
 
-ThreadTeam::~ThreadTeam() {
+ThreadTeam::~ThreadTeam() { end(); }
+
+void ThreadTeam::end() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 void ThreadTeam::run(const std::function<void(int)>& work) {

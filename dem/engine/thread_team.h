@@ -12,6 +12,7 @@ namespace grainfield::dem {
 /// Runs a function on `size` threads (the caller is one of them). Threads are kept between runs.
 class ThreadTeam {
  public:
+  /// Throws std::runtime_error naming --threads when the system cannot start so many.
   explicit ThreadTeam(int size);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
@@ -27,6 +28,7 @@ class ThreadTeam {
 
  private:
   void serve(int rank);
+  void end();
   void wait_for_all();
 
   int size_;

@@ -1,6 +1,7 @@
 // Rotation, spin and springs of two dimensions in the words of a snapshot.
 #pragma once
 #include "dem/engine/engine.h"
+#include "dem/laws/rolling.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/space/body.h"
 
@@ -16,8 +17,11 @@ inline void tell_turning(const Body<2>& b, double rotation, const Inertia<2>& in
   g.inertia = inertia.moments;
 }
 
-/// Rotation of a new grain, and its spin and moment where it may turn.
+/// Rotation of a new grain, its moments where they are given, and its spin where it may turn.
 inline double rotation_told(const NewGrain& g, const Inertia<2>&) { return g.angle; }
+inline void take_moments(const NewGrain& g, Inertia<2>& inertia) {
+  if (g.moments[2] > 0) inertia.moments = g.moments[2];
+}
 inline void take_turning(const NewGrain& g, const Inertia<2>& inertia, Body<2>& b) {
   b.spin = g.spin;
   b.inverse_inertia = 1 / inertia.moments;
@@ -25,5 +29,14 @@ inline void take_turning(const NewGrain& g, const Inertia<2>& inertia, Body<2>& 
 
 inline void tell_spring(double spring, Contact& c) { c.spring = spring; }
 inline void take_spring(const Contact& c, double& spring) { spring = c.spring; }
+
+/// Of a contact whose normal has been told, or is known. As vectors and numbers that are the same
+/// seen from either grain.
+inline void tell_rolling(const RollingMemory<2>& memory, Contact& c) {
+  c.rolling_spring = memory.roll * Vec3(-c.normal.y(), c.normal.x(), 0);
+}
+inline void take_rolling(const Contact& c, RollingMemory<2>& memory) {
+  memory.roll = c.rolling_spring.y() * c.normal.x() - c.rolling_spring.x() * c.normal.y();
+}
 
 }  // namespace grainfield::dem

@@ -1,6 +1,7 @@
 // Rotation, spin and springs of three dimensions in the words of a snapshot.
 #pragma once
 #include "dem/engine/engine.h"
+#include "dem/laws/rolling.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/space/body.h"
 #include "dem/space/space3.h"
@@ -23,10 +24,14 @@ inline void tell_turning(const Body<3>& b, const RotationOf<3>& rotation, const 
   g.inertia = inertia.moments.mean();
 }
 
-/// Rotation of a new grain, and its spin and moment where it may turn.
+/// Rotation of a new grain, its moments where they are given, and its spin where it may turn.
 inline RotationOf<3> rotation_told(const NewGrain& g, const Inertia<3>&) {
   const auto& q = g.orientation;
   return RotationOf<3>(q[0], q[1], q[2], q[3]).normalized();
+}
+inline void take_moments(const NewGrain& g, Inertia<3>& inertia) {
+  const Eigen::Vector3d given(g.moments[0], g.moments[1], g.moments[2]);
+  if (given.minCoeff() > 0) inertia.moments = given;
 }
 inline void take_turning(const NewGrain& g, const Inertia<3>& inertia, Body<3>& b) {
   b.spin = {g.spin_x, g.spin_y, g.spin};
@@ -38,5 +43,14 @@ inline void tell_spring(const Eigen::Vector3d& spring, Contact& c) {
   c.spring = spring.norm();
 }
 inline void take_spring(const Contact& c, Eigen::Vector3d& spring) { spring = c.spring_vector; }
+
+inline void tell_rolling(const RollingMemory<3>& memory, Contact& c) {
+  c.rolling_spring = memory.roll;
+  c.twisting_spring = memory.twist;
+}
+inline void take_rolling(const Contact& c, RollingMemory<3>& memory) {
+  memory.roll = c.rolling_spring;
+  memory.twist = c.twisting_spring;
+}
 
 }  // namespace grainfield::dem

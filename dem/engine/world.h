@@ -8,11 +8,15 @@
 
 #include "dem/contacts/contact_list.h"
 #include "dem/contacts/margins.h"
+#include "dem/engine/energy_balance.h"
 #include "dem/engine/grains.h"
 #include "dem/engine/interaction.h"
-#include "dem/engine/walls.h"
+#include "dem/engine/rolling_contacts.h"
+#include "dem/engine/wall_contacts.h"
 #include "dem/motion/applied_force.h"
 #include "dem/sleep/sleepers.h"
+#include "dem/space/moving_cell.h"
+#include "dem/walls/walls.h"
 
 namespace grainfield::dem {
 
@@ -49,13 +53,17 @@ struct World {
 
   Acting acting;
   SleepSettings sleep;
-  double time_step = 0;  ///< s
+  double time_step = 0;      ///< s
+  double local_damping = 0;  ///< Cundall's alpha
   long steps = 0;
   const char* integrator = "";  ///< its word
 
   Grains<Shape, Integrator> grains;
   Walls<dim> walls;
+  MovingCell<dim> cell;
   Surroundings<dim> around;
+  EnergyBalance<dim> balance;
+  RollingContacts<dim> rolling;
   Sleepers<dim, Memory> sleepers;
   Contacts contacts;
   std::vector<Margin<dim>> margins;  ///< of the awake
@@ -72,9 +80,51 @@ struct World {
   const auto& pair_rule(int i, int j) const {
     return acting.kinds() == 1 ? acting.rule(0, 0) : acting.rule(grains.kinds[i], grains.kinds[j]);
   }
-  const auto& wall_rule(int i, int wall) const { return acting.wall_rule(grains.kinds[i], wall); }
+  /// `slot`: any of the wall's.
+  const auto& wall_rule(int i, int slot) const { return acting.wall_rule(grains.kinds[i], slot); }
+  /// Of a grain with a half space that stands for a wall.
+  bool overlap_patch(int i, const Body& b, const Patch<dim>& patch, Overlap& o) const {
+    if (!acting.overlap(grains.shapes, i, b, patch.plane, o)) return false;
+    if constexpr (Shape::offers(Measures::curvature))
+      o.radius = effective_radius(o.radius, patch.curvature);
+    return true;
+  }
+  /// What a wall is to the law at the contact of a body: without arm, and as heavy as none.
+  Body wall_body(int wall, const Body& b, const Overlap& o) const {
+    Body body = acting.wall_body();
+    const Vector at = point_at<Acting::central>(b, o);
+    body.velocity = walls.velocity(wall, at);
+    body.spin = walls.state(wall).spin;
+    return body;
+  }
+  /// A force on a grain by a wall, with the torque on the wall about its centre.
+  void add_wall_torque(int wall, const Body& b, const Overlap& o, ContactForce<dim>& f) const {
+    const Vector arm = point_at<Acting::central>(b, o) - walls.state(wall).centre;
+    f.torque_j = torque_of(arm, Vector(-f.force));
+  }
   const auto& rotation(int i) const { return grains.memory[i].rotation; }
   Vector weight(int i) const { return grains.inertias[i].mass * around.gravity; }
+
+  /// Velocity of a body against the flow of the cell, m/s.
+  Vector fluctuation(int i) const {
+    const Body& b = grains.bodies[i];
+    if (!cell.flows()) return b.velocity;
+    return b.velocity - cell.flow_at(b.position);
+  }
+  /// Body b, its own or changed, as its image.
+  Body image_of(const Body& b, const PairImage& n) const {
+    Body image = b;
+    image.position += cell.shift(n);
+    image.velocity += cell.drift(n);
+    return image;
+  }
+  /// Of grain i as `a` and grain j as `b`, which has been made an image already where it is one.
+  template <class Feature>
+  bool overlap(int i, const Body& a, int j, const Body& b, const PairImage& n, Feature& feature,
+               Overlap& o) const {
+    if (!is_image(n)) return acting.overlap(grains.shapes, i, a, j, b, feature, o);
+    return acting.overlap_image(grains.shapes, i, a, j, b, cell.shift(n), feature, o);
+  }
 
   /// Every grain wakes; fixed ones sleep while there is sleeping.
   void wake_all() {

@@ -13,6 +13,9 @@ namespace grainfield::dem {
 template <class World, class Search, class Each>
 void visit_world(World& world, Search& search, Each each) {
   each(world.around);
+  std::remove_const_t<decltype(world.walls)>::visit(world.walls, each);
+  std::remove_const_t<decltype(world.balance)>::visit(world.balance, each);
+  std::remove_const_t<decltype(world.rolling)>::visit(world.rolling, each);
   each(world.steps);
   each(world.sleep.on);
   each(world.search_needed);
@@ -21,6 +24,7 @@ void visit_world(World& world, Search& search, Each each) {
   std::remove_const_t<decltype(world.sleepers)>::visit(world.sleepers, each);
   std::remove_const_t<decltype(world.contacts)>::visit(world.contacts, each);
   each(world.margins);
+  MovingCell<World::dim>::visit(world.cell, each);
   std::remove_const_t<Search>::visit(search, each);
 }
 
@@ -39,12 +43,22 @@ void read_world(World& world, Search<World>& search, ImageReader& r) {
   r.get(frozen);
   world.sleepers.frozen.assign(frozen);
   world.grains.shapes.read(r, world.grains.bodies.size());
+  const bool periodic = world.cell.is_periodic();
+  r.require(world.cell.settle() &&
+            world.grains.images.size() == (periodic ? world.grains.bodies.size() : 0) &&
+            (periodic || world.contacts.images.empty()) &&
+            (!periodic || world.search_needed ||
+             world.contacts.images.size() == world.contacts.pairs.with_idle()));
   const int n = world.grains.size();
   const bool searched = !world.search_needed;
-  r.require(world.awake >= 0 && world.awake <= n && world.grains.fits() &&
-            world.sleepers.fits(world.grains.bodies.size()) &&
-            world.contacts.fits(searched, world.awake, n, world.walls.size()) &&
-            (!searched || world.margins.size() == static_cast<std::size_t>(world.awake)));
+  r.require(
+      world.awake >= 0 && world.awake <= n && world.grains.fits() &&
+      world.sleepers.fits(world.grains.bodies.size()) &&
+      world.contacts.fits(searched, world.awake, n, world.walls.slots()) && world.walls.fits() &&
+      world.balance.fits(world.contacts.pairs.with_idle(), world.contacts.walls.with_idle(),
+                         world.grains.bodies.size()) &&
+      world.rolling.fits(world.contacts.pairs.with_idle(), world.contacts.walls.with_idle()) &&
+      (!searched || world.margins.size() == static_cast<std::size_t>(world.awake)));
   for (const std::int64_t id : world.grains.ids) r.require(id >= 0 && id < n);
   for (const int kind : world.grains.kinds) r.require(kind < world.acting.kinds());
   if (searched) {
@@ -53,6 +67,7 @@ void read_world(World& world, Search<World>& search, ImageReader& r) {
   } else {
     world.sleepers.set_changed();
   }
+  world.walls.restored();
   world.locate_applied();
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dem/shapes/polygon.h"
+#include "dem/space/elementary.h"
 
 namespace grainfield::dem {
 namespace {
@@ -41,7 +42,7 @@ std::vector<double> draw_gaps(int n, Random& random) {
   const double mean = 2 * std::numbers::pi / n;
   while (true) {
     double sum = 0;
-    for (double& g : gaps) sum += g = -std::log1p(-random.uniform());
+    for (double& g : gaps) sum += g = -natural_log(1 - random.uniform());
     if (!(sum > 0)) continue;
     bool fits = true;
     for (double& g : gaps) {
@@ -60,7 +61,10 @@ double gap_draws(double n) { return n * std::exp(0.1445 * n); }
 Outline on_ellipse(const std::vector<double>& angles, double a, double b) {
   Outline out;
   out.reserve(angles.size());
-  for (const double t : angles) out.push_back({a * std::cos(t), b * std::sin(t)});
+  for (const double t : angles) {
+    const auto [c, s] = rotation_of(t);
+    out.push_back({a * c, b * s});
+  }
   return out;
 }
 
@@ -116,7 +120,7 @@ Outline given(const ShapeSetup& s, double radius) {
 }
 
 double side_of(const ShapeSetup& s) {
-  return s.side > 0 ? s.side : 2 * s.radius * std::sin(std::numbers::pi / kPentagon);
+  return s.side > 0 ? s.side : 2 * s.radius * rotation_of(std::numbers::pi / kPentagon).sine;
 }
 
 }  // namespace
@@ -235,11 +239,16 @@ void GrainTally::add(const ShapedGrain& g) {
   squares_ += g.area * g.area;
   ++count_;
   if (g.outline.empty()) return;
-  const double steepness = edge_steepness(g.outline), quick = steepness / std::sqrt(mass);
-  if (quick <= quickest_) return;
-  quickest_ = quick;
-  extremes_.steepest_edge = steepness;
-  extremes_.steep_mass = mass;
+  const auto keep_quickest = [mass](double edge, double& quickest, double& most, double& its_mass) {
+    const double quick = edge / std::sqrt(mass);
+    if (quick <= quickest) return;
+    quickest = quick;
+    most = edge;
+    its_mass = mass;
+  };
+  keep_quickest(edge_steepness(g.outline), steepest_, extremes_.steepest_edge,
+                extremes_.steep_mass);
+  keep_quickest(edge_width(g.outline), widest_, extremes_.widest_edge, extremes_.wide_mass);
 }
 
 double GrainTally::area_variation() const {

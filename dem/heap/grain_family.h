@@ -50,7 +50,8 @@ class GrainTally {
   double area_variation() const;
 
  private:
-  double density_, area_ = 0, squares_ = 0, largest_radius_ = 0, quickest_ = 0;
+  double density_, area_ = 0, squares_ = 0, largest_radius_ = 0;
+  double steepest_ = 0, widest_ = 0;  // over the square root of the mass
   std::int64_t count_ = 0;
   GrainExtremes extremes_;
 };

@@ -1,6 +1,7 @@
 // A family of grain shapes.
 #pragma once
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace grainfield::dem {
@@ -18,6 +19,11 @@ struct ShapeSetup {
   double side = 0;        ///< m; irregular: mean length of a side; 0: of the regular pentagon whose
                           ///< corners lie on `radius`
   std::vector<double> outline;  ///< outline: x1, y1, x2, y2, ... in units of `radius`, convex
+
+  auto members() const {
+    return std::tie(kind, radius, polydispersity, corners_min, corners_max, axis_ratio, side,
+                    outline);
+  }
 };
 
 }  // namespace grainfield::dem

@@ -1,6 +1,7 @@
 // A source of grains.
 #pragma once
 #include <string>
+#include <tuple>
 
 namespace grainfield::dem {
 
@@ -21,6 +22,11 @@ struct SourceSetup {
                              ///< finished pile; later ones cover the pile's plateau
   double shift = 0;  ///< m; line: each layer's middle lies this far to the right of the last one's
                      ///< (asymmetric piles)
+
+  auto members() const {
+    return std::tie(kind, grains, speed, height, interval, spread, opening, move, clearance, length,
+                    shift);
+  }
 };
 
 }  // namespace grainfield::dem

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/space/rotation.h"
+
 namespace grainfield::dem {
 namespace {
 
@@ -111,7 +113,7 @@ FlankLine fit_flank(const std::vector<Point>& side, double height) {
 
 Outline placed_outline(const Grain& g) {
   Outline out = g.outline;
-  const double c = std::cos(g.angle), s = std::sin(g.angle);
+  const auto [c, s] = rotation_of(g.angle);
   for (auto& p : out) {
     p = {g.position.x() + c * p[0] - s * p[1], g.position.y() + s * p[0] + c * p[1]};
   }

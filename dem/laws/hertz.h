@@ -1,13 +1,24 @@
 // Hertz' contact of spheres, with a dashpot, and friction with Mindlin's stiffness.
 //
-//   F_n = 4/3 E* sqrt(R) d^{3/2} + D v_n     D = 2 zeta sqrt(k_n m_eff), k_n = 2 E* sqrt(R d)
-//   spring k_t = 8 G* sqrt(R d), dashpot 2 zeta sqrt(k_t m_eff)
+//   a = sqrt(R d), k_n = 2 E* a, k_t = 8 G* a
 //   E* = E / (2 (1 - nu^2)), G* = G / (2 (2 - nu)), both bodies of one material
-// Never attractive. While the contact unloads, the spring shrinks with its radius sqrt(R d), so
-// that no energy comes from nowhere (Thornton, Cummins and Cleary 2013).
+//   F_n = 4/3 E* a d + D v_n
+//   dashpots, `damping_model`:
+//     critical       D = 2 zeta sqrt(k_n m_eff), tangential 2 zeta sqrt(k_t m_eff)
+//     viscoelastic   D = gamma_n a m_eff,        tangential gamma_t a m_eff
+//   spring of friction, `tangential_memory`:
+//     force          its force advances by -k_t v_t dt, and shrinks with a while the contact
+//                    unloads, so that no energy comes from nowhere (Thornton, Cummins, Cleary 2013)
+//     displacement   its displacement s advances by v_t dt, its force is -k_t s with k_t as it is:
+//                    pressed together after it was sheared, the contact makes energy
+// Never attractive. `displacement` and `viscoelastic` are LAMMPS' gran/hertz/history with
+// K_n = 4/3 E*, K_t = 8 G*; `force` is its granular's mindlin_rescale/force. The memory is the
+// spring's force in both: k_t goes by a, so a displacement that stays is a force that goes by a.
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
+#include "dem/words/nearest.h"
 
 namespace grainfield::dem {
 
@@ -23,8 +34,8 @@ struct HertzMemory {
 
 struct HertzLaw {
   static constexpr const char* name = "hertz";
-  static constexpr bool needs_area = false, needs_curvature = true;
-  static constexpr bool feels_edges = false;
+  static constexpr Measures measures = Measures::curvature;
+  static constexpr EdgeMeasure edges = EdgeMeasure::none;
   template <int D>
   using Memory = HertzMemory<D>;
 
@@ -32,7 +43,23 @@ struct HertzLaw {
   double poisson = 0.3;  ///< nu, -
   double damping = 0;    ///< zeta, -; 1 is critical
 
-  static HertzLaw of(const MaterialSetup& m) { return {m.young, m.poisson, m.damping}; }
+  bool displacement = false;      ///< tangential_memory
+  bool viscoelastic = false;      ///< damping_model
+  double normal_damping = 0;      ///< gamma_n, 1/(m s); viscoelastic
+  double tangential_damping = 0;  ///< gamma_t, 1/(m s); viscoelastic
+
+  /// Throws std::invalid_argument naming material.tangential_memory or material.damping_model.
+  static HertzLaw of(const MaterialSetup& m) {
+    check_word("material.tangential_memory", m.tangential_memory, {"force", "displacement"});
+    check_word("material.damping_model", m.damping_model, {"critical", "viscoelastic"});
+    return {m.young,
+            m.poisson,
+            m.damping,
+            m.tangential_memory == "displacement",
+            m.damping_model == "viscoelastic",
+            m.normal_damping,
+            m.tangential_damping};
+  }
 
   double effective_young() const { return young / (2 * (1 - poisson * poisson)); }
   double effective_shear() const { return young / (4 * (1 + poisson) * (2 - poisson)); }
@@ -45,8 +72,14 @@ struct HertzLaw {
   double tangential_stiffness(double radius) const {
     return stiffness(radius) * 4 * effective_shear() / effective_young();
   }
-  /// Decay rate of the dashpots of grains with twelve neighbours, 1/s.
+  /// Decay rate of the dashpots of grains with twelve neighbours, 1/s. Viscoelastic, by
+  /// c = gamma a m/2: moving against the others 12 c/m, or all spinning alike, twice the slip of
+  /// one and 2/3 of it at the mean contact over 0.4 m R^2: 40 c/m.
   double viscous_rate(double mass, double radius) const {
+    if (viscoelastic) {
+      const double a = 0.5 * radius * std::sqrt(2 * kMostDepth);
+      return a * std::max(6 * normal_damping, 20 * tangential_damping);
+    }
     return 12 * 2 * damping * std::sqrt(stiffness(radius) * 0.5 / mass);
   }
   double edge_stiffness(double /*steepness*/) const { return 0; }
@@ -60,13 +93,23 @@ struct HertzLaw {
     const double a = std::sqrt(o.radius * o.depth);
     const double kn = 2 * effective_young() * a, kt = 8 * effective_shear() * a;
     const double elastic = kn * (2.0 / 3) * o.depth;
-    const double normal = std::max(elastic + 2 * damping * std::sqrt(kn * mass) * m.approach, 0.0);
+    const double across =
+        viscoelastic ? normal_damping * a * mass : 2 * damping * std::sqrt(kn * mass);
+    const double along =
+        viscoelastic ? tangential_damping * a * mass : 2 * damping * std::sqrt(kt * mass);
+    const double normal = std::max(elastic + across * m.approach, 0.0);
     if (dt > 0) {
-      if (a < memory.contact_radius) memory.spring *= a / memory.contact_radius;
+      const double before = memory.contact_radius;
+      if (a < before || (displacement && before > 0)) memory.spring *= a / before;
       memory.contact_radius = a;
     }
-    return {normal, friction_force(normal, mu, kt, 2 * damping * std::sqrt(kt * mass), m.slip, dt,
-                                   memory.spring)};
+    return {normal, friction_force(normal, mu, kt, along, m.slip, dt, memory.spring)};
+  }
+
+  /// The memory of a contact as it is, beside its spring.
+  template <int D>
+  requires(D == 3) static void take_up(const OverlapIn<D>& o, HertzMemory<D>& memory) {
+    memory.contact_radius = std::sqrt(o.radius * o.depth);
   }
 
   /// Elastic energy, J.

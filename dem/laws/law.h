@@ -3,12 +3,12 @@
 // A law takes the overlap, the motion at the contact, a coefficient of friction, the time step and
 // what the contact remembers, and gives the forces; it advances the memory by the step (dt = 0: by
 // nothing). It knows neither grains nor shapes: which measures of the overlap it reads it declares
-// (needs_area: area, chord and length; needs_curvature: radius), and a shape that does not offer
-// them is not combined with it.
+// (overlap.h: Measures), and a shape that does not offer them is not combined with it.
 #pragma once
 #include <concepts>
 
 #include "dem/laws/contact.h"
+#include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 
 namespace grainfield::dem {
@@ -26,24 +26,24 @@ concept ContactLaw = PairMemory<typename L::template Memory<D>, D> &&
     requires(const L& law, const OverlapIn<D>& overlap, const ContactMotion<D>& motion,
              typename L::template Memory<D>& memory, double x) {
   { L::name } -> std::convertible_to<const char*>;
-  { L::needs_area } -> std::convertible_to<bool>;
-  { L::needs_curvature } -> std::convertible_to<bool>;
+  { L::measures } -> std::convertible_to<Measures>;
   { law(overlap, motion, x, x, memory) } -> std::same_as<LawForce<D>>;
   { law.energy(overlap, memory) } -> std::same_as<double>;  // elastic, J
 };
 
 /// A law for the registry: made of the material's numbers, and what of it bounds the time step
-/// (engine.h: stable_time_step). `feels_edges`: the force grows with the width of a contact.
+/// (engine.h: stable_time_step). `edges`: by which measure of a polygon its force grows
+/// with the width of a contact.
 template <class L>
 concept LawEntry = requires(const L& law, double x) {
   { L::name } -> std::convertible_to<const char*>;
-  { L::feels_edges } -> std::convertible_to<bool>;
+  { L::edges } -> std::convertible_to<EdgeMeasure>;
   { L::of(MaterialSetup{}) } -> std::same_as<L>;
   { law.stiffness(x) } -> std::same_as<double>;  // largest, of grains of radius x: N/m
   { law.tangential_stiffness(x) } -> std::same_as<double>;
   { law.viscous_rate(x, x) } -> std::same_as<double>;  // of mass (kg) and radius: 1/s
-  { law.edge_stiffness(x) } -> std::same_as<double>;   // of steepness x: N/m
-  { law.edge_rate(x, x) } -> std::same_as<double>;     // of mass and steepness: 1/s
+  { law.edge_stiffness(x) } -> std::same_as<double>;   // of the measure x: N/m
+  { law.edge_rate(x, x) } -> std::same_as<double>;     // of mass and measure: 1/s
 };
 
 }  // namespace grainfield::dem

@@ -4,14 +4,15 @@
 //   spring k_t v_t dt, dashpot m_eff gamma_t v_t
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 
 namespace grainfield::dem {
 
 struct LinearLaw {
   static constexpr const char* name = "linear";
-  static constexpr bool needs_area = false, needs_curvature = false;
-  static constexpr bool feels_edges = false;  ///< a spring on the depth alone does not
+  static constexpr Measures measures = Measures::depth;
+  static constexpr EdgeMeasure edges = EdgeMeasure::none;
   template <int D>
   using Memory = SpringMemory<D>;
   double normal_stiffness = 1e7;           ///< k_n, N/m

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -17,10 +18,40 @@ void check_friction(const std::string& key, double friction) {
   }
 }
 
+void check_rolling(const std::string& prefix, const RollingLaw& r) {
+  const std::pair<const char*, double> numbers[] = {
+      {"rolling_stiffness", r.stiffness},       {"rolling_damping", r.damping},
+      {"rolling_friction", r.friction},         {"twisting_stiffness", r.twisting_stiffness},
+      {"twisting_damping", r.twisting_damping}, {"twisting_friction", r.twisting_friction}};
+  for (const auto& [name, value] : numbers) {
+    if (!(value >= 0 && std::isfinite(value))) {
+      throw std::invalid_argument(
+          fmt::format("{}{}: found {}, allowed: 0 or more", prefix, name, value));
+    }
+  }
+  const auto require_force = [&](const char* kind, double mu, double k, double g) {
+    if (mu > 0 && k == 0 && g == 0) {
+      throw std::invalid_argument(fmt::format(
+          "{0}{1}_friction: found {2} without {1}_stiffness and {1}_damping, allowed: above 0 with "
+          "one of them above 0",
+          prefix, kind, mu));
+    }
+  };
+  require_force("rolling", r.friction, r.stiffness, r.damping);
+  require_force("twisting", r.twisting_friction, r.twisting_stiffness, r.twisting_damping);
+}
+
 }  // namespace
+
+bool Materials::resist_rolling() const {
+  return (materials.empty() && rolling.on()) ||
+         std::any_of(material_pairs.begin(), material_pairs.end(),
+                     [](const MaterialPair& pair) { return pair.rolling.on(); });
+}
 
 void check_materials(const Materials& m) {
   check_friction("material.friction", m.friction);
+  check_rolling("material.", m.rolling);
   if (m.materials.size() > kMostMaterials) {
     throw std::invalid_argument(fmt::format("materials: found {}, allowed: at most {}",
                                             m.materials.size(), kMostMaterials));
@@ -36,6 +67,7 @@ void check_materials(const Materials& m) {
     const std::string key = fmt::format("material pair {} - {}", pair.first, pair.second);
     int a = material_index(m, key, pair.first), b = material_index(m, key, pair.second);
     check_friction(key, pair.friction);
+    check_rolling(key + ": ", pair.rolling);
     if (a > b) std::swap(a, b);
     if (std::find(seen.begin(), seen.end(), std::pair(a, b)) != seen.end()) {
       throw std::invalid_argument(fmt::format("{}: found twice, allowed: once", key));

@@ -2,28 +2,32 @@
 //
 //   R = E A / l                          l = r_i r_j / (r_i + r_j)
 //   D = gamma (dA/dt)/l sqrt(E m_eff)    m_eff = m_i m_j / (m_i + m_j),  D >= -R: never attractive
-//   spring (2/7) E v_t dt, dashpot sqrt((2/7) E m_t) v_t, 1/m_t = 1/m_i + 1/m_j + r_i^2/I_i +
-//   r_j^2/I_j
+//   spring k_t v_t dt, k_t = (2/7) E or another share, dashpot sqrt(k_t m_t) v_t, 1/m_t = 1/m_i +
+//   1/m_j + r_i^2/I_i + r_j^2/I_j
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 
 namespace grainfield::dem {
 
 struct OverlapAreaLaw {
   static constexpr const char* name = "overlap_area";
-  static constexpr bool needs_area = true, needs_curvature = false;
-  static constexpr bool feels_edges = true;
+  static constexpr Measures measures = Measures::area;
+  static constexpr EdgeMeasure edges = EdgeMeasure::steepness;
   template <int D>
   using Memory = SpringMemory<D>;
-  double young = 1e7;     ///< E, N/m
-  double damping = 0.75;  ///< gamma, -; raising it makes impacts less elastic
+  double young = 1e7;                 ///< E, N/m
+  double damping = 0.75;              ///< gamma, -; raising it makes impacts less elastic
+  double tangential_ratio = 2.0 / 7;  ///< k_t/E, -
 
-  static OverlapAreaLaw of(const MaterialSetup& m) { return {m.young, m.damping}; }
+  static OverlapAreaLaw of(const MaterialSetup& m) {
+    return {m.young, m.damping, m.tangential_ratio};
+  }
 
   /// Stiffness that bounds the time step, N/m.
-  double stiffness(double /*radius*/ = 0) const { return young; }
-  double tangential_stiffness(double /*radius*/ = 0) const { return young * (2.0 / 7); }
+  double stiffness(double /*radius*/ = 0) const { return std::max(1.0, tangential_ratio) * young; }
+  double tangential_stiffness(double /*radius*/ = 0) const { return young * tangential_ratio; }
 
   /// Decay rate of the fastest dashpot mode of a packing of equal disks of mass m, 1/s: six
   /// neighbours spinning alike, 24 c/m with c = sqrt((2/7) E m/6), or moving against each other,
@@ -61,7 +65,8 @@ struct OverlapAreaLaw {
   /// Of polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.
   double energy(const Overlap& o, const SpringMemory<2>& memory) const {
     return 0.4 * young * o.area / o.length * o.depth +
-           0.5 * memory.spring * memory.spring / tangential_stiffness();
+           (tangential_ratio > 0 ? 0.5 * memory.spring * memory.spring / tangential_stiffness()
+                                 : 0.0);
   }
 };
 

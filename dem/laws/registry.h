@@ -2,6 +2,7 @@
 #pragma once
 #include <variant>
 
+#include "dem/laws/energy.h"
 #include "dem/laws/hertz.h"
 #include "dem/laws/law.h"
 #include "dem/laws/linear.h"
@@ -10,7 +11,7 @@
 
 namespace grainfield::dem {
 
-using AnyLaw = std::variant<OverlapAreaLaw, LinearLaw, HertzLaw>;
+using AnyLaw = std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw>;
 
 /// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
 /// material.law.
@@ -27,7 +28,7 @@ std::vector<std::string> laws_in() {
 
 /// Words of the laws whose force grows with the width of a contact: those that polygons need.
 inline std::vector<std::string> laws_that_feel_edges() {
-  return words_where<AnyLaw>([]<LawEntry Law>() { return Law::feels_edges; });
+  return words_where<AnyLaw>([]<LawEntry Law>() { return Law::edges != EdgeMeasure::none; });
 }
 
 }  // namespace grainfield::dem

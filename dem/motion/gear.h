@@ -16,6 +16,7 @@ class GearIntegrator;
 template <>
 class GearIntegrator<2> {
  public:
+  static constexpr bool end_moves = true;
   /// Scaled derivatives 2..5 of a place or an angle.
   template <class T>
   struct Derivatives {

@@ -1,8 +1,9 @@
 // What an integrator must have.
 //
 // A step is begin (moves the body, before the forces), then end (takes force and torque at the new
-// place); start gives a body that has not moved yet the acceleration of where it stands. All act on
-// one body and its Memory alone, so that bodies may be moved in any order.
+// place; a corrector moves the body once more there: end_moves); start gives a body that has not
+// moved yet the acceleration of where it stands. All act on one body and its Memory alone, so that
+// bodies may be moved in any order.
 #pragma once
 #include <concepts>
 
@@ -14,6 +15,7 @@ template <class I, int D>
 concept Integrator = requires(const I& integrator, Body<D>& body, typename I::Memory& memory,
                               const Inertia<D>& inertia, const Load<D>& load) {
   requires std::constructible_from<I, double>;  // time step, s
+  { I::end_moves } -> std::convertible_to<bool>;
   { memory.rotation } -> std::convertible_to<RotationOf<D>>;
   integrator.start(body, memory, inertia, load);
   integrator.begin(body, memory, inertia);

@@ -12,6 +12,7 @@ class VerletIntegrator;
 template <>
 class VerletIntegrator<2> {
  public:
+  static constexpr bool end_moves = false;
   /// Per grain: angle and acceleration.
   struct Memory {
     double rotation = 0;

@@ -14,6 +14,7 @@ namespace grainfield::dem {
 template <>
 class VerletIntegrator<3> {
  public:
+  static constexpr bool end_moves = false;
   using Vector = Eigen::Vector3d;
 
   /// Per grain: rotation, acceleration, and torque with the drag's part (N m).

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+
+#include "dem/space/rotation.h"
 
 namespace grainfield::dem {
 namespace {
@@ -32,8 +35,8 @@ void check_lattice(const LatticeSetup& s) {
 std::vector<int> lattice_rows(const LatticeSetup& s) {
   // At row j the slope leaves (sqrt 3/2) j / tan(slope) spacings less to either side, the lattice
   // itself j/2: whole disks make up the difference.
-  const double more =
-      0.5 * std::numbers::sqrt3 / std::tan(s.slope_deg * std::numbers::pi / 180) - 0.5;
+  const auto [c, sine] = rotation_of(s.slope_deg * std::numbers::pi / 180);
+  const double more = 0.5 * std::numbers::sqrt3 * c / sine - 0.5;
   std::vector<int> rows;
   for (int j = 0;; ++j) {
     const double left_out = std::ceil(j * more - kOnSlope);

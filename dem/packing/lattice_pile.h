@@ -1,5 +1,6 @@
 // Disks of a lattice pile at the start: touching their supports, without overlap, on y = 0.
 #pragma once
+#include <tuple>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -14,6 +15,8 @@ struct LatticeSetup {
   double radius = 0.0045;  ///< m
   double gap = 5e-4;       ///< between neighbours of a row / diameter; 0: they may touch, and carry
                            ///< force where the pile's own weight pushes them together
+
+  auto members() const { return std::tie(base_grains, slope_deg, radius, gap); }
 };
 
 /// Throws std::invalid_argument naming the key ("lattice.slope_deg"), the value and what is

@@ -2,6 +2,7 @@
 // The floor's surface is y = 0; the layer spans x in [-width/2, width/2] between side walls.
 #pragma once
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -30,6 +31,11 @@ struct PackingSetup {
   double jitter = 0;              ///< lattices: relative spread of radii, uniform +- (0 = perfect)
   std::string shape = "disk";     ///< layered: disk | irregular (pentagons; `sizes` is not used)
   double side = 0.009;            ///< m; irregular: mean length of a side (Roul 5.1)
+
+  auto members() const {
+    return std::tie(kind, sizes, radius, radius_small, fraction_small, radius_min, radius_max,
+                    columns, rows, spacing, width, depth, drop_height, floor, jitter, shape, side);
+  }
 };
 
 /// Throws std::invalid_argument naming the key ("packing.radius_max"), the value and what is

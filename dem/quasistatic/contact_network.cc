@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "dem/neighbours/hierarchical_grid.h"
+#include "dem/shapes/polygon.h"
 
 namespace grainfield::dem {
 namespace {
@@ -28,6 +29,7 @@ ContactNetwork::ContactNetwork(const Snapshot& start, const Materials& materials
   std::visit(
       [this]<class Law>(const Law& l) {
         if constexpr (ContactLaw<Law, 2>) {
+          measures_ = Law::measures;
           stiffness_ = l.stiffness();
           tangential_stiffness_ = l.tangential_stiffness();
         } else {
@@ -45,7 +47,7 @@ ContactNetwork::ContactNetwork(const Snapshot& start, const Materials& materials
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const Grain& g = start.grains[k];
-    shapes_[k] = {g.radius, g.mass, g.fixed ? -1 : 3 * free_, g.outline};
+    shapes_[k] = {g.radius, g.mass, g.fixed ? -1 : 3 * free_, equal_radius(g.volume), g.outline};
     if (!g.fixed) ++free_;
     origin_[k] = {g.position.x(), g.position.y(), g.angle};
     sum += g.radius;
@@ -276,7 +278,7 @@ ContactNetwork::Balance ContactNetwork::balance() {
   const Vector zero = Vector::Zero(size());
   Vector r;
   Balance b;
-  b.ratio = std::numeric_limits<double>::infinity();
+  b.ratio = b.moment_ratio = std::numeric_limits<double>::infinity();
   if (!residual(zero, r)) return b;
   for (const Pair& pair : pairs_) {
     Geometry g;
@@ -289,10 +291,16 @@ ContactNetwork::Balance ContactNetwork::balance() {
   if (b.contacts > 0) b.mean_contact_force /= b.contacts;
   for (int k = 0; k < size(); k += 3) {
     b.mean_unbalanced_force += std::hypot(r[k], r[k + 1]) * scale_;
-    b.max_unbalanced_moment = std::max(b.max_unbalanced_moment, std::fabs(r[k + 2]) * scale_);
+    b.mean_unbalanced_moment += std::fabs(r[k + 2]) * scale_;
   }
-  if (free_ > 0) b.mean_unbalanced_force /= free_;
-  if (b.mean_contact_force > 0) b.ratio = b.mean_unbalanced_force / b.mean_contact_force;
+  if (free_ > 0) {
+    b.mean_unbalanced_force /= free_;
+    b.mean_unbalanced_moment /= free_;
+  }
+  if (b.mean_contact_force > 0) {
+    b.ratio = b.mean_unbalanced_force / b.mean_contact_force;
+    b.moment_ratio = b.mean_unbalanced_moment / b.mean_contact_force;
+  }
   return b;
 }
 

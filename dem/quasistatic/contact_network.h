@@ -64,9 +64,11 @@ class ContactNetwork {
   void commit(const Vector& z);
 
   struct Balance {
-    double mean_contact_force = 0, mean_unbalanced_force = 0, max_unbalanced_moment = 0;
+    double mean_contact_force = 0, mean_unbalanced_force = 0;
+    double mean_unbalanced_moment = 0;  ///< over the radii, N
     int contacts = 0;
-    double ratio = 0;  ///< inf without contacts
+    double ratio = 0;         ///< inf without contacts
+    double moment_ratio = 0;  ///< likewise
   };
   /// Of the committed state, from the same forces as the residual.
   Balance balance();
@@ -115,10 +117,12 @@ class ContactNetwork {
   struct Shape {
     double radius = 0, mass = 0;
     int unknown = -1;  // first of three, -1: fixed
+    double equal_radius = 0;
     Outline outline;
   };
 
   AnyLaw law_;
+  Measures measures_ = Measures::depth;
   double friction_;
   double stiffness_, tangential_stiffness_;
   double scale_ = 1;

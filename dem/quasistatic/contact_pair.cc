@@ -4,6 +4,7 @@
 
 #include "dem/quasistatic/contact_network.h"
 #include "dem/shapes/polygon.h"
+#include "dem/space/rotation.h"
 
 namespace grainfield::dem {
 namespace {
@@ -20,7 +21,7 @@ struct Corners {
   Corners(const Outline& outline, double cx, double cy, double angle)
       : n(static_cast<int>(outline.size())) {
     if (n == 0) return;
-    const double c = std::cos(angle), s = std::sin(angle);
+    const auto [c, s] = rotation_of(angle);
     for (int k = 0; k <= n; ++k) {
       const auto& corner = outline[k < n ? k : 0];
       x[k] = cx + (c * corner[0] - s * corner[1]);
@@ -43,15 +44,23 @@ bool ContactNetwork::overlap(const Pair& pair, const Place& p, Overlap& o) const
   const Corners first(a.outline, 0, 0, p.angle_i);
   if (wall) {
     if (-(p.dx * wx + p.dy * wy) >= a.radius) return false;
-    return overlap_with_half_plane(first.placed(0, 0, a.radius), p.dx, p.dy, wx, wy, o);
+    if (!overlap_with_half_plane(first.placed(0, 0, a.radius), p.dx, p.dy, wx, wy, o, measures_)) {
+      return false;
+    }
+    if (measures_ == Measures::gradient) o.length = a.equal_radius;
+    return true;
   }
   const Shape& b = shapes_[pair.j];
   const double reach = a.radius + b.radius;
   if (p.dx * p.dx + p.dy * p.dy >= reach * reach) return false;
   const Corners second(b.outline, p.dx, p.dy, p.angle_j);
   PairFeature none;
-  return overlap_of_shapes(first.placed(0, 0, a.radius), second.placed(p.dx, p.dy, b.radius), none,
-                           o);
+  if (!overlap_of_shapes(first.placed(0, 0, a.radius), second.placed(p.dx, p.dy, b.radius), none, o,
+                         measures_)) {
+    return false;
+  }
+  if (measures_ == Measures::gradient) set_constant_length(a.equal_radius, b.equal_radius, o);
+  return true;
 }
 
 bool ContactNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) const {

@@ -68,11 +68,32 @@ void check_start(const Snapshot& s) {
     throw std::invalid_argument(fmt::format(
         "quasi-static relaxation: found a packing in {} dimensions, allowed: 2", s.dim));
   }
+  if (s.cell.is_periodic()) {
+    throw std::invalid_argument(
+        "quasi-static relaxation: found a periodic cell, allowed: packings between walls");
+  }
   const auto n = static_cast<std::int64_t>(s.grains.size());
   const auto walls = static_cast<std::int64_t>(s.walls.size());
+  for (const Wall& wall : s.walls) {
+    if (!wall.velocity.isZero(0) || !wall.angular_velocity.isZero(0) || !wall.material.empty()) {
+      throw std::invalid_argument(
+          fmt::format("quasi-static relaxation: wall {}: found one that moves or has a material, "
+                      "allowed: at rest, with a friction of its own",
+                      wall.name));
+    }
+    if (wall.shape == "plane") continue;
+    throw std::invalid_argument(
+        fmt::format("quasi-static relaxation: wall {}: shape: found \"{}\", allowed: plane",
+                    wall.name, wall.shape));
+  }
   bool any_free = false;
   for (const Grain& g : s.grains) {
     any_free |= !g.fixed;
+    if (!g.fixed && !g.rotates) {
+      throw std::invalid_argument(fmt::format(
+          "quasi-static relaxation: found that grain {} does not turn, allowed: grains that do",
+          g.id));
+    }
     if (!(g.position.allFinite() && std::isfinite(g.angle) && g.radius > 0 &&
           (g.fixed || (g.mass > 0 && std::isfinite(g.mass))))) {
       throw std::invalid_argument(fmt::format(
@@ -217,22 +238,27 @@ class Relaxation {
     if (!any) drag_ = (drag_ * kBrake).cwiseMax(kFirstDrag);
   }
 
+  bool balanced(const ContactNetwork::Balance& b) const {
+    return std::max(b.ratio, b.moment_ratio) <= settings_.unbalanced_force_ratio;
+  }
+
   QuasistaticResult finish() {
     ContactNetwork::Balance b;
     for (int k = 0; k < kMostFinish; ++k) {
       b = network_.balance();
-      if (b.ratio <= settings_.unbalanced_force_ratio) break;
+      if (balanced(b)) break;
       rescale();
       if (!settle(false)) break;
       b = network_.balance();
     }
-    if (!(b.ratio <= settings_.unbalanced_force_ratio)) fail(1, b.ratio);
+    if (!balanced(b)) fail(1, std::max(b.ratio, b.moment_ratio));
     QuasistaticResult out;
     out.state = network_.snapshot(start_);
     out.state.gravity = gravity_;
     out.state.loaded_grain = new_grain_ < 0 ? -1 : start_.grains[new_grain_].id;
     out.state.applied_force = new_grain_ < 0 ? Vec3(0, 0, 0) : force_;
     out.unbalanced_force_ratio = b.ratio;
+    out.unbalanced_moment_ratio = b.moment_ratio;
     out.steps = steps_;
     out.iterations = iterations_;
     const ContactChanges changes = compare_contacts(start_, out.state);
@@ -274,6 +300,11 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
     throw std::invalid_argument(
         fmt::format("quasi-static relaxation: found {} materials, allowed: one for all grains",
                     materials.materials.size()));
+  }
+  if (materials.resist_rolling()) {
+    throw std::invalid_argument(
+        "quasi-static relaxation: found resistance against rolling (material.rolling_friction or "
+        "twisting_friction above 0), allowed: none; choose method = \"damped\"");
   }
   if (!gravity.allFinite()) {
     throw std::invalid_argument("quasi-static relaxation: found a gravity that is not finite");

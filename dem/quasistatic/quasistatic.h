@@ -17,10 +17,11 @@
 namespace grainfield::dem {
 
 struct QuasistaticSettings {
-  double unbalanced_force_ratio = 1e-8;  ///< to be reached, mean resultant / mean contact force
-  int max_iterations = 50;               ///< Newton steps of one load step
-  int first_steps = 1;                   ///< equal load steps to begin with; halved when one fails
-  double least_step = 1e-3;              ///< share of the whole change below which it gives up
+  /// To be reached: mean resultant / mean contact force, and mean |moment| / radius likewise.
+  double unbalanced_force_ratio = 1e-8;
+  int max_iterations = 50;   ///< Newton steps of one load step
+  int first_steps = 1;       ///< equal load steps to begin with; halved when one fails
+  double least_step = 1e-3;  ///< share of the whole change below which it gives up
   /// Asked before every Newton solve, with the share of the change that is done; false: give up
   /// with RelaxationStopped. Empty: never asked.
   std::function<bool(double share)> go_on;
@@ -32,8 +33,9 @@ struct RelaxationStopped : std::runtime_error {
 };
 
 struct QuasistaticResult {
-  Snapshot state;                     ///< at rest: velocities are 0, springs are kept
-  double unbalanced_force_ratio = 0;  ///< reached
+  Snapshot state;                      ///< at rest: velocities are 0, springs are kept
+  double unbalanced_force_ratio = 0;   ///< reached
+  double unbalanced_moment_ratio = 0;  ///< reached: mean of |moment| / radius, likewise
   int steps = 0, iterations = 0;
   int contacts_gained = 0, contacts_lost = 0, newly_sliding = 0;  ///< against the start
 };

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/space/elementary.h"
 #include "dem/space/overlap.h"
 
 namespace grainfield::dem {
@@ -27,7 +28,7 @@ inline double segment_function(double x) {
                                                                    q * (429.0 / 17408 +
                                                                         q * 6435.0 / 311296))))))));
   }
-  return std::asin(x < 1 ? x : 1.0) - x * std::sqrt(q < 1 ? 1 - q : 0.0);
+  return arc_sine(x < 1 ? x : 1.0) - x * std::sqrt(q < 1 ? 1 - q : 0.0);
 }
 
 /// Area of the part of a disk beyond a chord whose signed distance from the centre is `arm`

@@ -53,7 +53,7 @@ Arcs arcs_of(const Loop& loop, double arc, double radius, bool centre_inside) {
     if (half < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
     // Near a diameter the half chord alone says little about the angle.
     arcs.area += half < 0.7 * radius ? segment_area(radius, arm, half)
-                                     : radius * radius * std::atan2(half, arm) - half * arm;
+                                     : radius * radius * arc_of(half, arm) - half * arm;
     // A segment's first moment about the centre is 2/3 of its half chord cubed, away from it.
     const double moment = half * half / 3;
     arcs.mx += moment * dy;
@@ -64,7 +64,7 @@ Arcs arcs_of(const Loop& loop, double arc, double radius, bool centre_inside) {
 
 bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& polygon,
                                  const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                                 Overlap& o) {
+                                 Measures measures, Overlap& o) {
   const double radius = disk.radius, radius2 = radius * radius;
   const auto hint = static_cast<std::uint32_t>(feature.hint);
   if (hint != 0 && hint <= static_cast<std::uint32_t>(polygon.n) &&
@@ -125,27 +125,30 @@ bool overlap_of_disk_and_outline(const PlacedShape& disk, const PlacedShape& pol
     }
   };
   return contact_of_loop(a, b, loop, disk.cx - a.cx, disk.cy - a.cy,
-                         arcs_of(loop, arc, radius, centre_inside), add_arcs, o);
+                         arcs_of(loop, arc, radius, centre_inside), add_arcs, measures, o);
 }
 
 }  // namespace
 
 bool overlap_of_disk_and_polygon(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                                 Overlap& overlap) {
+                                 Measures measures, Overlap& overlap) {
   if (a.n > kMostCorners || b.n > kMostCorners) {
     throw std::invalid_argument("a polygon has at most 64 corners");
   }
   const double dx = b.cx - a.cx, dy = b.cy - a.cy, reach = a.radius + b.radius;
   if (dx * dx + dy * dy > reach * reach) return false;
-  return a.n == 0 ? overlap_of_disk_and_outline(a, b, a, b, feature, overlap)
-                  : overlap_of_disk_and_outline(b, a, a, b, feature, overlap);
+  return a.n == 0 ? overlap_of_disk_and_outline(a, b, a, b, feature, measures, overlap)
+                  : overlap_of_disk_and_outline(b, a, a, b, feature, measures, overlap);
 }
 
-bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Overlap& o) {
+bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Measures measures,
+                          Overlap& o) {
   const double dx = b.cx - a.cx, dy = b.cy - a.cy;
   if (!overlap_of_disks<true>(dx, dy, a.radius, b.radius, o)) return false;
   o.shift_i = o.shift_j = 0;
-  const double weight = o.chord > 0 ? weight_of_chord(a, b, o.area, o.chord * o.chord) : 0;
+  const double weight = measures == Measures::gradient ? 1
+                        : o.chord > 0 ? weight_of_chord(a, b, o.area, o.chord * o.chord)
+                                      : 0;
   if (weight == 1) {
     o.lever_i = o.arm_i;
     o.lever_j = o.arm_j;

@@ -16,7 +16,7 @@ class DiskStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = false;
-  static constexpr bool offers_area = true, offers_curvature = false;
+  static constexpr bool offers(Measures m) { return m != Measures::curvature; }
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 
@@ -32,15 +32,27 @@ class DiskStore {
   void sort(const std::vector<int>&) {}
   Outline outline(int) const { return {}; }
 
-  template <bool with_area>
+  template <Measures measures>
   bool overlap(int, const Body<2>& a, int, const Body<2>& b, Feature&, Overlap& o) const {
-    return overlap_of_disks<with_area>(b.position.x() - a.position.x(),
-                                       b.position.y() - a.position.y(), a.radius, b.radius, o);
+    constexpr bool with_area = measures != Measures::depth;
+    if (!overlap_of_disks<with_area>(b.position.x() - a.position.x(),
+                                     b.position.y() - a.position.y(), a.radius, b.radius, o)) {
+      return false;
+    }
+    if constexpr (measures == Measures::gradient) {
+      o.length = a.radius * b.radius / (a.radius + b.radius);
+    }
+    return true;
   }
-  template <bool with_area>
+  template <Measures measures>
   bool overlap_plane(int, const Body<2>& a, const Plane<2>& plane, Overlap& o) const {
-    return overlap_with_plane<with_area>(plane.height(a.position), a.radius, plane.normal.x(),
-                                         plane.normal.y(), o);
+    constexpr bool with_area = measures != Measures::depth;
+    if (!overlap_with_plane<with_area>(plane.height(a.position), a.radius, plane.normal.x(),
+                                       plane.normal.y(), o)) {
+      return false;
+    }
+    if constexpr (measures == Measures::gradient) o.length = a.radius;
+    return true;
   }
 
   void write(ImageWriter&) const {}

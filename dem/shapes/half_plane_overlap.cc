@@ -26,12 +26,13 @@ double weight_of_chord_in_plane(const PlacedShape& a, const Overlap& o) {
 }  // namespace
 
 bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double wx, double wy,
-                             Overlap& o) {
+                             Overlap& o, Measures measures) {
+  const bool exact = measures == Measures::gradient;
   const double centre = (a.cx - px) * wx + (a.cy - py) * wy;
   if (centre >= a.radius) return false;
   if (a.n == 0) {
     overlap_with_plane<true>(centre, a.radius, wx, wy, o);
-    const double weight = weight_of_chord_in_plane(a, o);
+    const double weight = exact ? 1 : weight_of_chord_in_plane(a, o);
     o.lever_i = weight * o.arm_i;  // wholly inside, s is the centre
     o.chord *= weight;
     o.lever_j = o.shift_i = o.shift_j = 0;
@@ -86,7 +87,7 @@ bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double 
   if (crossings > 0) {
     sx = crossing_x / crossings;
     sy = crossing_y / crossings;
-    weight = weight_of_chord_in_plane(a, o);
+    weight = exact ? 1 : weight_of_chord_in_plane(a, o);
     o.chord *= weight;
   }
   if (weight < 1) {

@@ -1,5 +1,6 @@
 // Area, centroid and second moments of a polygon from its corners (Roul 2.82-2.91).
 #include <cmath>
+#include <numbers>
 
 #include "dem/shapes/polygon.h"
 
@@ -76,6 +77,18 @@ double edge_steepness(const Outline& outline) {
     steepest = std::fmax(steepest, steepness);
   }
   return 0.5 * (steepest + second);
+}
+
+double equal_radius(double area) { return std::sqrt(area / std::numbers::pi); }
+
+double edge_width(const Outline& outline) {
+  double longest = 0;
+  for (std::size_t k = 0, n = outline.size(); k < n; ++k) {
+    const auto& [x0, y0] = outline[k];
+    const auto& [x1, y1] = outline[(k + 1) % n];
+    longest = std::fmax(longest, std::sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0)));
+  }
+  return 2 * longest / equal_radius(area_of(outline));
 }
 
 }  // namespace grainfield::dem

@@ -169,10 +169,12 @@ inline LoopSums sums_of(const Loop& loop) {
 /// Fills `overlap` from the region's loop; (ox, oy) is the loop's origin relative to A's centroid.
 /// `arcs` are added to the polygon of the points; `add_arcs(extents, n_x, n_y, n_0,
 /// t_0)` includes what arcs reach beyond the points, positions along n and t counted from n_0, t_0.
-/// Returns false when the area is not positive.
+/// Returns false when the area is not positive. Measures::gradient: without bounds on s and without
+/// the hand-over, which are no derivatives of the area.
 template <class AddArcs>
 inline bool contact_of_loop(const PlacedShape& a, const PlacedShape& b, const Loop& loop, double ox,
-                            double oy, const Arcs& arcs, AddArcs add_arcs, Overlap& o) {
+                            double oy, const Arcs& arcs, AddArcs add_arcs, Measures measures,
+                            Overlap& o) {
   const LoopSums s = sums_of(loop);
   o.area = s.area + arcs.area;
   if (!(o.area > 0)) return false;
@@ -199,19 +201,21 @@ inline bool contact_of_loop(const PlacedShape& a, const PlacedShape& b, const Lo
   // Of more than two crossings the sums can leave the region: then its border is as far as s goes.
   double along_t = 0.5 * (s.sxx + s.syy) * inverse;
   double along_n = (tx * ty * (s.sxx - s.syy) + s.sxy * (ty * ty - tx * tx)) * inverse;
-  along_t = std::min(std::max(along_t, e.low_t), e.high_t);
+  const bool exact = measures == Measures::gradient;
+  if (!exact) along_t = std::min(std::max(along_t, e.low_t), e.high_t);
   along_n = std::min(std::max(along_n, e.low_n), e.high_n);
   set_contact_point(a, b, ox + x0 + along_t * tx + along_n * ty,
                     oy + y0 + along_t * ty - along_n * tx, o);
-  const double weight = weight_of_chord(a, b, o.area, squared);
+  const double weight = exact ? 1 : weight_of_chord(a, b, o.area, squared);
   if (weight < 1) hand_over(a, b, loop, arcs, ox, oy, weight, o);
   return true;
 }
 
 /// Disk with polygon, either one first (disk_overlap.cc).
 bool overlap_of_disk_and_polygon(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                                 Overlap& overlap);
+                                 Measures measures, Overlap& overlap);
 /// Disk with disk (disk_overlap.cc).
-bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Overlap& overlap);
+bool overlap_of_two_disks(const PlacedShape& a, const PlacedShape& b, Measures measures,
+                          Overlap& overlap);
 
 }  // namespace grainfield::dem::region

@@ -5,9 +5,10 @@
 //   b = sum of the vectors along A's pieces, counter-clockwise   (= p2 - p1 for two crossings)
 // the overlap area obeys dA = -|b| n . du for a displacement du of B against A, n = b turned by -90
 // degrees (out of A, towards B), so n is the normal, t = (-n_y, n_x) the tangent and |b| the
-// chord for any number of crossings, and force R = E A / l along n is the one that a smooth
-// potential would give at constant l. The contact point s has the tangential position that makes
-// the torque equal to the area's derivative by rotation,
+// chord for any number of crossings. Roul's force E A / l along n is not the gradient of a
+// potential: l changes with the place too, so it does work round closed loops (docs/piles.md). The
+// contact point s has the tangential position that makes the torque equal to the area's derivative
+// by rotation,
 //   s . t = sum over A's pieces (|end|^2 - |begin|^2) / (2 |b|)
 // and the normal position
 //   s . n = sum over A's pieces ((end.t)(end.n) - (begin.t)(begin.n)) / |b|,
@@ -53,12 +54,21 @@ struct PairFeature {
 /// Fills `overlap` (area, chord, length, levers and shifts included). Returns false when the shapes
 /// do not overlap (touching counts as not). Polygon with polygon, disk with polygon, disk with
 /// disk.
+/// With Measures::gradient normal, chord and contact point are the area's derivatives wherever
+/// there is a chord, and the chord does not fade; the length is left to set_constant_length.
 bool overlap_of_shapes(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                       Overlap& overlap);
+                       Overlap& overlap, Measures measures = Measures::area);
 /// The same with a half plane: (px, py) on it, (wx, wy) its outward unit normal. The plane's own
 /// arm is infinite, so l = arm_i.
 bool overlap_with_half_plane(const PlacedShape& a, double px, double py, double wx, double wy,
-                             Overlap& overlap);
+                             Overlap& overlap, Measures measures = Measures::area);
+
+/// l0 of two grains whose circles of equal area have these radii, m. A wall's is infinite.
+inline void set_constant_length(double equal_i, double equal_j, Overlap& overlap) {
+  overlap.length = equal_i * equal_j / (equal_i + equal_j);
+}
+/// Radius of the circle of this area, m.
+double equal_radius(double area);
 
 /// Area, m2 (positive for counter-clockwise corners).
 double area_of(const Outline& outline);
@@ -73,6 +83,9 @@ double circumradius_of(const Outline& outline);
 /// bounds the stiffness over E of the edge-on-edge contacts on the grain's two sides (engine.h:
 /// stable_time_step).
 double edge_steepness(const Outline& outline);
+
+/// 2 length / radius of equal area of the longest edge: the largest chord / l0 of two such grains.
+double edge_width(const Outline& outline);
 
 /// The outline with its centroid at the origin, counter-clockwise. Throws std::invalid_argument
 /// saying what is wrong and with which corner: fewer than 3 corners, a value that is not finite,

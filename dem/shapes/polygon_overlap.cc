@@ -134,7 +134,7 @@ inline bool all_corners(const PlacedShape& shape, int first, int last, Visit vis
 // when the region or its chord is too small to be sure of, or when one outline is all but inside
 // the other.
 inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, const Crossings& c,
-                                 Overlap& o) {
+                                 Measures measures, Overlap& o) {
   const int ea = c.enter_a, la = c.leave_a, eb = c.enter_b, lb = c.leave_b;
   // p1: A's edge ea comes in through B's edge lb; p2: A's edge la goes out through B's edge eb.
   const double out1 = inside_of(b, lb, a.x[ea], a.y[ea]);
@@ -180,7 +180,9 @@ inline bool contact_of_crossings(const PlacedShape& a, const PlacedShape& b, con
   const double squared = bx * bx + by * by, reach = a.radius + b.radius;
   o.area = 0.5 * twice;
   if (!(o.area > kSureArea * reach * reach) || !(squared > kSureArea * reach * reach)) return false;
-  if (region::weight_of_chord(a, b, o.area, squared) < 1) return false;
+  if (measures != Measures::gradient && region::weight_of_chord(a, b, o.area, squared) < 1) {
+    return false;
+  }
   o.chord = std::sqrt(squared);
   const double inverse = 1 / o.chord;
   o.nx = by * inverse;
@@ -280,7 +282,7 @@ void start_loop(const PlacedShape& a, int first, double dx, double dy, double lo
 
 // Steps 2 to 5. Returns false when the region is empty.
 bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                         Overlap& o, bool& in_doubt) {
+                         Measures measures, Overlap& o, bool& in_doubt) {
   const double reach = a.radius + b.radius;
   double dx = b.cx - a.cx, dy = b.cy - a.cy;
   const double squared = dx * dx + dy * dy;
@@ -305,7 +307,7 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
   if (low >= high) return false;
   in_doubt = true;
   Crossings crossings;
-  if (find_crossings(a, b, crossings) && contact_of_crossings(a, b, crossings, o)) {
+  if (find_crossings(a, b, crossings) && contact_of_crossings(a, b, crossings, measures, o)) {
     feature.hint = crossings.packed();
     return true;
   }
@@ -344,28 +346,29 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
   }
   return region::contact_of_loop(
       a, b, *loop, ox - a.cx, oy - a.cy, region::Arcs{},
-      [](region::Extents&, double, double, double, double) {}, o);
+      [](region::Extents&, double, double, double, double) {}, measures, o);
 }
 
 }  // namespace
 
 bool overlap_of_shapes(const PlacedShape& a, const PlacedShape& b, PairFeature& feature,
-                       Overlap& overlap) {
+                       Overlap& overlap, Measures measures) {
   if (a.n == 0 || b.n == 0) {
-    if (a.n != b.n) return region::overlap_of_disk_and_polygon(a, b, feature, overlap);
-    return region::overlap_of_two_disks(a, b, overlap);
+    if (a.n != b.n) return region::overlap_of_disk_and_polygon(a, b, feature, measures, overlap);
+    return region::overlap_of_two_disks(a, b, measures, overlap);
   }
   if (a.n > kMostCorners || b.n > kMostCorners) {
     throw std::invalid_argument("a polygon with more than 64 corners");
   }
   if (separated_as_before(a, b, feature)) return false;
   Crossings crossings;
-  if (unpack(feature, a, b, crossings) && contact_of_crossings(a, b, crossings, overlap)) {
+  if (unpack(feature, a, b, crossings) &&
+      contact_of_crossings(a, b, crossings, measures, overlap)) {
     return true;
   }
   feature.hint = 0;
   bool in_doubt = false;
-  const bool found = overlap_of_polygons(a, b, feature, overlap, in_doubt);
+  const bool found = overlap_of_polygons(a, b, feature, measures, overlap, in_doubt);
   const double reach = a.radius + b.radius;
   if (found && overlap.area > kSureArea * reach * reach) return true;
   if (in_doubt && find_separating_edge(a, b, feature)) return false;

@@ -1,6 +1,7 @@
 // Polygons (and disks among them) as the engine keeps them: corners in the body frame and where
 // they are now, in blocks of equal length, in the order of the bodies.
 #pragma once
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -19,7 +20,7 @@ class PolygonStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = true;
-  static constexpr bool offers_area = true, offers_curvature = false;
+  static constexpr bool offers(Measures m) { return m != Measures::curvature; }
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 
@@ -36,8 +37,10 @@ class PolygonStore {
       block[k] = outline[k % n][0];
       block[stride_ + k] = outline[k % n][1];
     }
-    if (n == 0) return disk_solid(shape.radius);
-    return {circumradius_of(outline), area_of(outline), polar_moment_of(outline)};
+    Solid<2> solid = disk_solid(shape.radius);
+    if (n > 0) solid = {circumradius_of(outline), area_of(outline), polar_moment_of(outline)};
+    equal_radius_.push_back(n > 0 ? equal_radius(solid.volume) : shape.radius);
+    return solid;
   }
 
   /// Turns and moves the corners to where the body is.
@@ -58,6 +61,7 @@ class PolygonStore {
   void swap(int i, int j) {
     std::swap(count_[i], count_[j]);
     std::swap(long_axis_[i], long_axis_[j]);
+    std::swap(equal_radius_[i], equal_radius_[j]);
     std::swap_ranges(block_of(i), block_of(i) + kBlocks * stride_, block_of(j));
   }
   /// The first order.size() grains in this order.
@@ -66,15 +70,18 @@ class PolygonStore {
     scratch_.resize(order.size() * size);
     counts_.resize(order.size());
     axes_.resize(order.size());
+    radii_.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       const double* from = block_of(order[k]);
       std::copy(from, from + size, scratch_.begin() + static_cast<std::ptrdiff_t>(k * size));
       counts_[k] = count_[order[k]];
       axes_[k] = long_axis_[order[k]];
+      radii_[k] = equal_radius_[order[k]];
     }
     std::copy(scratch_.begin(), scratch_.end(), corners_.begin());
     std::copy(counts_.begin(), counts_.end(), count_.begin());
     std::copy(axes_.begin(), axes_.end(), long_axis_.begin());
+    std::copy(radii_.begin(), radii_.end(), equal_radius_.begin());
   }
 
   Outline outline(int i) const {
@@ -98,31 +105,56 @@ class PolygonStore {
     return bounding_rectangle(placed(i, b), c * ux - s * uy, s * ux + c * uy, gap);
   }
 
-  template <bool>
+  template <Measures measures>
   bool overlap(int i, const Body<2>& a, int j, const Body<2>& b, Feature& feature,
                Overlap& o) const {
     const double dx = b.position.x() - a.position.x(), dy = b.position.y() - a.position.y();
     const double reach = a.radius + b.radius;
     if (dx * dx + dy * dy >= reach * reach) return false;
-    return overlap_of_shapes(placed(i, a), placed(j, b), feature, o);
+    return found<measures>(i, j,
+                           overlap_of_shapes(placed(i, a), placed(j, b), feature, o, measures), o);
   }
-  template <bool>
+  /// The same with an image of j: b, and its corners `shift` away from where they are kept.
+  template <Measures measures>
+  bool overlap_image(int i, const Body<2>& a, int j, const Body<2>& b, const VectorOf<2>& shift,
+                     Feature& feature, Overlap& o) const {
+    const double dx = b.position.x() - a.position.x(), dy = b.position.y() - a.position.y();
+    const double reach = a.radius + b.radius;
+    if (dx * dx + dy * dy >= reach * reach) return false;
+    PlacedShape image = placed(j, b);
+    std::array<double, kMostCorners + 1> x, y;
+    for (int k = 0; k <= image.n && image.n > 0; ++k) {
+      x[k] = image.x[k] + shift.x();
+      y[k] = image.y[k] + shift.y();
+    }
+    image.x = x.data();
+    image.y = y.data();
+    return found<measures>(i, j, overlap_of_shapes(placed(i, a), image, feature, o, measures), o);
+  }
+  template <Measures measures>
   bool overlap_plane(int i, const Body<2>& a, const Plane<2>& plane, Overlap& o) const {
     if (plane.height(a.position) >= a.radius) return false;
-    return overlap_with_half_plane(placed(i, a), plane.point.x(), plane.point.y(), plane.normal.x(),
-                                   plane.normal.y(), o);
+    if (!overlap_with_half_plane(placed(i, a), plane.point.x(), plane.point.y(), plane.normal.x(),
+                                 plane.normal.y(), o, measures)) {
+      return false;
+    }
+    if constexpr (measures == Measures::gradient) o.length = equal_radius_[i];
+    return true;
   }
 
   void write(ImageWriter& w) const {
     w.put(stride_);
     w.put(count_);
     w.put(corners_);
+    w.put(equal_radius_);
   }
   void read(ImageReader& r, std::size_t grains) {
     r.get(stride_);
     r.get(count_);
     r.get(corners_);
-    r.require(count_.size() == grains && corners_.size() == grains * kBlocks * stride_);
+    r.get(equal_radius_);
+    r.require(count_.size() == grains && equal_radius_.size() == grains &&
+              corners_.size() == grains * kBlocks * stride_);
     for (const int n : count_) r.require(n >= 0 && static_cast<std::size_t>(n) < stride_);
     long_axis_.clear();
     any_slender_ = false;
@@ -135,6 +167,13 @@ class PolygonStore {
  private:
   static constexpr std::size_t kBlocks = 4;  // body x, body y, placed x, placed y
 
+  template <Measures measures>
+  bool found(int i, int j, bool touches, Overlap& o) const {
+    if constexpr (measures == Measures::gradient) {
+      if (touches) set_constant_length(equal_radius_[i], equal_radius_[j], o);
+    }
+    return touches;
+  }
   double* block_of(int i) {
     return corners_.data() + static_cast<std::size_t>(i) * kBlocks * stride_;
   }
@@ -156,6 +195,7 @@ class PolygonStore {
   std::vector<int> count_, counts_;
   std::vector<std::array<double, 2>> long_axis_, axes_;  // in the body frame (long_axis_of)
   bool any_slender_ = false;
+  std::vector<double> equal_radius_, radii_;  // of the circles of equal area, m
   std::vector<double> corners_, scratch_;
 };
 

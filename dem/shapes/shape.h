@@ -15,8 +15,12 @@
 
 namespace grainfield::dem {
 
+/// A shape that keeps places of its own beside the bodies' also has overlap_image
+/// (polygon_store.h): a body that is an image of j tells nothing of them.
+///
 /// `outlines`: has corners, may be slender, and its contact points lie beside the line of centres.
-/// `offers_area`, `offers_curvature`: measures of the overlap that laws may need.
+/// `offers(measures)`: that laws may read these of its overlaps. overlap and overlap_plane get the
+/// measures wanted (here those without any cost) at compile time.
 template <class S>
 concept Shape = std::default_initializable<typename S::Feature> && std::default_initializable<S> &&
     requires(S& store, const S& same, const ShapeInput& input, int i, const Body<S::dim>& body,
@@ -24,16 +28,17 @@ concept Shape = std::default_initializable<typename S::Feature> && std::default_
              const std::vector<int>& order, typename S::Feature& feature,
              typename S::Overlap& overlap, ImageWriter& writer, ImageReader& reader) {
   { S::outlines } -> std::convertible_to<bool>;
-  { S::offers_area } -> std::convertible_to<bool>;
-  { S::offers_curvature } -> std::convertible_to<bool>;
+  { S::offers(Measures::depth) } -> std::same_as<bool>;
   requires std::same_as<typename S::Overlap, OverlapIn<S::dim>>;
   { store.add(input) } -> std::same_as<Solid<S::dim>>;  // throws std::invalid_argument
   store.place(i, body, rotation);                       // after the body has moved
   store.swap(i, i);
   store.sort(order);  // the first order.size() grains in this order
   { same.outline(i) } -> std::same_as<Outline>;
-  { same.template overlap<true>(i, body, i, body, feature, overlap) } -> std::same_as<bool>;
-  { same.template overlap_plane<true>(i, body, plane, overlap) } -> std::same_as<bool>;
+  {
+    same.template overlap<Measures::depth>(i, body, i, body, feature, overlap)
+    } -> std::same_as<bool>;
+  { same.template overlap_plane<Measures::depth>(i, body, plane, overlap) } -> std::same_as<bool>;
   same.write(writer);
   store.read(reader, std::size_t{});
 };

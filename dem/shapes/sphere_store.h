@@ -20,7 +20,9 @@ class SphereStore {
  public:
   static constexpr int dim = 3;
   static constexpr bool outlines = false;
-  static constexpr bool offers_area = false, offers_curvature = true;
+  static constexpr bool offers(Measures m) {
+    return m == Measures::depth || m == Measures::curvature;
+  }
   using Overlap = Overlap3;
   struct Feature {};
 
@@ -34,7 +36,7 @@ class SphereStore {
   void sort(const std::vector<int>&) {}
   Outline outline(int) const { return {}; }
 
-  template <bool>
+  template <Measures>
   bool overlap(int, const Body<3>& a, int, const Body<3>& b, Feature&, Overlap& o) const {
     const Eigen::Vector3d across = b.position - a.position;
     const double squared = across.squaredNorm(), reach = a.radius + b.radius;
@@ -54,7 +56,7 @@ class SphereStore {
     o.arm_j = (arm_i - distance) * o.normal;
     return true;
   }
-  template <bool>
+  template <Measures>
   bool overlap_plane(int, const Body<3>& a, const Plane<3>& plane, Overlap& o) const {
     const double height = plane.height(a.position);
     if (height >= a.radius) return false;

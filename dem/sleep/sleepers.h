@@ -71,6 +71,8 @@ class Sleepers {
     quiet_[i] = {position, rotation, step};
     return true;
   }
+  /// The body goes on at another image of its place.
+  void shift(int i, const Vector& way) { quiet_[i].position += way; }
   /// Falls asleep: from now on it carries this weight.
   void put_to_sleep(int i, const Vector& weight) {
     asleep_[i] = 1;

@@ -65,7 +65,8 @@ void lower(decltype(RLIMIT_CPU) what, double to) {
   }
   lower(RLIMIT_CORE, 0);
   lower(RLIMIT_CPU, std::ceil(limits.seconds));
-  alarm(static_cast<unsigned>(std::min(std::ceil(kWallShare * limits.seconds), 1e6)));
+  const double clock = limits.clock > 0 ? limits.clock : kWallShare * limits.seconds;
+  alarm(static_cast<unsigned>(std::min(std::ceil(clock), 1e6)));
 #ifndef __SANITIZE_ADDRESS__
   if (in_use > 0) lower(RLIMIT_AS, in_use + limits.memory);
 #else
@@ -111,8 +112,10 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<bool()>&
   if (ended != child || !WIFSIGNALED(status)) return {ChildEnd::crashed, ""};
   const int number = WTERMSIG(status);
   const char* name = sigabbrev_np(number);
-  const bool endless = number == SIGXCPU || number == SIGALRM || number == SIGKILL;
-  return {endless ? ChildEnd::endless : ChildEnd::crashed,
+  const bool endless = number == SIGXCPU || number == SIGALRM;
+  return {endless             ? ChildEnd::endless
+          : number == SIGKILL ? ChildEnd::killed
+                              : ChildEnd::crashed,
           name != nullptr ? std::string("SIG") + name : ""};
 }
 

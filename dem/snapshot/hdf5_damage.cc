@@ -1,10 +1,12 @@
 #include "dem/snapshot/hdf5_damage.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <string_view>
 #include <vector>
 
+#include "dem/cannot_read_now.h"
 #include "dem/snapshot/hdf5_file.h"
 
 namespace grainfield::dem::hdf5 {
@@ -110,6 +112,21 @@ bool out_of_memory() {
   return any_error([](const H5E_error2_t& error) {
     return error.maj_num == H5E_RESOURCE && error.min_num == H5E_NOSPACE;
   });
+}
+
+int error_of_the_moment() {
+  int found = 0;
+  any_error([&](const H5E_error2_t& error) {
+    // "..., errno = 13, error message = ..."
+    constexpr std::string_view kErrno = "errno = ";
+    const std::string_view text = error.desc != nullptr ? error.desc : "";
+    const std::size_t at = text.find(kErrno);
+    if (at == std::string_view::npos) return false;
+    const int number = std::atoi(error.desc + at + kErrno.size());
+    if (means_cannot_read_now(number)) found = number;
+    return found != 0;
+  });
+  return found;
 }
 
 }  // namespace grainfield::dem::hdf5

@@ -19,5 +19,8 @@ hsize_t file_size(hid_t object);
 /// Of the last call of HDF5, which failed.
 bool checksum_failed();
 bool out_of_memory();
+/// errno of the system call in it that failed for a reason of the moment (means_cannot_read_now);
+/// 0: none did.
+int error_of_the_moment();
 
 }  // namespace grainfield::dem::hdf5

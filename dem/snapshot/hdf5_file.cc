@@ -1,14 +1,19 @@
 #include "dem/snapshot/hdf5_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
+#include "dem/cannot_read_now.h"
 #include "dem/snapshot/hdf5_crc.h"
 #include "dem/snapshot/hdf5_damage.h"
 #include "dem/snapshot/hdf5_probe.h"
+#include "dem/snapshot/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::dem::hdf5 {
@@ -28,7 +33,9 @@ Handle create(const std::string& file) {
   const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
   Handle handle(H5Fcreate(file.c_str(), H5F_ACC_EXCL, properties, access()), H5Fclose);
-  if (!handle.valid()) throw StorageFailed(fmt::format("{}: cannot be written", file));
+  if (!handle.valid()) {
+    throw StorageFailed(fmt::format("{}: cannot be written; is the disk full?", final_name(file)));
+  }
   return handle;
 }
 
@@ -39,10 +46,25 @@ std::string file_name(hid_t object) {
   return name;
 }
 
-[[noreturn]] void fail_write(hid_t object, const std::string& name) {
-  throw StorageFailed(
-      fmt::format("{}: cannot write the dataset, group or attribute '{}'; is the disk full?",
-                  file_name(object), shown(name)));
+// Throws when this errno, 0 for none, says that the moment is to blame and not the file.
+void require_readable_now(const std::string& file, int error) {
+  if (!means_cannot_read_now(error)) return;
+  throw CannotReadNow(fmt::format("{}: cannot be read now: {}", file, std::strerror(error)));
+}
+
+// Opens it and reads its first bytes, as HDF5 will.
+void try_reading(const std::string& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  int failed = descriptor < 0 ? errno : 0;
+  char byte = 0;
+  if (descriptor >= 0 && ::pread(descriptor, &byte, 1, 0) < 0) failed = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  require_readable_now(file, failed);
+}
+
+[[noreturn]] void fail_write(hid_t object) {
+  throw StorageFailed(fmt::format("{}: cannot be written to its end; is the disk full?",
+                                  final_name(file_name(object))));
 }
 
 // In chunks with a checksum each; without the time of writing.
@@ -67,14 +89,14 @@ void write_any(hid_t group, const std::string& name, const std::vector<T>& value
   const Handle properties = properties_of_dataset(rows, static_cast<hsize_t>(columns), sizeof(T));
   Handle set(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
              H5Dclose);
-  if (!set.valid()) fail_write(group, name);
+  if (!set.valid()) fail_write(group);
   if (rows > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    fail_write(group, name);
+    fail_write(group);
   }
   if (!unit.empty()) write_attribute(set, "unit", unit);
   if (rows > 0) write_attribute(set, kCrc, crc_of(values));
   // The last chunk is written now.
-  if (H5Dflush(set) < 0 || !set.close_now()) fail_write(group, name);
+  if (H5Dflush(set) < 0 || !set.close_now()) fail_write(group);
 }
 
 void write_scalar(hid_t object, const std::string& name, hid_t type, const void* value) {
@@ -82,7 +104,7 @@ void write_scalar(hid_t object, const std::string& name, hid_t type, const void*
   Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                    H5Aclose);
   if (!attribute.valid() || H5Awrite(attribute, type, value) < 0 || !attribute.close_now()) {
-    fail_write(object, name);
+    fail_write(object);
   }
 }
 
@@ -91,9 +113,9 @@ void write_scalar(hid_t object, const std::string& name, hid_t type, const void*
 Handle open_for_reading(const std::string& file) {
   prepare();
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    throw std::invalid_argument(fmt::format("{}: no such file", file));
-  }
+  const bool there = std::filesystem::exists(file, error);
+  if (error) require_readable_now(file, error.value());
+  if (!there) throw std::invalid_argument(fmt::format("{}: no such file", file));
   if (std::filesystem::is_directory(file, error)) {
     throw std::invalid_argument(
         fmt::format("{0}: a folder; name its file, such as {0}/snapshots.h5", file));
@@ -102,8 +124,9 @@ Handle open_for_reading(const std::string& file) {
     throw std::invalid_argument(fmt::format("{}: not a regular file", file));
   }
   if (::access(file.c_str(), R_OK) != 0) {
-    throw std::invalid_argument(fmt::format("{}: no permission to read it", file));
+    throw CannotReadNow(fmt::format("{}: no permission to read it", file));
   }
+  try_reading(file);
   if (H5Fis_hdf5(file.c_str()) <= 0) {
     throw std::invalid_argument(
         fmt::format("{}: not an HDF5 file, or its beginning is broken", file));
@@ -111,6 +134,7 @@ Handle open_for_reading(const std::string& file) {
   probe(file);
   Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) {
+    require_readable_now(file, out_of_memory() ? ENOMEM : error_of_the_moment());
     const char* checksum = checksum_failed() ? " (its checksum does not fit)" : "";
     throw std::invalid_argument(
         fmt::format("{}: the HDF5 file is truncated or broken{}", file, checksum));
@@ -127,14 +151,15 @@ Handle open_for_adding(const std::string& file) {
   if (handle.valid()) return handle;
   // What cannot be read either is said as such.
   open_for_reading(file);
-  throw StorageFailed(fmt::format("{}: cannot be written", file));
+  throw StorageFailed(fmt::format("{}: cannot be written; is the disk full?", final_name(file)));
 }
 
 void finish(Handle file, const std::string& name) {
   const std::string own_name = file_name(file);
   const bool flushed = H5Fflush(file, H5F_SCOPE_LOCAL) >= 0;
   if (!file.close_now() || !flushed) {
-    throw StorageFailed(fmt::format("{}: cannot be written to its end; is the disk full?", name));
+    throw StorageFailed(
+        fmt::format("{}: cannot be written to its end; is the disk full?", final_name(name)));
   }
   trust(own_name);
 }
@@ -149,14 +174,14 @@ Handle create_group(hid_t parent, const std::string& path) {
     if (has_link(parent, above)) continue;
     const Handle made(H5Gcreate2(parent, above.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT),
                       H5Gclose);
-    if (!made.valid()) fail_write(parent, above);
+    if (!made.valid()) fail_write(parent);
   }
   if (has_link(parent, path)) {
     throw std::invalid_argument(
         fmt::format("{}: has a group '{}' already", file_name(parent), shown(path)));
   }
   Handle group(H5Gcreate2(parent, path.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) fail_write(parent, path);
+  if (!group.valid()) fail_write(parent);
   return group;
 }
 

@@ -37,7 +37,8 @@ class Handle {
 };
 
 /// Opens for reading, after a look at the file in a child process (hdf5_probe.h). Throws
-/// std::invalid_argument naming the file: not there, not HDF5, truncated, damaged.
+/// std::invalid_argument naming the file: not there, not HDF5, truncated, damaged; CannotReadNow
+/// (dem/cannot_read_now.h) when the moment is to blame, here and in all that reads.
 Handle open_for_reading(const std::string& file);
 /// Opens to add to it, creating it when it is not there. Throws StorageFailed naming the file when
 /// it cannot be created, std::invalid_argument when what is there cannot be read.

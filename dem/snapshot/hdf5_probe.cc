@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <set>
 #include <stdexcept>
@@ -13,6 +16,7 @@
 #include <tuple>
 #include <utility>
 
+#include "dem/cannot_read_now.h"
 #include "dem/snapshot/child.h"
 #include "dem/snapshot/hdf5_damage.h"
 #include "dem/snapshot/hdf5_file.h"
@@ -29,6 +33,10 @@ constexpr double kMemory = 512e6, kMemoryShare = 40;
 // Younger files may change without their time changing, ns.
 constexpr long long kYoung = 50'000'000;
 constexpr int kDeepest = 256;
+// The same where the structure alone is looked at, whatever the size; s on the clock besides.
+constexpr double kStructureSeconds = 2, kStructureClock = 4, kStructureMemory = 64e6;
+// Bytes of a number in memory.
+constexpr double kNumber = 8;
 
 // A state of a file: device, inode, bytes, time of change.
 using State = std::tuple<dev_t, ino_t, off_t, long long>;
@@ -46,11 +54,18 @@ std::set<State>& known() {
   static std::set<State> states;
   return states;
 }
+// Those of whose structure alone is known that it can be read.
+std::set<State>& known_structures() {
+  static std::set<State> states;
+  return states;
+}
 
 // All of a file, as the readers of this folder would read it. What cannot be read is no matter
 // here: they say it.
 class Walk {
  public:
+  explicit Walk(bool contents) : contents_(contents) {}
+
   void group(hid_t id, int depth) {
     attributes(id);
     H5O_info_t info;
@@ -60,6 +75,8 @@ class Walk {
     if (H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, link, &below) < 0) failed();
   }
   bool out_of_memory() const { return out_of_memory_; }
+  /// Of all datasets met, as they claim.
+  double bytes() const { return bytes_; }
 
  private:
   struct Below {
@@ -108,6 +125,10 @@ class Walk {
 
   void dataset(hid_t set) {
     attributes(set);
+    const Handle claimed(H5Dget_space(set), H5Sclose);
+    bytes_ += kNumber * static_cast<double>(std::max<hssize_t>(
+                            0, claimed.valid() ? H5Sget_simple_extent_npoints(claimed) : 0));
+    if (!contents_) return;
     if (!unreadable(set).empty()) return failed();
     const Handle space(H5Dget_space(set), H5Sclose);
     const Handle type(H5Dget_type(set), H5Tclose);
@@ -135,17 +156,23 @@ class Walk {
   void failed() { out_of_memory_ = out_of_memory_ || hdf5::out_of_memory(); }
 
   std::set<std::pair<unsigned long, haddr_t>> seen_;
-  bool out_of_memory_ = false;
+  bool contents_, out_of_memory_ = false;
+  double bytes_ = 0;
 };
 
 // False when it takes more memory than allowed.
-bool read_all(const std::string& file) {
-  Walk walk;
+bool go_through(const std::string& file, Walk& walk) {
   const Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) return true;
   const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
   if (root.valid()) walk.group(root, 0);
   return !walk.out_of_memory();
+}
+
+// Whether the user has limited our memory, so that want of it says nothing about the file.
+bool memory_is_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
 std::string why(const ChildResult& result) {
@@ -158,6 +185,7 @@ std::string why(const ChildResult& result) {
       return "reading it crashes the HDF5 library" +
              (result.signal.empty() ? "" : fmt::format(" ({})", result.signal));
     case ChildEnd::ok:
+    case ChildEnd::killed:
     case ChildEnd::unknown:  // there is no look ahead; the file is read as it is
       break;
   }
@@ -165,6 +193,17 @@ std::string why(const ChildResult& result) {
 }
 
 }  // namespace
+
+int StructureOnly::depth_ = 0;
+
+double content_bytes(const std::string& file) {
+  const StructureOnly alone;
+  const Handle handle = open_for_reading(file);
+  const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
+  Walk walk(false);
+  if (root.valid()) walk.group(root, 0);
+  return walk.bytes();
+}
 
 void trust(const std::string& file) {
   State state;
@@ -174,15 +213,34 @@ void trust(const std::string& file) {
 void probe(const std::string& file) {
   State state;
   if (!state_of(file, state) || known().count(state) > 0) return;
+  const bool alone = StructureOnly::holds();
+  if (alone && known_structures().count(state) > 0) return;
   const auto size = static_cast<double>(std::get<2>(state));
-  const ChildLimits limits{kSeconds + size / kBytesPerSecond, kMemory + kMemoryShare * size};
-  const ChildResult result = run_in_child(limits, [&] { return read_all(file); });
+  const ChildLimits limits =
+      alone ? ChildLimits{kStructureSeconds, kStructureMemory, kStructureClock}
+            : ChildLimits{kSeconds + size / kBytesPerSecond, kMemory + kMemoryShare * size};
+  const ChildResult result = run_in_child(limits, [&] {
+    Walk walk(!alone);
+    return go_through(file, walk);
+  });
+  if (alone && (result.end == ChildEnd::endless || result.end == ChildEnd::failed)) {
+    throw TooMuchToLookAt(
+        fmt::format("{}: takes longer to look through, or more memory, than a check has", file));
+  }
+  if (result.end == ChildEnd::killed || (result.end == ChildEnd::failed && memory_is_limited())) {
+    throw CannotReadNow(fmt::format("{}: cannot be read now: {}", file,
+                                    result.end == ChildEnd::killed
+                                        ? "a look at it was killed, perhaps for want of memory"
+                                        : std::strerror(ENOMEM)));
+  }
   if (const std::string problem = why(result); !problem.empty()) {
     throw std::invalid_argument(fmt::format("{}: damaged: {}", file, problem));
   }
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
-  if (nanoseconds(now) - std::get<3>(state) > kYoung) known().insert(state);
+  if (nanoseconds(now) - std::get<3>(state) > kYoung) {
+    (alone ? known_structures() : known()).insert(state);
+  }
 }
 
 }  // namespace grainfield::dem::hdf5

@@ -4,8 +4,10 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
+#include "dem/cannot_read_now.h"
 #include "dem/snapshot/hdf5_crc.h"
 #include "dem/snapshot/hdf5_damage.h"
 #include "dem/snapshot/hdf5_file.h"
@@ -37,11 +39,23 @@ const char* reason() {
 }
 
 [[noreturn]] void fail_read(const std::string& where, const std::string& what) {
+  // Before the message asks HDF5 anything else. That the child could read it and we cannot is for
+  // want of memory now.
+  const int now = out_of_memory() ? ENOMEM : error_of_the_moment();
+  if (now != 0) {
+    throw CannotReadNow(
+        fmt::format("{}: {}: cannot be read now: {}", where, what, std::strerror(now)));
+  }
   throw std::invalid_argument(fmt::format("{}: {}: {}", where, what, reason()));
 }
 
 [[noreturn]] void fail_read(hid_t object, const std::string& what) {
   const char* why = reason();
+  const int now = out_of_memory() ? ENOMEM : error_of_the_moment();
+  if (now != 0) {
+    throw CannotReadNow(
+        fmt::format("{}: {}: cannot be read now: {}", place(object), what, std::strerror(now)));
+  }
   throw std::invalid_argument(fmt::format("{}: {}: {}", place(object), what, why));
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <string_view>
 
 #include "dem/storage_failed.h"
 
@@ -25,18 +26,35 @@ void flush(const std::string& path, int flags, const std::string& target) {
   const std::error_code error(failed, std::generic_category());
   if (means_storage_failed(error) && failed != EROFS) {
     throw StorageFailed(
-        fmt::format("{}: cannot be written to its end: {}", target, error.message()));
+        fmt::format("{}: cannot be written to its end: {}", final_name(target), error.message()));
   }
 }
 
 }  // namespace
+
+std::string final_name(const std::string& path) {
+  constexpr std::string_view kPart = ".part";
+  constexpr std::size_t kWord = 17;  // a dot and 16 hexadecimal digits
+  fs::path out;
+  for (const fs::path& step : fs::path(path)) {
+    if (step != ".partial") out /= step;
+  }
+  std::string name = out.filename().string();
+  if (!name.ends_with(kPart)) return out.string();
+  name.resize(name.size() - kPart.size());
+  if (name.starts_with('.') && name.size() > kWord + 1 && name[name.size() - kWord] == '.') {
+    name = name.substr(1, name.size() - kWord - 1);
+  }
+  return out.replace_filename(name).string();
+}
 
 void replace_file(const std::string& beside, const std::string& target) {
   flush(beside, 0, target);
   std::error_code error;
   fs::rename(beside, target, error);
   if (error) {
-    throw StorageFailed(fmt::format("{}: cannot take its place: {}", target, error.message()));
+    throw StorageFailed(
+        fmt::format("{}: cannot take its place: {}", final_name(target), error.message()));
   }
   const std::string folder = fs::path(target).parent_path().string();
   flush(folder.empty() ? "." : folder, O_DIRECTORY, target);

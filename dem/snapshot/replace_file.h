@@ -10,6 +10,10 @@ namespace grainfield::dem {
 /// power cut leaves the old file or the new one, whole. Throws StorageFailed naming the target.
 void replace_file(const std::string& beside, const std::string& target);
 
+/// The name that a file which is being written will have: without the marks of FILE.part, of
+/// .FILE.0123456789abcdef.part and of a folder .partial on the way. For messages.
+std::string final_name(const std::string& path);
+
 /// write(FILE.part), which then takes FILE's place. When that fails FILE.part goes and FILE stays
 /// as it was. Throws what write throws, and StorageFailed.
 template <class Write>

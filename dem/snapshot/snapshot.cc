@@ -2,53 +2,65 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
-#include <string_view>
+#include <type_traits>
 
+#include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/table_file.h"
 
 namespace grainfield::dem {
+
+std::string joined_names(const std::vector<std::string>& names, const std::string& what) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k].find(',') != std::string::npos)
+      throw std::invalid_argument(
+          fmt::format("{}: found the name \"{}\", allowed: names without commas", what, names[k]));
+    text += (k > 0 ? "," : "") + names[k];
+  }
+  return text;
+}
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t at = 0;;) {
+    const std::size_t comma = text.find(',', at);
+    names.push_back(text.substr(at, comma - at));
+    if (comma == std::string::npos) return names;
+    at = comma + 1;
+  }
+}
+
+void require_rows(const TableSource& source, const std::string& what, std::size_t found,
+                  std::size_t wanted) {
+  if (found == wanted) return;
+  throw std::invalid_argument(
+      fmt::format("{}: {} has {} rows where {} are expected", source.where, what, found, wanted));
+}
+
 namespace {
 
-constexpr const char* kFormat = "grainfield-snapshot-1";
 // Groups in groups that are searched for snapshots.
 constexpr int kDeepest = 64;
 // Bytes of names of snapshots in a message.
 constexpr std::size_t kMostListed = 1000;
 
-template <class Items, class Get>
-std::vector<double> gather(const Items& items, Get get) {
-  std::vector<double> values;
-  values.reserve(items.size());
-  for (const auto& item : items) values.push_back(get(item));
-  return values;
-}
-template <class Items, class Get>
-std::vector<long long> gather_integers(const Items& items, Get get) {
-  std::vector<long long> values;
-  values.reserve(items.size());
-  for (const auto& item : items) values.push_back(get(item));
-  return values;
-}
-template <class Items, class Get>
-std::vector<double> gather_vectors(const Items& items, Get get) {
-  std::vector<double> values;
-  values.reserve(3 * items.size());
-  for (const auto& item : items) {
-    const Vec3 v = get(item);
-    values.insert(values.end(), {v.x(), v.y(), v.z()});
+std::string format_name(int format) { return fmt::format("grainfield-snapshot-{}", format); }
+
+// Which layout the group has; 0: it is no snapshot.
+int format_of(hid_t group) {
+  for (int format = 1; format <= kSnapshotFormat; ++format) {
+    if (hdf5::attribute_is(group, "format", format_name(format))) return format;
   }
-  return values;
+  return 0;
 }
-
-Vec3 vector_at(const std::vector<double>& values, std::size_t row) {
-  return Vec3(values[3 * row], values[3 * row + 1], values[3 * row + 2]);
-}
-
-bool is_snapshot(hid_t group) { return hdf5::attribute_is(group, "format", kFormat); }
 
 // Every group is looked into once: hard links may lead in circles.
 void collect(hid_t object, const std::string& path, int depth, std::set<haddr_t>& seen,
@@ -57,7 +69,7 @@ void collect(hid_t object, const std::string& path, int depth, std::set<haddr_t>
   for (const std::string& name : hdf5::groups(object)) {
     const hdf5::Handle child = hdf5::open_group(object, name);
     const std::string full = path + "/" + name;
-    if (is_snapshot(child)) {
+    if (format_of(child) > 0) {
       found.push_back(full);
     } else {
       collect(child, full, depth + 1, seen, found);
@@ -73,9 +85,111 @@ std::vector<std::string> snapshots_in(const hdf5::Handle& file) {
   return found;
 }
 
+// Points of the rows' lists one after another as NAME: row k has those from NAME_start[k] up to
+// NAME_start[k + 1]. Nothing where all lists are empty.
+template <class Row, class List>
+void write_lists(hid_t group, const std::string& name, int columns, const std::vector<Row>& rows,
+                 List Row::*list) {
+  std::vector<long long> start{0};
+  std::vector<double> numbers;
+  for (const Row& row : rows) {
+    for (const auto& item : row.*list)
+      for (const auto& part : item) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(part)>, double>)
+          numbers.push_back(part);
+        else
+          numbers.insert(numbers.end(), part.begin(), part.end());
+      }
+    start.push_back(static_cast<long long>(numbers.size()) / columns);
+  }
+  if (numbers.empty()) return;
+  hdf5::write(group, name + "_start", start, 1, "1");
+  hdf5::write(group, name, numbers, columns, "m");
+}
+
+// take(row, the numbers of a point) for all that write_lists has written.
+template <class Row, class Take>
+void read_lists(hid_t group, const std::string& name, int columns, const std::string& at,
+                const TableSource& source, std::vector<Row>& rows, Take take) {
+  if (!hdf5::has_link(group, name + "_start")) return;
+  const auto start = hdf5::read_integers(group, name + "_start", 1, at);
+  const auto numbers = hdf5::read_doubles(group, name, columns, at);
+  const auto bad =
+      std::find_if(numbers.begin(), numbers.end(), [](double v) { return !std::isfinite(v); });
+  if (bad != numbers.end())
+    throw std::invalid_argument(fmt::format("{}: row {} of {} is {}; it must be a finite number",
+                                            source.where, (bad - numbers.begin()) / columns, name,
+                                            *bad));
+  require_rows(source, name + "_start", start.size(), rows.size() + 1);
+  const auto total = static_cast<long long>(numbers.size()) / columns;
+  if (start.front() != 0 || start.back() != total || !std::is_sorted(start.begin(), start.end()))
+    throw std::invalid_argument(fmt::format("{}: {}_start does not fit {}", at, name, name));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (long long v = start[k]; v < start[k + 1]; ++v) take(rows[k], &numbers[v * columns]);
+}
+
+// Row k of `edges` is the k-th edge.
+void write_cell(hid_t parent, const Cell<3>& cell) {
+  const hdf5::Handle group = hdf5::create_group(parent, "cell");
+  std::vector<long long> periodic;
+  std::vector<double> low, edges, gradient;
+  for (int a = 0; a < 3; ++a) {
+    periodic.push_back(cell.periodic[static_cast<std::size_t>(a)] ? 1 : 0);
+    low.push_back(cell.low[a]);
+    for (int b = 0; b < 3; ++b) {
+      edges.push_back(cell.edges(b, a));
+      gradient.push_back(cell.velocity_gradient(a, b));
+    }
+  }
+  hdf5::write(group, "periodic", periodic, 1, "1");
+  hdf5::write(group, "low", low, 1, "m");
+  hdf5::write(group, "edges", edges, 3, "m");
+  hdf5::write(group, "velocity_gradient", gradient, 3, "1/s");
+}
+
+Cell<3> read_cell(hid_t parent, const TableSource& source) {
+  Cell<3> cell;
+  if (!hdf5::has_link(parent, "cell")) return cell;
+  const hdf5::Handle group = hdf5::open_group(parent, "cell");
+  const std::string at = source.where + "/cell";
+  const auto periodic = hdf5::read_integers(group, "periodic", 1, at);
+  const auto low = hdf5::read_doubles(group, "low", 1, at);
+  const auto edges = hdf5::read_doubles(group, "edges", 3, at);
+  const auto gradient = hdf5::read_doubles(group, "velocity_gradient", 3, at);
+  require_rows(source, "cell/periodic", periodic.size(), 3);
+  require_rows(source, "cell/low", low.size(), 3);
+  require_rows(source, "cell/edges", edges.size() / 3, 3);
+  require_rows(source, "cell/velocity_gradient", gradient.size() / 3, 3);
+  for (int a = 0; a < 3; ++a) {
+    const auto row = static_cast<std::size_t>(a);
+    cell.periodic[row] = periodic[row] != 0;
+    cell.low[a] = low[row];
+    for (int b = 0; b < 3; ++b) {
+      cell.edges(b, a) = edges[3 * row + static_cast<std::size_t>(b)];
+      cell.velocity_gradient(a, b) = gradient[3 * row + static_cast<std::size_t>(b)];
+    }
+  }
+  return cell;
+}
+
+bool has_triangles(const Snapshot& s) {
+  return std::any_of(s.walls.begin(), s.walls.end(),
+                     [](const Wall& wall) { return !wall.triangles.empty(); });
+}
+
+// The oldest layout that holds all of it.
+int format_for(const Snapshot& s) {
+  const bool plain = is_plain(grain_columns(s.dim), s.grains, s.dim) &&
+                     is_plain(contact_columns(), s.contacts, s.dim) &&
+                     is_plain(wall_columns(), s.walls, s.dim) && !has_triangles(s) &&
+                     !s.cell.is_periodic() && s.dim == 2;
+  return plain ? 1 : kSnapshotFormat;
+}
+
 void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) {
+  const int format = format_for(s);
   const hdf5::Handle group = hdf5::create_group(file, group_name);
-  hdf5::write_attribute(group, "format", kFormat);
+  hdf5::write_attribute(group, "format", format_name(format));
   hdf5::write_attribute(group, "dim", static_cast<double>(s.dim));
   hdf5::write_attribute(group, "time", s.time);
   hdf5::write_attribute(group, "loaded_grain", static_cast<double>(s.loaded_grain));
@@ -90,60 +204,20 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
   }
 
   const hdf5::Handle g = hdf5::create_group(group, "grains");
-  hdf5::write(g, "id", gather_integers(s.grains, [](const Grain& a) { return a.id; }), 1, "1");
-  hdf5::write(g, "position", gather_vectors(s.grains, [](const Grain& a) { return a.position; }), 3,
-              "m");
-  hdf5::write(g, "velocity", gather_vectors(s.grains, [](const Grain& a) { return a.velocity; }), 3,
-              "m/s");
-  hdf5::write(g, "angle", gather(s.grains, [](const Grain& a) { return a.angle; }), 1, "rad");
-  hdf5::write(g, "spin", gather(s.grains, [](const Grain& a) { return a.spin; }), 1, "rad/s");
-  hdf5::write(g, "radius", gather(s.grains, [](const Grain& a) { return a.radius; }), 1, "m");
-  hdf5::write(g, "mass", gather(s.grains, [](const Grain& a) { return a.mass; }), 1, "kg");
-  hdf5::write(g, "inertia", gather(s.grains, [](const Grain& a) { return a.inertia; }), 1, "kg m2");
-  hdf5::write(g, "volume", gather(s.grains, [](const Grain& a) { return a.volume; }), 1,
-              s.dim == 2 ? "m2" : "m3");
-  hdf5::write(g, "fixed", gather_integers(s.grains, [](const Grain& a) { return a.fixed ? 1 : 0; }),
-              1, "1");
-  // Outlines one after another: grain k has corners start[k] .. start[k+1].
-  std::vector<long long> start{0};
-  std::vector<double> corners;
-  for (const Grain& a : s.grains) {
-    for (const auto& corner : a.outline)
-      corners.insert(corners.end(), corner.begin(), corner.end());
-    start.push_back(static_cast<long long>(corners.size() / 2));
-  }
-  if (!corners.empty()) {
-    hdf5::write(g, "outline_start", start, 1, "1");
-    hdf5::write(g, "outline", corners, 2, "m");
-  }
+  write_table(g, grain_columns(s.dim), s.grains, s.dim, format);
+  write_lists(g, "outline", 2, s.grains, &Grain::outline);
 
   const hdf5::Handle c = hdf5::create_group(group, "contacts");
-  hdf5::write(c, "i", gather_integers(s.contacts, [](const Contact& a) { return a.i; }), 1, "1");
-  hdf5::write(c, "j", gather_integers(s.contacts, [](const Contact& a) { return a.j; }), 1, "1");
-  hdf5::write(c, "point", gather_vectors(s.contacts, [](const Contact& a) { return a.point; }), 3,
-              "m");
-  hdf5::write(c, "normal", gather_vectors(s.contacts, [](const Contact& a) { return a.normal; }), 3,
-              "1");
-  hdf5::write(c, "force", gather_vectors(s.contacts, [](const Contact& a) { return a.force; }), 3,
-              "N");
-  hdf5::write(c, "normal_force",
-              gather(s.contacts, [](const Contact& a) { return a.normal_force; }), 1, "N");
-  hdf5::write(c, "tangential_force",
-              gather(s.contacts, [](const Contact& a) { return a.tangential_force; }), 1, "N");
-  hdf5::write(c, "spring", gather(s.contacts, [](const Contact& a) { return a.spring; }), 1, "N");
-  hdf5::write(c, "friction", gather(s.contacts, [](const Contact& a) { return a.friction; }), 1,
-              "1");
-  hdf5::write(c, "sliding",
-              gather_integers(s.contacts, [](const Contact& a) { return a.sliding ? 1 : 0; }), 1,
-              "1");
+  write_table(c, contact_columns(), s.contacts, s.dim, format);
 
   const hdf5::Handle w = hdf5::create_group(group, "walls");
-  hdf5::write(w, "point", gather_vectors(s.walls, [](const Wall& a) { return a.point; }), 3, "m");
-  hdf5::write(w, "normal", gather_vectors(s.walls, [](const Wall& a) { return a.normal; }), 3, "1");
-  hdf5::write(w, "friction", gather(s.walls, [](const Wall& a) { return a.friction; }), 1, "1");
-  std::string names;
-  for (const Wall& wall : s.walls) names += (names.empty() ? "" : ",") + wall.name;
-  hdf5::write_attribute(w, "names", names);
+  write_table(w, wall_columns(), s.walls, s.dim, format);
+  std::vector<std::string> names;
+  for (const Wall& wall : s.walls) names.push_back(wall.name);
+  hdf5::write_attribute(w, "names", joined_names(names, "walls"));
+  write_lists(w, "triangles", 9, s.walls, &Wall::triangles);
+
+  if (s.cell.is_periodic()) write_cell(group, s.cell);
 }
 
 // Throws with the names of those there are.
@@ -151,7 +225,7 @@ hdf5::Handle open_snapshot(const hdf5::Handle& file, const std::string& name,
                            const std::string& where) {
   if (hdf5::has_group(file, name)) {
     hdf5::Handle group = hdf5::open_group(file, name);
-    if (is_snapshot(group)) return group;
+    if (format_of(group) > 0) return group;
   }
   std::string known;
   for (const std::string& found : snapshots_in(file)) {
@@ -163,6 +237,58 @@ hdf5::Handle open_snapshot(const hdf5::Handle& file, const std::string& name,
   }
   throw std::invalid_argument(fmt::format("{}: no snapshot there; the file has: {}",
                                           hdf5::shown(where), known.empty() ? "none" : known));
+}
+
+void read_grains(hid_t group, const TableSource& source, Snapshot& s) {
+  s.grains =
+      read_table<Grain>(group, grain_columns(s.dim), source, "grains",
+                        [](const Grain& g, std::size_t) { return fmt::format("grain {}", g.id); });
+  read_lists(group, "outline", 2, source.where + "/grains", source, s.grains,
+             [](Grain& g, const double* at) {
+               g.outline.push_back({at[0], at[1]});
+             });
+  if (s.dim == 2 || source.format > 1) return;
+  for (Grain& g : s.grains) {
+    g.angular_velocity = Vec3(0, 0, g.spin);
+    g.moments = Vec3::Constant(g.inertia);
+  }
+}
+
+void read_walls(hid_t group, const TableSource& source, Snapshot& s) {
+  s.walls =
+      read_table<Wall>(group, wall_columns(), source, "walls",
+                       [](const Wall&, std::size_t row) { return fmt::format("wall {}", row); });
+  const auto names = split_names(hdf5::read_text_attribute(group, "names"));
+  if (!s.walls.empty()) require_rows(source, "walls/names", names.size(), s.walls.size());
+  for (std::size_t k = 0; k < s.walls.size(); ++k) s.walls[k].name = names[k];
+  read_lists(group, "triangles", 9, source.where + "/walls", source, s.walls,
+             [](Wall& wall, const double* at) {
+               std::array<Vec3, 3> triangle;
+               for (std::size_t v = 0; v < 3; ++v) triangle[v] = Vec3(at + 3 * v);
+               wall.triangles.push_back(triangle);
+             });
+}
+
+// What the contacts tell of the walls' forces.
+void add_wall_forces(Snapshot& s) {
+  for (const Contact& c : s.contacts) {
+    if (c.j >= 0 || -1 - c.j >= static_cast<std::int64_t>(s.walls.size())) continue;
+    Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+    wall.force -= c.force;
+    wall.torque -= (c.point - wall.point).cross(c.force);
+  }
+}
+
+void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
+  s.contacts = read_table<Contact>(
+      group, contact_columns(), source, "contacts",
+      [](const Contact&, std::size_t row) { return fmt::format("contact {}", row); });
+  if (source.format > 1) return;
+  add_wall_forces(s);
+  if (s.dim == 2) return;
+  // Their directions were not told.
+  for (Contact& c : s.contacts)
+    if (c.spring != 0) c.spring_vector.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace
@@ -193,135 +319,16 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (name.starts_with("run_"))
       s.attributes[name.substr(4)] = hdf5::read_text_attribute(group, name);
   }
-  const auto open = [&](const char* name) { return hdf5::open_group(group, name); };
-  // nan is for coefficients that other programs do not tell; what moves, weighs or pushes is known.
-  const auto finite = [&](const std::vector<double>& values, int columns, const char* what,
-                          const auto& name_of) {
-    const auto bad =
-        std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
-    if (bad == values.end()) return;
-    throw std::invalid_argument(
-        fmt::format("{}: {} of {} is {}; it must be a finite number", where, what,
-                    name_of(static_cast<std::size_t>(bad - values.begin()) / columns), *bad));
-  };
   for (int k = 0; k < 3; ++k)
     if (!std::isfinite(s.gravity[k]) || !std::isfinite(s.applied_force[k]))
       throw std::invalid_argument(
           fmt::format("{}: gravity or the applied force is not a finite number", where));
-  const auto same_length = [&](std::size_t found, std::size_t wanted, const char* what) {
-    if (found != wanted) {
-      throw std::invalid_argument(
-          fmt::format("{}: {} has {} rows where {} are expected", where, what, found, wanted));
-    }
-  };
-  {
-    const hdf5::Handle g = open("grains");
-    const std::string at = where + "/grains";
-    const auto id = hdf5::read_integers(g, "id", 1, at);
-    const std::size_t n = id.size();
-    const auto doubles = [&](const char* name, int columns) {
-      auto values = hdf5::read_doubles(g, name, columns, at);
-      same_length(values.size() / columns, n, name);
-      finite(values, columns, name, [&](std::size_t k) { return fmt::format("grain {}", id[k]); });
-      return values;
-    };
-    const auto position = doubles("position", 3), velocity = doubles("velocity", 3);
-    const auto angle = doubles("angle", 1), spin = doubles("spin", 1),
-               radius = doubles("radius", 1);
-    const auto mass = doubles("mass", 1), inertia = doubles("inertia", 1);
-    const auto volume = doubles("volume", 1);
-    const auto fixed = hdf5::read_integers(g, "fixed", 1, at);
-    same_length(fixed.size(), n, "fixed");
-    s.grains.resize(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      s.grains[k] = {id[k],
-                     vector_at(position, k),
-                     vector_at(velocity, k),
-                     angle[k],
-                     spin[k],
-                     radius[k],
-                     mass[k],
-                     inertia[k],
-                     volume[k],
-                     fixed[k] != 0,
-                     {}};
-    }
-    if (hdf5::has_link(g, "outline_start")) {
-      const auto start = hdf5::read_integers(g, "outline_start", 1, at);
-      const auto corners = hdf5::read_doubles(g, "outline", 2, at);
-      finite(corners, 2, "outline", [](std::size_t k) { return fmt::format("corner {}", k); });
-      same_length(start.size(), n + 1, "outline_start");
-      const auto total = static_cast<long long>(corners.size() / 2);
-      if (start.front() != 0 || start.back() != total ||
-          !std::is_sorted(start.begin(), start.end())) {
-        throw std::invalid_argument(fmt::format("{}: outline_start does not fit outline", at));
-      }
-      for (std::size_t k = 0; k < n; ++k) {
-        for (long long v = start[k]; v < start[k + 1]; ++v) {
-          s.grains[k].outline.push_back({corners[2 * v], corners[2 * v + 1]});
-        }
-      }
-    }
-  }
-  {
-    const hdf5::Handle w = open("walls");
-    const std::string at = where + "/walls";
-    const auto point = hdf5::read_doubles(w, "point", 3, at);
-    const auto normal = hdf5::read_doubles(w, "normal", 3, at);
-    const auto friction = hdf5::read_doubles(w, "friction", 1, at);
-    same_length(point.size() / 3, friction.size(), "walls/point");
-    same_length(normal.size() / 3, friction.size(), "walls/normal");
-    const auto wall = [](std::size_t k) { return fmt::format("wall {}", k); };
-    finite(point, 3, "point", wall);
-    finite(normal, 3, "normal", wall);
-    std::string names = hdf5::read_text_attribute(w, "names");
-    for (std::size_t k = 0; k < friction.size(); ++k) {
-      const std::size_t comma = names.find(',');
-      s.walls.push_back(
-          {names.substr(0, comma), vector_at(point, k), vector_at(normal, k), friction[k]});
-      names = comma == std::string::npos ? "" : names.substr(comma + 1);
-    }
-  }
-  {
-    const hdf5::Handle c = open("contacts");
-    const std::string at = where + "/contacts";
-    const auto i = hdf5::read_integers(c, "i", 1, at), j = hdf5::read_integers(c, "j", 1, at);
-    const std::size_t n = i.size();
-    same_length(j.size(), n, "contacts/j");
-    const auto doubles = [&](const char* name, int columns) {
-      auto values = hdf5::read_doubles(c, name, columns, at);
-      same_length(values.size() / columns, n, name);
-      const std::string_view coefficient = name;
-      if (coefficient != "spring" && coefficient != "friction")
-        finite(values, columns, name, [](std::size_t k) { return fmt::format("contact {}", k); });
-      return values;
-    };
-    const auto point = doubles("point", 3), normal = doubles("normal", 3),
-               force = doubles("force", 3);
-    const auto normal_force = doubles("normal_force", 1), spring = doubles("spring", 1);
-    const auto tangential_force = doubles("tangential_force", 1), friction = doubles("friction", 1);
-    const auto sliding = hdf5::read_integers(c, "sliding", 1, at);
-    same_length(sliding.size(), n, "contacts/sliding");
-    const auto grains = static_cast<long long>(s.grains.size());
-    const auto walls = static_cast<long long>(s.walls.size());
-    s.contacts.resize(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      if (i[k] < 0 || i[k] >= grains || j[k] >= grains || j[k] < -walls) {
-        throw std::invalid_argument(fmt::format(
-            "{}: contact {} names the unknown grain or wall ({}, {})", where, k, i[k], j[k]));
-      }
-      s.contacts[k] = {i[k],
-                       j[k],
-                       vector_at(point, k),
-                       vector_at(normal, k),
-                       vector_at(force, k),
-                       normal_force[k],
-                       tangential_force[k],
-                       spring[k],
-                       friction[k],
-                       sliding[k] != 0};
-    }
-  }
+  const TableSource source{where, s.dim, format_of(group)};
+  read_grains(hdf5::open_group(group, "grains"), source, s);
+  read_walls(hdf5::open_group(group, "walls"), source, s);
+  read_contacts(hdf5::open_group(group, "contacts"), source, s);
+  s.cell = read_cell(group, source);
+  check_snapshot(s, where);
   return s;
 }
 

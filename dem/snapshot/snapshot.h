@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/space/cell.h"
 #include "dem/space/outline.h"
 
 namespace grainfield::dem {
@@ -31,14 +32,31 @@ struct Grain {
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z: body to space
   Vec3 angular_velocity{0, 0, 0};                 ///< rad/s
   Vec3 moments{0, 0, 0};                          ///< principal moments, kg m2
+  std::string material{};                         ///< "": the only one, without a name
+  /// Periodic: whole edges by which the grain has been carried back into the cell; without that it
+  /// would be at position + cell.edges * image, with the velocity of that image.
+  std::array<int, 3> image{0, 0, 0};
+  bool rotates = true;  ///< false: it slides but never spins
 };
 
-/// A rigid immobile half plane: the grains are on the side the normal points to.
+/// A rigid wall. A plane bounds a half space: the grains are on the side the normal points to.
 struct Wall {
-  std::string name;      ///< "floor", "left", "right"
-  Vec3 point{0, 0, 0};   ///< on the wall, m
-  Vec3 normal{0, 1, 0};  ///< unit, into the grains
-  double friction = 0;   ///< coefficient of grain against wall
+  std::string name;             ///< "floor", "left", "right"
+  Vec3 point{0, 0, 0};          ///< on the wall; of a cylinder or cone: where its axis begins, m
+  Vec3 normal{0, 1, 0};         ///< unit, into the grains; of a cylinder or cone: its axis
+  double friction = 0;          ///< coefficient of grain against wall, where it has no material
+  std::string shape = "plane";  ///< plane | cylinder | cone | mesh
+  double radius = 0;            ///< cylinder, cone: at `point`, m
+  double end_radius = 0;        ///< cone: at the other end of the axis, m
+  double length = 0;            ///< cylinder, cone: of the axis, m; 0: a cylinder without ends
+  bool inside = true;           ///< cylinder, cone: the grains are inside
+  std::vector<std::array<Vec3, 3>>
+      triangles{};                 ///< mesh: counter-clockwise as the grains see it, m
+  std::string material{};          ///< "": the law of each grain with its like, and `friction`
+  Vec3 velocity{0, 0, 0};          ///< of `point` as part of the wall, m/s
+  Vec3 angular_velocity{0, 0, 0};  ///< about `point`, rad/s
+  Vec3 force{0, 0, 0};             ///< of all grains on the wall, N
+  Vec3 torque{0, 0, 0};            ///< about `point`, N m
 };
 
 /// A contact that transmits force. j >= 0: index of the other grain; j = -1 - w: wall w.
@@ -52,7 +70,14 @@ struct Contact {
   double spring = 0;            ///< elastic part of tangential_force (the contact's memory), N
   double friction = 0;          ///< Coulomb coefficient of this contact
   bool sliding = false;         ///< |tangential| at mu * normal
-  Vec3 spring_vector{0, 0, 0};  ///< in 3D: the spring on grain i, N; `spring` is its size
+  Vec3 spring_vector{0, 0, 0};  ///< in 3D: the spring on grain i, N; `spring` is its size; nan:
+                                ///< another program did not tell
+  /// Periodic: the grain j that i touches is the image at position + cell.edges * image.
+  std::array<int, 3> image{0, 0, 0};
+  /// Pseudo-force of the rolling spring and moment of the twisting spring along `normal`, on grain
+  /// i (dem/laws/rolling.h): N, N m.
+  Vec3 rolling_spring{0, 0, 0};
+  double twisting_spring = 0;
 };
 
 struct Snapshot {
@@ -61,6 +86,7 @@ struct Snapshot {
   Vec3 gravity{0, 0, 0};           ///< m/s2
   std::int64_t loaded_grain = -1;  ///< id of the grain that carries the applied force, or -1
   Vec3 applied_force{0, 0, 0};     ///< on that grain, N
+  Cell<3> cell;                    ///< in 2D the third axis is not periodic
   std::vector<Grain> grains;       ///< sorted by id
   std::vector<Contact> contacts;   ///< sorted by (i, j)
   std::vector<Wall> walls;
@@ -69,10 +95,11 @@ struct Snapshot {
 
 /// Writes the snapshot as group `group` ("/unloaded", "/realization_003/loaded") of the file,
 /// creating the file or adding to it. Not atomic: the caller writes beside and renames.
-/// Throws StorageFailed (dem/storage_failed.h) naming the file.
+/// Throws StorageFailed (dem/storage_failed.h) naming the file, std::invalid_argument for names of
+/// walls or materials with commas.
 void write_snapshot(const std::string& file, const std::string& group, const Snapshot& snapshot);
 /// Throws std::invalid_argument naming the file and what is missing or broken (not HDF5, truncated,
-/// no such group or column, contacts naming unknown grains).
+/// no such group or column, contacts naming unknown grains, and what check_snapshot refuses).
 Snapshot read_snapshot(const std::string& file, const std::string& group);
 /// Every group of the file that holds a snapshot, in the file's order of names.
 std::vector<std::string> list_snapshots(const std::string& file);

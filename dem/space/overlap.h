@@ -5,6 +5,16 @@
 
 namespace grainfield::dem {
 
+/// What a law reads of an overlap beside its normal, depth and contact point.
+enum class Measures {
+  depth,     ///< nothing else
+  area,      ///< area, chord, and the length l that follows the contact point
+  gradient,  ///< area, chord, normal and contact point that are exactly the area's derivatives, and
+             ///< a length that stays: l0 = R_i R_j/(R_i + R_j), R of the circle of equal area (at a
+             ///< wall R_i)
+  curvature,  ///< relative radius of curvature
+};
+
 /// Geometry of one contact in the plane. With the tangent t = (-ny, nx) and the contact point s:
 /// s - x_i = lever_i n + shift_i t, s - x_j = -lever_j n + shift_j t.
 struct Overlap {

@@ -8,6 +8,7 @@
 
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/replace_file.h"
+#include "dem/study/outlook.h"
 #include "dem/study/run.h"
 
 namespace grainfield::dem {
@@ -21,7 +22,10 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   }
   EngineSettings e;
   e.law = law_of(m);
-  const bool feels_edges = std::visit([](const auto& law) { return law.feels_edges; }, e.law);
+  e.rolling = RollingLaw::of(m);
+  e.local_damping = motion.local_damping;
+  const bool feels_edges =
+      std::visit([](const auto& law) { return law.edges != EdgeMeasure::none; }, e.law);
   if (extremes.steepest_edge > 0 && !feels_edges) {
     throw std::invalid_argument(fmt::format(
         "material.law: found {}, allowed for polygons: {} (a spring on the depth alone does not "
@@ -29,6 +33,9 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         m.law, fmt::join(laws_that_feel_edges(), ", ")));
   }
   e.integrator = IntegratorKind::named(motion.integrator);
+  if (extremes.steepest_edge > 0 && e.rolling.on()) refuse_rolling_polygons();
+  check_materials(e);
+  check_rolling(e);
   const double limit = stable_time_step(e, extremes);
   e.time_step = motion.time_step > 0 ? motion.time_step : motion.time_step_fraction * limit;
   const bool beyond =
@@ -73,6 +80,14 @@ double round_down(double value) {
   return std::floor(value / unit * (1 + 1e-12)) * unit;
 }
 
+void check_method(const char* key, const std::string& method, const MaterialSetup& material) {
+  if (method != "newton" || !RollingLaw::of(material).on()) return;
+  throw std::invalid_argument(
+      fmt::format("{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
+                  "(the quasi-static solver knows no resistance against rolling)",
+                  key, material.rolling_friction));
+}
+
 void check_background_damping(const RestSetup& rest, double time_step) {
   if (rest.background_damping * time_step <= 1) return;
   throw std::invalid_argument(fmt::format(
@@ -83,6 +98,7 @@ void check_background_damping(const RestSetup& rest, double time_step) {
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {
   return d.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
+         d.unbalanced_moment_ratio <= rest.unbalanced_force_ratio &&
          d.kinetic_energy <= rest.kinetic_to_elastic_energy * d.elastic_energy;
 }
 
@@ -91,16 +107,18 @@ double rest_progress(const Diagnostics& d, const RestSetup& rest) {
     return std::clamp(std::log(std::max(value, 1e-300)) / std::log(goal), 0.0, 1.0);
   };
   const double swinging = d.elastic_energy > 0 ? d.kinetic_energy / d.elastic_energy : 1.0;
-  return std::min(share(d.unbalanced_force_ratio, rest.unbalanced_force_ratio),
+  const double unbalanced = std::max(d.unbalanced_force_ratio, d.unbalanced_moment_ratio);
+  return std::min(share(unbalanced, rest.unbalanced_force_ratio),
                   share(swinging, rest.kinetic_to_elastic_energy));
 }
 
 void fail_to_rest(const Diagnostics& d, const RestSetup& rest, const std::string& when,
                   const std::string& remedy) {
   throw ComputationFailed(fmt::format(
-      "no rest within rest.max_time = {:g} s ({}): unbalanced force ratio {:.2g}, "
-      "kinetic/elastic energy {:.2g}; raise rest.max_time or rest.background_damping{}",
-      rest.max_time, when, d.unbalanced_force_ratio, d.kinetic_energy / d.elastic_energy, remedy));
+      "no rest within rest.max_time = {:g} s ({}): unbalanced force ratio {:.2g}, of moments "
+      "{:.2g}, kinetic/elastic energy {:.2g}; raise rest.max_time or rest.background_damping{}",
+      rest.max_time, when, d.unbalanced_force_ratio, d.unbalanced_moment_ratio,
+      d.kinetic_energy / d.elastic_energy, remedy));
 }
 
 void add_reached(const std::string& prefix, const Reached& reached,
@@ -121,6 +139,7 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
   figures["dem.steps"] = static_cast<double>(engine.steps());
   figures["dem.time_step"] = engine.time_step();
   figures["dem.unbalanced_force_ratio"] = state.unbalanced_force_ratio;
+  figures["dem.unbalanced_moment_ratio"] = state.unbalanced_moment_ratio;
   figures["dem.unbalanced_force_max_ratio"] = state.max_unbalanced_force / state.mean_contact_force;
   figures["dem.kinetic_to_elastic_energy"] = state.kinetic_energy / state.elastic_energy;
   figures["dem.max_overlap_ratio"] = state.max_overlap_ratio;
@@ -129,22 +148,6 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
 std::string smaller_step(const MotionSetup& m) {
   if (m.time_step > 0 || m.time_step_fraction <= 1) return "";
   return fmt::format(", or lower motion.time_step_fraction, now {:g}", m.time_step_fraction);
-}
-
-std::string describe(const MaterialSetup& m) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", m.law, m.density, m.young, m.damping,
-                     m.poisson, m.normal_stiffness, m.tangential_stiffness, m.normal_damping,
-                     m.tangential_damping, m.friction, m.floor_friction, m.wall_friction,
-                     m.gravity);
-}
-
-std::string describe(const MotionSetup& m, double time_step) {
-  return fmt::format("{} {}", m.integrator, time_step);
-}
-
-std::string describe(const RestSetup& r) {
-  return fmt::format("{} {} {} {}", r.unbalanced_force_ratio, r.kinetic_to_elastic_energy,
-                     r.background_damping, r.max_time);
 }
 
 void write_checkpoint(const std::string& file, const std::string& fingerprint,

@@ -33,14 +33,17 @@ EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup&
                                double reserve = 1);
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
+/// Throws std::invalid_argument naming `key` where grains resist rolling, of which the quasi-static
+/// solver knows nothing, and its method is "newton".
+void check_method(const char* key, const std::string& method, const MaterialSetup& material);
+
 /// Throws std::invalid_argument naming rest.background_damping when it would take more than its
 /// velocity from a grain within a time step.
 void check_background_damping(const RestSetup& rest, double time_step);
 
 /// Throws std::invalid_argument naming the key when its time, s, takes more steps than anyone waits
-/// for (kMostSteps).
+/// for (kMostSteps, dem/study/outlook.h).
 void check_countable(const char* key, double time, double time_step);
-inline constexpr double kMostSteps = 1e15;
 
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
 /// How far a rest has come, in [0, 1]: on the logarithms of the unbalanced force ratio and of
@@ -53,11 +56,6 @@ double rest_progress(const Diagnostics& state, const RestSetup& rest);
 
 /// Behind that remedy: above the stable limit the step itself may be what keeps grains moving.
 std::string smaller_step(const MotionSetup& motion);
-
-/// All settings as text, to tell checkpoints of different setups apart.
-std::string describe(const MaterialSetup& material);
-std::string describe(const MotionSetup& motion, double time_step);
-std::string describe(const RestSetup& rest);
 
 /// Keys dem.*: grains, contacts, steps and how near the state is to rest.
 void add_engine_figures(const Engine& engine, const Diagnostics& state,

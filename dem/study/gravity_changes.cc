@@ -154,9 +154,4 @@ void GravityChanges::add_to(RunResult& result) const {
   }
 }
 
-std::string GravityChanges::describe() const {
-  return fmt::format("[{}] {} {} {}", fmt::join(change_.gravity, " "), change_.method,
-                     change_.unbalanced_force_ratio, change_.ramp_time);
-}
-
 }  // namespace grainfield::dem

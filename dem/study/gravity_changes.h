@@ -38,15 +38,12 @@ class GravityChanges {
   std::string phase() const;
   /// The damped dynamics at work, or null.
   const Engine* engine() const { return engine_.get(); }
-  bool is_known(std::size_t k) const { return changed_[k].has_value(); }
 
   /// Shows all that changes; reading, start_from() must have been called before.
   void visit(Archive& archive);
 
   /// Adds the snapshots "gravity_G" and the figures "change.gravity_G.*".
   void add_to(RunResult& result) const;
-  /// Settings that decide the outcome, to tell checkpoints apart.
-  std::string describe() const;
 
  private:
   std::size_t at() const;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "dem/snapshot/contact_changes.h"
+#include "dem/study/fingerprint.h"
 #include "dem/study/phases.h"
 
 namespace grainfield::dem {
@@ -96,10 +97,7 @@ Progress LatticePileRun::progress() const {
 }
 
 std::string LatticePileRun::fingerprint() const {
-  const LatticeSetup& l = setup_.lattice;
-  return fmt::format("lattice pile {} {} {} {} | {} | {} | {} | {}", l.base_grains, l.slope_deg,
-                     l.radius, l.gap, describe(setup_.material),
-                     describe(setup_.motion, engine_->time_step()), describe(setup_.rest), seed_);
+  return fmt::format("lattice pile {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
 }
 
 RunResult LatticePileRun::result() const {

@@ -177,11 +177,15 @@ Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint6
                            std::int64_t most) {
   const PackingSetup& p = s.packing;
   check_packing(p);
+  check_method("load.method", s.load.method, s.material);
   Outlook out;
   out.grains = grains_of(p);
   const double radius = draws_pentagons(p) ? 0.85 * p.side : mean_radius(p);
   if (p.floor == "rough") out.fixed = std::floor(0.5 * layer_width(p) / radius);
   out.bytes = (out.grains + out.fixed) * (draws_pentagons(p) ? kBytesOfPolygon : kBytesOfDisk);
+  out.bytes_key = p.kind == "layered"  ? "packing.width"
+                  : p.rows > p.columns ? "packing.rows"
+                                       : "packing.columns";
 
   const auto judge = [&](const GrainExtremes& extremes, double reserve) {
     const double step =
@@ -222,6 +226,7 @@ Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds
   const double side_by_side = length_in_grains(s);
   out.fixed = s.floor.kind == "rough" ? side_by_side : 0;
   out.bytes = (out.grains + out.fixed) * (s.shape.kind == "disk" ? kBytesOfDisk : kBytesOfPolygon);
+  out.bytes_key = "source.grains";
 
   const bool irregular = s.shape.kind == "rand1" || s.shape.kind == "irregular";
   const double density = s.material.density;
@@ -265,6 +270,7 @@ Outlook foresee_lattice_pile(const LatticePileSetup& s) {
   Outlook out;
   for (const int row : lattice_rows(s.lattice)) out.grains += row;
   out.bytes = out.grains * kBytesOfDisk;
+  out.bytes_key = "lattice.base_grains";
   GrainExtremes extremes;
   extremes.least_mass = s.material.density * disk_grain(s.lattice.radius).area;
   out.time_step = engine_settings(s.material, s.motion, extremes, 1).time_step;

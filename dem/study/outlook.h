@@ -10,15 +10,18 @@ namespace grainfield::dem {
 
 /// Most grains of a realization, with fixed ones.
 inline constexpr double kMostGrains = 1e7;
+/// Most time steps of a realization: at a million of them a second, eleven days of one grain.
+inline constexpr double kMostSteps = 1e12;
 
 /// The size of a realization.
 struct Outlook {
-  double grains = 0;     ///< without fixed ones, an estimate where rows are dropped; 0: not known
-  double fixed = 0;      ///< grains of a rough floor
-  double bytes = 0;      ///< of memory while it runs, about
-  double time_step = 0;  ///< s; 0: not known
-  double time = 0;       ///< s that will be simulated at least; 0: not known
-  std::string time_key;  ///< what most of that time is due to: "source.interval"
+  double grains = 0;      ///< without fixed ones, an estimate where rows are dropped; 0: not known
+  double fixed = 0;       ///< grains of a rough floor
+  double bytes = 0;       ///< of memory while it runs, about; 0: not known
+  std::string bytes_key;  ///< what that memory is due to: "source.grains"
+  double time_step = 0;   ///< s; 0: not known
+  double time = 0;        ///< s that will be simulated at least; 0: not known
+  std::string time_key;   ///< what most of that time is due to: "source.interval"
 };
 
 /// Throws std::invalid_argument naming the key, as make_point_load_run would for any of these

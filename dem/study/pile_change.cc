@@ -8,6 +8,7 @@
 #include "dem/heap/grain_family.h"
 #include "dem/quasistatic/contact_network.h"
 #include "dem/study/common.h"
+#include "dem/study/fingerprint.h"
 #include "dem/study/gravity_changes.h"
 #include "dem/study/pile_figures.h"
 #include "dem/study/run.h"
@@ -160,9 +161,7 @@ class PileChangeRun final : public ArchivedRun {
   }
 
   std::string fingerprint() const override {
-    return fmt::format("pile change {} | {} | {} | {} | {}", where_, changes_->describe(),
-                       describe(setup_.material), describe(setup_.motion, settings_.time_step),
-                       describe(setup_.rest));
+    return fmt::format("pile change {} {} {}", where_, fingerprint_of(setup_), settings_.time_step);
   }
 
   PileSetup setup_;

@@ -10,6 +10,7 @@
 #include "dem/heap/funnel.h"
 #include "dem/heap/source.h"
 #include "dem/heap/surface.h"
+#include "dem/study/common.h"
 
 namespace grainfield::dem {
 namespace {
@@ -123,6 +124,12 @@ void check_pile(const PileSetup& s) {
             "0 with source.kind \"line\"");
     require(s.source.move == 0, "source.move", s.source.move,
             "0 with source.kind \"line\", whose layers move by source.shift");
+  }
+  if (RollingLaw::of(s.material).on()) {
+    if (s.sleep.on) refuse_sleep_with_rolling();
+    require(s.source.opening == 0, "source.opening", s.source.opening,
+            "0 with material.rolling_friction: beside a funnel's plates grains are polygons");
+    if (!s.change.gravity.empty()) check_method("change.method", s.change.method, s.material);
   }
   require_word(s.floor.kind, "floor.kind", {"smooth", "rough"});
   require(s.floor.length > 0, "floor.length", s.floor.length, "above 0");

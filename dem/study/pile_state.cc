@@ -1,7 +1,7 @@
 // Progress, checkpoints and results of the run of a pile.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "dem/study/fingerprint.h"
 #include "dem/study/pile_figures.h"
 #include "dem/study/pile_run.h"
 
@@ -48,19 +48,7 @@ Progress PileRun::progress() const {
 }
 
 std::string PileRun::fingerprint() const {
-  const ShapeSetup& h = setup_.shape;
-  const SourceSetup& o = setup_.source;
-  const SleepSetup& s = setup_.sleep;
-  return fmt::format(
-      "pile {} {} {} {} {} {} {} [{}] | {} {} {} {} {} {} {} {} {} {} {} | {} {} | {} {} {} {} {} "
-      "{} "
-      "{} | {} | {} | {} | {} | {}",
-      h.kind, h.radius, h.polydispersity, h.corners_min, h.corners_max, h.axis_ratio, h.side,
-      fmt::join(h.outline, " "), o.kind, o.grains, o.speed, o.height, o.interval, o.spread,
-      o.opening, o.move, o.clearance, o.length, o.shift, setup_.floor.kind, setup_.floor.length,
-      s.on, s.quiet_time, s.quiet_move, s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach,
-      changes_->describe(), describe(setup_.material), describe(setup_.motion, settings_.time_step),
-      describe(setup_.rest), seed_);
+  return fmt::format("pile {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
 }
 
 void PileRun::visit(Archive& archive) {

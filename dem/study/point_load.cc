@@ -10,6 +10,7 @@
 #include "dem/packing/packing.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/snapshot/contact_changes.h"
+#include "dem/study/fingerprint.h"
 #include "dem/study/phases.h"
 
 namespace grainfield::dem {
@@ -22,6 +23,7 @@ constexpr long kCheckEvery = 200;
 constexpr double kSettledShare = 0.01;
 // ... but is given at least the time of its fall and at most this, s.
 constexpr double kMaxSettleTime = 2.0;
+constexpr double kInstant = 1e-15;  // s
 
 enum class Phase : int { deposit, rest, load, hold, done };
 
@@ -35,6 +37,7 @@ class PointLoadRun final : public ArchivedRun {
   RunResult result() const override;
 
  private:
+  Diagnostics loaded_state() const;
   void visit(Archive& archive) override;
   std::unique_ptr<Engine> empty_engine() const;
   void enter(Phase phase);
@@ -83,6 +86,7 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
       random_(seed),
       supply_(checked(setup_.packing), random_),
       phases_(phases_of(setup_.packing)) {
+  check_method("load.method", setup_.load.method, setup_.material);
   const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,
@@ -277,14 +281,7 @@ Progress PointLoadRun::progress() const {
 }
 
 std::string PointLoadRun::fingerprint() const {
-  const PackingSetup& p = setup_.packing;
-  return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} | {} | {} | {} | {} {} {} {} {} | {}",
-      p.kind, p.sizes, p.radius, p.radius_small, p.fraction_small, p.radius_min, p.radius_max,
-      p.columns, p.rows, p.spacing, p.width, p.depth, p.drop_height, p.floor, p.jitter, p.shape,
-      p.side, describe(setup_.material), describe(setup_.motion, engine_->time_step()),
-      describe(setup_.rest), setup_.load.force, setup_.load.method,
-      setup_.load.unbalanced_force_ratio, setup_.load.ramp_time, setup_.load.position, seed_);
+  return fmt::format("point load {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
 }
 
 void PointLoadRun::visit(Archive& archive) {
@@ -301,12 +298,23 @@ void PointLoadRun::visit(Archive& archive) {
   archive.require((phases_.now() < Phase::load || unloaded_) && (!done() || loaded_));
 }
 
+/// Of the state that the run ends with. Newton's is not the engine's: its forces are evaluated by
+/// a step so short that nothing moves.
+Diagnostics PointLoadRun::loaded_state() const {
+  if (!by_newton()) return engine_->measure();
+  EngineSettings settings = settings_;
+  settings.time_step = kInstant;
+  const auto engine = make_engine(settings, *loaded_);
+  engine->step(1);
+  return engine->measure();
+}
+
 RunResult PointLoadRun::result() const {
   RunResult out;
   if (!unloaded_ || !loaded_) return out;
   out.snapshots = {{"unloaded", *unloaded_}, {"loaded", *loaded_}};
   auto& f = out.figures;
-  add_engine_figures(*engine_, engine_->measure(), f);
+  add_engine_figures(*engine_, loaded_state(), f);
 
   double weight = 0, area = 0;
   for (const Grain& g : unloaded_->grains) {

@@ -2,6 +2,7 @@
 // areal density in kg/m2, stiffness and Young's modulus in N/m.
 #pragma once
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dem/heap/source.h"
@@ -13,10 +14,16 @@
 namespace grainfield::dem {
 
 struct RestSetup {
-  double unbalanced_force_ratio = 1e-6;  ///< mean resultant / mean contact force
+  /// Mean resultant / mean contact force, and mean |moment| / radius likewise, are below this.
+  double unbalanced_force_ratio = 1e-6;
   double kinetic_to_elastic_energy = 1e-10;
   double background_damping = 100;  ///< 1/s, acceleration -= this * v while coming to rest
   double max_time = 20;             ///< s of simulated time for any one rest
+
+  auto members() const {
+    return std::tie(unbalanced_force_ratio, kinetic_to_elastic_energy, background_damping,
+                    max_time);
+  }
 };
 
 struct LoadSetup {
@@ -25,6 +32,10 @@ struct LoadSetup {
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
   double ramp_time = 0.5;                ///< s from 0 to the full force (smooth ramp); damped
   double position = 0.5;  ///< of the width: the top grain nearest to it carries the force
+
+  auto members() const {
+    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position);
+  }
 };
 
 /// The ground, y = 0, with side walls at its ends that only catch stray grains: a pile that leans
@@ -33,6 +44,8 @@ struct FloorSetup {
   std::string kind = "smooth";  ///< smooth: flat, with material.floor_friction | rough: fixed
                                 ///< grains like those of the pile, side by side below y = 0
   double length = 1.6;          ///< m
+
+  auto members() const { return std::tie(kind, length); }
 };
 
 /// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).
@@ -44,6 +57,10 @@ struct SleepSetup {
   double wake_force = 0.15;  ///< likewise
   double wake_speed = 0.5;   ///< sqrt(g d)
   double wake_reach = 2;     ///< d v / sqrt(g d), of a grain that comes at the speed v
+
+  auto members() const {
+    return std::tie(on, quiet_time, quiet_move, quiet_force, wake_force, wake_speed, wake_reach);
+  }
 };
 
 /// After the rest: gravity is changed, slowly, and the pile comes to rest again. Every change
@@ -53,6 +70,8 @@ struct ChangeSetup {
   std::string method = "newton";  ///< newton: quasi-static solver | damped: slow damped dynamics
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
   double ramp_time = 0.5;  ///< s from the old to the new gravity (smooth ramp); damped
+
+  auto members() const { return std::tie(gravity, method, unbalanced_force_ratio, ramp_time); }
 };
 
 /// A pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" -> for
@@ -70,6 +89,10 @@ struct PileSetup {
   RestSetup rest;
   SleepSetup sleep;
   ChangeSetup change;
+
+  auto members() const {
+    return std::tie(shape, source, floor, material, motion, rest, sleep, change);
+  }
 };
 
 /// The lattice pile comes to rest under its weight: rest -> snapshot "pile". Disks of the lowest
@@ -92,6 +115,8 @@ struct LatticePileSetup {
     r.background_damping = 1000;  // about critical for the slowest swing of 45 layers
     return r;
   }();
+
+  auto members() const { return std::tie(lattice, material, motion, rest); }
 };
 
 struct PointLoadSetup {
@@ -100,6 +125,8 @@ struct PointLoadSetup {
   MotionSetup motion;
   RestSetup rest;
   LoadSetup load;
+
+  auto members() const { return std::tie(packing, material, motion, rest, load); }
 };
 
 }  // namespace grainfield::dem

@@ -41,4 +41,10 @@ void refuse_word(const std::string& key, const std::string& found,
                                           nearest_of(found, allowed)));
 }
 
+void check_word(const std::string& key, const std::string& found,
+                const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
+    refuse_word(key, found, allowed);
+}
+
 }  // namespace grainfield::dem

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Grain-steps per second on the 10,000-disk packing: this engine (1 and 2 threads) against LAMMPS
 # gran/hooke/history (Debian package lammps, serial), five interleaved rounds, medians; and this
-# engine's 5,000 settled heptagons, all awake, beside LAMMPS' disks.
-# Usage: tests/benchmarks/against_lammps.sh [build/release]      needs: apt-get install lammps
+# engine's 5,000 settled heptagons, all awake, beside LAMMPS' disks; and 10,000 settled spheres of this
+# engine against LAMMPS' spheres, the same packing and law.
+# Usage: tests/benchmarks/against_lammps.sh [build/release [ROUNDS]]      needs: apt-get install lammps
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../../build/release}
 program=$build/tests/benchmarks/dem_benchmark
+rounds=${2:-5}
 steps=2000
 command -v lmp >/dev/null || { echo "lmp not found: install the Debian package lammps" >&2; exit 2; }
 [ -x "$program" ] || { echo "$program not found: build it first" >&2; exit 2; }
@@ -37,17 +39,50 @@ thermo 1000000
 run 200
 run $steps
 IN
+export GRAINFIELD_SPHERES=$work/spheres.h5  # settled once, read by every round
+"$program" --benchmark_filter=spheres_10k/1/ --benchmark_min_time=0.01 > /dev/null 2>&1
+awk -F, '{n++; line[n]=sprintf("%d 1 %s %s %s %s %s", n, 2*$4, 2500, $1, $2, $3)}
+  END {print "spheres\n\n" n " atoms\n1 atom types\n\n-0.01 0.21 xlo xhi\n-0.01 0.21 ylo yhi\n-0.01 0.3 zlo zhi\n\nAtoms\n"
+       for (i=1;i<=n;i++) print line[i]}' CONVFMT=%.17g OFMT=%.17g "$work/spheres.h5.csv" > "$work/spheres.data"
+cat > "$work/in.spheres" <<IN
+units si
+boundary f f f
+atom_style sphere
+newton off
+comm_modify vel yes
+read_data $work/spheres.data
+pair_style gran/hooke/history 1e5 3e4 2000 1000 0.5 1
+pair_coeff * *
+neighbor 0.001 bin
+neigh_modify delay 0 every 1 check yes
+timestep 1e-5
+fix move all nve/sphere
+fix weight all gravity 9.81 vector 0 0 -1
+fix sides all wall/gran hooke/history 1e5 3e4 2000 1000 0.5 1 xplane 0 0.2
+fix ends all wall/gran hooke/history 1e5 3e4 2000 1000 0.5 1 yplane 0 0.2
+fix floor all wall/gran hooke/history 1e5 3e4 2000 1000 0.5 1 zplane 0 NULL
+thermo 1000000
+run 200
+run $steps
+IN
 median() { sort -g | awk '{a[NR]=$1} END {print a[int((NR+1)/2)]}'; }
 own() { "$program" --benchmark_filter="$1/$2/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
   awk -F, -v n="$1" 'NR==1{for(i=1;i<=NF;i++){gsub(/"/,"",$i); if($i=="grain_steps") k=i}} index($0,n){print $k/1e6}'; }
-for round in 1 2 3 4 5; do
-  (cd "$work" && OMP_NUM_THREADS=1 lmp -log none -screen "$work/out" -in in.disks) || { tail -3 "$work/out" >&2; exit 1; }
-  awk '/^Loop time/{t=$4} END{print '$steps'*10000/t/1e6}' "$work/out" >> "$work/lammps"
+theirs() { # in.NAME, a file for the figure
+  (cd "$work" && OMP_NUM_THREADS=1 lmp -log none -screen "$work/out" -in "in.$1") || { tail -3 "$work/out" >&2; exit 1; }
+  awk '/^Loop time/{t=$4} END{print '$steps'*10000/t/1e6}' "$work/out" >> "$work/$2"
+}
+for round in $(seq "$rounds"); do
+  theirs disks lammps
   own disks_10k 1 >> "$work/one"; own disks_10k 2 >> "$work/two"
   own heptagons_5k 1 >> "$work/seven"; own heptagons_5k 2 >> "$work/seven_two"
-  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two") million grain-steps/s"
+  theirs spheres lammps_spheres
+  own spheres_10k 1 >> "$work/spheres_one"; own spheres_10k 2 >> "$work/spheres_two"
+  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two"); LAMMPS' spheres $(tail -1 "$work/lammps_spheres"), spheres 1 thread $(tail -1 "$work/spheres_one"), 2 threads $(tail -1 "$work/spheres_two") million grain-steps/s"
 done
 l=$(median < "$work/lammps") a=$(median < "$work/one") b=$(median < "$work/two")
 awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "median: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
 h=$(median < "$work/seven") t=$(median < "$work/seven_two")
 awk -v l="$l" -v h="$h" -v t="$t" 'BEGIN {printf "heptagons: 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 disks %.2f; two threads over one %.2f\n", h, t, h/l, t/h}'
+l=$(median < "$work/lammps_spheres") a=$(median < "$work/spheres_one") b=$(median < "$work/spheres_two")
+awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "spheres: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 spheres %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'

@@ -1,11 +1,13 @@
 // Grain-steps per second on settled packings with friction memory, every grain awake: disks, and
-// polygons with seven corners, round and on ellipses twice to ten times as long as wide.
+// polygons with seven corners, round and on ellipses twice to ten times as long as wide, and
+// spheres.
 #include <benchmark/benchmark.h>
 
 #include <map>
 
 #include "tests/benchmarks/heptagon_scene.h"
 #include "tests/benchmarks/packing_scene.h"
+#include "tests/benchmarks/sphere_scene.h"
 
 namespace {
 
@@ -51,6 +53,10 @@ void slender_1_to_2(benchmark::State& s) { heptagons(s, 40, 25, 5, 2); }
 void slender_1_to_5(benchmark::State& s) { heptagons(s, 40, 25, 5, 5); }
 void slender_1_to_10(benchmark::State& s) { heptagons(s, 40, 25, 5, 10); }
 
+void spheres_10k(benchmark::State& s) {
+  run(s, grainfield::benchmarks::sphere_scene(static_cast<int>(s.range(0))));
+}
+
 BENCHMARK(disks_1k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(disks_10k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(disks_30k)->Arg(1)->UseRealTime();
@@ -60,6 +66,7 @@ BENCHMARK(heptagons_5k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(heptagons_50k)->Arg(1)->UseRealTime();
 BENCHMARK(slender_1_to_2)->Arg(1)->UseRealTime();
 BENCHMARK(slender_1_to_5)->Arg(1)->UseRealTime();
+BENCHMARK(spheres_10k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(slender_1_to_10)->Arg(1)->UseRealTime();
 
 }  // namespace

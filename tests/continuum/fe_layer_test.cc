@@ -82,6 +82,9 @@ TEST(FeLayer, FailuresSayWhatToChange) {
   EXPECT_THAT(message({{"iterations", "2"}}), HasSubstr("raise iterations"));
   EXPECT_THAT(message({{"tolerance", "1e-9"}, {"refinements", "1"}}),
               HasSubstr("raise refinements, degree or tolerance"));
+  EXPECT_THAT(message({{"tolerance", "1e-9"}, {"refinements", "20"}, {"most_unknowns", "3000"}}),
+              testing::AllOf(HasSubstr("fe_elastic_layer: the next refinement would have about "),
+                             HasSubstr("allowed: up to most_unknowns = 3000; lower refinements")));
 }
 
 TEST(FeLayer, RefusesANearlyIncompressibleMaterial) {

@@ -95,6 +95,22 @@ TEST(FeRefinement, LargestErrorsHoldTheirShare) {
   EXPECT_EQ(fe::largest_errors({0, 0}, 0.5), (std::vector<bool>{false, false}));
 }
 
+TEST(FeRefinement, StopsBeforeItTakesAllMemory) {
+  WedgeProblem p;
+  p.cells = 8;
+  p.dilation_deg = 28;
+  p.refinements = 12;
+  p.most_unknowns = 1000;
+  try {
+    solve_wedge(p);
+    FAIL() << "1000 unknowns were exceeded";
+  } catch (const ComputationFailed& e) {
+    EXPECT_NE(std::string(e.what()).find("allowed: up to most_unknowns = 1000; lower refinements"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(FeRefinement, AdaptiveHeap) {
   WedgeProblem p;
   p.cells = 8;

@@ -124,6 +124,7 @@ TEST(Average, ThreeDimensions) {
     g.position = {static_cast<double>(k % 3), static_cast<double>(k / 3 % 3),
                   static_cast<double>(k / 9)};
     g.volume = 0.5;
+    g.moments.setConstant(0.05);
     s.grains.push_back(g);
   }
   const std::string start = "average " + written(folder, s, "s.h5") + " -o " + (folder / "f.h5");

@@ -133,7 +133,7 @@ TEST(Errors, Points) {
   expect_refusal(model("x,y\n1,-1\n2\n"), 2, "p.csv:3: too few columns");
   expect_refusal(model("x,y\n1,nan\n"), 2, "found \"nan\", expected a number");
   expect_refusal(program("model flamant --points " + (folder / "none.csv")), 2,
-                 "none.csv: No such file");
+                 "none.csv: no such file");
   expect_refusal(program("model flamant"), 2, "--points is missing");
   const std::string kept = folder.write("kept.csv", "x,y\n0,-1\n");
   expect_refusal(program("model flamant --points " + kept + " -o " + kept), 2,

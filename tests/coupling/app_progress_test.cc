@@ -40,6 +40,12 @@ TEST(Progress, LineNamesEverything) {
   p.phase = "gravity_5";
   p.simulated_time = p.kinetic_energy = p.unbalanced_force_ratio = 0;
   EXPECT_EQ(progress_text(p), " 12 %  1/4 done  gravity_5  80 grains  ? left");
+  // Before the first realization has told anything, and after the last.
+  p.phase = "";
+  EXPECT_EQ(progress_text(p), " 12 %  1/4 done  starting");
+  p.done = 4;
+  p.fraction = 1;
+  EXPECT_EQ(progress_text(p), "100 %  4/4 done");
 }
 
 }  // namespace

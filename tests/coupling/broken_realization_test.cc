@@ -2,18 +2,21 @@
 // again and ends in the same bits.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 
 #include "coupling/run/ensemble.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/system/signals.h"
+#include "dem/cannot_read_now.h"
 #include "dem/storage_failed.h"
 #include "program.h"
 
 namespace grainfield::coupling {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using testing::Folder;
 using ::testing::HasSubstr;
@@ -21,6 +24,7 @@ using ::testing::MatchesRegex;
 using testing::Output;
 using testing::program;
 using testing::read_text;
+using ::testing::StartsWith;
 using testing::tiny_case;
 
 dem::PointLoadSetup small() {
@@ -154,6 +158,75 @@ TEST(BrokenRealization, AFullDiskLeavesTheLastCheckpoint) {
   EXPECT_THAT(said, HasSubstr("is the disk full?"));
   EXPECT_TRUE(read_text(checkpoint) == before);
   EXPECT_FALSE(testing::fs::exists(checkpoint + ".part"));
+}
+
+// While it lives, this process can open no more files.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const int next = dup(0);
+    close(next);
+    rlimit during = before_;
+    during.rlim_cur = static_cast<rlim_t>(next);
+    setrlimit(RLIMIT_NOFILE, &during);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+std::string unreadable(Ensemble& ensemble) {
+  const NoMoreFiles none;
+  try {
+    ensemble.run();
+  } catch (const dem::CannotReadNow& e) {
+    return e.what();
+  }
+  return "nothing";
+}
+
+// What cannot be read at this moment is not broken.
+TEST(BrokenRealization, OneThatCannotBeReadNowIsKept) {
+  const Folder folder;
+  Ensemble done(folder, 2);
+  done.run();
+  const std::string file = folder / "r0.h5", good = read_text(file);
+  EXPECT_THAT(unreadable(done),
+              AllOf(StartsWith(file + ": cannot be read now: Too many open files"),
+                    HasSubstr("it is kept as it is: continue with --resume")));
+  EXPECT_TRUE(done.notes.empty());
+  EXPECT_TRUE(read_text(file) == good);
+
+  Ensemble stopped(folder, 3);
+  EXPECT_THROW(stopped.run(500), Interrupted);
+  for (const char* whole : {"r0.h5", "r1.h5"}) testing::fs::remove(folder / whole);
+  stopped.tasks.erase(stopped.tasks.begin(), stopped.tasks.begin() + 2);
+  const std::string checkpoint = folder / "r2.h5.checkpoint", half = read_text(checkpoint);
+  EXPECT_THAT(unreadable(stopped), StartsWith(checkpoint + ": cannot be read now: "));
+  EXPECT_TRUE(read_text(checkpoint) == half);
+  stopped.run();
+  EXPECT_TRUE(stopped.notes.empty());
+}
+
+TEST(BrokenRealization, ProgressCountsWhatWasDoneBefore) {
+  const Folder folder;
+  Ensemble ensemble(folder, 3);
+  ensemble.run();
+  testing::fs::remove(folder / "r1.h5");
+  EnsembleOptions options;
+  std::vector<EnsembleProgress> told;
+  options.progress = [&](const EnsembleProgress& p) { told.push_back(p); };
+  run_tasks(ensemble.tasks, Ranks(), options);
+  ASSERT_FALSE(told.empty());
+  for (const EnsembleProgress& p : told) {
+    EXPECT_EQ(p.total, 3);
+    EXPECT_GE(p.done, 2);
+    EXPECT_GE(p.fraction, 2. / 3 - 1e-12);
+    EXPECT_LE(p.fraction, 1 + 1e-12);
+  }
+  EXPECT_EQ(told.back().done, 3);
 }
 
 TEST(BrokenRealization, TheProgramSaysItAndGoesOn) {

@@ -192,7 +192,7 @@ TEST_F(ElasticMapTest, BrokenFiles) {
   EXPECT_EQ(refusal(head + "1,0,1,0.2,1,1\n0,0,1,0.2,1,1\n1,1,1,0.2,1,1\n0,1,1,0.2,1,1\n"),
             ": x and y of the nodes must ascend, x fastest");
   EXPECT_EQ(refusal_text([&] { read_elastic_map("/nowhere/map.csv"); }),
-            "/nowhere/map.csv: cannot be opened");
+            "/nowhere/map.csv: no such file");
 }
 
 TEST_F(ElasticMapTest, Refusals) {

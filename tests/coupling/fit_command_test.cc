@@ -204,6 +204,7 @@ TEST(FitCommand, RefusesWithOneLine) {
 
   dem::Snapshot solid = osl_heap(1);
   solid.dim = 3;
+  for (auto& g : solid.grains) g.moments.setConstant(1e-6);
   dem::write_snapshot(folder / "solid.h5", "/pile", solid);
   expect_refusal(program("fit " + (folder / "solid.h5") + out), "is 3D");
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -128,6 +129,86 @@ TEST(OutputFolder, WhatIsInTheWayIsSeenBeforeAnythingGoes) {
               HasSubstr("out/z.csv: is in the way of a result"));
   EXPECT_EQ(found(folder),
             (Files{{"summary.json", "old\n"}, {"x.csv", "old"}, {"member", "mine"}}));
+}
+
+// A result replaces results alone.
+TEST(OutputFolder, AFileOfTheUsersIsNotReplaced) {
+  const testing::Folder folder;
+  testing::fs::create_directory(folder / "out");
+  folder.write("out/report.html", "mine");
+  const auto again = [&] { publish(folder, {{"report.html", "new"}, {"x.csv", "new"}}); };
+  EXPECT_THAT(refusal(again),
+              AllOf(HasSubstr("out/report.html: is no result of an earlier command"),
+                    HasSubstr("move it, or name another folder with -o")));
+  EXPECT_EQ(found(folder), (Files{{"report.html", "mine"}}));
+  testing::fs::remove(folder / "out/report.html");
+  again();
+  again();  // what was published before is ours
+  EXPECT_EQ(found(folder), (Files{{"report.html", "new"}, {"x.csv", "new"}}));
+  folder.write("out/y.csv", "mine");
+  EXPECT_THAT(refusal([&] {
+                publish(folder, {{"y.csv", "new"}});
+              }),
+              HasSubstr("out/y.csv: is no result"));
+  EXPECT_EQ(found(folder), (Files{{"report.html", "new"}, {"x.csv", "new"}, {"y.csv", "mine"}}));
+}
+
+TEST(OutputFolder, ResultsOfVersionsWithoutAListAreReplaced) {
+  const testing::Folder folder;
+  testing::fs::create_directories(folder / "out/friction_0.3");
+  for (const char* name : {"out/summary.json", "out/fits.csv", "out/odd.csv",
+                           "out/friction_0.3/summary.json", "out/friction_0.3/odd.csv"}) {
+    folder.write(name, "old");
+  }
+  publish(folder, {{"odd.csv", "new"}, {"friction_0.3/odd.csv", "new"}});
+  EXPECT_EQ(testing::read_text(folder / "out/friction_0.3/odd.csv"), "new");
+  // `structure` left no summary.
+  testing::fs::remove_all(folder / "out");
+  testing::fs::create_directory(folder / "out");
+  for (const char* name : {"out/grains.csv", "out/coordination.csv", "out/base_forces.csv"}) {
+    folder.write(name, "old");
+  }
+  publish(folder, {{"grains.csv", "new"}, {"coordination.csv", "new"}});
+  EXPECT_EQ(testing::read_text(folder / "out/grains.csv"), "new");
+}
+
+TEST(OutputFolder, WhatIsNoFolderIsCalledByItsKind) {
+  const testing::Folder folder;
+  const auto open = [&](const std::string& name) {
+    return refusal([&] { const OutputFolder out(name, "grainfield test"); });
+  };
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  testing::fs::create_symlink("nowhere", folder / "link");
+  folder.write("file", "");
+  EXPECT_THAT(open(folder / "pipe"), HasSubstr("cannot write there: it is a pipe"));
+  EXPECT_THAT(open("/dev/null"), HasSubstr("cannot write there: it is a device"));
+  EXPECT_THAT(open(folder / "file"), HasSubstr("cannot write there: it is a file"));
+  EXPECT_THAT(open(folder / "link"),
+              HasSubstr("cannot write there: it is a link to nowhere, which leads nowhere"));
+}
+
+// What kill -9 left, at whatever instant, does not stand in the way and goes.
+TEST(OutputFolder, LeftoversOfAKilledOneGo) {
+  const testing::Folder folder;
+  for (const char* inner : {"out/.partial/old", "out/.partial-gone/old"}) {
+    testing::fs::create_directories(folder / inner);
+    folder.write(std::string(inner) + "/x.csv", "half");
+  }
+  std::string mine;
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile half(folder / "out/y.csv");
+    half.write("half");
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  const AtomicFile alive(folder / "out/z.csv");
+  alive.write("of a living process");
+  std::string name = testing::fs::path(alive.temporary()).filename();
+  EXPECT_EQ(testing::contents(folder / "out").size(), 4U);
+  publish(folder, {{"x.csv", "new"}});
+  EXPECT_EQ(found(folder), (Files{{"x.csv", "new"}, {name, "of a living process"}}));
+  EXPECT_FALSE(exists(folder / "out/.partial-gone"));
 }
 
 TEST(OutputFolder, ResultsThatAreInputsAreNotReplaced) {

@@ -7,7 +7,7 @@ namespace grainfield::coupling::testing {
 namespace {
 
 TEST(Interrupts, TwoHundredAndNothingIsLost) {
-  const Tally tally = interrupt_runs(220, 3, 0.25);
+  const Tally tally = interrupt_runs(220, 3, 0.5);
   tally.print("interrupts");
   EXPECT_GE(tally.signals, 200);
   EXPECT_GE(tally.killed, 25);

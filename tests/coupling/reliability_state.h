@@ -45,7 +45,10 @@ inline Contents results_in(const std::string& folder) {
   }
   std::erase_if(out, [](const auto& file) {
     const fs::path name = file.first;
-    return *name.begin() == "checkpoint" || *name.begin() == ".partial" || is_bookkeeping(name);
+    const fs::path top = *name.begin();
+    // The last two are what is just being removed.
+    return top == "checkpoint" || top == ".partial" || top == ".partial-gone" ||
+           top == ".checkpoint-gone" || is_bookkeeping(name);
   });
   return out;
 }

@@ -1,8 +1,10 @@
 // The report: pictures drawn or their absence explained, nothing executed that data say.
 #include "coupling/report/report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -185,6 +187,10 @@ TEST_F(ReportTest, WithoutGnuplotKeepsItsTablesAndSaysWhatToInstall) {
   const ReportResult r = write_report(file(), point_load_report(input(before, after)));
   EXPECT_EQ(r.pictures, 0);
   EXPECT_EQ(r.why_missing, "gnuplot not found: install gnuplot-nox");
+  EXPECT_GT(r.missing, 1);
+  EXPECT_EQ(r.complaint(), fmt::format("report.html: {0} of {0} pictures are missing: gnuplot not "
+                                       "found: install gnuplot-nox",
+                                       r.missing));
   EXPECT_THAT(page(), HasSubstr("No picture: gnuplot not found: install gnuplot-nox."));
   EXPECT_THAT(page(), HasSubstr("Distance of the models from the grains"));
 }
@@ -227,6 +233,60 @@ TEST_F(ReportTest, PicturesNeedNoTemporaryFolder) {
     EXPECT_FALSE(draw(*find_gnuplot(), "svg", "plot x").bytes.empty()) << folder;
   }
   before != nullptr ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+}
+
+// Neither a disk nor a limit on files matters for a picture that is passed on in memory.
+TEST_F(ReportTest, PicturesNeedNoRoomForFiles) {
+  need_gnuplot();
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_FSIZE, &none);
+    std::string data = "$d << EOD\n";
+    for (int k = 0; k < 30000; ++k) data += fmt::format("{} {}\n", k, k * k % 1009);
+    const Drawing drawing = draw(*find_gnuplot(), "svg", data + "EOD\nplot $d with lines");
+    _exit(drawing.bytes.size() > 100'000 ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+// A gnuplot of our own that counts its starts and ends as it is told.
+TEST_F(ReportTest, OnlyWhatASignalStoppedIsDrawnAgain) {
+  const std::string count = (folder_ / "count").string(), fake = (folder_ / "gnuplot").string();
+  const auto starts = [&](const std::string& ending) {
+    fs::remove(count);
+    std::ofstream(fake) << "#!/bin/sh\ncat > " + count + ".in\necho x >> " + count + "\n" + ending;
+    fs::permissions(fake, fs::perms::owner_all);
+    const Drawing drawing = draw(fake, "svg", "plot x");
+    std::ifstream lines(count);
+    int n = 0;
+    for (std::string line; std::getline(lines, line);) ++n;
+    return fmt::format("{} {}{}", n, drawing.bytes, drawing.error);
+  };
+  EXPECT_EQ(starts("kill -SEGV $$"), "1 SIGSEGV ended gnuplot");
+  EXPECT_EQ(starts("kill -KILL $$"), "1 SIGKILL ended gnuplot");
+  EXPECT_EQ(starts("exit 3"), "1 gnuplot ended with status 3");
+  EXPECT_EQ(starts("printf picture"), "1 picture");
+  EXPECT_EQ(starts("test $(wc -l < " + count + ") -gt 2 || kill -TERM $$\nprintf late"), "3 late");
+  EXPECT_EQ(starts("kill -INT $$"), "5 SIGINT ended gnuplot");
+}
+
+TEST_F(ReportTest, AReaderThatHasGoneIsNoSignalToUs) {
+  const std::string fake = (folder_ / "gnuplot").string();
+  std::ofstream(fake) << "#!/bin/sh\nexec <&-\nsleep 0.2\nprintf picture\n";
+  fs::permissions(fake, fs::perms::owner_all);
+  const std::string longer_than_a_pipe(200'000, '#');
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGPIPE, SIG_DFL);  // which ends a process
+    _exit(draw(fake, "svg", longer_than_a_pipe).bytes == "picture" ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 TEST_F(ReportTest, ASignalToTheGroupDoesNotReachThePicture) {

@@ -85,8 +85,8 @@ TEST(Determinism, StoppedAnywhereAndResumed) {
     Output output;
     do {
       at += 1 + static_cast<long>(random() % 8000);
-      output = program("run " + file + " -o " + out + " --threads 2 --resume --stop-after-steps " +
-                       std::to_string(at));
+      output = program("run " + file + " -o " + out + " --threads 2 " +
+                       (stops > 0 ? "--resume" : "") + " --stop-after-steps " + std::to_string(at));
       if (output.code != 130) break;
       ++stops;
       EXPECT_THAT(output.err, HasSubstr("--resume"));

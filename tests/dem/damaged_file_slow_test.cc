@@ -12,9 +12,9 @@ namespace {
 TEST(DamagedFileSlow, NoWrongByteGoesUnnoticed) {
   const grainfield::testing::TestFolder folder;
   const std::string file = folder / "s.h5";
-  write_snapshot(file, "/a/loaded", small_snapshot());
+  write_snapshot(file, "/a/loaded", full_snapshot(3));
   grainfield::testing::Damage found;
-  grainfield::testing::flip_bytes(file, folder, 13, true, bits_of_file, found);
+  grainfield::testing::flip_bytes(file, folder, 31, true, bits_of_file, found);
   std::printf("%d copies, %d refused, %d by the look ahead\n", found.copies, found.refused,
               found.crashes);
   EXPECT_GT(found.copies, 5000);
@@ -22,11 +22,11 @@ TEST(DamagedFileSlow, NoWrongByteGoesUnnoticed) {
 
 TEST(DamagedFileSlow, NoWrongByteOfAForeignFileEndsTheProgram) {
   const grainfield::testing::TestFolder folder;
-  write_snapshot(folder / "s.h5", "/a/loaded", small_snapshot());
+  write_snapshot(folder / "s.h5", "/a/loaded", full_snapshot(3));
   const std::string plain = folder / "plain.h5";
   grainfield::testing::copy_plainly(folder / "s.h5", plain);
   grainfield::testing::Damage found;
-  grainfield::testing::flip_bytes(plain, folder, 6, false, bits_of_file, found);
+  grainfield::testing::flip_bytes(plain, folder, 11, false, bits_of_file, found);
   std::printf("%d copies, %d refused, %d by the look ahead\n", found.copies, found.refused,
               found.crashes);
   EXPECT_GT(found.copies, 3000);

@@ -54,7 +54,7 @@ std::string as_bytes(double value) {
 TEST(DamagedFile, AWrongByteIsNoticedOrChangesNothing) {
   const TestFolder folder;
   const std::string file = folder / "s.h5";
-  write_snapshot(file, "/a/loaded", small_snapshot());
+  write_snapshot(file, "/a/loaded", full_snapshot(3));
   grainfield::testing::Damage found;
   grainfield::testing::flip_bytes(file, folder, 601, true, bits_of_file, found);
   EXPECT_GT(found.copies, 200);
@@ -63,7 +63,7 @@ TEST(DamagedFile, AWrongByteIsNoticedOrChangesNothing) {
 
 TEST(DamagedFile, OneWithoutChecksumsDoesNotEndTheProgram) {
   const TestFolder folder;
-  write_snapshot(folder / "s.h5", "/a/loaded", small_snapshot());
+  write_snapshot(folder / "s.h5", "/a/loaded", full_snapshot(3));
   const std::string plain = folder / "plain.h5";
   grainfield::testing::copy_plainly(folder / "s.h5", plain);
   EXPECT_TRUE(bits_of_file(plain) == bits_of_file(folder / "s.h5"));
@@ -235,6 +235,8 @@ TEST(DamagedFile, AChildTellsHowItEnded) {
     return true;
   });
   EXPECT_EQ(loop.end, ChildEnd::endless);
+  // As a system does that has no memory left: it says nothing about the work.
+  EXPECT_EQ(end([] { return raise(SIGKILL) == 0; }).end, ChildEnd::killed);
 #ifndef __SANITIZE_ADDRESS__
   EXPECT_EQ(end([] { return std::vector<char>(1'000'000'000, 1).back() == 1; }).end,
             ChildEnd::failed);

@@ -54,7 +54,9 @@ TEST(Funnel, PlatesLeaveTheMouthOpen) {
 // Grains that start beside the mouth come down through it, with a push from the plates, and the
 // pile stands on the floor alone.
 TEST(Funnel, GrainsComeDownThroughTheMouth) {
-  const auto run = make_pile_run(funnel_pile(0.14), 3, 1);
+  PileSetup s = funnel_pile(0.14);
+  s.floor.length = 6;
+  const auto run = make_pile_run(s, 3, 1);
   finish(*run);
   const RunResult r = run->result();
   const Snapshot& pile = r.snapshots[0].second;
@@ -81,7 +83,7 @@ TEST(Funnel, AnOverfilledFunnelEndsTheRun) {
   s.source.interval = 0.02;
   s.source.speed = 4;
   s.material.friction = 2;
-  const auto run = make_pile_run(s, 3, 1);
+  const auto run = make_pile_run(s, 4, 1);
   std::string said = "finished";
   try {
     finish(*run);

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 
 TEST(Registry, WordsAreThoseOfTheKinds) {
   EXPECT_THAT(words_of<AnyIntegrator>(), ElementsAre("verlet", "gear"));
-  EXPECT_THAT(words_of<AnyLaw>(), testing::IsSupersetOf({"overlap_area", "linear"}));
-  EXPECT_THAT(laws_that_feel_edges(), ElementsAre("overlap_area"));
+  EXPECT_THAT(words_of<AnyLaw>(), testing::IsSupersetOf({"overlap_area", "energy", "linear"}));
+  EXPECT_THAT(laws_that_feel_edges(), ElementsAre("overlap_area", "energy"));
   EXPECT_EQ(IntegratorKind::named("gear"), IntegratorKind::gear);
   EXPECT_STREQ(IntegratorKind().name(), "verlet");
   MaterialSetup m;
@@ -46,15 +46,17 @@ TEST(Registry, UnknownWordsReachNoEngine) {
             "motion.integrator: found \"gaer\", allowed: verlet, gear; did you mean \"gear\"?");
   motion.integrator = "verlet";
   material.law = "lineer";
-  EXPECT_THAT(refusal(material, motion),
-              AllOf(HasSubstr("material.law: found \"lineer\", allowed: overlap_area, linear"),
-                    HasSubstr("did you mean \"linear\"?")));
+  EXPECT_THAT(
+      refusal(material, motion),
+      AllOf(HasSubstr("material.law: found \"lineer\", allowed: overlap_area, energy, linear"),
+            HasSubstr("did you mean \"linear\"?")));
 }
 
 // A law: F = k depth^2, without friction.
 struct SquareLaw {
   static constexpr const char* name = "square";
-  static constexpr bool needs_area = false, needs_curvature = false, feels_edges = false;
+  static constexpr Measures measures = Measures::depth;
+  static constexpr EdgeMeasure edges = EdgeMeasure::none;
   template <int D>
   using Memory = SpringMemory<D>;
   double k = 1e9;
@@ -80,6 +82,7 @@ struct SquareLaw {
 template <int D>
 class EulerIntegrator {
  public:
+  static constexpr bool end_moves = false;
   struct Memory {
     RotationOf<D> rotation = no_rotation<RotationOf<D>>();
   };
@@ -108,14 +111,14 @@ struct Euler {
 // A shape: disks with a hard core of half their radius that alone is felt.
 class CoreStore : public DiskStore {
  public:
-  template <bool with_area>
+  template <Measures measures>
   bool overlap(int i, const Body<2>& a, int j, const Body<2>& b, Feature& feature,
                Overlap& o) const {
-    return DiskStore::overlap<with_area>(i, core(a), j, core(b), feature, o);
+    return DiskStore::overlap<measures>(i, core(a), j, core(b), feature, o);
   }
-  template <bool with_area>
+  template <Measures measures>
   bool overlap_plane(int i, const Body<2>& a, const Plane<2>& plane, Overlap& o) const {
-    return DiskStore::overlap_plane<with_area>(i, core(a), plane, o);
+    return DiskStore::overlap_plane<measures>(i, core(a), plane, o);
   }
 
  private:

@@ -69,6 +69,15 @@ TEST(ReplaceFile, ADiskThatFailsIsSaidBeforeTheOldFileGoes) {
   fail_with = 0;
 }
 
+TEST(ReplaceFile, NamesOfWhatIsBeingWritten) {
+  EXPECT_EQ(final_name("a/b.h5"), "a/b.h5");
+  EXPECT_EQ(final_name("a/b.h5.part"), "a/b.h5");
+  EXPECT_EQ(final_name("a/.b.h5.0123456789abcdef.part"), "a/b.h5");
+  EXPECT_EQ(final_name("out/.partial/inner/..results.0123456789abcdef.part"), "out/inner/.results");
+  EXPECT_EQ(final_name("out/.partial/report.html"), "out/report.html");
+  EXPECT_EQ(final_name(".part"), "");
+}
+
 TEST(ReplaceFile, WhatIsNotWrittenDoesNotTakeItsPlace) {
   const TestFolder folder;
   put(folder / "x", "old");

@@ -36,17 +36,18 @@ const std::vector<Room>& rooms() {
       {"laws", {"space", "words"}},
       {"neighbours", {"space"}},
       {"motion", {"space", "words"}},
+      {"walls", {"space", "words", "snapshot"}},
       {"contacts", {"space", "neighbours"}},
       {"sleep", {"space", "contacts"}},
       {"engine",
-       {"space", "image", "shapes", "laws", "neighbours", "contacts", "sleep", "motion",
+       {"space", "image", "shapes", "laws", "neighbours", "contacts", "sleep", "motion", "walls",
         "snapshot"}},
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
-      {"packing", {"engine", "heap", "laws", "random"}},
+      {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"engine", "image", "laws", "motion", "heap", "packing", "quasistatic", "random",
-        "snapshot"}},
+       {"engine", "image", "laws", "motion", "heap", "packing", "quasistatic", "random", "snapshot",
+        "space", "walls"}},
   };
   return kRooms;
 }

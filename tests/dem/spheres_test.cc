@@ -344,7 +344,7 @@ TEST(Spheres, WhatDoesNotFitIsRefused) {
   s.shape = ShapeKind::disk;
   EXPECT_EQ(refusal(s),
             "material.law: found \"hertz\", allowed for grains of this shape: "
-            "overlap_area, linear");
+            "overlap_area, energy, linear");
 }
 
 }  // namespace

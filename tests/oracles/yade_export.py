@@ -5,10 +5,10 @@ def line(*values):
     return " ".join("%.17g" % v for v in values) + "\n"
 
 with open("bodies.txt", "w") as f:
-    f.write("# id x y z vx vy vz r mass fixed\n")
+    f.write("# id x y z vx vy vz spin_x spin_y spin r mass fixed\n")
     for b in O.bodies:
         if isinstance(b.shape, Sphere):
-            f.write(line(b.id, *b.state.pos, *b.state.vel, b.shape.radius, b.state.mass,
+            f.write(line(b.id, *b.state.pos, *b.state.vel, *b.state.angVel, b.shape.radius, b.state.mass,
                          0 if b.dynamic else 1))
 with open("interactions.txt", "w") as f:
     f.write("# id1 id2 px py pz nx ny nz fnx fny fnz ftx fty ftz\n")

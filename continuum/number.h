@@ -1,0 +1,28 @@
+// Numbers from texts, as they stand in settings and tables.
+#pragma once
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace grainfield::continuum {
+
+/// The number that the whole text is, in any locale, also "nan", "inf", a subnormal one, and 0 for
+/// one too small; nothing for other text, none, or a number too large. As dem reads its own
+/// (dem/snapshot/number.h), of which this module knows nothing.
+inline std::optional<double> parse_number(std::string_view text) {
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  const char* const end = digits.data() + digits.size();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), end, value);
+  if (stop != end || digits.empty()) return std::nullopt;
+  if (error == std::errc()) return value;
+  if (error != std::errc::result_out_of_range) return std::nullopt;
+  value = std::strtod(std::string(digits).c_str(), nullptr);
+  return std::fabs(value) < 1 ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace grainfield::continuum

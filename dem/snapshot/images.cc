@@ -1,0 +1,101 @@
+#include "dem/snapshot/images.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace grainfield::dem {
+namespace {
+
+// Coordinates along the periodic edges, 0 along the others: the least squares' ones, so that what
+// is across all periodic edges has none.
+Vec3 along_edges(const Cell<3>& cell, const Vec3& v) {
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
+  for (int a = 0; a < 3; ++a)
+    if (cell.periodic[static_cast<std::size_t>(a)]) edges.col(a) = cell.edges.col(a);
+  Eigen::Matrix3d square = edges.transpose() * edges;
+  for (int a = 0; a < 3; ++a)
+    if (!cell.periodic[static_cast<std::size_t>(a)]) square(a, a) = 1;
+  return square.ldlt().solve(edges.transpose() * v);
+}
+
+}  // namespace
+
+Vec3 shift_to(const Cell<3>& cell, const std::array<int, 3>& image) {
+  Vec3 shift = Vec3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (image[a] != 0 && cell.periodic[a])
+      shift += image[a] * cell.edges.col(static_cast<Eigen::Index>(a));
+  return shift;
+}
+
+std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch) {
+  std::array<int, 3> best{0, 0, 0}, middle{0, 0, 0};
+  if (!cell.is_periodic()) return best;
+  const Vec3 turns = along_edges(cell, branch);
+  std::array<int, 3> reach{0, 0, 0};
+  for (std::size_t a = 0; a < 3; ++a) {
+    middle[a] = -static_cast<int>(std::lround(turns[static_cast<Eigen::Index>(a)]));
+    reach[a] = cell.periodic[a] ? 1 : 0;
+  }
+  // In a tilted cell a neighbour of the rounded one may be nearer.
+  double least = branch.squaredNorm();
+  for (int i = -reach[0]; i <= reach[0]; ++i)
+    for (int j = -reach[1]; j <= reach[1]; ++j)
+      for (int k = -reach[2]; k <= reach[2]; ++k) {
+        const std::array<int, 3> image{middle[0] + i, middle[1] + j, middle[2] + k};
+        const double squared = (branch + shift_to(cell, image)).squaredNorm();
+        if (squared >= least) continue;
+        least = squared;
+        best = image;
+      }
+  return best;
+}
+
+bool counts_images(const Snapshot& s) {
+  return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) {
+    return g.image != std::array<int, 3>{0, 0, 0};
+  });
+}
+
+std::array<int, 3> image_in(const Cell<3>& after, const Cell<3>& before,
+                            const std::array<int, 3>& image) {
+  if (image == std::array<int, 3>{0, 0, 0}) return image;
+  // Columns: the old edges in new ones.
+  Eigen::Matrix3d exchange = Eigen::Matrix3d::Identity();
+  for (int a = 0; a < 3; ++a) {
+    if (!before.periodic[a] || !after.periodic[a]) continue;
+    const Vec3 turns = along_edges(after, before.edges.col(a));
+    for (int b = 0; b < 3; ++b) exchange(b, a) = after.periodic[b] ? std::round(turns[b]) : 0;
+  }
+  const bool once = exchange.cwiseAbs().maxCoeff() <= 1;
+  if (!once || std::fabs(std::fabs(exchange.determinant()) - 1) > 0.5) return image;
+  std::array<int, 3> out{};
+  for (int b = 0; b < 3; ++b) {
+    for (int a = 0; a < 3; ++a) out[b] += static_cast<int>(exchange(b, a)) * image[a];
+  }
+  return out;
+}
+
+Vec3 displacement(const Grain& a, const Grain& b, const Cell<3>& cell_of_a,
+                  const Cell<3>& cell_of_b, bool counted) {
+  const Vec3 moved = b.position - a.position;
+  if (!counted) return moved + shift_to(cell_of_b, nearest_image(cell_of_b, moved));
+  const std::array<int, 3> from = image_in(cell_of_b, cell_of_a, a.image);
+  std::array<int, 3> crossed{};
+  for (std::size_t k = 0; k < 3; ++k) crossed[k] = b.image[k] - from[k];
+  return moved + shift_to(cell_of_b, crossed);
+}
+
+Vec3 wrapped(const Cell<3>& cell, const Vec3& place) {
+  if (!cell.is_periodic()) return place;
+  const Vec3 turns = along_edges(cell, place - cell.low);
+  std::array<int, 3> image{0, 0, 0};
+  for (std::size_t a = 0; a < 3; ++a)
+    image[a] = -static_cast<int>(std::floor(turns[static_cast<Eigen::Index>(a)]));
+  if (image == std::array<int, 3>{0, 0, 0}) return place;
+  return place + shift_to(cell, image);
+}
+
+}  // namespace grainfield::dem

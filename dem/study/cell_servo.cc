@@ -1,0 +1,24 @@
+#include "dem/study/cell_servo.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainfield::dem {
+namespace {
+
+// Measurements in which the bias takes over an error.
+constexpr double kSlowness = 10;
+// Further from the target than this share of it the bias would only wind up.
+constexpr double kNear = 0.2;
+
+}  // namespace
+
+double CellServo::rate(int axis, double pressure, double target) {
+  const double error = pressure - target;
+  const double answer = error / (modulus * interval + viscosity);
+  double& b = bias[axis];
+  if (std::fabs(error) < kNear * target) b = std::clamp(b + answer / kSlowness, -most, most);
+  return std::clamp(b + answer, -most, most);
+}
+
+}  // namespace grainfield::dem

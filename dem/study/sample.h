@@ -1,0 +1,26 @@
+// A sample of grains under compression and shear, as a resumable run.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "dem/study/outlook.h"
+#include "dem/study/run.h"
+#include "dem/study/sample_setup.h"
+
+namespace grainfield::dem {
+
+/// Snapshots "state_000" (at rest, compressed) to "state_NNN" with NNN = plan.records, at equal
+/// steps of strain. Attributes of each, as numbers: strain (imposed), kinetic_energy,
+/// elastic_energy, work (of cell and walls since the beginning), dissipated_energy and
+/// energy_balance (with plan.energy_balance), unbalanced_force_ratio, strain_rate. Figure
+/// "sample.stress_error": largest relative error of a servo during the deformation, at any of its
+/// measurements (where there is a servo). Throws std::invalid_argument naming the key that does
+/// not hold ("sample.pressure"). The bits of the result do not depend on threads.
+std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads);
+
+/// Throws as make_sample_run would for any of these seeds; draws at most so many polygons.
+Outlook foresee_sample(const SampleSetup& setup, const std::vector<std::uint64_t>& seeds,
+                       std::int64_t draws);
+
+}  // namespace grainfield::dem

@@ -1,0 +1,294 @@
+#include "dem/space/kinematics3.h"
+#include "dem/space/space3.h"
+// After three dimensions, whose laws are asked for.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/packing/loose.h"
+#include "dem/space/moving_cell.h"
+#include "dem/study/common.h"
+#include "dem/study/sample.h"
+#include "dem/study/sample_checks.h"
+
+namespace grainfield::dem {
+namespace {
+
+// A servo's target over the stiffness of the contacts: beyond, grains overlap by a tenth.
+constexpr double kMostLoad = 0.1;
+// Walls may come as near as this many of the largest radii.
+constexpr double kLeastBox = 4;
+// Solid fraction that no compression to a pressure goes beyond, about; smaller cells are refused.
+constexpr double kDense2 = 0.95, kDense3 = 0.8;
+// A wall passes at most this share of the smallest radius a step. The engine refuses a half; boxes
+// differ a little with the sizes that are drawn.
+constexpr double kMostMove = 0.45;
+// Sides may tilt to this tangent, and an edge may lose this share of itself.
+constexpr double kMostTilt = 1, kMostShortening = 0.9;
+// Memory of a grain with its contacts, and in each recorded state.
+constexpr double kBytesOfGrain = 4000, kBytesOfRecord = 1500;
+
+[[noreturn]] void refuse(const char* key, const std::string& what) {
+  throw std::invalid_argument(fmt::format("sample.{}: {}", key, what));
+}
+
+template <class Words>
+bool holds(const Words& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+void check_dimension(const SampleSetup& s) {
+  const SamplePlan& p = s.plan;
+  const auto& shapes = sample_shapes(p.dim);
+  if (!holds(shapes, p.shape)) {
+    refuse("shape", fmt::format("found \"{}\", allowed with sample.dim = {}: {}; it is a shape of "
+                                "{}D",
+                                p.shape, p.dim, fmt::join(shapes, ", "), 5 - p.dim));
+  }
+  const auto laws = p.dim == 2 ? laws_in<2>() : laws_in<3>();
+  if (!holds(laws, s.material.law)) {
+    throw std::invalid_argument(
+        fmt::format("material.law: found \"{}\", allowed with sample.dim = {}: {}; it is a law of "
+                    "{}D",
+                    s.material.law, p.dim, fmt::join(laws, ", "), 5 - p.dim));
+  }
+  if (p.dim == 3 && s.motion.integrator != "verlet") {
+    throw std::invalid_argument(
+        fmt::format("motion.integrator: found \"{}\", allowed with sample.dim = 3: verlet",
+                    s.motion.integrator));
+  }
+  if (p.energy_balance && s.motion.integrator != "verlet") {
+    throw std::invalid_argument(
+        fmt::format("motion.integrator: found \"{}\", allowed with sample.energy_balance: verlet",
+                    s.motion.integrator));
+  }
+  const double most = p.dim == 2 ? kMostLoose2 : kMostLoose3;
+  if (p.start_fraction > most) {
+    refuse("start_fraction", fmt::format("found {:g}, allowed with sample.dim = {}: up to {:g}, "
+                                         "at which random places without overlap become rare",
+                                         p.start_fraction, p.dim, most));
+  }
+  if (p.corners_max < p.corners_min) {
+    refuse("corners_max", fmt::format("found {}, allowed: at least sample.corners_min = {}",
+                                      p.corners_max, p.corners_min));
+  }
+}
+
+bool has_servo(const SamplePlan& p) {
+  return p.compress_to == "pressure" || p.deformation == "axial" ||
+         (p.deformation == "simple_shear" && p.constant == "stress");
+}
+
+void check_servo(const SamplePlan& p) {
+  if (has_servo(p) && !(p.pressure > 0)) {
+    const char* by = p.compress_to == "pressure" ? "compress_to = \"pressure\""
+                     : p.deformation == "axial"  ? "deformation = \"axial\""
+                                                 : "constant = \"stress\"";
+    refuse("pressure", fmt::format("found {:g}: a servo without a target, allowed with sample.{}: "
+                                   "above 0",
+                                   p.pressure, by));
+  }
+  if (p.compress_to != "pressure" && has_servo(p)) {
+    refuse("compress_to",
+           fmt::format(
+               "found \"{}\", allowed with sample.{}: \"pressure\", which the servo goes "
+               "on to hold",
+               p.compress_to,
+               p.deformation == "axial" ? "deformation = \"axial\"" : "constant = \"stress\""));
+  }
+  if (p.deformation == "axial" && p.compression != "isotropic") {
+    refuse("compression", fmt::format("found \"{}\", allowed with sample.deformation = \"axial\": "
+                                      "isotropic, because the lateral walls hold the pressure",
+                                      p.compression));
+  }
+}
+
+void check_strains(const SamplePlan& p) {
+  if (p.compress_to == "solid_fraction" && p.solid_fraction <= p.start_fraction) {
+    refuse("solid_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
+                                         p.solid_fraction, p.start_fraction));
+  }
+  if (p.deformation != "simple_shear" && p.strain > kMostShortening) {
+    refuse("strain", fmt::format("found {:g}, allowed with sample.deformation = \"{}\": up to {:g}",
+                                 p.strain, p.deformation, kMostShortening));
+  }
+  if (p.deformation == "simple_shear" && p.boundary == "walls" && p.sides == "tilting" &&
+      p.strain > kMostTilt) {
+    refuse("strain",
+           fmt::format("found {:g}, allowed with sample.sides = \"tilting\": up to {:g}; a "
+                       "periodic cell shears without end",
+                       p.strain, kMostTilt));
+  }
+}
+
+// Share of its start's that an axis' edge has at the end, at least; `target`: of the volume after
+// the compression.
+double shrunk(const SamplePlan& p, int axis, double target) {
+  const bool last = axis == p.dim - 1;
+  double share = 1;
+  if (p.compression == "isotropic") {
+    share = p.dim == 2 ? std::sqrt(target) : std::cbrt(target);
+  } else if (last) {
+    share = target;
+  }
+  if (p.deformation == "isotropic" ||
+      (last && (p.deformation == "axial" || p.deformation == "uniaxial"))) {
+    share *= p.boundary == "walls" ? 1 - p.strain : std::exp(-p.strain);
+  }
+  return share;
+}
+
+// Volume after the compression over that at the start, about.
+double volume_share(const SamplePlan& p) {
+  if (p.compress_to == "strain") {
+    return std::pow(1 - p.compression_strain, p.compression == "isotropic" ? p.dim : 1);
+  }
+  const double dense = p.dim == 2 ? kDense2 : kDense3;
+  return p.start_fraction / (p.compress_to == "pressure" ? dense : p.solid_fraction);
+}
+
+void check_size(const SamplePlan& p, const std::array<double, 3>& box) {
+  const double most = sample_radii(p).most;
+  const double needed = (p.boundary == "walls" ? kLeastBox : kLeastCell) * most;
+  for (int a = 0; a < p.dim; ++a) {
+    const double edge = box[a] * shrunk(p, a, volume_share(p));
+    if (edge >= needed) continue;
+    const double factor = std::pow(needed / edge, p.dim);
+    refuse("grains",
+           fmt::format("found {}: the {} is too small for its grains, an edge of {:.3g} m at the "
+                       "end with grains of radius {:.3g} m, allowed: {:.3g} m; take {:.0f} grains, "
+                       "a more even sample.height_ratio or less strain",
+                       p.grains, p.boundary == "walls" ? "box" : "cell", edge, most, needed,
+                       std::ceil(std::min(1e18, p.grains * factor))));
+  }
+}
+
+void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double time_step) {
+  const double longest = std::max(box[0], box[p.dim - 1]);
+  const bool walls = p.boundary == "walls";
+  // A cell's edges, its grains by their distance from the corner, and walls by their own speed.
+  const double most = walls ? kMostMove * sample_radii(p).least / (longest * time_step)
+                            : 0.5 * kMostStrainPerStep / time_step;
+  const auto check = [&](const char* key, double rate) {
+    if (rate <= most) return;
+    refuse(key,
+           walls ? fmt::format("found {:g} 1/s: a wall would pass {:.3g} m a step, allowed: up to "
+                               "{:g} 1/s, {:g} radii of the smallest grain a step of {:.3g} s",
+                               rate, rate * longest * time_step, round_down(most), kMostMove,
+                               time_step)
+                 : fmt::format("found {:g} 1/s, allowed: up to {:g} 1/s, a strain of {:g} in a "
+                               "step of {:.3g} s",
+                               rate, round_down(most), 0.5 * kMostStrainPerStep, time_step));
+  };
+  check("compression_rate", p.compression_rate);
+  check("strain_rate", p.strain_rate);
+}
+
+// Of the contacts of a mean grain, as a stress: Pa (N/m).
+double stiffness_of(const SampleSetup& s) {
+  const double r = sample_radii(s.plan).mean;
+  const double k =
+      std::visit([&](const auto& law) { return law.stiffness(r); }, law_of(s.material));
+  return s.plan.dim == 2 ? k : k / (2 * r);
+}
+
+}  // namespace
+
+void check_sample(const SampleSetup& s) {
+  check_dimension(s);
+  check_servo(s.plan);
+  check_strains(s.plan);
+  const double most = kMostLoad * stiffness_of(s);
+  if (has_servo(s.plan) && s.plan.pressure > most) {
+    refuse("pressure",
+           fmt::format("found {:g}, allowed: up to {:g} with contacts of this stiffness (grains "
+                       "would overlap by a tenth)",
+                       s.plan.pressure, round_down(most)));
+  }
+}
+
+SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, double reserve) {
+  const SamplePlan& p = s.plan;
+  SampleFrame out;
+  out.settings = engine_settings(s.material, s.motion, extremes, 1, p.shape == "rand1", reserve);
+  out.settings.gravity_x = out.settings.gravity_y = out.settings.gravity_z = 0;
+  out.settings.shape = p.dim == 3          ? ShapeKind::sphere
+                       : p.shape == "disk" ? ShapeKind::disk
+                                           : ShapeKind::polygon;
+  out.settings.energy_balance = p.energy_balance;
+  const double step = out.settings.time_step;
+  check_background_damping(s.rest, step);
+  const auto box = sample_box(p, mean_volume(p));
+  check_size(p, box);
+  check_speeds(p, box, step);
+  double longest = 0;  // share of an edge that the compression takes
+  for (int a = 0; a < p.dim; ++a) {
+    SamplePlan alone = p;
+    alone.deformation = "simple_shear";
+    longest = std::max(longest, 1 - shrunk(alone, a, volume_share(p)));
+  }
+  out.compression_time = longest / p.compression_rate;
+  out.deformation_time = p.strain / p.strain_rate + (p.boundary == "walls" ? 0.5 * p.ramp_time : 0);
+  return out;
+}
+
+double strain_at(const SamplePlan& p, double time) {
+  const double ramp = p.boundary == "walls" ? p.ramp_time : 0;
+  if (time >= ramp) return p.strain_rate * (time - 0.5 * ramp);
+  const double x = time / ramp;
+  return p.strain_rate * ramp * (x * x * x - 0.5 * x * x * x * x);
+}
+
+long steps_to(const SamplePlan& p, double strain, double time_step) {
+  // Up to its last digit, so that a strain which is a whole number of steps takes no step more.
+  const double enough = strain * (1 - 1e-12);
+  const auto reached = [&](long n) {
+    return strain_at(p, static_cast<double>(n) * time_step) >= enough;
+  };
+  long low = 0, high = 1;
+  while (!reached(high)) high *= 2;
+  while (high - low > 1) {
+    const long middle = low + (high - low) / 2;
+    (reached(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& seeds,
+                       std::int64_t draws) {
+  check_sample(s);
+  const SamplePlan& p = s.plan;
+  Outlook out;
+  out.grains = p.grains;
+  out.bytes = p.grains * (kBytesOfGrain + kBytesOfRecord * (p.records + 1));
+  out.bytes_key = "sample.grains";
+  const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
+    const SampleFrame frame =
+        sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
+    if (out.time_step > 0) return;
+    out.time_step = frame.settings.time_step;
+    out.time = frame.compression_time + frame.deformation_time;
+    out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
+                                                                   : "sample.strain_rate";
+  };
+  // Polygons are drawn, as many as allowed; of round grains the extremes are known.
+  if (p.shape == "disk" || p.shape == "sphere") {
+    judge({}, 1);
+    return out;
+  }
+  constexpr double kStepReserve = 1.05;
+  SamplePlan some = p;
+  for (const std::uint64_t seed : seeds) {
+    if (draws < 1) break;
+    some.grains = static_cast<int>(std::min<std::int64_t>(draws, p.grains));
+    Random random(seed);
+    draws -= some.grains;
+    const bool whole = some.grains == p.grains && (draws > 0 || seed == seeds.back());
+    judge(draw_sample(some, random), whole ? 1 : kStepReserve);
+  }
+  return out;
+}
+
+}  // namespace grainfield::dem

@@ -1,0 +1,30 @@
+// What goes together in a sample's setup.
+#pragma once
+#include "dem/engine/engine.h"
+#include "dem/study/sample_grains.h"
+
+namespace grainfield::dem {
+
+/// What is known of a sample before it is run.
+struct SampleFrame {
+  EngineSettings settings;      ///< without threads and cell
+  double compression_time = 0;  ///< s, at least
+  double deformation_time = 0;  ///< s
+};
+
+/// Throws std::invalid_argument naming the key: a shape or law of another dimension, a servo
+/// without a target, words that do not go together.
+void check_sample(const SampleSetup& setup);
+
+/// The same for what depends on grains: stable step, speeds, the size of the box (of grains of mean
+/// volume). `reserve` as in engine_settings.
+SampleFrame sample_frame(const SampleSetup& setup, const GrainExtremes& extremes,
+                         double reserve = 1);
+
+/// Strain that is imposed until `time` s after the deformation's start: between walls the rate
+/// rises smoothly (3 s^2 - 2 s^3) within ramp_time.
+double strain_at(const SamplePlan& plan, double time);
+/// Steps until it is reached.
+long steps_to(const SamplePlan& plan, double strain, double time_step);
+
+}  // namespace grainfield::dem

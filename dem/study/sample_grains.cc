@@ -1,0 +1,113 @@
+#include "dem/study/sample_grains.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "dem/packing/loose.h"
+#include "dem/space/elementary.h"
+
+namespace grainfield::dem {
+namespace {
+
+bool is_round(const SamplePlan& plan) { return plan.shape == "disk" || plan.shape == "sphere"; }
+
+double volume_of(double radius, int dim) {
+  return dim == 2 ? std::numbers::pi * radius * radius
+                  : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+}
+
+ShapedGrain draw(const SamplePlan& plan, double radius, Random& random) {
+  if (is_round(plan)) {
+    ShapedGrain grain;
+    grain.radius = radius;
+    grain.area = volume_of(radius, plan.dim);
+    return grain;
+  }
+  ShapeSetup shape;
+  shape.kind = plan.shape;
+  shape.radius = radius;
+  shape.polydispersity = 0;
+  shape.corners_min = plan.corners_min;
+  shape.corners_max = plan.corners_max;
+  return draw_grain(shape, random);
+}
+
+// Of `grains` bidisperse ones, those that are small.
+int small_ones(const SamplePlan& plan) {
+  return static_cast<int>(std::lround(plan.fraction_small * plan.grains));
+}
+
+}  // namespace
+
+const std::vector<std::string>& sample_shapes(int dim) {
+  static const std::vector<std::string> plane{"disk", "rand1", "regular"}, space{"sphere"};
+  return dim == 2 ? plane : space;
+}
+
+SampleRadii sample_radii(const SamplePlan& p) {
+  const double r = p.radius;
+  if (p.sizes == "uniform") return {r * (1 - p.polydispersity), r, r * (1 + p.polydispersity)};
+  if (p.sizes == "mono") return {r, r, r};
+  const int few = small_ones(p);
+  const double small = r / p.size_ratio, share = 1.0 * few / p.grains;
+  return {few > 0 ? small : r, share * small + (1 - share) * r, few < p.grains ? r : small};
+}
+
+double mean_volume(const SamplePlan& p) {
+  const double one = volume_of(p.radius, p.dim), n = p.grains;
+  if (p.sizes == "uniform") {
+    // Second and third moments of a size uniform in 1 -+ d: 1 + d^2/3 and 1 + d^2.
+    const double d2 = p.polydispersity * p.polydispersity;
+    return n * one * (1 + (p.dim == 2 ? d2 / 3 : d2));
+  }
+  if (p.sizes == "mono") return n * one;
+  const double few = small_ones(p);
+  return few * volume_of(p.radius / p.size_ratio, p.dim) + (n - few) * one;
+}
+
+std::vector<ShapedGrain> draw_sample(const SamplePlan& p, Random& random) {
+  std::vector<ShapedGrain> grains;
+  grains.reserve(static_cast<std::size_t>(p.grains));
+  const int small = p.sizes == "bidisperse" ? small_ones(p) : 0;
+  for (int k = 0; k < p.grains; ++k) {
+    double radius = k < small ? p.radius / p.size_ratio : p.radius;
+    if (p.sizes == "uniform") radius *= 1 + p.polydispersity * random.uniform(-1, 1);
+    grains.push_back(draw(p, radius, random));
+  }
+  return grains;
+}
+
+GrainExtremes sample_extremes(const SamplePlan& p, double density,
+                              const std::vector<ShapedGrain>& grains) {
+  if (!is_round(p)) return extremes_of(grains, density);
+  const double least = sample_radii(p).least;
+  GrainExtremes extremes;
+  extremes.least_mass = density * volume_of(least, p.dim);
+  extremes.least_radius = least;
+  return extremes;
+}
+
+std::array<double, 3> sample_box(const SamplePlan& p, double volume) {
+  const double level = volume / p.start_fraction / p.height_ratio;
+  const double edge = p.dim == 2 ? std::sqrt(level) : cube_root(level);
+  std::array<double, 3> box{edge, edge, edge};
+  box[p.dim - 1] *= p.height_ratio;
+  return box;
+}
+
+std::vector<NewGrain> place_sample(const SamplePlan& p, const std::vector<ShapedGrain>& grains,
+                                   const std::array<double, 3>& box, double density,
+                                   Random& random) {
+  std::vector<double> radii;
+  for (const ShapedGrain& grain : grains) radii.push_back(grain.radius);
+  const auto places = place_loosely(radii, box, p.dim, p.boundary == "periodic", random);
+  std::vector<NewGrain> out;
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    out.push_back(grains[k].at(places[k][0], places[k][1], density));
+    if (p.dim == 3) out.back().z = places[k][2];
+  }
+  return out;
+}
+
+}  // namespace grainfield::dem

@@ -1,0 +1,79 @@
+// Settings of a sample of grains under compression and shear. SI; in 2D areal density in kg/m2,
+// stiffness and stress in N/m.
+#pragma once
+#include <string>
+#include <tuple>
+
+#include "dem/laws/material_setup.h"
+#include "dem/motion/motion_setup.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::dem {
+
+/// The case keys [sample].
+struct SamplePlan {
+  // -- grains
+  int dim = 2;
+  std::string shape = "disk";  ///< disk | rand1 | regular (2D), sphere (3D)
+  int grains = 500;
+  std::string sizes = "uniform";         ///< mono | bidisperse | uniform
+  double radius = 0.0045;                ///< m; the larger one of bidisperse sizes
+  double polydispersity = 0.2;           ///< uniform: radii in radius (1 -+ this)
+  double size_ratio = 1.4;               ///< bidisperse: larger over smaller radius
+  double fraction_small = 0.5;           ///< bidisperse: share of the smaller ones, by number
+  int corners_min = 6, corners_max = 8;  ///< rand1, regular
+
+  // -- where they are
+  std::string boundary = "periodic";  ///< periodic | walls
+  double height_ratio = 1;            ///< edge along the last axis over the others, at the start
+  double start_fraction = 0.3;        ///< solid fraction of the loose grains
+
+  // -- compression
+  std::string compression = "isotropic";  ///< isotropic | uniaxial (along the last axis)
+  std::string compress_to = "pressure";   ///< pressure | solid_fraction | strain
+  double pressure = 1e4;                  ///< Pa (2D: N/m); of servos
+  double solid_fraction = 0.86;           ///< compress_to solid_fraction
+  double compression_strain = 0.2;        ///< compress_to strain: of every edge that shortens
+  double compression_rate = 1;            ///< 1/s, of an edge; and of servos at most
+
+  // -- deformation
+  std::string deformation = "simple_shear";  ///< simple_shear | axial | uniaxial | isotropic
+  std::string constant = "volume";           ///< simple_shear: volume | stress (of the lid)
+  std::string sides = "tilting";             ///< simple_shear between walls: tilting | upright
+  double strain = 0.5, strain_rate = 0.1;    ///< -, 1/s
+  double ramp_time = 0.05;                   ///< s from rest to the full rate; walls
+  int records = 20;                          ///< recorded states after the first one
+  bool energy_balance = false;
+
+  auto members() const {
+    return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
+                    corners_min, corners_max, boundary, height_ratio, start_fraction, compression,
+                    compress_to, pressure, solid_fraction, compression_strain, compression_rate,
+                    deformation, constant, sides, strain, strain_rate, ramp_time, records,
+                    energy_balance);
+  }
+};
+
+/// Grains in a periodic cell or between walls are compressed, rest and are deformed, without
+/// gravity: compress -> rest -> snapshot "state_000" -> deform, with a snapshot "state_NNN" at each
+/// of `records` equal steps of strain.
+struct SampleSetup {
+  SamplePlan plan;
+  MaterialSetup material = [] {
+    MaterialSetup m;
+    m.law = "linear";
+    return m;
+  }();
+  MotionSetup motion;
+  RestSetup rest = [] {
+    RestSetup r;
+    r.unbalanced_force_ratio = 1e-3;
+    r.kinetic_to_elastic_energy = 1e-6;
+    r.background_damping = 10;
+    return r;
+  }();
+
+  auto members() const { return std::tie(plan, material, motion, rest); }
+};
+
+}  // namespace grainfield::dem

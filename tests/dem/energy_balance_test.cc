@@ -1,0 +1,199 @@
+// Work of walls, energy stored and lost: what goes in is there or has been measured where it went.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "dem/engine/engine.h"
+#include "dem/random/random.h"
+#include "dem/walls/box.h"
+
+namespace grainfield::dem {
+namespace {
+
+EngineSettings settings_of(const AnyLaw& law, double step, bool space = false) {
+  EngineSettings s;
+  s.law = law;
+  s.time_step = step;
+  s.gravity_y = 0;
+  s.energy_balance = true;
+  if (space) s.shape = ShapeKind::sphere;
+  return s;
+}
+NewGrain grain(double x, double y, double radius, double z = 0) {
+  NewGrain g;
+  g.x = x;
+  g.y = y;
+  g.z = z;
+  g.radius = radius;
+  g.density = 2500;
+  return g;
+}
+
+struct Books {
+  double error, work, lost, gained;  // J; error of the balance, from 2 ms to 10 ms
+};
+
+/// A bent column of three grains that stays pressed between a floor and a lid; the lid comes down
+/// with a smooth start.
+Books pressed_column(bool space, double friction, double damping, double step) {
+  EngineSettings s = settings_of(LinearLaw{1e6, 3e5, damping, 0.5 * damping}, step, space);
+  if (space && friction == 0) s.law = HertzLaw{2e8, 0.3, 0};
+  s.friction = friction;
+  (space ? s.gravity_z : s.gravity_y) = -9.81;
+  const auto engine = make_engine(s);
+  const Vec3 high(0.0301, space ? 0.0199 : 0.0532, 0.0532);
+  for (const Wall& w : box_walls({0, 0, 0}, high, friction, space ? 3 : 2)) engine->add_wall(w);
+  const double zig[3] = {0.0099, 0.0202, 0.0099};  // all walls are touched
+  for (int k = 0; k < 3; ++k) {
+    const double height = 0.0098 + 0.0168 * k;
+    engine->add(space ? grain(zig[k], 0.00995, 0.01, height) : grain(zig[k], height, 0.01));
+  }
+  engine->set_background_damping(1000);
+  engine->step(std::lround(0.04 / step));
+  engine->set_background_damping(0);
+  const Vec3 down = space ? Vec3(0, 0, -1) : Vec3(0, -1, 0);
+  engine->set_wall_motion("lid", {0.5 * down, {0, 0, 0}, {}, 0.02});
+  engine->step(std::lround(2e-3 / step));
+  const Diagnostics before = engine->measure();
+  engine->step(std::lround(8e-3 / step));
+  const Diagnostics after = engine->measure();
+  const auto held = [](const Diagnostics& d) {
+    return d.kinetic_energy + d.elastic_energy + d.potential_energy;
+  };
+  return {after.energy_balance() - before.energy_balance(), after.wall_work - before.wall_work,
+          after.dissipated_energy - before.dissipated_energy, held(after) - held(before)};
+}
+
+TEST(EnergyBalance, ALidsWorkIsTheEnergyGainedAndLost) {
+  for (const bool space : {false, true}) {
+    for (const bool dissipative : {false, true}) {
+      const double friction = dissipative ? 0.5 : 0, damping = dissipative ? 200 : 0;
+      Books previous = pressed_column(space, friction, damping, 1.6e-5);
+      for (const double step : {8e-6, 4e-6, 2e-6}) {
+        const Books books = pressed_column(space, friction, damping, step);
+        EXPECT_NEAR(std::log2(std::fabs(previous.error / books.error)), 2, 0.2)
+            << space << dissipative << ' ' << step << ' ' << books.error;
+        previous = books;
+      }
+      EXPECT_GT(previous.work, 1e-3);
+      EXPECT_LT(std::fabs(previous.error), 1e-5 * previous.work);
+      EXPECT_NEAR(previous.gained + previous.lost, previous.work, 1e-5 * previous.work);
+      if (dissipative) {
+        EXPECT_GT(previous.lost, 1e-3 * previous.work);
+      } else {
+        EXPECT_LT(std::fabs(previous.lost), 1e-5 * previous.work);  // a spring loses nothing
+      }
+    }
+  }
+}
+
+// What a collision with a dashpot loses, in closed form: the force is never attractive, so the
+// contact ends where k d + c v = 0 (Schwager and Poeschel 2007).
+TEST(EnergyBalance, ACollisionLosesWhatTheDashpotTakes) {
+  const double k = 1e6, rate = 600, mass = 2500 * 3.14159265358979 * 1e-4, v = 0.5;
+  EngineSettings s = settings_of(LinearLaw{k, 0, rate, 0}, 1e-6);
+  s.friction = 0;
+  const auto engine = make_engine(s);
+  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0});
+  NewGrain g = grain(0, 0.010001, 0.01);
+  g.vy = -v;
+  engine->add(g);
+  double last = 0;
+  for (int n = 0; n < 3000; ++n) {
+    engine->step(1);
+    const double lost = engine->measure().dissipated_energy;
+    EXPECT_GE(lost, last - 1e-9 * mass);
+    last = lost;
+  }
+  const double beta = 0.5 * rate, omega = std::sqrt(k / mass - beta * beta);
+  const double end =
+      (3.14159265358979 - std::atan2(2 * beta * omega, omega * omega - beta * beta)) / omega;
+  // Depth and speed of the free swing at that time: k d + c v = 0.
+  const double decay = std::exp(-beta * end);
+  const double speed = v * decay * (std::cos(omega * end) - beta / omega * std::sin(omega * end));
+  const double depth = v * decay * std::sin(omega * end) / omega;
+  EXPECT_NEAR(k * depth + mass * rate * speed, 0, 1e-6 * k * depth);
+  const double loss = 0.5 * mass * (v * v - speed * speed);  // with what the spring still held
+  EXPECT_NEAR(engine->measure().kinetic_energy, 0.5 * mass * speed * speed, 1e-3 * loss);
+  EXPECT_NEAR(last, loss, 1e-3 * loss);
+  EXPECT_EQ(engine->measure().wall_work, 0);
+}
+
+// Many grains, sliding, bouncing, opening and closing, with all that does work: a lid, a turning
+// drum, damping, a force.
+TEST(EnergyBalance, ClosesForACrowd) {
+  for (const bool space : {false, true}) {
+    EngineSettings s = settings_of(OverlapAreaLaw{1e6, 0.75}, 1e-5, space);
+    if (space) s.law = LinearLaw{1e5, 3e4, 500, 300};
+    s.friction = 0.3;
+    (space ? s.gravity_z : s.gravity_y) = -9.81;
+    const auto engine = make_engine(s);
+    const Vec3 up = space ? Vec3::UnitZ() : Vec3::UnitY();
+    Wall drum{"drum", {0, 0, 0}, space ? Vec3::UnitY() : Vec3::UnitZ(), 0.5, "cylinder"};
+    drum.radius = 0.1;
+    engine->add_wall(drum);
+    engine->add_wall({"lid", 0.1 * up, -up, 0.3});
+    if (space) {
+      engine->add_wall({"front", {0, -0.02, 0}, {0, 1, 0}, 0.1});
+      engine->add_wall({"back", {0, 0.02, 0}, {0, -1, 0}, 0.1});
+    }
+    Random random(2);
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        const double x = 0.022 * (column - 2.5), h = 0.022 * (row - 2.5);
+        const double r = random.uniform(0.008, 0.01);
+        NewGrain g = space ? grain(x, 0, r, h) : grain(x, h, r);
+        g.vx = random.uniform(-0.5, 0.5);
+        engine->add(g);
+      }
+    }
+    engine->set_wall_motion("drum", {{0, 0, 0}, drum.normal * 8, {}, 0.05});
+    engine->set_wall_motion("lid", {-0.2 * up, {0, 0, 0}, {}, 0.05});
+    engine->set_background_damping(2);
+    AppliedForce force;
+    force.id = 17;
+    force.fx = 3;
+    force.ramp = 0.1;
+    engine->apply(force);
+    engine->step(1);
+    const double before = engine->measure().energy_balance();
+    engine->step(40000);
+    const Diagnostics d = engine->measure();
+    EXPECT_GT(d.wall_work, 0.1 * std::fabs(before));
+    EXPECT_GT(d.dissipated_energy, 0.1 * d.wall_work);
+    EXPECT_GT(d.damped_energy, 0);
+    EXPECT_NE(d.applied_work, 0);
+    // Contacts that open and close are kinks: of first order each, in random directions.
+    EXPECT_NEAR(d.energy_balance(), before, 2e-3 * d.dissipated_energy) << space;
+    // Contacts lose energy, they make none, also while it is carried through searches.
+    double last = d.dissipated_energy;
+    for (int n = 0; n < 50; ++n) {
+      engine->step(20);
+      const double lost = engine->measure().dissipated_energy;
+      EXPECT_GT(lost, last - 1e-4 * d.dissipated_energy);
+      last = lost;
+    }
+  }
+}
+
+TEST(EnergyBalance, IsRefusedWhereItWouldNotHold) {
+  const auto refusal = [](auto change) {
+    EngineSettings s = settings_of(LinearLaw{}, 1e-5);
+    change(s);
+    try {
+      make_engine(s)->set_sleep(true);
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string sleep = "energy_balance: found grains that may sleep, allowed: none";
+  EXPECT_EQ(refusal([](EngineSettings& s) { s.integrator = IntegratorKind::gear; }),
+            "energy_balance: found motion.integrator \"gear\", allowed: verlet");
+  EXPECT_EQ(refusal([](EngineSettings& s) { s.sleep.on = true; }), sleep);
+  EXPECT_EQ(refusal([](EngineSettings&) {}), sleep);
+  EXPECT_EQ(refusal([](EngineSettings& s) { s.energy_balance = false; }), "accepted");
+}
+
+}  // namespace
+}  // namespace grainfield::dem

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "dem/study/pair.h"
+
+namespace grainfield::dem {
+namespace {
+
+RunResult finish(Run& run) {
+  while (!run.done()) run.advance(10000);
+  return run.result();
+}
+std::map<std::string, double> figures_of(const PairSetup& setup) {
+  return finish(*make_pair_run(setup, 3, 1)).figures;
+}
+
+PairSetup linear(const char* shape) {
+  PairSetup s;
+  s.shape = shape;
+  s.material.law = "linear";
+  s.material.density = 2500;
+  s.material.friction = 1e4;
+  s.material.normal_damping = s.material.tangential_damping = 0;
+  s.motion.time_step_fraction = 0.002;
+  return s;
+}
+// Of two equal bodies.
+double reduced_mass(const PairSetup& s) {
+  const double r = s.radius;
+  const double volume =
+      s.in_space() ? 4.0 / 3 * std::numbers::pi * r * r * r : std::numbers::pi * r * r;
+  return s.material.density * volume / 2;
+}
+
+class LinearPair : public testing::TestWithParam<const char*> {};
+
+// A dashpot that never pulls: the contact ends where the force vanishes (Schwager, Poeschel 2007).
+TEST_P(LinearPair, NormalRestitutionIsTheClosedForm) {
+  PairSetup s = linear(GetParam());
+  const double own = std::sqrt(s.material.normal_stiffness / reduced_mass(s));
+  for (const double share : {0.0, 0.1, 0.4}) {
+    const double beta = share * own, omega = std::sqrt(own * own - beta * beta);
+    s.material.normal_damping = 2 * beta;
+    const double time =
+        (std::numbers::pi - std::atan2(2 * beta * omega, omega * omega - beta * beta)) / omega;
+    const auto figures = figures_of(s);
+    EXPECT_NEAR(figures.at("pair.restitution_normal"), std::exp(-beta * time), 1e-3) << share;
+    EXPECT_NEAR(figures.at("pair.duration"), time, 2e-3 * time) << share;
+  }
+}
+
+// Without sliding the slip swings with k_t over the mass m_t that it moves.
+TEST_P(LinearPair, TangentialRestitutionIsTheClosedForm) {
+  PairSetup s = linear(GetParam());
+  s.angle = 30;
+  s.offset = 0;
+  const double mass = reduced_mass(s), inverse = s.in_space() ? 3.5 : 3;
+  const double ratio =
+      std::sqrt(inverse * s.material.tangential_stiffness / s.material.normal_stiffness);
+  EXPECT_GT(mass, 0);
+  EXPECT_NEAR(figures_of(s).at("pair.restitution_tangential"), -std::cos(std::numbers::pi * ratio),
+              1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LinearPair, testing::Values("disk", "sphere"));
+
+TEST(Pair, HertzImpactOfSpheres) {
+  PairSetup s;
+  s.shape = "sphere";
+  s.material.law = "hertz";
+  s.material.density = 2500;
+  s.material.damping = 0;
+  const double young = s.material.young / (2 * (1 - 0.09)), r = s.radius / 2, m = reduced_mass(s);
+  const double depth = std::pow(15 * m * s.speed * s.speed / (16 * young * std::sqrt(r)), 0.4);
+  const auto figures = figures_of(s);
+  EXPECT_NEAR(figures.at("pair.max_depth"), depth, 1e-3 * depth);
+  EXPECT_NEAR(figures.at("pair.duration"), 2.94328 * depth / s.speed, 0.01 * depth / s.speed);
+  EXPECT_NEAR(figures.at("pair.restitution_normal"), 1, 1e-3);
+}
+
+TEST(Pair, ClosedLoopsOfPolygons) {
+  PairSetup s;
+  s.kind = "path";
+  s.path = "random";
+  s.shape = "rand1";
+  s.loops = 40;
+  s.material.law = "energy";
+  s.material.damping = s.material.friction = 0;
+  EXPECT_LT(figures_of(s).at("pair.loop_work_over_energy"), 1e-5);
+  s.material.law = "overlap_area";
+  EXPECT_GT(figures_of(s).at("pair.loop_work_over_energy"), 0.02);
+}
+
+TEST(Pair, GoesOnAfterItWasSaved) {
+  PairSetup s = linear("disk");
+  s.angle = 20;
+  const RunResult whole = finish(*make_pair_run(s, 3, 1));
+  const std::string file = std::filesystem::temp_directory_path() / "pair_slow_test.state";
+  auto run = make_pair_run(s, 3, 1);
+  while (!run->done()) {
+    run->advance(2000);
+    run->save(file);
+    run = make_pair_run(s, 3, 1);
+    run->restore(file);
+  }
+  std::filesystem::remove(file);
+  const RunResult parts = run->result();
+  EXPECT_EQ(parts.figures, whole.figures);
+  ASSERT_EQ(parts.snapshots.size(), whole.snapshots.size());
+  EXPECT_EQ(parts.snapshots.front().second.attributes, whole.snapshots.front().second.attributes);
+}
+
+TEST(Pair, RefusesWhatDoesNotGoTogether) {
+  PairSetup s;
+  s.material.law = "hertz";
+  EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
+  s = {};
+  s.shape = "cube";
+  EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
+  s = {};
+  s.material.rolling_friction = 0.1;
+  s.material.rolling_stiffness = 1e6;
+  EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
+  s = {};
+  s.kind = "path";
+  s.motion.local_damping = 0.3;
+  EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace grainfield::dem

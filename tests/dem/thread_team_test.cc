@@ -1,0 +1,52 @@
+// Threads that cannot be started are an error and no end of the program.
+#include "dem/engine/thread_team.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace grainfield::dem {
+namespace {
+
+TEST(ThreadTeam, MoreThreadsThanCanBeStarted) {
+  const pid_t child = fork();
+  if (child == 0) {
+    // Room for a few stacks of 8 MB beyond what is taken.
+    std::FILE* in = std::fopen("/proc/self/statm", "r");
+    double pages = 0;
+    if (in == nullptr || std::fscanf(in, "%lf", &pages) != 1) _exit(2);
+    const auto room =
+        static_cast<rlim_t>(pages * static_cast<double>(sysconf(_SC_PAGESIZE)) + 40e6);
+    const rlimit limit{room, room};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(2);
+    try {
+      const ThreadTeam team(1000);
+    } catch (const std::runtime_error& e) {
+      const std::string what = e.what();
+      _exit(what.starts_with("--threads: only ") && what.find(" of 1000 threads") < 30 ? 0 : 3);
+    }
+    _exit(4);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+TEST(ThreadTeam, AllTakePart) {
+  ThreadTeam team(3);
+  std::atomic<int> sum = 0;
+  team.run([&](int rank) {
+    sum += 1 << rank;
+    team.meet();
+    if (sum != 7) sum = -100;
+  });
+  EXPECT_EQ(sum, 7);
+}
+
+}  // namespace
+}  // namespace grainfield::dem
