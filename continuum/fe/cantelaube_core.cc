@@ -37,7 +37,7 @@ namespace {
 using Vector = fe::Vector<2>;
 using Point = dealii::Point<2>;
 
-constexpr char kName[] = "fe_cantelaube_core";
+constexpr char kCore[] = "fe_cantelaube_core";
 enum Side : unsigned int { axis, flank, base };
 /// Nodes of the axis' traction, linear in between, when the axis yields.
 constexpr int kAxisNodes = 33;
@@ -79,7 +79,7 @@ int anderson(const F& f, Eigen::VectorXd& x, int most, double tolerance, double&
 class CantelaubeCore : public fe::SolvedModel<2> {
  public:
   explicit CantelaubeCore(const Settings& s)
-      : fe::SolvedModel<2>(kName, static_cast<int>(number_of(s, "degree")),
+      : fe::SolvedModel<2>(kCore, static_cast<int>(number_of(s, "degree")),
                            static_cast<int>(number_of(s, "iterations"))),
         h_(number_of(s, "h")),
         rho_g_(number_of(s, "rho_g")),
@@ -102,7 +102,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
         throw BadParameter(fmt::format(
             "model {}: beta_hat_deg = {:g} is not inside the heap; allowed: above 0 and below "
             "90 - phi_deg = {:g} deg",
-            kName, chosen, 90 - number_of(s, "phi_deg")));
+            kCore, chosen, 90 - number_of(s, "phi_deg")));
     }
     t_ = std::tan(beta_hat_);
     const std::string& condition = s.at("axis");
@@ -110,13 +110,13 @@ class CantelaubeCore : public fe::SolvedModel<2> {
     if (condition == "branch" && !std::isnan(chosen))
       throw BadParameter(fmt::format(
           "model {}: beta_hat_deg is set with axis = branch; allowed: axis = continuous or yields",
-          kName));
+          kCore));
     if (yields_ && base_ != "closed" && !(base_ == "elastic" && branch == "plus"))
       throw BadParameter(
           fmt::format("model {}: base = {} is not solved with a yielding axis (axis = {}, branch = "
                       "{}); allowed: base = closed, base = elastic with branch = plus, or axis = "
                       "continuous",
-                      kName, base_, condition, branch));
+                      kCore, base_, condition, branch));
     const double active = (1 - std::sin(phi_)) / (1 + std::sin(phi_));
     ratio_ = branch == "plus" ? active : 1 / active;
     const SectorField field = cantelaube_field(phi_, beta_hat_, rho_g_);
@@ -249,7 +249,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
       throw ComputationFailed(fmt::format(
           "{}: the axis misses its yield condition by {:.1e} rho_g h after {} solves, {:.0e} is "
           "asked; raise axis_iterations, or take axis = continuous",
-          kName, misfit / (rho_g_ * h_), axis_iterations_, kAxisTolerance));
+          kCore, misfit / (rho_g_ * h_), axis_iterations_, kAxisTolerance));
     }
   }
 

@@ -23,7 +23,7 @@ using fe::Stress;
 using Vector = fe::Vector<2>;
 using Point = dealii::Point<2>;
 
-constexpr char kName[] = "fe_orthotropic_layer";
+constexpr char kOrthotropic[] = "fe_orthotropic_layer";
 
 Stress<2> stored(const Eigen::Vector3d& stress) {
   Stress<2> s;
@@ -40,31 +40,31 @@ PlaneModuli moduli_of(const Settings& s) {
     throw BadParameter(
         fmt::format("model {}: found {} of E_x, E_y, G, nu_xy; allowed: all four, or r and t "
                     "(with nu_xy where it is felt)",
-                    kName, set + !std::isnan(m.nu_xy)));
+                    kOrthotropic, set + !std::isnan(m.nu_xy)));
   if (set == 3) {
     if (!is_stable(m))
       throw BadParameter(fmt::format(
           "model {}: nu_xy = {:.6g} is not elastic; allowed: between -{:.6g} and {:.6g} "
           "(sqrt(E_x/E_y))",
-          kName, m.nu_xy, std::sqrt(m.E_x / m.E_y), std::sqrt(m.E_x / m.E_y)));
+          kOrthotropic, m.nu_xy, std::sqrt(m.E_x / m.E_y), std::sqrt(m.E_x / m.E_y)));
     return m;
   }
   const double r = number_of(s, "r"), t = number_of(s, "t"), root = std::sqrt(t);
   if (!(r > -root))
     throw BadParameter(fmt::format(
         "model {}: r = {:.6g} is not elastic; allowed: above -sqrt(t) = {:.6g} at t = {:.6g}",
-        kName, r, -root, t));
+        kOrthotropic, r, -root, t));
   const double least = std::max(-r, -root);
   const bool rough = s.at("base") == "rough";
   if (std::isnan(m.nu_xy) && (rough || s.at("sides") == "smooth"))
     throw BadParameter(
         fmt::format("model {}: nu_xy is not set; {} needs it, allowed: between {:.6g} and {:.6g}",
-                    kName, rough ? "base = rough" : "sides = smooth", least, root));
+                    kOrthotropic, rough ? "base = rough" : "sides = smooth", least, root));
   if (m.nu_xy <= least || m.nu_xy >= root)
     throw BadParameter(
         fmt::format("model {}: nu_xy = {:.6g} is not elastic with r = {:.6g}, t = {:.6g}; allowed: "
                     "between max(-r, -sqrt(t)) = {:.6g} and sqrt(t) = {:.6g}",
-                    kName, m.nu_xy, r, t, least, root));
+                    kOrthotropic, m.nu_xy, r, t, least, root));
   m.E_x = 1;
   m.E_y = 1 / t;
   m.G = 1 / (2 * (r + m.nu_xy));
@@ -94,7 +94,7 @@ Points over_the_box(double half_width, double h) {
 class OrthotropicLayer : public fe::BoxModel<2> {
  public:
   explicit OrthotropicLayer(const Settings& s)
-      : fe::BoxModel<2>(kName, s, 2e-4, 3),
+      : fe::BoxModel<2>(kOrthotropic, s, 2e-4, 3),
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
@@ -107,7 +107,7 @@ class OrthotropicLayer : public fe::BoxModel<2> {
     } else {
       field_ = read_elastic_field(s.at("map"));
       figures_["map_share"] = field_->require_cover(
-          kName, "layer", over_the_box(ratio_ * h_, h_),
+          kOrthotropic, "layer", over_the_box(ratio_ * h_, h_),
           "take half_width (in depths) to fit the map, whose load is at (0, 0)");
       at_load_ = field_->moduli(0, 0);
       figures_["nu_xy"] = at_load_.nu_xy;

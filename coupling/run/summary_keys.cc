@@ -79,6 +79,17 @@ const std::vector<SummaryKey>& summary_keys() {
       {"pile.mean_diameter", "m", "of the grains' bounding circles"},
       {"pile.pour_time", "s", "simulated time of pouring"},
       {"pile.awake_mean", "-", "grains awake, mean over the pouring"},
+      {"relaxation.base_weight_ratio_before", "-",
+       "base force over weight before the last relaxation, in which all grains are awake; "
+       "base.weight_ratio: after it"},
+      {"relaxation.level_error_before", "-",
+       "before it: largest |vertical force through a level / weight above - 1|, levels at tenths of "
+       "the height with a twentieth of the weight above"},
+      {"relaxation.level_error_after", "-", "the same after it"},
+      {"relaxation.force_change", "-",
+       "sum of what it changes of the contacts' forces, over the sum of these before"},
+      {"relaxation.mean_displacement", "d", "mean way of a grain in it, mean diameters"},
+      {"relaxation.largest_displacement", "d", "largest way, mean diameters"},
       {"pile.grains_not_poured", "-", "line source: left over when the pile came to a point"},
       {"source.kind", "text", "point | line"},
       {"source.interval", "s", "point source: from one grain to the next"},

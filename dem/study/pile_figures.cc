@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/heap/relaxation.h"
 #include "dem/heap/volume_fraction.h"
 #include "dem/snapshot/contact_changes.h"
 
@@ -34,6 +35,17 @@ void add_heap_figures(const Snapshot& pile, double diameter, std::map<std::strin
     if (!g.fixed) weight += g.mass * std::fabs(pile.gravity.y());
   }
   f["base.weight_ratio"] = base_force(pile).y() / weight;
+}
+
+void add_relaxation_figures(const Snapshot& poured, const Snapshot& pile, double diameter,
+                            std::map<std::string, double>& f) {
+  const Relaxation r = measure_relaxation(poured, pile, diameter);
+  f["relaxation.base_weight_ratio_before"] = r.base_before;
+  f["relaxation.level_error_before"] = r.levels_before;
+  f["relaxation.level_error_after"] = r.levels_after;
+  f["relaxation.force_change"] = r.forces;
+  f["relaxation.mean_displacement"] = r.mean_displacement;
+  f["relaxation.largest_displacement"] = r.largest_displacement;
 }
 
 void add_change_figures(const Snapshot& pile, const Snapshot& changed, const std::string& name,

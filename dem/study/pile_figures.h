@@ -12,6 +12,11 @@ namespace grainfield::dem {
 void add_heap_figures(const Snapshot& pile, double diameter,
                       std::map<std::string, double>& figures);
 
+/// "relaxation.force_change", ...: from the poured pile, in which grains may sleep, to the pile at
+/// rest (dem/heap/relaxation.h).
+void add_relaxation_figures(const Snapshot& poured, const Snapshot& pile, double diameter,
+                            std::map<std::string, double>& figures);
+
 /// "change.NAME.contacts_gained" ... of a state against the pile at rest.
 void add_change_figures(const Snapshot& pile, const Snapshot& changed, const std::string& name,
                         std::map<std::string, double>& figures);

@@ -148,6 +148,7 @@ void PileRun::settle() {
   const Snapshot now = engine_->snapshot();
   check_walls_free(setup_, now, largest_diameter_, 1);
   check_funnel_empty(setup_, now);
+  poured_pile_ = now;
   engine_->set_sleep(false);
   enter(PilePhase::rest);
 }

@@ -68,6 +68,8 @@ void PileRun::visit(Archive& archive) {
   archive(at_pile_);
   archive(random_);
   archive.engine(engine_, [this] { return empty_engine(); });
+  archive.snapshot(poured_pile_, "poured");
+  archive.require(poured_pile_.has_value() == (phases_.now() > PilePhase::settle));
   archive.snapshot(pile_, "pile");
   archive.require(pile_.has_value() == (phases_.now() > PilePhase::rest));
   if (archive.is_reading() && pile_) changes_->start_from(*pile_);
@@ -86,6 +88,7 @@ RunResult PileRun::result() const {
   f["pile.grains_not_poured"] = setup_.source.grains - poured_;
   f["pile.mean_diameter"] = mean_diameter_;
   add_heap_figures(*pile_, mean_diameter_, f);
+  add_relaxation_figures(*poured_pile_, *pile_, mean_diameter_, f);
   changes_->add_to(out);
   return out;
 }

@@ -40,9 +40,11 @@ std::set<Name> names_of(const Snapshot& s) {
   return found;
 }
 
-/// Weak springs, so that the grains fly through each other; all contacts at several times.
+/// Weak springs, so that the grains fly through each other; all contacts at several times. `stops`:
+/// the flow rests every other time.
 void expect_all_contacts(const ShapeKind& shape, double largest, double ratio,
-                         const Matrix3d& gradient, std::uint64_t seed, std::size_t least_crossing) {
+                         const Matrix3d& gradient, std::uint64_t seed, std::size_t least_crossing,
+                         bool stops = false) {
   const int dim = shape.visit([](auto kind) { return kind.dim; });
   Random random(seed);
   std::size_t crossing = 0, contacts = 0;
@@ -72,6 +74,7 @@ void expect_all_contacts(const ShapeKind& shape, double largest, double ratio,
     }
     const auto engine = engine_with(settings, grains);
     for (int part = 0; part < 12; ++part) {
+      if (stops) engine->set_velocity_gradient(part % 2 == 0 ? Matrix3d::Zero() : gradient);
       engine->step(150);
       const Snapshot s = engine->snapshot();
       const std::set<Name> found = names_of(s);
@@ -95,6 +98,9 @@ TEST(CellContacts, OfDisksInAFlowAreAllThereAre) {
   other << 0.2, 3, 0, -1, -0.2, 0, 0, 0, 0;
   expect_all_contacts(ShapeKind::disk, 0.2, 2, simple_shear(6), 3, 2000);
   expect_all_contacts(ShapeKind::disk, 0.1, 20, other, 4, 150);
+}
+TEST(CellContacts, OfDisksInAFlowThatStopsAndGoesOn) {
+  expect_all_contacts(ShapeKind::disk, 0.2, 2, simple_shear(6), 7, 1500, true);
 }
 TEST(CellContacts, OfSpheresAreAllThereAre) {
   Matrix3d flow = simple_shear(5);

@@ -258,6 +258,22 @@ TEST(Quasistatic, RefusesWhatDoesNotFit) {
   bad.contacts.emplace_back();
   bad.contacts.back().j = -3;
   EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("contact of 0 with -3"));
+  bad = s;
+  bad.walls[0].velocity = Vec3(0, 0.1, 0);
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("wall floor: found one that"));
+  bad = s;
+  bad.walls[0].material = "steel";
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("wall floor: found one that"));
+  bad = s;
+  bad.walls[0].shape = "cylinder";
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}),
+              testing::HasSubstr("wall floor: shape: found \"cylinder\", allowed: plane"));
+  bad = s;
+  bad.grains[0].rotates = false;
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("grain 0 does not turn"));
+  EngineSettings rolls = area_law(0.5);
+  rolls.rolling.friction = 0.1;
+  EXPECT_THAT(refusal(s, rolls, {}, {}), testing::HasSubstr("choose method = \"damped\""));
 }
 
 }  // namespace
