@@ -83,7 +83,8 @@ const std::vector<SummaryKey>& summary_keys() {
        "base force over weight before the last relaxation, in which all grains are awake; "
        "base.weight_ratio: after it"},
       {"relaxation.level_error_before", "-",
-       "before it: largest |vertical force through a level / weight above - 1|, levels at tenths of "
+       "before it: largest |vertical force through a level / weight above - 1|, levels at tenths "
+       "of "
        "the height with a twentieth of the weight above"},
       {"relaxation.level_error_after", "-", "the same after it"},
       {"relaxation.force_change", "-",

@@ -84,7 +84,7 @@ class PileRun final : public ArchivedRun {
   double awake_sum_ = 0;
   long awake_samples_ = 0;
   double pour_time_ = 0;
-  Diagnostics at_pile_;  // when the pile was at rest
+  Diagnostics at_pile_;                  // when the pile was at rest
   std::optional<Snapshot> poured_pile_;  // before the last relaxation
   std::optional<Snapshot> pile_;
   std::optional<GravityChanges> changes_;

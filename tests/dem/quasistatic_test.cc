@@ -260,10 +260,12 @@ TEST(Quasistatic, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("contact of 0 with -3"));
   bad = s;
   bad.walls[0].velocity = Vec3(0, 0.1, 0);
-  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("wall floor: found one that"));
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}),
+              testing::HasSubstr("wall floor: found one that"));
   bad = s;
   bad.walls[0].material = "steel";
-  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("wall floor: found one that"));
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}),
+              testing::HasSubstr("wall floor: found one that"));
   bad = s;
   bad.walls[0].shape = "cylinder";
   EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}),
