@@ -66,7 +66,7 @@ class SampleRun final : public ArchivedRun {
   WallServo servo(int axis) const;
   void tilt_sides();
   double worst_error(const SampleState& state) const;
-  void note_error();
+  void note_error(const SampleState& state);
   void record();
   std::string name_of(std::size_t state) const { return fmt::format("state_{:03}", state); }
   void visit(Archive& archive) override;
@@ -83,8 +83,10 @@ class SampleRun final : public ArchivedRun {
                          {"deform", false, 0.4, 1},
                          {"done", false, 1, 1}}};
   std::unique_ptr<Engine> engine_;
-  long next_record_ = 0;     // steps of the deformation; follows from the states
-  double stress_error_ = 0;  // largest in the deformation
+  long next_record_ = 0;  // steps of the deformation; follows from the states
+  // Of the servos in the deformation: largest error, sum of squares, and how often measured.
+  double stress_error_ = 0, squared_errors_ = 0;
+  std::int64_t measured_ = 0;
   std::vector<std::optional<Snapshot>> states_;
 };
 
@@ -204,7 +206,9 @@ void SampleRun::decide() {
         if (any_led(Phase::deform)) lead_cell();
       } else {
         if (tilts()) tilt_sides();
-        if (any_led(Phase::deform) && phases_.is_due(kCheckEvery)) note_error();
+        if (any_led(Phase::deform) && phases_.is_due(kCheckEvery)) {
+          note_error(sample_state(engine_->snapshot()));
+        }
       }
       return;
     case Phase::done:
@@ -300,7 +304,7 @@ void SampleRun::lead_cell() {
   }
   if (any_led(now)) {
     const SampleState state = sample_state(engine_->snapshot());
-    if (now == Phase::deform) stress_error_ = std::max(stress_error_, worst_error(state));
+    if (now == Phase::deform) note_error(state);
     for (int a = 0; a < plan_.dim; ++a) {
       if (!is_led(now, a)) continue;
       flow(a, a) = cell_servo_.rate(a, -state.stress(a, a), plan_.pressure);
@@ -392,13 +396,16 @@ double SampleRun::worst_error(const SampleState& state) const {
   return worst;
 }
 
-void SampleRun::note_error() {
-  stress_error_ = std::max(stress_error_, worst_error(sample_state(engine_->snapshot())));
+void SampleRun::note_error(const SampleState& state) {
+  const double error = worst_error(state);
+  stress_error_ = std::max(stress_error_, error);
+  squared_errors_ += error * error;
+  ++measured_;
 }
 
 void SampleRun::record() {
   Snapshot s = engine_->snapshot();
-  if (any_led(Phase::deform)) stress_error_ = std::max(stress_error_, worst_error(sample_state(s)));
+  if (any_led(Phase::deform)) note_error(sample_state(s));
   const Diagnostics d = engine_->measure();
   const auto put = [&](const char* name, double value) {
     s.attributes[name] = fmt::format("{:.17g}", value);
@@ -456,6 +463,8 @@ Progress SampleRun::progress() const {
 void SampleRun::visit(Archive& archive) {
   phases_.visit(archive);
   archive(stress_error_);
+  archive(squared_errors_);
+  archive(measured_);
   archive(next_record_);
   cell_servo_.visit(archive);
   archive.engine(engine_, [this] { return empty_engine(); });
@@ -481,7 +490,11 @@ RunResult SampleRun::result() const {
   for (std::size_t k = 0; k < states_.size(); ++k)
     out.snapshots.emplace_back(name_of(k), *states_[k]);
   add_engine_figures(*engine_, engine_->measure(), out.figures);
-  if (any_led(Phase::deform)) out.figures["sample.stress_error"] = stress_error_;
+  if (any_led(Phase::deform)) {
+    out.figures["sample.stress_error"] = stress_error_;
+    out.figures["sample.stress_rms_error"] =
+        std::sqrt(squared_errors_ / static_cast<double>(measured_));
+  }
   return out;
 }
 
