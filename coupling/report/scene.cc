@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
+constexpr double most_slender = 1.1;  // height of the plot over its width; beyond it is narrower
 constexpr double label_height = 30;  // pixels of a mark on the y axis
 constexpr double stray_gap = 3;      // largest diameters
 
@@ -68,6 +69,11 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double 
   picture.bitmap = snapshot.grains.size() > most_in_svg;
   picture.width = picture_width;
   plot_width_ = picture_width - side - right_side;
+  const double slender = (top_ - bottom_) / (right_ - left_);
+  if (slender > most_slender) {
+    plot_width_ = static_cast<int>(plot_width_ * most_slender / slender);
+    picture.width = plot_width_ + side + right_side;
+  }
   plot_height_ = static_cast<int>(plot_width_ * (top_ - bottom_) / (right_ - left_));
   picture.height = plot_height_ + above + below;
 }
