@@ -27,10 +27,10 @@ Secant secant_of(const Eigen::VectorXd& strain, const Eigen::VectorXd& stress) {
   return {};
 }
 
-// States of the critical state: the last ones.
-Eigen::Index critical_states(const Eigen::VectorXd& strain) {
-  const double from = kCriticalFrom * strain[strain.size() - 1];
-  return (strain.array() >= from * (1 - 1e-9)).count();
+// How many of the last states, which are at equal steps of strain, are beyond kCriticalFrom of it.
+Eigen::Index critical_states(Eigen::Index states) {
+  const double first = std::ceil(kCriticalFrom * static_cast<double>(states - 1));
+  return states - static_cast<Eigen::Index>(first);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ std::map<std::string, std::vector<double>> state_figures(const StateTable& table
     if (balance.size() > 1 && balance.tail(balance.size() - 1).allFinite()) {
       put("energy_balance_error", balance.tail(balance.size() - 1).cwiseAbs().maxCoeff());
     }
-    const Eigen::Index n = critical_states(strain), half = n / 2;
+    const Eigen::Index n = critical_states(strain.size()), half = n / 2;
     if (n < 2) continue;
     put("critical_stress_ratio", ratio.tail(n).mean());
     put("critical_friction_angle_deg", column("friction_angle_deg").tail(n).mean());

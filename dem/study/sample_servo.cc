@@ -1,6 +1,7 @@
 #include "dem/study/sample_servo.h"
 
-#include <variant>
+#include <cmath>
+#include <numbers>
 
 #include "dem/engine/pair_probe.h"
 #include "dem/study/sample_grains.h"
@@ -19,21 +20,37 @@ struct ContactAnswer {
   double dashpot = 0;    ///< N s/m
 };
 
+// A side faces +x, so that two such grains, one turned round, meet edge on edge.
+Outline regular(double radius, int corners) {
+  Outline out;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = (2 * k + 1) * std::numbers::pi / corners;
+    out.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return out;
+}
+
 // Of two mean grains pushed together until they push back with this force.
 ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, double density,
                         double force) {
   const double r = sample_radii(plan).mean;
+  double touching = 2 * r;
   EngineSettings bare = settings;
   bare.rolling = {};
-  if (plan.dim == 2) bare.shape = ShapeKind::disk;
   NewGrain grain;
   grain.radius = r;
   grain.density = density;
+  if (settings.shape == ShapeKind::polygon) {
+    const int corners = (plan.corners_min + plan.corners_max) / 2;
+    grain.outline = regular(r, corners);
+    touching *= std::cos(std::numbers::pi / corners);
+  }
   const auto probe = make_pair_probe(bare, grain, grain);
   const auto push = [&](double depth, double speed) {
     PairState first, second;
     first.velocity.x() = speed;
-    second.position.x() = 2 * r - depth;
+    second.position.x() = touching - depth;
+    second.angle = std::numbers::pi;
     probe->forget();
     return probe->at(first, second, 0).normal_force;
   };
@@ -53,19 +70,9 @@ ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, 
 
 CellServo cell_servo_for(const SampleSetup& setup, const EngineSettings& settings) {
   const SamplePlan& plan = setup.plan;
-  const double r = sample_radii(plan).mean, density = setup.material.density;
-  const double mass = density * mean_volume(plan) / plan.grains;
-  ContactAnswer contact;
-  if (plan.shape == "disk" || plan.shape == "sphere") {
-    const double force = (plan.dim == 2 ? kForce2 * r : kForce3 * r * r) * plan.pressure;
-    contact = answer_of(plan, settings, density, force);
-  } else {
-    std::visit(
-        [&](const auto& law) {
-          contact = {law.stiffness(r), 2.0 / 3 * mass * law.viscous_rate(mass, r)};
-        },
-        settings.law);
-  }
+  const double r = sample_radii(plan).mean;
+  const double force = (plan.dim == 2 ? kForce2 * r : kForce3 * r * r) * plan.pressure;
+  const ContactAnswer contact = answer_of(plan, settings, setup.material.density, force);
   CellServo servo;
   servo.modulus = contact.stiffness / (plan.dim == 2 ? 1 : 2 * r);
   servo.slowness = contact.dashpot / contact.stiffness;

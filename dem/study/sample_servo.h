@@ -6,9 +6,9 @@
 
 namespace grainfield::dem {
 
-/// With everything but the time between two measurements. Of round grains stiffness and dashpot of
-/// the contact are those of two mean ones that push each other with the mean force of a packing
-/// under plan.pressure; of polygons what the law gives for their edges at most.
+/// With everything but the time between two measurements. Stiffness and dashpot of the contact are
+/// those of two mean grains, of polygons edge on edge, that push each other with the mean force of
+/// a packing under plan.pressure.
 CellServo cell_servo_for(const SampleSetup& setup, const EngineSettings& settings);
 
 }  // namespace grainfield::dem
