@@ -20,7 +20,7 @@ struct SampleReport {
   std::string strain_name;  ///< "shear strain", "axial strain"
   std::string label;        ///< of the curves: "grains, mean of 4"
   Eigen::VectorXd strain;
-  std::vector<SampleCurve> main;      ///< q/p, volumetric strain, p
+  std::vector<SampleCurve> main;      ///< q/p, volumetric strain, p, contacts
   std::vector<SampleCurve> stresses;  ///< in one frame
   std::string stress_unit;
   std::vector<SampleCurve> structure;  ///< coordination, fabric: a frame each

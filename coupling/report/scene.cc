@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
 constexpr double most_slender = 1.1;  // height of the plot over its width; beyond it is narrower
-constexpr double label_height = 30;  // pixels of a mark on the y axis
-constexpr double stray_gap = 3;      // largest diameters
+constexpr double label_height = 30;   // pixels of a mark on the y axis
+constexpr double stray_gap = 3;       // largest diameters
 
 // A round step (1, 2 or 5 times a power of ten) that gives at most so many marks on a span.
 double round_step(double span, double marks) {

@@ -52,7 +52,8 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   out.strain = table.mean("strain");
   out.main = {curve(table, "q_over_p", "q/p"),
               curve(table, "volumetric_strain", "volumetric strain"),
-              curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)")};
+              curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"),
+              curve(table, "coordination", "contacts of a grain")};
   const Driving driving = driving_of(plan.deformation, plan.dim);
   out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
   out.stresses = {curve(table, "p", "p"), curve(table, "q", "q")};
