@@ -13,6 +13,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/case/case.h"
+#include "coupling/case/keys.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/run_case.h"
 #include "coupling/system/printable.h"
@@ -98,10 +99,11 @@ void say_result(const Case& value, const std::string& folder) {
   const auto at = summary.find("dem.max_overlap_ratio");
   const double* overlap = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
   if (overlap != nullptr && *overlap > kDeepOverlap) {
+    const bool linear = value_text(*find_key("material.law"), value) == "\"linear\"";
     note(
         "warning: grains overlap by up to {:.0f} % of a radius, too soft for a "
-        "contact law of small overlaps; raise material.young",
-        100 * *overlap);
+        "contact law of small overlaps; raise material.{}",
+        100 * *overlap, linear ? "normal_stiffness" : "young");
   }
   say("results: {}\n", printable_name(folder));
   if (value.output.report) say("report: {}/report.html\n", printable_name(folder));

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "dem/laws/registry.h"
 #include "dem/shapes/registry.h"
 
 namespace grainfield::coupling {
@@ -19,26 +18,13 @@ void check_range(const Key& key, const Assignment& a, double value) {
   if (!ok) reject(a, key.path(), fmt::format("found {:g}, allowed: {}", value, allowed(key)));
 }
 
-// Words and keys of grains in three dimensions, which no study has yet; empty: it is none.
+// Shapes of three dimensions, given to a study of grains in the plane; empty: the word is none.
 std::string of_three_dimensions(const std::string& path, const std::string& word) {
-  const auto holds = [&](const std::vector<std::string>& all,
-                         const std::vector<std::string>& plane) {
-    return std::find(all.begin(), all.end(), word) != all.end() &&
-           std::find(plane.begin(), plane.end(), word) == plane.end();
-  };
-  if (path == "material.law" && holds(dem::words_of<dem::AnyLaw>(), dem::laws_in<2>()))
-    return fmt::format("\"{}\" is a law of spheres (3D)", word);
-  if ((path == "packing.shape" || path == "shape.kind") &&
-      holds(dem::words_where<dem::AnyShape>([]<class Kind>() { return Kind::dim == 3; }), {}))
-    return fmt::format("\"{}\" is a shape of 3D", word);
-  for (const char* key : {"poisson", "tangential_memory", "damping_model"}) {
-    if (path == fmt::format("material.{}", key))
-      return fmt::format("{} is a key of the law \"hertz\" of spheres (3D)", key);
-  }
-  if (path.starts_with("material.twisting_")) return "grains twist in 3D only";
-  return "";
+  if (path != "packing.shape" && path != "shape.kind") return "";
+  const auto words = dem::words_where<dem::AnyShape>([]<class Kind>() { return Kind::dim == 3; });
+  if (std::find(words.begin(), words.end(), word) == words.end()) return "";
+  return fmt::format("\"{}\" is a shape of 3D; the grains of this study are in 2D", word);
 }
-constexpr const char* kPlane = "; the studies' grains are in 2D";
 
 void check_choice(const Key& key, const Assignment& a, const std::string& value) {
   if (key.choices.empty() ||
@@ -46,8 +32,7 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
     return;
   }
   if (const std::string why = of_three_dimensions(key.path(), value); !why.empty()) {
-    reject(a, key.path(),
-           fmt::format("found \"{}\", allowed: {}; {}{}", value, allowed(key), why, kPlane));
+    reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, allowed(key), why));
   }
   reject(a, key.path(),
          fmt::format("found \"{}\", allowed: {}; nearest: {}", value, allowed(key),
@@ -136,9 +121,6 @@ void set(const Key& key, const Assignment& a, Case& value) {
     reject(a, a.path,
            fmt::format("found {}, expected a section [{}] (its keys: grainfield keys {})",
                        describe(a), a.path, a.path));
-  }
-  if (const std::string why = of_three_dimensions(a.path, ""); !why.empty()) {
-    reject(a, a.path, "unknown key: " + why + kPlane);
   }
   // SECTION.NAME may be SECTION_NAME elsewhere; a name that exists in another section is nearer
   // than any misspelling; else names of this one.

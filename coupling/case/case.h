@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "continuum/model.h"
+#include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
@@ -161,6 +162,7 @@ struct Case {
   dem::PointLoadSetup layer;
   dem::PileSetup pile;
   dem::LatticePileSetup lattice_pile;
+  dem::SampleSetup sample;
   AverageSetup average;
   HeapSetup heap;
   GrainFiles grains;

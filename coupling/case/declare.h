@@ -51,6 +51,13 @@ class Section {
     keys_.back().needs = needs;
     keys_.back().needed = std::move(needed);
   }
+  /// The last key means something in three dimensions only.
+  void space() { keys_.back().space = true; }
+  /// Of the last key's words, those that hold in two or in three dimensions only.
+  void words_of_dimensions(std::vector<std::string> plane, std::vector<std::string> space) {
+    keys_.back().plane_words = std::move(plane);
+    keys_.back().space_words = std::move(space);
+  }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
     add(name, "-", where, meaning, "").most = 1;
   }
@@ -75,6 +82,7 @@ class Section {
 void declare_grain_keys(std::vector<Key>& keys);
 void declare_pile_keys(std::vector<Key>& keys);
 void declare_lattice_keys(std::vector<Key>& keys);
+void declare_sample_keys(std::vector<Key>& keys);
 void declare_heap_keys(std::vector<Key>& keys);
 void declare_grain_files_keys(std::vector<Key>& keys);
 void declare_fields_keys(std::vector<Key>& keys);

@@ -12,6 +12,7 @@
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/cost.h"
+#include "coupling/case/dimensions.h"
 #include "coupling/case/members.h"
 #include "coupling/run/models.h"
 #include "coupling/run/studies.h"
@@ -27,6 +28,7 @@ constexpr std::int64_t kLeastDraws = 300;
 void check_sections(const Draft& draft) {
   for (const auto& [path, a] : draft.last) {
     const Key* key = find_key(path);
+    if (key->space && !may_be_in_space(draft.value.study)) continue;  // check_dimensions
     if (!key_applies(*key, draft.value.study)) {
       reject(a, path, fmt::format("has no meaning for study = \"{}\"", draft.value.study));
     }
@@ -121,9 +123,11 @@ void choose_models(Draft& draft) {
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
     try {
       const auto& info = continuum::find_model(choice.name);
-      if (study_of(value).has_grains() && continuum::dimension(info, choice.settings) != 2) {
+      if (study_of(value).has_grains() &&
+          continuum::dimension(info, choice.settings) != dimension_of(value)) {
         reject(where, "compare.models",
-               fmt::format("\"{}\" is three-dimensional, the grains are not", label));
+               fmt::format("\"{}\" is {}-dimensional, the grains are not", label,
+                           dimension_of(value) == 2 ? "three" : "two"));
       }
     } catch (const continuum::BadParameter& e) {
       reject(where, "compare.models", e.what());
@@ -283,6 +287,7 @@ void finish(Draft& draft) {
                        draft.value.variants.size(), kMostEntries));
   }
   check_sections(draft);
+  check_dimensions(draft);
   choose_models(draft);
   check_lists(draft);
   check_elastic(draft);

@@ -131,6 +131,7 @@ const std::vector<Key>& keys() {
     declare_grain_keys(grains);
     declare_pile_keys(grains);
     declare_lattice_keys(grains);
+    declare_sample_keys(grains);
     // Files read best in the order study, ensemble, grains, averaging, models, output.
     const auto after = std::find_if(list.begin(), list.end(),
                                     [](const Key& key) { return key.section == "average"; });
@@ -179,12 +180,29 @@ bool section_applies(const std::string& section, const std::string& study) {
 
 bool key_applies(const Key& key, const std::string& study) {
   if (!section_applies(key.section, study)) return false;
+  if (key.space && !may_be_in_space(study)) return false;
   const Study* known = find_study(study);
   return known == nullptr || std::find(known->without.begin(), known->without.end(), key.path()) ==
                                  known->without.end();
 }
 
+int dimension_of(const Case& value) {
+  const Study* study = find_study(value.study);
+  return study == nullptr || study->dimension == nullptr ? 2 : study->dimension(value);
+}
+
+bool may_be_in_space(const std::string& study) {
+  const Study* known = find_study(study);
+  return known != nullptr && known->dimension != nullptr;
+}
+
 bool is_idle(const Key& key, const Case& value) {
+  if (key.space && dimension_of(value) == 2) {
+    const Study* study = find_study(value.study);
+    const bool varied = value.sweep.key == "variant" ||
+                        (study != nullptr && value.sweep.key == study->dimension_key);
+    if (!varied) return true;
+  }
   const Key* other = key.needs.empty() ? nullptr : find_key(key.needs);
   if (other == nullptr || !key_applies(*other, value.study)) return false;
   if (value.sweep.key == "variant" || value.sweep.key == other->path()) return false;
@@ -209,7 +227,10 @@ bool is_idle(const Key& key, const Case& value) {
 }
 
 std::string condition(const Key& key) {
-  return key.needs.empty() ? "" : fmt::format("{} = {}", key.needs, fmt::join(key.needed, " or "));
+  const std::string choice =
+      key.needs.empty() ? "" : fmt::format("{} = {}", key.needs, fmt::join(key.needed, " or "));
+  if (!key.space) return choice;
+  return choice.empty() ? "3D" : "3D, " + choice;
 }
 
 std::string type_name(const Key& key) {
@@ -236,7 +257,18 @@ std::string entries_allowed(const Key& key) {
 }
 
 std::string allowed(const Key& key) {
-  if (!key.choices.empty()) return fmt::format("{}", fmt::join(key.choices, " | "));
+  if (!key.choices.empty()) {
+    std::vector<std::string> words;
+    for (const std::string& word : key.choices) {
+      const auto among = [&](const std::vector<std::string>& some) {
+        return std::find(some.begin(), some.end(), word) != some.end();
+      };
+      words.push_back(word + (among(key.plane_words)   ? " (2D)"
+                              : among(key.space_words) ? " (3D)"
+                                                       : ""));
+    }
+    return fmt::format("{}", fmt::join(words, " | "));
+  }
   const std::string type = type_name(key);
   if (type == "boolean") return "true | false";
   if (type == "text" || type == "list of words") return "any";

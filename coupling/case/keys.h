@@ -34,6 +34,10 @@ struct Key {
   std::vector<std::string>
       needed;  ///< ... and the values (as TOML, words bare) that give it effect
 
+  bool space = false;                    ///< only in three dimensions
+  std::vector<std::string> plane_words;  ///< of the choices, those of two dimensions only
+  std::vector<std::string> space_words;  ///< ... and of three
+
   std::string path() const { return section.empty() ? name : section + "." + name; }
 };
 
@@ -47,8 +51,13 @@ bool key_applies(const Key& key, const std::string& study);
 /// Whether what the case chooses elsewhere leaves a key without effect (source.height of a line
 /// source). Not when the run varies that choice.
 bool is_idle(const Key& key, const Case& value);
-/// "source.kind = point"; empty for a key that depends on no other.
+/// "source.kind = point", "3D"; empty for a key that depends on no other.
 std::string condition(const Key& key);
+
+/// The number of dimensions of the case's grains (coupling/run/studies.h).
+int dimension_of(const Case& value);
+/// Whether that can be three for some case of the study.
+bool may_be_in_space(const std::string& study);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);

@@ -68,6 +68,12 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                          name, style::simulation, style::quoted(series.label)));
       } else {
         const std::size_t look = model++ % style::models;
+        if (series.banded && has_band(series)) {
+          part(
+              fmt::format("${} using 1:($2-$3):($2+$3) with filledcurves fc rgb '{}' fs "
+                          "transparent solid 0.2 noborder notitle",
+                          name, style::model[look]));
+        }
         part(fmt::format("${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", name,
                          style::dash[look], style::model[look], style::quoted(series.label)));
       }

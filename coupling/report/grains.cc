@@ -8,6 +8,7 @@
 #include "coupling/report/picture.h"
 #include "coupling/report/scene.h"
 #include "coupling/report/style.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -36,7 +37,8 @@ std::vector<Line> force_lines(const dem::Snapshot& snapshot, const dem::Snapshot
     return s.grains[static_cast<std::size_t>(g)].position.head<2>();
   };
   const auto end = [&](const dem::Snapshot& s, const dem::Contact& c) -> Eigen::Vector2d {
-    return c.j >= 0 ? at(s, c.j) : Eigen::Vector2d(c.point.head<2>());
+    return c.j >= 0 ? Eigen::Vector2d(dem::second_place(s, c).head<2>())
+                    : Eigen::Vector2d(c.point.head<2>());
   };
   for (const dem::Contact& c : snapshot.contacts) {
     double force = c.normal_force;
@@ -73,7 +75,7 @@ double force_scale(const std::vector<Line>& lines) {
 }  // namespace
 
 Picture packing(const std::string& title, const dem::Snapshot& snapshot,
-                const dem::Snapshot* reference) {
+                const dem::Snapshot* reference, const std::string& vertical) {
   Picture picture;
   picture.title = title;
   std::string& p = picture.program;
@@ -92,7 +94,7 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
                      line.to.x() - line.from.x(), line.to.y() - line.from.y(), share, colour);
   }
   p += "EOD\n";
-  scene.set_axes();
+  scene.set_axes(vertical);
   if (arrow)
     for (const dem::Grain& g : snapshot.grains)
       if (g.id == snapshot.loaded_grain) {
@@ -114,6 +116,7 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
         ", $lines using ($5>{0:.4f}&&$5<={1:.4f}?$1:NaN):2:3:4:6 with vectors nohead lw {2:.2f} lc "
         "rgb variable",
         static_cast<double>(k) / classes, (k + 1.0) / classes, pixels * (k + 0.5) / classes);
+  scene.plot_cell();
   p += "\n";
   picture.caption =
       reference ? fmt::format(

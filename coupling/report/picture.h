@@ -21,6 +21,7 @@ struct Series {
   std::string label;
   Eigen::VectorXd x, y, error;  ///< error empty or nan: no band
   bool simulation = false;      ///< drawn with points and its band; models as lines
+  bool banded = false;          ///< its band is drawn as well where it is no simulation
 };
 
 /// One frame of curves; `frames` stand in a grid under a common legend.
@@ -50,9 +51,12 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
              const std::string& value_label, const std::vector<Map>& maps, bool diverging = true);
 
 /// Grains with their contact forces as lines whose width grows with the force. With `reference` the
-/// lines show the change of force from it (more: red, less: blue).
+/// lines show the change of force from it (more: red, less: blue). `vertical`: the axis' name.
 Picture packing(const std::string& title, const dem::Snapshot& snapshot,
-                const dem::Snapshot* reference = nullptr);
+                const dem::Snapshot* reference = nullptr, const std::string& vertical = "y");
+
+/// The same of spheres, where the plane y = const in the middle cuts them.
+Picture slice(const std::string& title, const dem::Snapshot& snapshot);
 
 /// Grains coloured by the order of their ids, which is the order of dropping.
 Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot);

@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::size_t most_in_svg = 200;  // grains; beyond, a bitmap is smaller
 constexpr int picture_width = 980, below = 80, side = 96, right_side = 20;  // pixels
-constexpr double label_height = 30;  // pixels of a mark on the y axis
-constexpr double stray_gap = 3;      // largest diameters
+constexpr double most_slender = 1.1;  // height of the plot over its width; beyond it is narrower
+constexpr double label_height = 30;   // pixels of a mark on the y axis
+constexpr double stray_gap = 3;       // largest diameters
 
 // A round step (1, 2 or 5 times a power of ten) that gives at most so many marks on a span.
 double round_step(double span, double marks) {
@@ -51,6 +52,15 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double 
     any = true;
   }
   if (!lefts.empty()) find_bulk(stray_gap * diameter);
+  if (snapshot.cell.periodic[0] && snapshot.cell.periodic[1]) {
+    for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      const dem::Vec3 corner = snapshot.cell.low + snapshot.cell.edges * dem::Vec3(a, b, 0);
+      left_ = std::min(left_, corner.x());
+      right_ = std::max(right_, corner.x());
+      bottom = std::min(bottom, corner.y());
+      top = std::max(top, corner.y());
+    }
+  }
   const double margin = 0.01 * (right_ - left_);
   left_ -= margin;
   right_ += margin;
@@ -59,6 +69,11 @@ Scene::Scene(Picture& picture, const dem::Snapshot& snapshot, int above, double 
   picture.bitmap = snapshot.grains.size() > most_in_svg;
   picture.width = picture_width;
   plot_width_ = picture_width - side - right_side;
+  const double slender = (top_ - bottom_) / (right_ - left_);
+  if (slender > most_slender) {
+    plot_width_ = static_cast<int>(plot_width_ * most_slender / slender);
+    picture.width = plot_width_ + side + right_side;
+  }
   plot_height_ = static_cast<int>(plot_width_ * (top_ - bottom_) / (right_ - left_));
   picture.height = plot_height_ + above + below;
 }
@@ -115,15 +130,15 @@ void Scene::add_grains(const std::function<std::string(const dem::Grain&)>& colo
   p += "EOD\n";
 }
 
-void Scene::set_axes() {
+void Scene::set_axes(const std::string& vertical) {
   const double width = picture_.width, height = picture_.height;
   picture_.program += fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
       "set tmargin at screen {:.4f}\nset xrange [{}:{}]\nset yrange [{}:{}]\n"
       "set border 3 lw 1 lc rgb '#444444'\nset tics out nomirror\nset ytics {:g}\nunset key\n"
-      "set xlabel 'x (m)'\nset ylabel 'y (m)' offset 1,0\n",
+      "set xlabel 'x (m)'\nset ylabel '{} (m)' offset 1,0\n",
       side / width, 1 - right_side / width, below / height, 1 - above_ / height, left_, right_,
-      bottom_, top_, round_step(top_ - bottom_, plot_height_ / label_height));
+      bottom_, top_, round_step(top_ - bottom_, plot_height_ / label_height), vertical);
 }
 
 void Scene::plot_grains(const char* edge) {
@@ -136,6 +151,17 @@ void Scene::plot_grains(const char* edge) {
   } else {
     picture_.program += "plot $grains using 1:2:3:4 with circles fc rgb variable lw 0.5";
   }
+}
+
+void Scene::plot_cell() {
+  const dem::Cell<3>& cell = snapshot_.cell;
+  if (!cell.periodic[0] || !cell.periodic[1]) return;
+  picture_.program += ", '-' using 1:2 with lines lw 1.2 dt 2 lc rgb '#333333'\n";
+  for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}) {
+    const dem::Vec3 corner = cell.low + cell.edges * dem::Vec3(a, b, 0);
+    picture_.program += fmt::format("{:.6g} {:.6g}\n", corner.x(), corner.y());
+  }
+  picture_.program += "e";
 }
 
 }  // namespace grainfield::coupling

@@ -18,9 +18,11 @@ class Scene {
   /// Puts the grains into the program with their true outlines; `colour` gives "0xrrggbb".
   void add_grains(const std::function<std::string(const dem::Grain&)>& colour);
   /// Margins, ranges and axes: comes after all data, before the plot command.
-  void set_axes();
+  void set_axes(const std::string& vertical = "y");
   /// Begins the plot command with the grains.
   void plot_grains(const char* edge);
+  /// Goes on with the outline of a cell that is periodic along both axes; without one, nothing.
+  void plot_cell();
 
   /// For captions: " 3 grains that rolled off lie outside the picture."; empty without any.
   std::string strays() const;

@@ -31,6 +31,9 @@ struct Study {
   /// What a realization will take, from the case alone; set where make_run is. Throws what make_run
   /// would for any of the realizations; draws at most so many grains (dem/study/outlook.h).
   dem::Outlook (*foresee)(const Case&, std::int64_t draws) = nullptr;
+  /// The number of dimensions of a case's grains, 2 or 3, and the key that decides it; null: 2.
+  int (*dimension)(const Case&) = nullptr;
+  std::string dimension_key;
   /// What only the study knows of its keys and models; null: nothing. Throws std::invalid_argument
   /// beginning with the key that does not hold.
   void (*check)(const Case&) = nullptr;

@@ -22,6 +22,12 @@ struct OverviewColumn {
   std::string error() const { return error_key.empty() ? key + ".standard_error" : error_key; }
 };
 
+/// A curve of a member in a sweep's report, beside those of the others.
+struct MemberCurve {
+  std::string title, x_label;  ///< title: the quantity with its unit
+  Series series;               ///< without a label
+};
+
 struct StudyResult {
   Case value;
   Comparison comparison;
@@ -39,6 +45,8 @@ struct StudyResult {
   /// that all members share.
   std::vector<Frame> sweep_frames;
   std::string sweep_x, sweep_y;  ///< labels of these frames' axes
+  /// A frame each, with a curve for every member; empty: the profiles of the comparison.
+  std::vector<MemberCurve> member_curves;
   /// This member's own pictures and tables in a sweep's report, given its name; may be empty.
   std::function<std::vector<Section>(const std::string&)> sweep_sections, sweep_tables;
 };
@@ -61,8 +69,9 @@ void add_comparison(Summary& summary, const Comparison& comparison, std::size_t 
 /// Means of the realizations' figures and, of two or more, KEY.least, .most, .standard_error.
 void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures);
 
-/// Writes summary.json, profiles.*, fields.h5 + .xdmf, snapshots.h5, *.vtu, report.html and
-/// case.toml into a folder that exists. Returns what the report lacks (ReportResult::complaint).
+/// Writes summary.json, profiles.*, fields.h5 + .xdmf (where there are any), snapshots.h5, *.vtu,
+/// report.html and case.toml into a folder that exists. Returns what the report lacks
+/// (ReportResult::complaint).
 std::string write_study(const std::string& folder, const StudyResult& result);
 
 }  // namespace grainfield::coupling

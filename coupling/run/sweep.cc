@@ -151,6 +151,35 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
   return picture;
 }
 
+// One frame per quantity, one curve per member.
+Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
+                      const std::vector<StudyResult>& results) {
+  const auto& one = results.front().member_curves;
+  std::vector<Frame> frames;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    Frame frame{one[k].title, {}};
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      if (k >= results[m].member_curves.size()) continue;
+      Series series = results[m].member_curves[k].series;
+      series.label = value.sweep.key == "variant"
+                         ? value.sweep.values[m]
+                         : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]);
+      frame.series.push_back(std::move(series));
+    }
+    frames.push_back(std::move(frame));
+  }
+  Picture picture = curves("All members", one.front().x_label, "", frames);
+  picture.caption = "Means over realizations, with bands of one standard error.";
+  return picture;
+}
+
+Picture beside_each_other(const Case& value, const std::vector<SweepCase>& members,
+                          const std::vector<StudyResult>& results) {
+  if (!results.front().member_curves.empty()) return member_curves(value, members, results);
+  return results.front().sweep_frames.empty() ? profiles(value, members, results)
+                                              : side_by_side(value, results);
+}
+
 }  // namespace
 
 std::string write_sweep(const std::string& folder, const Case& value,
@@ -186,9 +215,7 @@ std::string write_sweep(const std::string& folder, const Case& value,
     report.sections.emplace_back(
         Text{names[m], results[m].comparison.verdict.sentence, m == 0 && sentence.empty()});
   }
-  report.sections.emplace_back(results.front().sweep_frames.empty()
-                                   ? profiles(value, members, results)
-                                   : side_by_side(value, results));
+  report.sections.emplace_back(beside_each_other(value, members, results));
   const auto own = [&](auto part) {
     for (std::size_t m = 0; m < results.size(); ++m) {
       if (!(results[m].*part)) continue;

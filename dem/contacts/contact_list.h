@@ -68,12 +68,13 @@ struct ContactList {
     kept.sort();
     return kept;
   }
-  /// Directions of contacts with walls that have a memory.
-  Kept<VectorOf<D>> kept_normals(const std::vector<std::int64_t>& ids) const {
+  /// Directions of contacts with walls that have a memory: remembers(k).
+  template <class Remembers>
+  Kept<VectorOf<D>> kept_normals(const std::vector<std::int64_t>& ids, Remembers remembers) const {
     Kept<VectorOf<D>> kept;
     for (int i = 0; i < walls.rows(); ++i) {
       for (int k = walls.first(i); k < walls.last(i); ++k) {
-        if (walls[k].memory.empty() || wall_normals[k].isZero(0)) continue;
+        if (!remembers(k) || wall_normals[k].isZero(0)) continue;
         kept.add(wall_key(ids[i], walls[k].j), wall_normals[k]);
       }
     }

@@ -19,6 +19,7 @@
 #include "dem/motion/registry.h"
 #include "dem/shapes/registry.h"
 #include "dem/sleep/sleep_settings.h"
+#include "dem/snapshot/cell_stress.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/walls/wall_motion.h"
 
@@ -151,6 +152,9 @@ class Engine {
   virtual Diagnostics measure() const = 0;
   virtual Motion motion() const = 0;
   virtual Snapshot snapshot() const = 0;
+  /// That of cell_stress(snapshot()), as a sum in another order, and much sooner: for servos.
+  /// Throws std::invalid_argument when the cell is not periodic along every axis.
+  virtual CellStress cell_stress() const = 0;
 
   /// Gives the contacts that the next step finds between these grains (by id; j = -1 - w: wall w)
   /// these springs, where they have none yet.

@@ -214,6 +214,7 @@ class EngineLoop final : public Engine {
   Diagnostics measure() const override { return Report(world_).measure(); }
   Motion motion() const override { return Report(world_).motion(); }
   Snapshot snapshot() const override { return Report(world_).snapshot(); }
+  CellStress cell_stress() const override { return Report(world_).cell_stress(); }
 
   /// As frozen contacts without force: the next search hands their memories on.
   void remember(const std::vector<Contact>& contacts) override {

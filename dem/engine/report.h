@@ -11,6 +11,7 @@
 #include "dem/engine/engine.h"
 #include "dem/engine/turning.h"
 #include "dem/engine/world.h"
+#include "dem/snapshot/cell_stress.h"
 
 namespace grainfield::dem {
 
@@ -220,6 +221,32 @@ class Report {
     s.attributes["law"] = World::Law::name;
     s.attributes["time_step"] = fmt::format("{:.17g}", world_.time_step);
     return s;
+  }
+
+  CellStress cell_stress() const {
+    const double volume = cell_volume(world_.cell.told(), dim);
+    const auto& contacts = world_.contacts;
+    const auto& bodies = world_.grains.bodies;
+    using Matrix = Eigen::Matrix<double, dim, dim>;
+    Matrix sum = Matrix::Zero(), motion = Matrix::Zero();
+    for (int i = 0; i < contacts.pairs.rows(); ++i) {
+      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
+        const Force& f = contacts.pair_forces[k];
+        if (!pushes(f)) continue;
+        const int j = contacts.pairs[k].j;
+        const typename World::Vector branch =
+            bodies[j].position + world_.cell.shift(image_at(i, j)) - bodies[i].position;
+        sum += f.force * branch.transpose();
+      }
+    }
+    for (int i = 0; i < world_.grains.size(); ++i) {
+      const typename World::Vector u = world_.fluctuation(i);
+      motion -= world_.grains.inertias[i].mass * u * u.transpose();
+    }
+    CellStress out{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+    out.contacts.template topLeftCorner<dim, dim>() = sum / volume;
+    out.motion.template topLeftCorner<dim, dim>() = motion / volume;
+    return out;
   }
 
   /// What the law remembers of a contact beside its spring, from the overlap as it is.

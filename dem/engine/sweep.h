@@ -136,17 +136,15 @@ class Sweep {
         force += damping.force;
         torque += damping.torque;
       }
-      if constexpr (kind != SweepKind::start) {
-        if (books_) [[unlikely]]
-          record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping,
-                       dt);
+      if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
+        record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping, dt);
       }
       const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
       if constexpr (kind == SweepKind::start) {
         if (grains.ids[i] >= first_new) start(i, load);
       } else {
         if (flows) {
-          end_in_flow(i, load);
+          end_in_flow(i, load, damping.force);
         } else {
           integrator_.end(b, grains.memory[i], grains.inertias[i], load);
         }
@@ -246,8 +244,10 @@ class Sweep {
   ///   d/dt (kinetic energy of the fluctuations u + elastic energy)
   ///     = sum over contacts f . G l - sum over grains m u . G u,
   /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
-  /// that cross by edges n (pair_force_across).
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load) {
+  /// that cross by edges n (pair_force_across). `local`: what of the load is local damping. It is
+  /// against the flow and no part of that.
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load,
+                                                        const Vector local) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
@@ -256,7 +256,7 @@ class Sweep {
     // The edges' speed lacks its second half kick too, so that u is that of every image.
     const Vector flow = cell.flow_at(b.position), u = b.velocity - flow;
     b.velocity += cell.kick(b.position);
-    const Vector force = load.force + world_.weight(i);
+    const Vector force = load.force - local + world_.weight(i);
     grains.cell_work[i] -=
         world_.time_step * (force.dot(flow) + grains.inertias[i].mass * u.dot(cell.flow_of(u)) +
                             world_.weight(i).dot(cell.drift(grains.images[i])));
@@ -382,7 +382,8 @@ class Sweep {
             local_damping(torque, b.spin, local_damping_)};
   }
 
-  /// Damping and the applied force on a grain, before its step ends. `local`: its local damping.
+  /// Damping and the applied force on a grain, before its step ends, or (dt = 0) before its first
+  /// one begins. `local`: its local damping.
   [[gnu::noinline]] void record_outer(int i, const Vector applied, const Damping& local,
                                       double dt) {
     auto& account = world_.balance.outer[world_.grains.ids[i]];

@@ -219,7 +219,7 @@ PairImage MovingCell<D>::nearest(const Vector& place, const Vector& other) const
   std::array<int, D> low{}, high{};
   for (int a = 0; a < D; ++a) {
     if (!axes_[a]) continue;
-    const double band = 0.5 * shortest_ * per_width_[a];
+    const double band = 0.5 * state_.shortest * per_width_[a];
     low[a] = static_cast<int>(std::clamp(std::ceil(-s[a] - band), -kFarthest, kFarthest));
     high[a] = static_cast<int>(std::clamp(std::floor(-s[a] + band), -kFarthest, kFarthest));
   }
@@ -253,7 +253,7 @@ auto MovingCell<D>::reduce() -> std::vector<Exchange> {
   });
   derive();
   for (int a = 0; a < D; ++a) per_width_[a] = inverse_.row(a).norm();
-  shortest_ = shortest_of(state_.edges, axes);
+  state_.shortest = shortest_of(state_.edges, axes);
   return done;
 }
 
@@ -321,10 +321,9 @@ bool MovingCell<D>::settle() {
   }
   flows_ = !state_.gradient.isZero(0);
   derive();
-  for (int a = 0; a < D; ++a) per_width_[a] = inverse_.row(a).norm();
-  shortest_ = shortest_of(state_.edges, periodic_axes<D>(axes_));
+  for (int a = 0; a < D; ++a) per_width_[a] = state_.listed.row(a).norm();
   look_ahead();
-  return true;
+  return state_.shortest > 0;
 }
 
 template class MovingCell<2>;

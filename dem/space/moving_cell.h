@@ -94,7 +94,7 @@ class MovingCell {
     return false;
   }
   /// The shortest way from a place to an image of it, m; infinite without a periodic axis.
-  double shortest() const { return shortest_; }
+  double shortest() const { return state_.shortest; }
   /// Axis `to` has lost `times` edges of axis `from`.
   struct Exchange {
     int to = 0, from = 0, times = 0;
@@ -145,6 +145,8 @@ class MovingCell {
     Matrix rates = Matrix::Zero();       // of the edges, m/s
     Matrix gradient = Matrix::Zero();    // L
     Matrix listed = Matrix::Identity();  // edges at the last search, inverted
+    double shortest = std::numeric_limits<double>::infinity();  // way across the cell then, m
+    double pad = 0;
   };
   template <class Image>
   Vector whole(const Matrix& columns, const Image& n) const {
@@ -168,7 +170,7 @@ class MovingCell {
   Matrix flow_ = Matrix::Zero();         // G
   Matrix half_kick_ = Matrix::Zero();
   Matrix ahead_ = Matrix::Identity();
-  double strain_ = 0, shortest_ = std::numeric_limits<double>::infinity();
+  double strain_ = 0;
   Vector per_width_ = Vector::Zero();  // 1 / distance between opposite faces, 1/m
 };
 

@@ -6,7 +6,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Measurements in which the bias takes over an error.
+// Times T + s in which the bias takes over an error.
 constexpr double kSlowness = 10;
 // Further from the target than this share of it the bias would only wind up.
 constexpr double kNear = 0.2;
@@ -15,9 +15,10 @@ constexpr double kNear = 0.2;
 
 double CellServo::rate(int axis, double pressure, double target) {
   const double error = pressure - target;
-  const double answer = error / (modulus * interval + viscosity);
+  const double time = interval + slowness, answer = error / (modulus * time);
   double& b = bias[axis];
-  if (std::fabs(error) < kNear * target) b = std::clamp(b + answer / kSlowness, -most, most);
+  if (std::fabs(error) < kNear * target)
+    b = std::clamp(b + answer * interval / (kSlowness * time), -most, most);
   return std::clamp(b + answer, -most, most);
 }
 

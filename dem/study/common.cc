@@ -14,13 +14,14 @@
 namespace grainfield::dem {
 EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular,
-                               double reserve) {
+                               double reserve, ShapeKind shape) {
   if (!(m.gravity > 0)) {
     throw std::invalid_argument(fmt::format(
         "material.gravity: found {:g}, allowed: above 0 (grains need weight to come to rest)",
         m.gravity));
   }
   EngineSettings e;
+  e.shape = shape;
   e.law = law_of(m);
   e.rolling = RollingLaw::of(m);
   e.local_damping = motion.local_damping;

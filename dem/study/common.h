@@ -30,7 +30,7 @@ void add_reached(const std::string& prefix, const Reached& reached,
 /// own limit must stay below it by `reserve`, where not all of the grains were drawn.
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular = false,
-                               double reserve = 1);
+                               double reserve = 1, ShapeKind shape = {});
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
 /// Throws std::invalid_argument naming `key` where grains resist rolling, of which the quasi-static

@@ -14,6 +14,7 @@
 #include "dem/study/fingerprint.h"
 #include "dem/study/phases.h"
 #include "dem/study/sample_checks.h"
+#include "dem/study/sample_servo.h"
 #include "dem/study/sample_state.h"
 #include "dem/walls/box.h"
 
@@ -21,7 +22,7 @@ namespace grainfield::dem {
 namespace {
 
 // Steps between two decisions: of the compression and of a cell's servo; of sides that tilt; else.
-constexpr long kServoEvery = 10, kTiltEvery = 100, kCheckEvery = 200;
+constexpr long kServoEvery = 3, kTiltEvery = 100, kCheckEvery = 200;
 // A compression to a pressure ends at this share of it; what is left comes in the rest. At rest it
 // is met within the second.
 constexpr double kNearTarget = 0.9, kMet = 2e-3;
@@ -65,7 +66,10 @@ class SampleRun final : public ArchivedRun {
   void lead_walls();
   WallServo servo(int axis) const;
   void tilt_sides();
-  double worst_error(const SampleState& state) const;
+  /// Along each axis, what servos hold: the pressure in a cell, that on the walls that move. Pa.
+  Vec3 pressure() const;
+  double solid_fraction() const;
+  double worst_error() const;
   void note_error();
   void record();
   std::string name_of(std::size_t state) const { return fmt::format("state_{:03}", state); }
@@ -77,14 +81,17 @@ class SampleRun final : public ArchivedRun {
   std::uint64_t seed_;
   EngineSettings settings_;
   std::array<double, 3> box_{};  // edges at the start, m
+  double solid_volume_ = 0;      // of all grains, m3 (m2)
   CellServo cell_servo_;
   Phases<Phase> phases_{{{"compress", true, 0, 0.3},
                          {"rest", true, 0.3, 0.4},
                          {"deform", false, 0.4, 1},
                          {"done", false, 1, 1}}};
   std::unique_ptr<Engine> engine_;
-  long next_record_ = 0;     // steps of the deformation; follows from the states
-  double stress_error_ = 0;  // largest in the deformation
+  long next_record_ = 0;  // steps of the deformation; follows from the states
+  // Of the servos in the deformation: largest error, sum of squares, and how often measured.
+  double stress_error_ = 0, squared_errors_ = 0;
+  std::int64_t measured_ = 0;
   std::vector<std::optional<Snapshot>> states_;
 };
 
@@ -100,19 +107,12 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
   const std::vector<ShapedGrain> grains = draw_sample(plan_, random);
   settings_ = sample_frame(setup_, sample_extremes(plan_, density, grains)).settings;
   settings_.threads = threads;
-  box_ = sample_box(plan_, total_area(grains));
+  solid_volume_ = total_area(grains);
+  box_ = sample_box(plan_, solid_volume_);
   settings_.cell = cell_at_start();
 
-  const double r = sample_radii(plan_).mean, mass = density * mean_volume(plan_) / plan_.grains;
-  const double per = plan_.dim == 2 ? 1 : 2 * r;
-  std::visit(
-      [&](const auto& law) {
-        cell_servo_.modulus = law.stiffness(r) / per;
-        cell_servo_.viscosity = 2.0 / 3 * mass * law.viscous_rate(mass, r) / per;
-      },
-      settings_.law);
+  cell_servo_ = cell_servo_for(setup_, settings_);
   cell_servo_.interval = kServoEvery * settings_.time_step;
-  cell_servo_.most = plan_.compression_rate;
 
   engine_ = empty_engine();
   for (const NewGrain& grain : place_sample(plan_, grains, box_, density, random)) {
@@ -204,7 +204,9 @@ void SampleRun::decide() {
         if (any_led(Phase::deform)) lead_cell();
       } else {
         if (tilts()) tilt_sides();
-        if (any_led(Phase::deform) && phases_.is_due(kCheckEvery)) note_error();
+        if (any_led(Phase::deform) && phases_.is_due(kCheckEvery)) {
+          note_error();
+        }
       }
       return;
     case Phase::done:
@@ -230,13 +232,10 @@ Vec3 SampleRun::edges() const {
 
 // Share of its target that the compression has reached, but for a pressure.
 double SampleRun::compressed() const {
-  const Vec3 now = edges();
   if (plan_.compress_to == "strain") {
-    return (1 - now[last()] / box_[last()]) / plan_.compression_strain;
+    return (1 - edges()[last()] / box_[last()]) / plan_.compression_strain;
   }
-  double share = 1;
-  for (int a = 0; a < plan_.dim; ++a) share *= now[a] / box_[a];
-  return plan_.start_fraction / share / plan_.solid_fraction;
+  return solid_fraction() / plan_.solid_fraction;
 }
 
 void SampleRun::decide_compression() {
@@ -245,26 +244,23 @@ void SampleRun::decide_compression() {
     return;
   }
   if (periodic()) lead_cell();
-  const SampleState state = sample_state(engine_->snapshot());
+  const Vec3 now = pressure();
   bool near = true;
   for (int a = 0; a < plan_.dim; ++a) {
-    if (!is_led(Phase::compress, a)) continue;
-    const double pressure = periodic() ? -state.stress(a, a) : state.moved_pressure[a];
-    near = near && pressure >= kNearTarget * plan_.pressure;
+    near = near && (!is_led(Phase::compress, a) || now[a] >= kNearTarget * plan_.pressure);
   }
   if (near) return begin(Phase::rest);
-  if (state.solid_fraction > kTooDense) {
+  if (solid_fraction() > kTooDense) {
     throw ComputationFailed(
         fmt::format("the sample has been compressed to a solid fraction of {:.3g} without reaching "
                     "sample.pressure = {:g}; lower it, or raise the stiffness (material)",
-                    state.solid_fraction, plan_.pressure));
+                    solid_fraction(), plan_.pressure));
   }
 }
 
 void SampleRun::decide_rest() {
   const Diagnostics d = engine_->measure();
-  if (at_rest(d, setup_.rest) &&
-      (!any_led(Phase::rest) || worst_error(sample_state(engine_->snapshot())) <= kMet)) {
+  if (at_rest(d, setup_.rest) && (!any_led(Phase::rest) || worst_error() <= kMet)) {
     return begin(Phase::deform);
   }
   if (in_phase() <= setup_.rest.max_time) return;
@@ -299,11 +295,10 @@ void SampleRun::lead_cell() {
     }
   }
   if (any_led(now)) {
-    const SampleState state = sample_state(engine_->snapshot());
-    if (now == Phase::deform) stress_error_ = std::max(stress_error_, worst_error(state));
+    if (now == Phase::deform) note_error();
+    const Vec3 held = pressure();
     for (int a = 0; a < plan_.dim; ++a) {
-      if (!is_led(now, a)) continue;
-      flow(a, a) = cell_servo_.rate(a, -state.stress(a, a), plan_.pressure);
+      if (is_led(now, a)) flow(a, a) = cell_servo_.rate(a, held[a], plan_.pressure);
     }
   }
   engine_->set_velocity_gradient(flow);
@@ -381,24 +376,41 @@ void SampleRun::tilt_sides() {
   }
 }
 
+Vec3 SampleRun::pressure() const {
+  if (periodic()) return -engine_->cell_stress().total().diagonal();
+  Snapshot walls;
+  walls.dim = plan_.dim;
+  walls.walls = engine_->walls();
+  return sample_state(walls).moved_pressure;
+}
+
+double SampleRun::solid_fraction() const {
+  const Vec3 now = edges();
+  double volume = 1;
+  for (int a = 0; a < plan_.dim; ++a) volume *= now[a];
+  return solid_volume_ / volume;
+}
+
 // Largest relative error of what servos hold now.
-double SampleRun::worst_error(const SampleState& state) const {
+double SampleRun::worst_error() const {
+  const Vec3 held = pressure();
   double worst = 0;
   for (int a = 0; a < plan_.dim; ++a) {
-    if (!is_led(phases_.now(), a)) continue;
-    const double pressure = periodic() ? -state.stress(a, a) : state.moved_pressure[a];
-    worst = std::max(worst, std::fabs(pressure / plan_.pressure - 1));
+    if (is_led(phases_.now(), a)) worst = std::max(worst, std::fabs(held[a] / plan_.pressure - 1));
   }
   return worst;
 }
 
 void SampleRun::note_error() {
-  stress_error_ = std::max(stress_error_, worst_error(sample_state(engine_->snapshot())));
+  const double error = worst_error();
+  stress_error_ = std::max(stress_error_, error);
+  squared_errors_ += error * error;
+  ++measured_;
 }
 
 void SampleRun::record() {
   Snapshot s = engine_->snapshot();
-  if (any_led(Phase::deform)) stress_error_ = std::max(stress_error_, worst_error(sample_state(s)));
+  if (any_led(Phase::deform)) note_error();
   const Diagnostics d = engine_->measure();
   const auto put = [&](const char* name, double value) {
     s.attributes[name] = fmt::format("{:.17g}", value);
@@ -456,6 +468,8 @@ Progress SampleRun::progress() const {
 void SampleRun::visit(Archive& archive) {
   phases_.visit(archive);
   archive(stress_error_);
+  archive(squared_errors_);
+  archive(measured_);
   archive(next_record_);
   cell_servo_.visit(archive);
   archive.engine(engine_, [this] { return empty_engine(); });
@@ -481,7 +495,11 @@ RunResult SampleRun::result() const {
   for (std::size_t k = 0; k < states_.size(); ++k)
     out.snapshots.emplace_back(name_of(k), *states_[k]);
   add_engine_figures(*engine_, engine_->measure(), out.figures);
-  if (any_led(Phase::deform)) out.figures["sample.stress_error"] = stress_error_;
+  if (any_led(Phase::deform)) {
+    out.figures["sample.stress_error"] = stress_error_;
+    out.figures["sample.stress_rms_error"] =
+        std::sqrt(squared_errors_ / static_cast<double>(measured_));
+  }
   return out;
 }
 

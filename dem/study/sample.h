@@ -15,8 +15,9 @@ namespace grainfield::dem {
 /// elastic_energy, work (of cell and walls since the beginning), dissipated_energy and
 /// energy_balance (with plan.energy_balance), unbalanced_force_ratio, strain_rate. Figure
 /// "sample.stress_error": largest relative error of a servo during the deformation, at any of its
-/// measurements (where there is a servo). Throws std::invalid_argument naming the key that does
-/// not hold ("sample.pressure"). The bits of the result do not depend on threads.
+/// measurements, "sample.stress_rms_error" the root of their mean square (where there is a servo).
+/// Throws std::invalid_argument naming the key that does not hold ("sample.pressure"). The bits of
+/// the result do not depend on threads.
 std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads);
 
 /// Throws as make_sample_run would for any of these seeds; draws at most so many polygons.

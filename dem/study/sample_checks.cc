@@ -212,11 +212,12 @@ void check_sample(const SampleSetup& s) {
 SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, double reserve) {
   const SamplePlan& p = s.plan;
   SampleFrame out;
-  out.settings = engine_settings(s.material, s.motion, extremes, 1, p.shape == "rand1", reserve);
+  const ShapeKind shape = p.dim == 3          ? ShapeKind::sphere
+                          : p.shape == "disk" ? ShapeKind::disk
+                                              : ShapeKind::polygon;
+  out.settings =
+      engine_settings(s.material, s.motion, extremes, 1, p.shape == "rand1", reserve, shape);
   out.settings.gravity_x = out.settings.gravity_y = out.settings.gravity_z = 0;
-  out.settings.shape = p.dim == 3          ? ShapeKind::sphere
-                       : p.shape == "disk" ? ShapeKind::disk
-                                           : ShapeKind::polygon;
   out.settings.energy_balance = p.energy_balance;
   const double step = out.settings.time_step;
   check_background_damping(s.rest, step);

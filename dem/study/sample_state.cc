@@ -62,7 +62,9 @@ SampleState sample_state(const Snapshot& s) {
   if (s.cell.is_periodic()) {
     state.edges = s.cell.edges;
     state.volume = cell_volume(s.cell, s.dim);
-    state.stress = cell_stress(s).total();
+    const CellStress stress = cell_stress(s);
+    state.stress = stress.total();
+    state.contact_stress = stress.contacts;
     state.wall_pressure = state.moved_pressure = Vec3::Constant(kNan);
     state.lid_shear = kNan;
   } else {
@@ -70,8 +72,9 @@ SampleState sample_state(const Snapshot& s) {
     for (const Contact& c : s.contacts) {
       const Vec3 end = c.j < 0 ? c.point : s.grains[static_cast<std::size_t>(c.j)].position;
       const Vec3 branch = end - s.grains[static_cast<std::size_t>(c.i)].position;
-      state.stress += c.force * branch.transpose() / state.volume;
+      state.contact_stress += c.force * branch.transpose() / state.volume;
     }
+    state.stress = state.contact_stress;
     for (const Grain& g : s.grains) {
       state.stress -= g.mass / state.volume * g.velocity * g.velocity.transpose();
     }

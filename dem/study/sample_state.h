@@ -14,6 +14,8 @@ struct SampleState {
   /// image of j that it touches, or to the contact point on a wall; u the velocity against the
   /// cell's flow.
   Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
+  /// The first sum alone (Love 1927, Weber 1966).
+  Eigen::Matrix3d contact_stress = Eigen::Matrix3d::Zero();
   /// Pressure of the grains on the walls across each axis, the mean of the two opposite ones,
   /// compression positive, Pa (N/m); nan in a cell.
   Vec3 wall_pressure{0, 0, 0};

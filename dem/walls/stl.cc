@@ -61,7 +61,15 @@ class AsciiReader {
     Facets out;
     expect("solid");
     skip_line();  // its name
-    for (std::string_view word = next(); word != "endsolid"; word = next()) {
+    for (std::string_view word = next();; word = next()) {
+      if (word == "endsolid") {  // another may follow
+        skip_line();
+        word = next();
+        if (word.empty()) break;
+        if (word != "solid") wrong("solid or the end of the file", word);
+        skip_line();
+        continue;
+      }
       if (word != "facet") wrong("facet or endsolid", word);
       check_count(file_, out.corners.size() + 1);
       expect("normal");

@@ -27,6 +27,15 @@ void check_servo(const WallServo& s, const Wall& wall, int dim) {
     require(!between || static_cast<int>(s.between.size()) == dim - 1, wall,
             fmt::format("servo: between: found {} pairs of walls, allowed: {}", s.between.size(),
                         dim - 1));
+  } else {
+    require(!between, wall,
+            fmt::format("servo: between: found {} pairs of walls, allowed: none for a target force",
+                        s.between.size()));
+  }
+  for (const auto& pair : s.between) {
+    require(pair[0] != pair[1], wall,
+            fmt::format("servo: between: found \"{}\" twice in a pair, allowed: two walls",
+                        pair[0]));
   }
   require(s.max_speed > 0 && std::isfinite(s.max_speed), wall,
           fmt::format("servo: max_speed: found {:g}, allowed: above 0 m/s", s.max_speed));

@@ -320,6 +320,22 @@ void Walls<D>::set_margin(int wall, double lever, double way) {
   s.way = way;
 }
 
+/// Servos of an image that name walls which are there.
+template <int D>
+bool Walls<D>::fits() const {
+  if (states_.size() != walls_.size()) return false;
+  for (const State& s : states_) {
+    const bool between = s.servo.first[0] >= 0;
+    for (int k = 0; k < 2; ++k) {
+      const int first = s.servo.first[k], second = s.servo.second[k];
+      const bool named = between && k < D - 1;
+      if (named ? first < 0 || second < 0 : first != -1 || second != -1) return false;
+      if (first >= size() || second >= size()) return false;
+    }
+  }
+  return true;
+}
+
 template <int D>
 bool Walls<D>::leaves_margin(double dt) const {
   for (int w = 0; w < size(); ++w) {

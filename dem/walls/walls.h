@@ -129,7 +129,7 @@ class Walls {
   static void visit(Self& self, Each each) {
     each(self.states_);
   }
-  bool fits() const { return states_.size() == walls_.size(); }
+  bool fits() const;
   void restored();  ///< after states have come from an image
 
  private:

@@ -11,15 +11,18 @@ using ::testing::HasSubstr;
 TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
   const std::string layer = testing::small_case("point-load");
   ASSERT_EQ(complaint(layer), "");
-  EXPECT_THAT(
-      complaint(layer, {"material.law=hertz"}),
-      HasSubstr("material.law: found \"hertz\", allowed: overlap_area | energy | linear; \"hertz\" "
-                "is a law of spheres (3D); the studies' grains are in 2D"));
+  EXPECT_THAT(complaint(layer, {"material.law=hertz"}),
+              HasSubstr("material.law: found \"hertz\", allowed: overlap_area | energy | linear; "
+                        "only in three dimensions: hertz; the grains of study = \"point-load\" are "
+                        "in 2D"));
   EXPECT_THAT(complaint(layer, {"material.poisson=0.3"}),
-              HasSubstr("material.poisson: unknown key: poisson is a key of the law \"hertz\" of "
-                        "spheres (3D); the studies' grains are in 2D"));
+              HasSubstr("material.poisson: found 0.3, allowed: only in three dimensions: 0 to 0.5; "
+                        "the grains of study = \"point-load\" are in 2D"));
+  EXPECT_THAT(complaint(layer, {"material.damping_model=critical"}),
+              HasSubstr("material.damping_model: found \"critical\", allowed: only in three "
+                        "dimensions: critical | viscoelastic; the grains of"));
   EXPECT_THAT(complaint(layer, {"packing.shape=sphere"}),
-              HasSubstr("\"sphere\" is a shape of 3D; the studies' grains are in 2D"));
+              HasSubstr("\"sphere\" is a shape of 3D; the grains of this study are in 2D"));
   // What is no word of any dimension is still told the nearest one.
   EXPECT_THAT(complaint(layer, {"material.law=hertzz"}), HasSubstr("nearest: "));
   EXPECT_THAT(complaint(layer, {"material.poison=0.3"}), HasSubstr("unknown key; nearest: "));

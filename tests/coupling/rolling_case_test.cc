@@ -60,8 +60,9 @@ TEST(RollingCase, WhatDoesNotHoldIsRefused) {
   expect_refused(kLayer, " --set motion.local_damping=1",
                  "motion.local_damping: found 1, allowed: 0 to 0.99");
   expect_refused(kLayer, " --set material.tangential_memory=force",
-                 "tangential_memory is a key of the law \"hertz\" of spheres (3D)");
-  expect_refused(kLayer, " --set material.twisting_friction=1", "grains twist in 3D only");
+                 "material.tangential_memory: found \"force\", allowed: only in three dimensions");
+  expect_refused(kLayer, " --set material.twisting_friction=1",
+                 "material.twisting_friction: found 1.0, allowed: only in three dimensions");
 }
 
 // They reach the grains, and a run ends in the same figures on one thread and two.

@@ -159,6 +159,9 @@ TEST(CellEngine, StressNeedsACell) {
   EXPECT_EQ(refusal([&] { cell_stress(engine->snapshot()); }),
             "the stress of a cell: found a cell that is not periodic along axis y, allowed: "
             "periodic along all 2");
+  EXPECT_EQ(refusal([&] { engine->cell_stress(); }),
+            "the stress of a cell: found a cell that is not periodic along axis y, allowed: "
+            "periodic along all 2");
 }
 
 // Layers between floor and lid in a cell that is stretched along x alone.

@@ -250,6 +250,10 @@ TEST(CellFlow, ItsWorkIsTheEnergyGained) {
       const Snapshot s = engine->snapshot();
       const double power = cell_volume(s.cell, dim) *
                            cell_stress(s).total().cwiseProduct(s.cell.velocity_gradient).sum();
+      const CellStress own = engine->cell_stress(), told = cell_stress(s);
+      EXPECT_LT((own.contacts - told.contacts).norm(), 1e-11 * told.contacts.norm());
+      // Speeds against the flow are small differences of the speeds that a snapshot tells.
+      EXPECT_LT((own.motion - told.motion).norm(), 1e-8 * told.motion.norm());
       const double last = engine->measure().cell_work;
       engine->step(1);
       EXPECT_NEAR((engine->measure().cell_work - last) / step, power, 2e-2 * std::fabs(power));
@@ -297,6 +301,8 @@ TEST_P(CellShear, TurnsOverAndContactsRemember) {
     const bool close = tilt > 0.49;
     engine->step(close || engine->steps() % 500 == 0 ? 1 : 20);
     const Snapshot now = engine->snapshot();
+    EXPECT_LT((engine->cell_stress().total() - cell_stress(now).total()).norm(),
+              1e-11 * cell_stress(now).total().norm());
     const bool turned = now.cell.edges(0, 1) < tilt;
     turns += turned ? 1 : 0;
     if (close || turned) {

@@ -1,0 +1,89 @@
+#include "coupling/sample/state_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "continuum/constants.h"
+
+namespace grainfield::coupling {
+namespace {
+
+struct Secant {
+  double modulus = kNan, strain = kNan;
+};
+
+// To the first strain at which `stress` has risen by half of its largest rise, by straight lines
+// between the states.
+Secant secant_of(const Eigen::VectorXd& strain, const Eigen::VectorXd& stress) {
+  const double half = 0.5 * (stress.maxCoeff() - stress[0]);
+  if (!(half > 0)) return {};
+  for (Eigen::Index k = 1; k < stress.size(); ++k) {
+    const double before = stress[k - 1] - stress[0], now = stress[k] - stress[0];
+    if (now < half) continue;
+    const double at =
+        strain[k - 1] + (strain[k] - strain[k - 1]) * (half - before) / (now - before);
+    return {half / (at - strain[0]), at};
+  }
+  return {};
+}
+
+// How many of the last states, which are at equal steps of strain, are beyond kCriticalFrom of it.
+Eigen::Index critical_states(Eigen::Index states) {
+  const double first = std::ceil(kCriticalFrom * static_cast<double>(states - 1));
+  return states - static_cast<Eigen::Index>(first);
+}
+
+}  // namespace
+
+Driving driving_of(const std::string& deformation, int dim) {
+  if (deformation == "simple_shear")
+    return {dim == 2 ? "sigma_xy" : "sigma_xz", false, "shear stress"};
+  if (deformation == "axial") return {"q", false, "deviator"};
+  if (deformation == "uniaxial") {
+    return {dim == 2 ? "sigma_yy" : "sigma_zz", true, "axial pressure"};
+  }
+  return {"p", false, "mean stress"};
+}
+
+std::map<std::string, std::vector<double>> state_figures(const StateTable& table,
+                                                         const std::string& deformation) {
+  std::map<std::string, std::vector<double>> out;
+  const Driving driving = driving_of(deformation, table.dim());
+  for (Eigen::Index r = 0; r < table.realizations(); ++r) {
+    const auto column = [&](const std::string& name) -> Eigen::VectorXd {
+      return table.of(name).col(r);
+    };
+    const auto put = [&](const std::string& key, double value) {
+      out["sample." + key].push_back(value);
+    };
+    const Eigen::VectorXd strain = column("strain"), ratio = column("q_over_p");
+    put("initial_pressure", column("p")[0]);
+    put("initial_solid_fraction", column("solid_fraction")[0]);
+    put("initial_coordination", column("coordination_bearing")[0]);
+    Eigen::Index peak = 0;
+    put("peak_stress_ratio", ratio.maxCoeff(&peak));
+    put("strain_at_peak", strain[peak]);
+    put("peak_friction_angle_deg", column("friction_angle_deg")[peak]);
+    put("volumetric_strain", column("volumetric_strain")[strain.size() - 1]);
+    put("inertial_number", column("inertial_number").maxCoeff());
+    const Eigen::VectorXd stress =
+        driving.compression ? Eigen::VectorXd(-column(driving.stress)) : column(driving.stress);
+    const Secant secant = secant_of(strain, stress);
+    put("secant_modulus", secant.modulus);
+    put("secant_strain", secant.strain);
+    const Eigen::VectorXd balance = column("balance_error");
+    if (balance.size() > 1 && balance.tail(balance.size() - 1).allFinite()) {
+      put("energy_balance_error", balance.tail(balance.size() - 1).cwiseAbs().maxCoeff());
+    }
+    const Eigen::Index n = critical_states(strain.size()), half = n / 2;
+    if (n < 2) continue;
+    put("critical_stress_ratio", ratio.tail(n).mean());
+    put("critical_friction_angle_deg", column("friction_angle_deg").tail(n).mean());
+    put("critical_solid_fraction", column("solid_fraction").tail(n).mean());
+    put("critical_coordination", column("coordination_bearing").tail(n).mean());
+    put("critical_drift", ratio.tail(half).mean() / ratio.tail(n).head(half).mean() - 1);
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling
