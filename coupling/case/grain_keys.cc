@@ -23,12 +23,14 @@ constexpr const char* kLuding = "Luding 2008";
 
 dem::MaterialSetup& material_of(Case& c) {
   if (section_applies("sample", c.study)) return c.sample.material;
+  if (section_applies("pair", c.study)) return c.pair.material;
   if (section_applies("lattice", c.study)) return c.lattice_pile.material;
   return section_applies("source", c.study) ? c.pile.material : c.layer.material;
 }
 
 dem::MotionSetup& motion_of(Case& c) {
   if (section_applies("sample", c.study)) return c.sample.motion;
+  if (section_applies("pair", c.study)) return c.pair.motion;
   if (section_applies("lattice", c.study)) return c.lattice_pile.motion;
   return section_applies("source", c.study) ? c.pile.motion : c.layer.motion;
 }

@@ -24,6 +24,14 @@ bool has_band(const Series& s) {
   return s.error.size() == s.x.size() && s.error.array().isFinite().any();
 }
 
+// Of a series with a colour of its own.
+std::string own_look(const Series& s) {
+  const std::size_t at = static_cast<std::size_t>(s.colour) % style::models;
+  return fmt::format("with {} lc rgb '{}' title {}",
+                     s.points ? "linespoints lw 1 pt 7 ps 0.45" : "lines lw 1.8 dt 2",
+                     style::model[at], style::quoted(s.label));
+}
+
 std::string data_block(const std::string& name, const Series& s) {
   std::string text = "$" + name + " << EOD\n";
   for (Eigen::Index k = 0; k < s.x.size(); ++k)
@@ -35,7 +43,7 @@ std::string data_block(const std::string& name, const Series& s) {
 }  // namespace
 
 Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
-               const std::vector<Frame>& frames) {
+               const std::vector<Frame>& frames, bool log_x) {
   Picture picture;
   picture.title = title;
   const int columns = frames.size() > 1 ? 2 : 1;
@@ -58,7 +66,9 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
           y.add(series.y[k] + series.error[k]);
         }
       const auto part = [&](const std::string& text) { plot += (plot.empty() ? "" : ", ") + text; };
-      if (series.simulation) {
+      if (series.colour >= 0) {
+        part(fmt::format("${} using 1:2 {}", name, own_look(series)));
+      } else if (series.simulation) {
         if (has_band(series))
           part(
               fmt::format("${} using 1:($2-$3):($2+$3) with filledcurves fc rgb '{}' fs solid 0.8 "
@@ -92,8 +102,8 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                  "set border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\nset grid lc rgb "
                  "'#dddddd' lw 0.6\n"
                  "set xlabel {}\nset ylabel {}\nset xzeroaxis lc rgb '#888888' lw 0.8\nunset key\n"
-                 "set multiplot\n",
-                 style::quoted(x_label), style::quoted(y_label));
+                 "{}set multiplot\n",
+                 style::quoted(x_label), style::quoted(y_label), log_x ? "set logscale x\n" : "");
   for (std::size_t f = 0; f < plots.size(); ++f) {
     const int column = static_cast<int>(f) % columns, row = static_cast<int>(f) / columns;
     const double height = (1 - below) / rows;
@@ -109,7 +119,9 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       const auto part = [&](const std::string& text) {
         entries_only += (entries_only.empty() ? "" : ", ") + text;
       };
-      if (series.simulation) {
+      if (series.colour >= 0) {
+        part("NaN " + own_look(series));
+      } else if (series.simulation) {
         part(fmt::format("NaN with linespoints lw 1.6 pt 7 ps 0.5 lc rgb '{}' title {}",
                          style::simulation, style::quoted(series.label)));
         if (has_band(series))
@@ -122,7 +134,8 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       }
     }
     picture.program += fmt::format(
-        "set size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset tics\nunset xlabel\n"
+        "unset logscale\nset size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset "
+        "tics\nunset xlabel\n"
         "unset ylabel\nunset grid\nunset xzeroaxis\nset xrange [0:1]\nset yrange [0:1]\n"
         "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
         "set key noenhanced center center horizontal maxrows {1} samplen 3 noopaque\nplot {2}\n",
@@ -130,6 +143,45 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
   }
   picture.program += "unset multiplot\n";
   return picture;
+}
+
+Picture Chart::picture() const {
+  Picture out = curves(title, x_label, y_label, frames, log_x);
+  out.caption = caption;
+  return out;
+}
+
+std::vector<Picture> side_by_side(const std::vector<std::string>& members,
+                                  const std::vector<std::vector<Chart>>& charts) {
+  std::vector<Chart> all;
+  const auto named = [](auto& list, const std::string& title) -> decltype(list.front())& {
+    for (auto& entry : list) {
+      if (entry.title == title) return entry;
+    }
+    list.push_back({});
+    list.back().title = title;
+    return list.back();
+  };
+  for (std::size_t m = 0; m < charts.size(); ++m) {
+    for (const Chart& chart : charts[m]) {
+      Chart& shared = named(all, chart.title);
+      if (shared.frames.empty()) {
+        shared = chart;
+        shared.frames.clear();
+      }
+      for (const Frame& frame : chart.frames) {
+        Frame& place = named(shared.frames, frame.title);
+        for (Series s : frame.series) {
+          s.label = s.label.empty() ? members[m] : members[m] + ": " + s.label;
+          s.colour = static_cast<int>(m);
+          place.series.push_back(std::move(s));
+        }
+      }
+    }
+  }
+  std::vector<Picture> out;
+  for (const Chart& chart : all) out.push_back(chart.picture());
+  return out;
 }
 
 }  // namespace grainfield::coupling

@@ -8,6 +8,7 @@
 #include "coupling/run/elastic.h"
 #include "coupling/run/lattice_pile.h"
 #include "coupling/run/osl.h"
+#include "coupling/run/pair.h"
 #include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
 #include "coupling/run/wedge.h"
@@ -16,10 +17,19 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-      point_load_study(),    point_load_verdict_study(), pile_study(),
-      pile_fields_study(),   pile_fit_study(),           lattice_pile_study(),
-      elastic_layer_study(), elastic_half_space_study(), osl_wedge_study(),
-      osl_layer_study(),     orthotropic_layer_study(),  wedge_core_study(),
+      point_load_study(),
+      point_load_verdict_study(),
+      pile_study(),
+      pile_fields_study(),
+      pile_fit_study(),
+      lattice_pile_study(),
+      pair_study(),
+      elastic_layer_study(),
+      elastic_half_space_study(),
+      osl_wedge_study(),
+      osl_layer_study(),
+      orthotropic_layer_study(),
+      wedge_core_study(),
       wedge_study(),
   };
   return all;

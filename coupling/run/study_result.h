@@ -39,6 +39,8 @@ struct StudyResult {
   /// that all members share.
   std::vector<Frame> sweep_frames;
   std::string sweep_x, sweep_y;  ///< labels of these frames' axes
+  /// Instead of both: curves that a sweep's report draws into common frames. May be empty.
+  std::vector<Chart> sweep_charts;
   /// This member's own pictures and tables in a sweep's report, given its name; may be empty.
   std::function<std::vector<Section>(const std::string&)> sweep_sections, sweep_tables;
 };

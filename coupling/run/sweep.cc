@@ -186,9 +186,16 @@ std::string write_sweep(const std::string& folder, const Case& value,
     report.sections.emplace_back(
         Text{names[m], results[m].comparison.verdict.sentence, m == 0 && sentence.empty()});
   }
-  report.sections.emplace_back(results.front().sweep_frames.empty()
-                                   ? profiles(value, members, results)
-                                   : side_by_side(value, results));
+  std::vector<std::vector<Chart>> charts;
+  for (const StudyResult& result : results) charts.push_back(result.sweep_charts);
+  for (Picture& picture : coupling::side_by_side(names, charts)) {
+    report.sections.emplace_back(std::move(picture));
+  }
+  if (!results.front().sweep_frames.empty()) {
+    report.sections.emplace_back(side_by_side(value, results));
+  } else if (!results.front().comparison.profiles.empty()) {
+    report.sections.emplace_back(profiles(value, members, results));
+  }
   const auto own = [&](auto part) {
     for (std::size_t m = 0; m < results.size(); ++m) {
       if (!(results[m].*part)) continue;

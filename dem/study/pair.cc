@@ -50,20 +50,7 @@ struct Impact {
   int parted = 1;
 };
 
-/// One of the collisions asked for.
-struct Launch {
-  double speed = 0, angle = 0;
-  std::string name;  ///< of its figures: "pair.", "pair.speed_0.1."
-};
-
-std::vector<Launch> launches_of(const PairSetup& s) {
-  std::vector<Launch> out{{s.speed, s.angle, "pair."}};
-  for (const double v : s.speeds) out.push_back({v, s.angle, fmt::format("pair.speed_{:g}.", v)});
-  for (const double a : s.angles) out.push_back({s.speed, a, fmt::format("pair.angle_{:g}.", a)});
-  return out;
-}
-
-PairState start_of(const PairBodies& bodies, const PairPose& pose, const Launch& launch) {
+PairState start_of(const PairBodies& bodies, const PairPose& pose, const PairLaunch& launch) {
   PairState out = bodies.state_of_first(pose);
   const auto [c, s] = rotation_of(launch.angle * std::numbers::pi / 180);
   out.velocity = launch.speed * Vec3(c, s, 0);
@@ -145,9 +132,9 @@ class PairRun : public ArchivedRun {
 class CollisionRun final : public PairRun {
  public:
   CollisionRun(const PairSetup& setup, std::uint64_t seed, int threads)
-      : PairRun(setup, seed, threads), bodies_(draw()), launches_(launches_of(setup_)) {
+      : PairRun(setup, seed, threads), bodies_(draw()), launches_(pair_launches(setup_)) {
     pose_ = touching_pose(bodies_, setup_.offset * setup_.radius);
-    for (const Launch& launch : launches_) touch_of(bodies_, start_of(bodies_, pose_, launch));
+    for (const PairLaunch& launch : launches_) touch_of(bodies_, start_of(bodies_, pose_, launch));
     geometry_ = bodies_.probe();
     const double stiffness = std::visit(
         [&](const auto& law) { return law.stiffness(bodies_.first.radius); }, bodies_.settings.law);
@@ -219,15 +206,22 @@ class CollisionRun final : public PairRun {
       f.force = c.force;
       f.normal_force = c.normal_force;
       f.tangential_force = c.tangential_force;
-      f.torque_first = torque_of(Vec3(c.point - r.first.position), c.force);
+      const Vec3 turning = moment_of_springs(c);
+      f.torque_first = torque_of(Vec3(c.point - r.first.position), c.force) + turning;
       if (!bodies_.has_wall)
-        f.torque_second = -torque_of(Vec3(c.point - r.second.position), c.force);
+        f.torque_second = -torque_of(Vec3(c.point - r.second.position), c.force) - turning;
     }
     const Diagnostics d = engine_->measure();
     r.kinetic = d.kinetic_energy;
     r.stored = d.elastic_energy;
     r.dissipated = kinetic_ - r.kinetic - r.stored;
     return r;
+  }
+  // On the first body, against rolling and twisting: of the springs, without their dashpots, N m.
+  Vec3 moment_of_springs(const Contact& c) const {
+    const double a = bodies_.first.radius, b = bodies_.second.radius;
+    const double radius = bodies_.has_wall ? a : a * b / (a + b);
+    return radius * c.normal.cross(c.rolling_spring) + c.twisting_spring * c.normal;
   }
   void step() {
     engine_->step(1);
@@ -289,7 +283,7 @@ class CollisionRun final : public PairRun {
   }
 
   PairBodies bodies_;
-  std::vector<Launch> launches_;
+  std::vector<PairLaunch> launches_;
   PairPose pose_;
   std::unique_ptr<PairProbe> geometry_;
   std::unique_ptr<Engine> engine_;
@@ -320,7 +314,18 @@ class PathRun final : public PairRun {
     p.grains = p.awake = bodies_->has_wall ? 1 : 2;
     return p;
   }
-  RunResult result() const override { return result_of(*first_bodies_, now_.steps); }
+  RunResult result() const override {
+    RunResult out = result_of(*first_bodies_, now_.steps);
+    if (setup_.path != "random") return out;
+    for (std::size_t c = 0; c < std::size(kLoopColumns); ++c) {
+      std::string text;
+      for (std::size_t k = c; k < done_loops_.size(); k += std::size(kLoopColumns)) {
+        text += fmt::format("{}{:.6g}", text.empty() ? "" : " ", done_loops_[k]);
+      }
+      out.snapshots.front().second.attributes[std::string("pair:") + kLoopColumns[c]] = text;
+    }
+    return out;
+  }
 
  private:
   struct Now {
@@ -427,6 +432,9 @@ class PathRun final : public PairRun {
     now_.worst = std::max(now_.worst, std::fabs(share));
     now_.sum += std::fabs(share);
     now_.crossing += now_.most_crossings > 2;
+    for (const double value : {share, now_.stored, static_cast<double>(now_.most_crossings)}) {
+      done_loops_.push_back(value);
+    }
     if (++now_.loop < loops_) {
       now_.factor = 1;
       now_.before = now_.most_crossings = 0;
@@ -445,6 +453,7 @@ class PathRun final : public PairRun {
     archive(now_);
     std::string memory = archive.is_reading() ? "" : probe_->image();
     archive(memory);
+    archive(done_loops_);
     records_.visit(archive);
     visit_figures(archive);
     archive.require(now_.loop >= 0 && now_.loop <= loops_);
@@ -459,23 +468,36 @@ class PathRun final : public PairRun {
   std::unique_ptr<PairProbe> probe_;
   double length_ = 0;
   Now now_;
+  std::vector<double> done_loops_;  // kLoopColumns of one loop after the other
 };
 
 }  // namespace
+
+std::vector<PairLaunch> pair_launches(const PairSetup& s) {
+  std::vector<PairLaunch> out{{s.speed, s.angle, "pair."}};
+  for (const double v : s.speeds) out.push_back({v, s.angle, fmt::format("pair.speed_{:g}.", v)});
+  for (const double a : s.angles) out.push_back({s.speed, a, fmt::format("pair.angle_{:g}.", a)});
+  return out;
+}
 
 std::unique_ptr<Run> make_pair_run(const PairSetup& setup, std::uint64_t seed, int threads) {
   if (setup.kind == "path") return std::make_unique<PathRun>(setup, seed, threads);
   return std::make_unique<CollisionRun>(setup, seed, threads);
 }
 
-Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& seeds) {
+Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& seeds,
+                     std::int64_t most) {
   Outlook out;
   check_pair(setup);
+  // Only what is drawn differs from seed to seed.
+  const bool drawn = setup.shape == "rand1" || (setup.kind == "path" && setup.path == "random");
   for (const std::uint64_t seed : seeds) {
+    if (most-- <= 0) break;
     make_pair_run(setup, seed, 1);
     Random random(seed);
     const double step = make_pair(setup, random, 1).settings.time_step;
     if (out.time_step == 0) out.time_step = step;
+    if (!drawn) break;
   }
   out.grains = setup.partner == "wall" ? 1 : 2;
   return out;
