@@ -86,7 +86,8 @@ std::string columns_csv(const std::vector<PairColumns>& realizations, const Name
     const std::size_t rows = realizations[r].at(units.front().first).size();
     for (std::size_t k = 0; k < rows; ++k) {
       out += *index != 0 ? fmt::format("{},{}", r, k) : fmt::format("{}", r);
-      for (const auto& [column, unit] : units) out += "," + cell(realizations[r].at(column)[k]);
+      for (const auto& [column, unit] : units)
+        out += fmt::format(",{}", cell(realizations[r].at(column)[k]));
       out += "\n";
     }
   }
