@@ -9,6 +9,8 @@ namespace {
 
 constexpr int frame_height = 330, frame_width = 480, legend_row = 24, title_height = 16;
 
+constexpr double kFlat = 1e-3;  // a curve that varies by less is level
+
 struct Range {
   double low = 0, high = 0;
   bool any = false;
@@ -82,7 +84,9 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                          style::dash[look], style::model[look], style::quoted(series.label)));
       }
     }
-    const double room = 0.06 * (y.high - y.low);
+    // What differs by round-off alone is drawn as one.
+    const double size = std::max(std::fabs(y.low), std::fabs(y.high));
+    const double room = y.high - y.low > kFlat * size ? 0.06 * (y.high - y.low) : 0.05 * size;
     std::string head = fmt::format("set title {} noenhanced\n", style::quoted(frames[f].title));
     if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
     if (y.any && y.high > y.low)
@@ -172,7 +176,7 @@ std::vector<Picture> side_by_side(const std::vector<std::string>& members,
       for (const Frame& frame : chart.frames) {
         Frame& place = named(shared.frames, frame.title);
         for (Series s : frame.series) {
-          s.label = s.label.empty() ? members[m] : members[m] + ": " + s.label;
+          s.label = s.points ? members[m] : members[m] + ": " + s.label;
           s.colour = static_cast<int>(m);
           place.series.push_back(std::move(s));
         }

@@ -44,7 +44,7 @@ struct Chart {
   Picture picture() const;
 };
 /// Every title once, in the order of the first that has it; the curves of frames of one title are
-/// in one frame, with the member's name before their label and the member's colour.
+/// in one frame in the member's colour: points with its name, lines with it before their label.
 std::vector<Picture> side_by_side(const std::vector<std::string>& members,
                                   const std::vector<std::vector<Chart>>& charts);
 

@@ -9,6 +9,7 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr Eigen::Index kDots = 160;  // at most, of a curve drawn with points, evenly chosen
 constexpr int kSmooth = 181;         // points of a line that is known everywhere
 constexpr double kNoWork = 1e-16;    // below it a loop's work is round-off
 constexpr double kLogOfSpeeds = 10;  // a logarithmic axis for a wider range
@@ -22,6 +23,15 @@ Series points_of(const std::string& label, const Eigen::VectorXd& x, const Eigen
   Series out{label, x, y, {}, true};
   out.points = true;
   return out;
+}
+
+// At most kDots of the rows, the first and the last among them.
+Series thinned(const std::string& label, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+  const Eigen::Index n = std::min(x.size(), kDots);
+  if (n < 2) return points_of(label, x, y);
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index k = 0; k < n; ++k) rows.push_back(k * (x.size() - 1) / (n - 1));
+  return points_of(label, x(rows), y(rows));
 }
 
 Series line_of(const std::string& label, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
@@ -73,7 +83,7 @@ void add_speed_charts(const PairResults& results, std::vector<Chart>& out) {
                 {},        speed.maxCoeff() > kLogOfSpeeds * speed.minCoeff()};
     Frame frame;
     frame.series.push_back(
-        points_of("", speed, each(rows, [&](const auto& i) { return i.*a.found; })));
+        points_of("impacts", speed, each(rows, [&](const auto& i) { return i.*a.found; })));
     const Eigen::VectorXd known = each(rows, [&](const auto& i) { return i.closed.*a.closed; });
     if (known.array().isFinite().any()) frame.series.push_back(line_of(kClosed, speed, known));
     chart.frames.push_back(std::move(frame));
@@ -95,8 +105,8 @@ void add_angle_chart(const PairResults& results, std::vector<Chart>& out) {
               {},
               false};
   Frame frame;
-  frame.series.push_back(
-      points_of("", angle, each(rows, [](const auto& i) { return i.restitution_tangential; })));
+  frame.series.push_back(points_of(
+      "impacts", angle, each(rows, [](const auto& i) { return i.restitution_tangential; })));
   const Eigen::VectorXd fine =
       Eigen::VectorXd::LinSpaced(kSmooth, angle.minCoeff(), angle.maxCoeff());
   Eigen::VectorXd walton(fine.size()), slip(angle.size());
@@ -134,11 +144,11 @@ void add_loop_chart(const PairResults& results, std::vector<Chart>& out) {
   Chart chart{"Work of closed loops",
               "log_{10}(|work| / largest stored energy)",
               "share of the loops with at most this",
-              "Each point is a loop of a pair of its own.",
+              "Every loop is one of a pair of its own. Left of -14 is round-off.",
               {},
               false};
   Frame frame;
-  frame.series.push_back(points_of("", vector_of(work), part));
+  frame.series.push_back(thinned("loops", vector_of(work), part));
   chart.frames.push_back(std::move(frame));
   out.push_back(std::move(chart));
 }
@@ -244,8 +254,8 @@ std::vector<Chart> pair_sweep_charts(const PairResults& results) {
               {},
               false};
   Frame frame;
-  frame.series.push_back(points_of("", depth / std::max(depth.maxCoeff(), kNoWork),
-                                   force / std::max(force.maxCoeff(), kNoWork)));
+  frame.series.push_back(thinned("", depth / std::max(depth.maxCoeff(), kNoWork),
+                                 force / std::max(force.maxCoeff(), kNoWork)));
   chart.frames.push_back(std::move(frame));
   out.push_back(std::move(chart));
   return out;
