@@ -9,7 +9,8 @@ namespace {
 
 constexpr int frame_height = 330, frame_width = 480, legend_row = 24, title_height = 16;
 
-constexpr double kFlat = 1e-3;  // a curve that varies by less is level
+constexpr double kFlat = 1e-3;      // a curve that varies by less is level
+constexpr double kNearZero = 0.02;  // x that begins nearer to 0 begins at 0: plain tic labels
 
 struct Range {
   double low = 0, high = 0;
@@ -87,6 +88,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
     // What differs by round-off alone is drawn as one.
     const double size = std::max(std::fabs(y.low), std::fabs(y.high));
     const double room = y.high - y.low > kFlat * size ? 0.06 * (y.high - y.low) : 0.05 * size;
+    if (!log_x && x.low > 0 && x.low < kNearZero * x.high) x.low = 0;
     std::string head = fmt::format("set title {} noenhanced\n", style::quoted(frames[f].title));
     if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
     if (y.any && y.high > y.low)

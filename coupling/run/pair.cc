@@ -64,7 +64,7 @@ double number(const Summary& summary, const std::string& key) {
   return at == summary.end() ? PairClosedForm::kNone : std::get<double>(at->second);
 }
 
-std::string sentence_of(const dem::PairSetup& setup, const Summary& s) {
+std::string own_sentence(const dem::PairSetup& setup, const Summary& s) {
   if (setup.kind == "collision") {
     std::string out = fmt::format("e_n = {:.4f}", number(s, "pair.restitution_normal"));
     if (const double e = number(s, "pair.closed_form.restitution_normal"); !std::isnan(e)) {
@@ -92,6 +92,12 @@ std::string sentence_of(const dem::PairSetup& setup, const Summary& s) {
     out += fmt::format(" {:g} had not settled with the finest steps.", n);
   }
   return out;
+}
+
+std::string sentence_of(const Case& value, const Summary& summary) {
+  const std::string own = own_sentence(value.pair, summary);
+  const std::int64_t n = value.ensemble.realizations;
+  return n == 1 ? own : fmt::format("Mean of {} realizations: {}", n, own);
 }
 
 // The snapshot with the largest force; null without one in the plane.
@@ -176,7 +182,7 @@ StudyResult analyse_pair(const Case& value, const std::vector<std::string>& file
   add_identity(out.summary, value);
   add_figures(out.summary, all.figures);
   add_closed_forms(value.pair, out.summary);
-  out.comparison.verdict.sentence = sentence_of(value.pair, out.summary);
+  out.comparison.verdict.sentence = sentence_of(value, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
   out.texts.emplace_back("profiles.csv", pair_profiles_csv(all.profiles));
   if (!pair.impacts.empty()) out.texts.emplace_back("impacts.csv", pair_impacts_csv(pair.impacts));

@@ -97,7 +97,7 @@ TEST(ReadCase, TheWrittenCaseReadsBackToItself) {
   EXPECT_EQ(again.layer.packing.jitter, value.layer.packing.jitter);
   // Every key of the study is spelled out; those without effect as remarks.
   for (const Key& key : keys()) {
-    if (!section_applies(key.section, "point-load") || key.section == "sweep") continue;
+    if (!key_applies(key, "point-load") || key.section == "sweep") continue;
     const std::string start = is_idle(key, value) ? "\n# " : "\n";
     EXPECT_THAT(once, HasSubstr(start + key.name + " = ")) << key.path();
   }

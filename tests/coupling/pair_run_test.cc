@@ -261,7 +261,9 @@ TEST(PairCheck, RefusesWhatRunWould) {
               HasSubstr("material.law: found \"overlap_area\", allowed: linear | hertz"));
   EXPECT_THAT(refusal("", "[material]\nlaw = \"hertz\"\n"),
               HasSubstr("material.law: found \"hertz\""));
-  EXPECT_THAT(refusal("speed = 0\n"), HasSubstr("x.toml:3: pair.speed: found 0, allowed: above 0"));
+  EXPECT_THAT(
+      refusal("speed = 0\n"),
+      HasSubstr("x.toml:3: pair.speed: found 0 with pair.kind \"collision\", allowed: above 0"));
   EXPECT_THAT(refusal("offset = 3\n"), HasSubstr("pair.offset: found"));
   EXPECT_THAT(refusal("spin_first = [1, 2, 3]\n"),
               HasSubstr("pair.spin_first: found 3 numbers, allowed: 1"));
