@@ -152,7 +152,7 @@ std::vector<OverviewColumn> overview_of(const dem::PairSetup& setup) {
     return {{"e_n", "pair.restitution_normal", ""},
             {"closed form", "pair.closed_form.restitution_normal", ""},
             {"e_t", "pair.restitution_tangential", ""},
-            {"Walton", "pair.closed_form.restitution_tangential", ""},
+            {"closed form of e_t", "pair.closed_form.restitution_tangential", ""},
             {"duration (s)", "pair.duration", ""},
             {"closed form (s)", "pair.closed_form.duration", ""},
             {"largest depth (m)", "pair.max_depth", ""},

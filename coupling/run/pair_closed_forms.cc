@@ -74,16 +74,17 @@ double peak_of_dashpot(double share) {
   return w > 0 ? std::exp(-share / w * std::atanh(w / share)) : std::exp(-1.0);
 }
 
-// Slip that turns round by spring and dashpot without sliding; linear law.
-double restitution_of_stick(const dem::PairSetup& s, double duration) {
-  const double mass = scales_of(s).mass, ratio = s.in_space() ? 3.5 : 3;
-  const double decay = 0.5 * ratio * s.material.tangential_damping;
-  const double square = ratio * s.material.tangential_stiffness / mass - decay * decay;
-  const double t = duration, w = std::sqrt(std::fabs(square));
-  if (w * t < 1e-9) return -std::exp(-decay * t) * (1 - decay * t);
-  const double across = square > 0 ? std::cos(w * t) : std::cosh(w * t);
-  const double along = (square > 0 ? std::sin(w * t) : std::sinh(w * t)) * decay / w;
-  return -std::exp(-decay * t) * (across - along);
+double slip_ratio(const dem::PairSetup& s) { return s.in_space() ? 3.5 : 3; }  // m/m_t
+
+// Linear law without dashpots.
+double elastic_slip(const dem::PairSetup& s, double angle_deg) {
+  const double ratio = slip_ratio(s), mu = s.material.friction;
+  const double springs = s.material.normal_stiffness / s.material.tangential_stiffness;
+  const double slope = std::tan(std::fabs(angle_deg) * kDegrees);
+  if (slope >= mu * std::max(springs, 2 * ratio - springs)) {
+    return restitution_of_slip(s, 1, angle_deg);
+  }
+  return -std::cos(std::numbers::pi * std::sqrt(ratio / springs));
 }
 
 }  // namespace
@@ -92,8 +93,7 @@ double restitution_of_dashpot(double share) { return std::exp(-share * time_of_d
 
 double restitution_of_slip(const dem::PairSetup& setup, double restitution_normal,
                            double angle_deg) {
-  const double ratio = setup.in_space() ? 3.5 : 3;
-  return -1 + setup.material.friction * (1 + restitution_normal) * ratio /
+  return -1 + setup.material.friction * (1 + restitution_normal) * slip_ratio(setup) /
                   std::tan(std::fabs(angle_deg) * kDegrees);
 }
 
@@ -122,10 +122,9 @@ PairClosedForm pair_closed_form(const dem::PairSetup& s, double speed, double an
   } else if (f.power == 1) {
     out.duration = time_of_dashpot(share) / frequency;
   }
-  if (s.material.law == "linear" && angle_deg != 0) {
-    out.restitution_tangential =
-        std::min(restitution_of_stick(s, out.duration),
-                 restitution_of_slip(s, out.restitution_normal, angle_deg));
+  const dem::MaterialSetup& m = s.material;
+  if (m.law == "linear" && angle_deg != 0 && m.normal_damping == 0 && m.tangential_damping == 0) {
+    out.restitution_tangential = elastic_slip(s, angle_deg);
   }
   return out;
 }

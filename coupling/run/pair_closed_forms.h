@@ -12,6 +12,8 @@
 //   hertz, critical    n = 3/2  K = 4/3 E* sqrt(R)    b/w0 = sqrt(6/5) zeta
 //   energy, square     n = 2    K = 16/3 E/R          b/w0 = gamma/2     (disks, small depths)
 //   overlap_area       n = 3/2  K = 4/3 sqrt(2/R) E   only without dashpot (disks, small depths)
+//
+// Across the normal: Walton (1993) has two kinds of impact, with slip throughout or without any.
 #pragma once
 #include <limits>
 
@@ -26,8 +28,10 @@ struct PairClosedForm {
   double duration = kNone;   ///< s
   double max_depth = kNone;  ///< m
   double max_force = kNone;  ///< N; without dashpot
-  /// Walton (1993): slipping throughout, or not at all with spring and dashpot, whichever gives
-  /// less; linear law only.
+  /// Linear law without dashpots: slip throughout where tan(angle) >= mu max(k_n/k_t, 2 m/m_t -
+  /// k_n/k_t), for then the spring of friction is at its limit at every instant; else as without
+  /// any slip, -cos(pi sqrt(k_t/k_n m/m_t)). That is exact where both springs swing in step
+  /// (k_n/k_t = m/m_t), else the limit of small angles.
   double restitution_tangential = kNone;
 };
 

@@ -109,25 +109,24 @@ void add_angle_chart(const PairResults& results, std::vector<Chart>& out) {
       "impacts", angle, each(rows, [](const auto& i) { return i.restitution_tangential; })));
   const Eigen::VectorXd fine =
       Eigen::VectorXd::LinSpaced(kSmooth, angle.minCoeff(), angle.maxCoeff());
-  Eigen::VectorXd walton(fine.size()), slip(angle.size());
+  Eigen::VectorXd known(fine.size()), slip(angle.size());
   for (Eigen::Index k = 0; k < fine.size(); ++k) {
-    walton[k] = pair_closed_form(results.setup, rows.front().speed, fine[k]).restitution_tangential;
+    known[k] = pair_closed_form(results.setup, rows.front().speed, fine[k]).restitution_tangential;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double known =
-        restitution_of_slip(results.setup, rows[k].restitution_normal, rows[k].angle);
-    slip[static_cast<Eigen::Index>(k)] = known < 1 ? known : PairClosedForm::kNone;
+    const double e = restitution_of_slip(results.setup, rows[k].restitution_normal, rows[k].angle);
+    slip[static_cast<Eigen::Index>(k)] = e < 1 ? e : PairClosedForm::kNone;
   }
-  if (walton.array().isFinite().any()) {
-    frame.series.push_back(line_of("Walton", fine, walton));
+  if (known.array().isFinite().any()) {
+    frame.series.push_back(line_of(kClosed, fine, known));
   } else if (slip.array().isFinite().any()) {
     frame.series.push_back(line_of("slip throughout", angle, slip));
   }
   chart.frames.push_back(std::move(frame));
   chart.caption =
-      "Walton: slip throughout, or none with the tangential spring and dashpot, whichever gives "
-      "less. Slip throughout alone, with the normal restitution that was found, holds for every "
-      "law.";
+      "Closed form, of linear springs: slip throughout, or none; in between it is not known. Slip "
+      "throughout alone, with the normal restitution that was found, holds for every law at large "
+      "angles.";
   out.push_back(std::move(chart));
 }
 
@@ -264,9 +263,10 @@ std::vector<Chart> pair_sweep_charts(const PairResults& results) {
 Table pair_impact_table(const std::vector<PairImpact>& impacts) {
   Table out;
   out.title = "Impacts";
-  out.header = {"speed (m/s)", "angle (deg)",  "e_n",         "e_n, closed form",  "e_t",
-                "e_t, Walton", "duration (s)", "closed form", "largest depth (m)", "closed form",
-                "energy lost"};
+  out.header = {"speed (m/s)",      "angle (deg)", "e_n",
+                "e_n, closed form", "e_t",         "e_t, closed form",
+                "duration (s)",     "closed form", "largest depth (m)",
+                "closed form",      "energy lost"};
   out.caption =
       "e_n, e_t: velocity at the contact after over before, with the sign turned, along and across "
       "the first normal. Energy lost: of the kinetic energy before.";

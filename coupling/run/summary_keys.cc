@@ -81,7 +81,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"pair.closed_form.restitution_normal", "-",
        "closed form of a force that never pulls (linear; hertz, critical; energy, square)"},
       {"pair.closed_form.restitution_tangential", "-",
-       "Walton 1993: slip throughout, or none, whichever gives less; linear law"},
+       "linear law without dashpots: slip throughout where the spring of friction is always at its "
+       "limit, else as without slip, which is the limit of small angles (Walton 1993)"},
       {"pair.closed_form.duration", "s", "where the law has one: linear, and without dashpot"},
       {"pair.closed_form.max_depth", "m", "where the law has one"},
       {"pair.closed_form.max_force", "N", "where the law has one, without dashpot"},

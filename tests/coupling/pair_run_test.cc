@@ -127,6 +127,17 @@ TEST(PairRun, TangentialRestitutionIsTheClosedForm) {
     const double slip = -1 + 0.1 * (1 + number(flat, "pair.restitution_normal")) * ratio /
                                  std::tan(80 * std::numbers::pi / 180);
     EXPECT_NEAR(number(flat, "pair.restitution_tangential"), slip, 1e-3) << shape;
+    EXPECT_EQ(flat.count("pair.closed_form.restitution_tangential"), 0U);
+    // Stiffer than the normal spring, it is at its limit from the first instant to the last.
+    dem::PairSetup stiff;
+    stiff.shape = shape;
+    stiff.material.law = "linear";
+    stiff.material.tangential_stiffness = 1.2 * stiff.material.normal_stiffness;
+    stiff.material.normal_damping = stiff.material.tangential_damping = 0;
+    stiff.material.friction = 0.1;
+    EXPECT_NEAR(pair_closed_form(stiff, 0.001, 80).restitution_tangential,
+                restitution_of_slip(stiff, 1, 80), 1e-12);
+    EXPECT_LT(pair_closed_form(stiff, 0.001, 20).restitution_tangential, -0.2);
   }
 }
 
