@@ -7,6 +7,12 @@
 #include "dem/study/pair_run.h"
 
 namespace grainfield::dem {
+namespace {
+
+// Finding where two bodies touch costs as much as drawing so many.
+constexpr std::int64_t kTouchDraws = 100;
+
+}  // namespace
 
 PairRun::PairRun(const PairSetup& setup, std::uint64_t seed, int threads)
     : setup_(setup), seed_(seed), threads_(threads) {
@@ -74,8 +80,10 @@ Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& s
   check_pair(setup);
   // Only what is drawn differs from seed to seed.
   const bool drawn = setup.shape == "rand1" || (setup.kind == "path" && setup.path == "random");
+  const std::int64_t work = kTouchDraws + static_cast<std::int64_t>(pair_launches(setup).size());
   for (const std::uint64_t seed : seeds) {
-    if (most-- <= 0) break;
+    if (most <= 0) break;
+    most -= work;
     make_pair_run(setup, seed, 1);
     Random random(seed);
     const double step = make_pair(setup, random, 1).settings.time_step;

@@ -92,7 +92,7 @@ std::vector<PairLaunch> pair_launches(const PairSetup& setup);
 
 /// Snapshots "state_00", ... in the order of time. Throws std::invalid_argument naming the key.
 std::unique_ptr<Run> make_pair_run(const PairSetup& setup, std::uint64_t seed, int threads);
-/// The same refusals, for at most `most` of the seeds.
+/// The same refusals, for as many of the seeds as cost no more than drawing `most` bodies.
 Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& seeds,
                      std::int64_t most);
 

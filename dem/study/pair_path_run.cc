@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "dem/study/pair_path.h"
 #include "dem/study/pair_run.h"
@@ -19,6 +20,7 @@ constexpr int kFiner = 4, kFinest = 256;
 // Random loops during which the bodies overlap by less than this share of r^2 (of r: spheres) are
 // drawn again.
 constexpr double kHardlyMet = 0.01;
+constexpr int kMostTries = 1000;  // loops drawn until the bodies meet
 constexpr int kLookAt = 200;
 constexpr double kBar = 4.8;  // axis ratio of those that lie across each other
 
@@ -70,7 +72,9 @@ class PathRun final : public PairRun {
       path_.emplace(setup_, *bodies_);
     } else {
       Random random(seed_ + 0x9E3779B97F4A7C15ULL * static_cast<std::uint64_t>(now_.loop + 1));
+      int draws = 0;
       do {
+        if (++draws > kMostTries) refuse_apart();
         PairSetup s = setup_;
         const bool bars = s.shape == "rand1" && now_.loop % 4 == 3;
         if (bars) {
@@ -84,6 +88,12 @@ class PathRun final : public PairRun {
     probe_ = bodies_->probe();
     if (now_.loop == 0) first_bodies_ = bodies_;
     length_ = path_->length(kLookAt);
+  }
+  [[noreturn]] void refuse_apart() const {
+    throw std::invalid_argument(fmt::format(
+        "pair.radius_second: found {:g} m beside pair.radius = {:g} m: {} random loops did not "
+        "bring the bodies to overlap; allowed: sizes of which they do",
+        setup_.radius_second, setup_.radius, kMostTries));
   }
   bool meets() const {
     const std::unique_ptr<PairProbe> probe = bodies_->probe();

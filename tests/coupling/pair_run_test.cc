@@ -292,6 +292,8 @@ TEST(PairCheck, RefusesWhatRunWould) {
               HasSubstr("motion.time_step: found 1 s, allowed: at most"));
   EXPECT_THAT(refusal("", "[material]\ngravity = 1.0\n"), HasSubstr("has no meaning"));
   EXPECT_THAT(refusal("", "[compare]\nmodels = [\"flamant\"]\n"), HasSubstr("has no meaning"));
+  EXPECT_THAT(refusal("kind = \"path\"\npath = \"random\"\nradius_second = 1e-4\n"),
+              HasSubstr("pair.radius_second: found 0.0001 m beside"));
   EXPECT_THAT(refusal("spedes = [1]\n"), HasSubstr("nearest: pair.speed"));
 
   const Folder folder;
