@@ -227,7 +227,7 @@ TEST(PairRun, SweepOfLawsIsOnePicture) {
   EXPECT_TRUE(testing::fs::exists(folder / "out/spheres/profiles.csv"));
 }
 
-TEST(PairRun, SameBitsOnAnyThreadsAndAfterAKill) {
+TEST(PairRun, SameBitsOnAnyThreadsAndAfterStops) {
   const Folder folder;
   const std::string text =
       pair_case("kind = \"path\"\npath = \"random\"\nshape = \"rand1\"\nloops = 3\nsteps = 50\n",
@@ -240,7 +240,7 @@ TEST(PairRun, SameBitsOnAnyThreadsAndAfterAKill) {
     run_of(folder, text, realizations + "--threads " + threads, threads);
     EXPECT_EQ(testing::contents(folder / threads), one) << threads;
   }
-  // Stopped again and again; a kill leaves the same, the last checkpoint.
+  // Stopped again and again, each time from the last checkpoint.
   const std::string run =
       "run " + (folder / "x.toml") + " -o " + (folder / "k") + " " + realizations;
   int stops = 0, code = 0;
