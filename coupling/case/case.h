@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "continuum/model.h"
+#include "dem/study/pair.h"
 #include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
 
@@ -163,6 +164,7 @@ struct Case {
   dem::PileSetup pile;
   dem::LatticePileSetup lattice_pile;
   dem::SampleSetup sample;
+  dem::PairSetup pair;
   AverageSetup average;
   HeapSetup heap;
   GrainFiles grains;

@@ -83,6 +83,7 @@ void declare_grain_keys(std::vector<Key>& keys);
 void declare_pile_keys(std::vector<Key>& keys);
 void declare_lattice_keys(std::vector<Key>& keys);
 void declare_sample_keys(std::vector<Key>& keys);
+void declare_pair_keys(std::vector<Key>& keys);
 void declare_heap_keys(std::vector<Key>& keys);
 void declare_grain_files_keys(std::vector<Key>& keys);
 void declare_fields_keys(std::vector<Key>& keys);

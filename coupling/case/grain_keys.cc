@@ -23,12 +23,14 @@ constexpr const char* kLuding = "Luding 2008";
 
 dem::MaterialSetup& material_of(Case& c) {
   if (section_applies("sample", c.study)) return c.sample.material;
+  if (section_applies("pair", c.study)) return c.pair.material;
   if (section_applies("lattice", c.study)) return c.lattice_pile.material;
   return section_applies("source", c.study) ? c.pile.material : c.layer.material;
 }
 
 dem::MotionSetup& motion_of(Case& c) {
   if (section_applies("sample", c.study)) return c.sample.motion;
+  if (section_applies("pair", c.study)) return c.pair.motion;
   if (section_applies("lattice", c.study)) return c.lattice_pile.motion;
   return section_applies("source", c.study) ? c.pile.motion : c.layer.motion;
 }
@@ -158,7 +160,8 @@ void material(Section s) {
            "normal spring");
   s.only("material.law", {"linear"});
   s.number("tangential_stiffness", "N/m", +MATERIAL(double, tangential_stiffness), {0, 1e15},
-           "tangential spring; 2/7 of the normal one makes both swing in step");
+           "tangential spring; 2/7 of the normal one for spheres, 1/3 for disks, makes both swing "
+           "in step");
   s.only("material.law", {"linear"});
   s.number("normal_damping", "1/s (hertz: 1/(m s))", +MATERIAL(double, normal_damping), kRate,
            "normal force of the dashpot per reduced mass and approach velocity; hertz: and per "

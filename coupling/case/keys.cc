@@ -132,6 +132,7 @@ const std::vector<Key>& keys() {
     declare_pile_keys(grains);
     declare_lattice_keys(grains);
     declare_sample_keys(grains);
+    declare_pair_keys(grains);
     // Files read best in the order study, ensemble, grains, averaging, models, output.
     const auto after = std::find_if(list.begin(), list.end(),
                                     [](const Key& key) { return key.section == "average"; });

@@ -9,6 +9,9 @@ namespace {
 
 constexpr int frame_height = 330, frame_width = 480, legend_row = 24, title_height = 16;
 
+constexpr double kFlat = 1e-3;      // a curve that varies by less is level
+constexpr double kNearZero = 0.02;  // x that begins nearer to 0 begins at 0: plain tic labels
+
 struct Range {
   double low = 0, high = 0;
   bool any = false;
@@ -24,6 +27,14 @@ bool has_band(const Series& s) {
   return s.error.size() == s.x.size() && s.error.array().isFinite().any();
 }
 
+// Of a series with a colour of its own.
+std::string own_look(const Series& s) {
+  const std::size_t at = static_cast<std::size_t>(s.colour) % style::models;
+  return fmt::format("with {} lc rgb '{}' title {}",
+                     s.points ? "linespoints lw 1 pt 7 ps 0.45" : "lines lw 1.8 dt 2",
+                     style::model[at], style::quoted(s.label));
+}
+
 std::string data_block(const std::string& name, const Series& s) {
   std::string text = "$" + name + " << EOD\n";
   for (Eigen::Index k = 0; k < s.x.size(); ++k)
@@ -35,7 +46,7 @@ std::string data_block(const std::string& name, const Series& s) {
 }  // namespace
 
 Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
-               const std::vector<Frame>& frames) {
+               const std::vector<Frame>& frames, bool log_x) {
   Picture picture;
   picture.title = title;
   const int columns = frames.size() > 1 ? 2 : 1;
@@ -58,7 +69,9 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
           y.add(series.y[k] + series.error[k]);
         }
       const auto part = [&](const std::string& text) { plot += (plot.empty() ? "" : ", ") + text; };
-      if (series.simulation) {
+      if (series.colour >= 0) {
+        part(fmt::format("${} using 1:2 {}", name, own_look(series)));
+      } else if (series.simulation) {
         if (has_band(series))
           part(
               fmt::format("${} using 1:($2-$3):($2+$3) with filledcurves fc rgb '{}' fs solid 0.8 "
@@ -78,7 +91,10 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                          style::dash[look], style::model[look], style::quoted(series.label)));
       }
     }
-    const double room = 0.06 * (y.high - y.low);
+    // What differs by round-off alone is drawn as one.
+    const double size = std::max(std::fabs(y.low), std::fabs(y.high));
+    const double room = y.high - y.low > kFlat * size ? 0.06 * (y.high - y.low) : 0.05 * size;
+    if (!log_x && x.low > 0 && x.low < kNearZero * x.high) x.low = 0;
     std::string head = fmt::format("set title {} noenhanced\n", style::quoted(frames[f].title));
     if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
     if (y.any && y.high > y.low)
@@ -98,8 +114,8 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                  "set border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\nset grid lc rgb "
                  "'#dddddd' lw 0.6\n"
                  "set xlabel {}\nset ylabel {}\nset xzeroaxis lc rgb '#888888' lw 0.8\nunset key\n"
-                 "set multiplot\n",
-                 style::quoted(x_label), style::quoted(y_label));
+                 "{}set multiplot\n",
+                 style::quoted(x_label), style::quoted(y_label), log_x ? "set logscale x\n" : "");
   for (std::size_t f = 0; f < plots.size(); ++f) {
     const int column = static_cast<int>(f) % columns, row = static_cast<int>(f) / columns;
     const double height = (1 - below) / rows;
@@ -115,7 +131,9 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       const auto part = [&](const std::string& text) {
         entries_only += (entries_only.empty() ? "" : ", ") + text;
       };
-      if (series.simulation) {
+      if (series.colour >= 0) {
+        part("NaN " + own_look(series));
+      } else if (series.simulation) {
         part(fmt::format("NaN with linespoints lw 1.6 pt 7 ps 0.5 lc rgb '{}' title {}",
                          style::simulation, style::quoted(series.label)));
         if (has_band(series))
@@ -128,7 +146,8 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
       }
     }
     picture.program += fmt::format(
-        "set size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset tics\nunset xlabel\n"
+        "unset logscale\nset size 1,{0:.4f}\nset origin 0,0\nunset title\nunset border\nunset "
+        "tics\nunset xlabel\n"
         "unset ylabel\nunset grid\nunset xzeroaxis\nset xrange [0:1]\nset yrange [0:1]\n"
         "set lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
         "set key noenhanced center center horizontal maxrows {1} samplen 3 noopaque\nplot {2}\n",
@@ -136,6 +155,45 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
   }
   picture.program += "unset multiplot\n";
   return picture;
+}
+
+Picture Chart::picture() const {
+  Picture out = curves(title, x_label, y_label, frames, log_x);
+  out.caption = caption;
+  return out;
+}
+
+std::vector<Picture> side_by_side(const std::vector<std::string>& members,
+                                  const std::vector<std::vector<Chart>>& charts) {
+  std::vector<Chart> all;
+  const auto named = [](auto& list, const std::string& title) -> decltype(list.front())& {
+    for (auto& entry : list) {
+      if (entry.title == title) return entry;
+    }
+    list.push_back({});
+    list.back().title = title;
+    return list.back();
+  };
+  for (std::size_t m = 0; m < charts.size(); ++m) {
+    for (const Chart& chart : charts[m]) {
+      Chart& shared = named(all, chart.title);
+      if (shared.frames.empty()) {
+        shared = chart;
+        shared.frames.clear();
+      }
+      for (const Frame& frame : chart.frames) {
+        Frame& place = named(shared.frames, frame.title);
+        for (Series s : frame.series) {
+          s.label = s.points ? members[m] : members[m] + ": " + s.label;
+          s.colour = static_cast<int>(m);
+          place.series.push_back(std::move(s));
+        }
+      }
+    }
+  }
+  std::vector<Picture> out;
+  for (const Chart& chart : all) out.push_back(chart.picture());
+  return out;
 }
 
 }  // namespace grainfield::coupling

@@ -22,6 +22,8 @@ struct Series {
   Eigen::VectorXd x, y, error;  ///< error empty or nan: no band
   bool simulation = false;      ///< drawn with points and its band; models as lines
   bool banded = false;          ///< its band is drawn as well where it is no simulation
+  int colour = -1;              ///< of the models' ones; below 0: black, or the next one
+  bool points = false;          ///< with a colour: points on a thin line, else a dashed line
 };
 
 /// One frame of curves; `frames` stand in a grid under a common legend.
@@ -29,8 +31,23 @@ struct Frame {
   std::string title;
   std::vector<Series> series;
 };
+/// `log_x`: x, above 0 then, on a logarithmic axis.
 Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,
-               const std::vector<Frame>& frames);
+               const std::vector<Frame>& frames, bool log_x = false);
+
+/// A picture of curves with what it needs to be put together with others of its title: those of the
+/// members of a sweep.
+struct Chart {
+  std::string title, x_label, y_label, caption;
+  std::vector<Frame> frames;
+  bool log_x = false;
+
+  Picture picture() const;
+};
+/// Every title once, in the order of the first that has it; the curves of frames of one title are
+/// in one frame in the member's colour: points with its name, lines with it before their label.
+std::vector<Picture> side_by_side(const std::vector<std::string>& members,
+                                  const std::vector<std::vector<Chart>>& charts);
 
 /// A line drawn over a map.
 struct Overlay {

@@ -8,6 +8,7 @@
 #include "coupling/run/elastic.h"
 #include "coupling/run/lattice_pile.h"
 #include "coupling/run/osl.h"
+#include "coupling/run/pair.h"
 #include "coupling/run/pile.h"
 #include "coupling/run/point_load.h"
 #include "coupling/run/sample.h"
@@ -24,6 +25,7 @@ const std::vector<Study>& studies() {
       pile_fit_study(),
       lattice_pile_study(),
       sample_study(),
+      pair_study(),
       elastic_layer_study(),
       elastic_half_space_study(),
       osl_wedge_study(),

@@ -170,8 +170,9 @@ void add_figures(Summary& summary, const std::map<std::string, std::vector<doubl
 std::string write_study(const std::string& folder, const StudyResult& result) {
   require_documented(result.summary);
   if (!result.comparison.profiles.empty()) write_profiles(folder, result.comparison);
-  if (result.value.output.fields && !result.fields.empty())
+  if (result.value.output.fields && !result.fields.empty()) {
     write_fields(folder + "/fields.h5", result.fields);
+  }
   for (const auto& [name, text] : result.texts) write_text_file(folder + "/" + name, text);
   write_grains(folder, result);
   std::string lacks;

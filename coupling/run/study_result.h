@@ -47,6 +47,8 @@ struct StudyResult {
   std::string sweep_x, sweep_y;  ///< labels of these frames' axes
   /// A frame each, with a curve for every member; empty: the profiles of the comparison.
   std::vector<MemberCurve> member_curves;
+  /// Curves that a sweep's report draws into common frames, before those above. May be empty.
+  std::vector<Chart> sweep_charts;
   /// This member's own pictures and tables in a sweep's report, given its name; may be empty.
   std::function<std::vector<Section>(const std::string&)> sweep_sections, sweep_tables;
 };

@@ -173,11 +173,14 @@ Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
   return picture;
 }
 
-Picture beside_each_other(const Case& value, const std::vector<SweepCase>& members,
-                          const std::vector<StudyResult>& results) {
-  if (!results.front().member_curves.empty()) return member_curves(value, members, results);
-  return results.front().sweep_frames.empty() ? profiles(value, members, results)
-                                              : side_by_side(value, results);
+// None for members that have no profiles, only charts.
+std::optional<Picture> beside_each_other(const Case& value, const std::vector<SweepCase>& members,
+                                         const std::vector<StudyResult>& results) {
+  const StudyResult& one = results.front();
+  if (!one.member_curves.empty()) return member_curves(value, members, results);
+  if (!one.sweep_frames.empty()) return side_by_side(value, results);
+  if (one.comparison.profiles.empty()) return std::nullopt;
+  return profiles(value, members, results);
 }
 
 }  // namespace
@@ -215,7 +218,14 @@ std::string write_sweep(const std::string& folder, const Case& value,
     report.sections.emplace_back(
         Text{names[m], results[m].comparison.verdict.sentence, m == 0 && sentence.empty()});
   }
-  report.sections.emplace_back(beside_each_other(value, members, results));
+  std::vector<std::vector<Chart>> charts;
+  for (const StudyResult& result : results) charts.push_back(result.sweep_charts);
+  for (Picture& picture : coupling::side_by_side(names, charts)) {
+    report.sections.emplace_back(std::move(picture));
+  }
+  if (auto picture = beside_each_other(value, members, results)) {
+    report.sections.emplace_back(std::move(*picture));
+  }
   const auto own = [&](auto part) {
     for (std::size_t m = 0; m < results.size(); ++m) {
       if (!(results[m].*part)) continue;

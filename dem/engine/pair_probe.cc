@@ -59,7 +59,8 @@ class ProbeOf final : public PairProbe {
     const Body<dim>& a = bodies_[0];
     const Body<dim> b = is_wall_ ? wall_body(second, o) : bodies_[1];
     const auto motion = motion_at<Acting::central>(a, b, o);
-    const ContactForce<dim> f = Acting::force(rule_, a, b, o, dt, memory_);
+    ContactForce<dim> f = Acting::force(rule_, a, b, o, dt, memory_);
+    if (rule_.rolling.on()) Acting::roll(rule_, a, b, o, dt, rolling_, f);
     out.touching = true;
     out.normal = to_three(Vector(normal_of(o)));
     out.point = to_three(Vector(point_at<Acting::central>(a, o)));
@@ -70,7 +71,7 @@ class ProbeOf final : public PairProbe {
     out.tangential_force = signed_size_of(tangential_of(f.force, o));
     out.approach = motion.approach;
     out.depth = o.depth;
-    out.stored = rule_.law.energy(o, memory_);
+    out.stored = rule_.law.energy(o, memory_) + rule_.rolling.energy(rolling_);
     if constexpr (dim == 2) {
       // A law that reads the depth alone does not ask for the area.
       if (Law::measures == Measures::depth) overlap<Measures::area>(o);
@@ -80,15 +81,20 @@ class ProbeOf final : public PairProbe {
     return out;
   }
 
-  void forget() override { memory_ = {}; }
+  void forget() override {
+    memory_ = {};
+    rolling_ = {};
+  }
   std::string image() const override {
     ImageWriter w;
     w.put(memory_);
+    w.put(rolling_);
     return w.bytes();
   }
   void restore(const std::string& image) override {
     ImageReader r(image);
     r.get(memory_);
+    r.get(rolling_);
     r.finish();
   }
 
@@ -138,6 +144,7 @@ class ProbeOf final : public PairProbe {
   Plane<dim> plane_;
   typename Acting::Feature feature_;
   typename Acting::Memory memory_;
+  RollingMemory<dim> rolling_;
 };
 
 template <class Store>
@@ -161,11 +168,8 @@ std::unique_ptr<PairProbe> probe_of(const EngineSettings& settings, const NewGra
 std::unique_ptr<PairProbe> make(const EngineSettings& settings, const NewGrain& first,
                                 const NewGrain* second, const Wall* wall) {
   check_materials(settings);
-  if (settings.resist_rolling()) {
-    throw std::invalid_argument(
-        "material.rolling_friction, twisting_friction: found above 0, allowed for a pair: 0 (its "
-        "forces are shown without moments of their own)");
-  }
+  check_rolling(settings);
+  if (settings.resist_rolling() && settings.shape == ShapeKind::polygon) refuse_rolling_polygons();
   return settings.shape.visit([&](auto kind) {
     return probe_of<typename decltype(kind)::Store>(settings, first, second, wall);
   });

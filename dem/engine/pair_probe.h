@@ -26,14 +26,15 @@ struct PairForces {
   Vec3 normal{0, 0, 0};   ///< unit, from the first towards the second
   Vec3 point{0, 0, 0};    ///< contact point, m
   Vec3 force{0, 0, 0};    ///< on the first, N; on the second it is the opposite
-  Vec3 torque_first{0, 0, 0}, torque_second{0, 0, 0};  ///< about the centroids, N m; of a wall 0
-  double normal_force = 0;                             ///< repulsion >= 0, N
+  /// About the centroids, with those against rolling and twisting, N m; of a wall 0.
+  Vec3 torque_first{0, 0, 0}, torque_second{0, 0, 0};
+  double normal_force = 0;      ///< repulsion >= 0, N
   double tangential_force = 0;  ///< on the first, N: in the plane along (-n_y, n_x), else its size
   double approach = 0;          ///< closing speed at the contact, m/s
   double depth = 0;             ///< overlap along the normal, m
   double area = 0;              ///< overlap area, m2; in space nan
   double chord = 0;             ///< length of the contact line, m; in space nan
-  double stored = 0;            ///< elastic energy, with that of the spring of friction, J
+  double stored = 0;            ///< elastic energy, with that of the springs, J
 };
 
 class PairProbe {
@@ -52,7 +53,7 @@ class PairProbe {
 
 /// Of the settings only shape, law and friction are used; mass, moments and outline are those of
 /// the grains, their places and motion are not used. Throws std::invalid_argument naming the key
-/// when the law does not go with the shape, or there is resistance against rolling.
+/// when the law does not go with the shape, or polygons resist rolling.
 std::unique_ptr<PairProbe> make_pair_probe(const EngineSettings& settings, const NewGrain& first,
                                            const NewGrain& second);
 /// The same of a grain with a plane wall; throws likewise for walls of other shapes.

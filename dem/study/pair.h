@@ -61,13 +61,39 @@ struct PairSetup {
 };
 
 /// Columns of the profile: attributes "pair:NAME" of the first snapshot, numbers between spaces.
-inline constexpr const char* kPairColumns[] = {
-    "time",         "depth",         "area",    "normal_force", "tangential_force",
-    "torque_first", "torque_second", "kinetic", "stored",       "dissipated"};
+/// x, y, angle: place of the first body, m, and its turning about z, rad.
+inline constexpr const char* kPairColumns[] = {"time",
+                                               "depth",
+                                               "area",
+                                               "normal_force",
+                                               "tangential_force",
+                                               "torque_first",
+                                               "torque_second",
+                                               "kinetic",
+                                               "stored",
+                                               "dissipated",
+                                               "x",
+                                               "y",
+                                               "angle"};
+
+/// Of every path of path = "random", likewise: its work over the largest energy stored on it, that
+/// energy (J), and how often the outlines crossed at most.
+inline constexpr const char* kLoopColumns[] = {"loop_work_over_energy", "loop_stored_most",
+                                               "loop_crossings"};
+
+/// One of the collisions asked for.
+struct PairLaunch {
+  double speed = 0, angle = 0;  ///< m/s, deg
+  std::string name;             ///< its figures begin so: "pair.", "pair.speed_0.1."
+};
+
+/// In the order in which they are run: the setup's own, then those of its speeds, then its angles.
+std::vector<PairLaunch> pair_launches(const PairSetup& setup);
 
 /// Snapshots "state_00", ... in the order of time. Throws std::invalid_argument naming the key.
 std::unique_ptr<Run> make_pair_run(const PairSetup& setup, std::uint64_t seed, int threads);
-/// The same refusals.
-Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& seeds);
+/// The same refusals, for as many of the seeds as cost no more than drawing `most` bodies.
+Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& seeds,
+                     std::int64_t most);
 
 }  // namespace grainfield::dem

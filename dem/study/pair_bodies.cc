@@ -79,7 +79,7 @@ double step_of(const PairSetup& s, double limit) {
 
 void check_pair(const PairSetup& s) {
   if (s.kind == "collision" && !(s.speed > 0)) {
-    refuse("pair.speed", fmt::format("{:g}", s.speed), "above 0 for a collision");
+    refuse("pair.speed", fmt::format("{:g} with pair.kind \"collision\"", s.speed), "above 0");
   }
   check_spin("pair.spin_first", s.spin_first, s.in_space());
   check_spin("pair.spin_second", s.spin_second, s.in_space());

@@ -21,7 +21,8 @@ PairPath::PairPath(const PairSetup& s, const PairBodies& bodies)
       across_(along_),
       swing_(s.swing * std::numbers::pi / 180),
       turns_(s.turns),
-      at_wall_(bodies.has_wall) {
+      at_wall_(bodies.has_wall),
+      on_arc_(!bodies.has_wall && bodies.first.outline.empty() && bodies.second.outline.empty()) {
   kind_ = s.path == "approach"    ? Kind::approach
           : s.path == "slide"     ? Kind::slide
           : s.path == "roll"      ? Kind::roll
@@ -61,7 +62,14 @@ PairPose PairPath::at(double t) const {
       p.x += 0.5 * depth_ * (1 - c);
       break;
     case Kind::slide:
-      p.y += along_ * s;
+      if (on_arc_) {
+        const double distance = std::hypot(start_.x, start_.y);
+        const auto [cosine, sine] = rotation_of(along_ * s / distance);
+        p.x = cosine * start_.x - sine * start_.y;
+        p.y = sine * start_.x + cosine * start_.y;
+      } else {
+        p.y += along_ * s;
+      }
       break;
     case Kind::roll:
       if (at_wall_) {

@@ -28,6 +28,7 @@ class PairPath {
   double arm_ = 0;  // of the first body at the contact: roll
   int turns_ = 1, rounds_ = 0;
   bool at_wall_ = false;
+  bool on_arc_ = false;  // slide: of round bodies, so that the depth stays
   std::vector<PairPose> waypoints_;
 };
 

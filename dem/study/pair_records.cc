@@ -46,6 +46,9 @@ Snapshot snapshot_of(const PairRecord& r, Snapshot out, double friction) {
   return out;
 }
 
+// Of a body that turns about z alone.
+double turning_about_z(const std::array<double, 4>& q) { return 2 * std::atan2(q[3], q[0]); }
+
 double column(const PairRecord& r, std::size_t k, bool in_space) {
   const auto turning = [&](const Vec3& torque) { return in_space ? torque.norm() : torque.z(); };
   const PairForces& f = r.forces;
@@ -58,7 +61,10 @@ double column(const PairRecord& r, std::size_t k, bool in_space) {
                            turning(f.torque_second),
                            r.kinetic,
                            r.stored,
-                           r.dissipated};
+                           r.dissipated,
+                           r.first.position.x(),
+                           r.first.position.y(),
+                           in_space ? turning_about_z(r.first.orientation) : r.first.angle};
   static_assert(std::size(values) == std::size(kPairColumns));
   return values[k];
 }

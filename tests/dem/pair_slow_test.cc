@@ -122,6 +122,7 @@ TEST(Pair, RefusesWhatDoesNotGoTogether) {
   s.shape = "cube";
   EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
   s = {};
+  s.shape = "regular";
   s.material.rolling_friction = 0.1;
   s.material.rolling_stiffness = 1e6;
   EXPECT_THROW(make_pair_run(s, 1, 1), std::invalid_argument);
