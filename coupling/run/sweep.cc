@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "coupling/output/atomic_file.h"
 #include "coupling/run/summary_keys.h"
