@@ -226,6 +226,9 @@ void motion(Section s) {
       "Cundall's alpha: against each component of the motion this share of the force along it; "
       "moves no equilibrium, but makes falling slower. With verlet",
       "Cundall 1987");
+  s.flag("energy_balance", +MOTION(bool, energy_balance),
+         "every contact accounts for what becomes of energy (slower): figures energy.*. With "
+         "verlet, without sleeping and Newton's method");
 }
 
 void rest(Section s) {

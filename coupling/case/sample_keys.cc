@@ -99,8 +99,6 @@ void deformation(Section& s) {
   s.number("records", "-", +IN(int, records), {1, 999},
            "recorded states after the first one, at equal steps of strain; more: finer curves and "
            "larger files");
-  s.flag("energy_balance", +IN(bool, energy_balance),
-         "follows what contacts and damping lose (slower): sample.energy_balance_error");
 }
 
 }  // namespace

@@ -246,6 +246,7 @@ class LatticePileAnalysis {
          "liffman.horizontal_max_error", "liffman.line_normal_max_difference",
          "liffman.line_horizontal_max_difference", "dem.unbalanced_force_ratio",
          "dem.kinetic_to_elastic_energy"});
+    add_energy_rows(result.summary, in.figures);
     in.made = origin_rows(result);
     return lattice_pile_report(in);
   }

@@ -205,7 +205,7 @@ Study pair_study() {
   out.meaning = "two bodies, or one and a wall, that collide or are led: what a contact law does";
   out.sections = {"pair", "material", "motion", "ensemble"};
   out.without = {"material.floor_friction", "material.wall_friction", "material.gravity",
-                 "compare.models", "output.fields"};
+                 "motion.energy_balance",   "compare.models",         "output.fields"};
   out.models_optional = true;
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_pair_run(value.pair, realization_seed(value, number), threads);

@@ -354,6 +354,7 @@ class PileAnalysis {
                                               "dem.unbalanced_force_ratio",
                                               "average.coarse_graining.balance_rms",
                                               "average.particle_centre.balance_rms"});
+    add_energy_rows(result.summary, in.figures);
     in.changes = changes_of(result.summary);
     in.made = origin_rows(result);
     return pile_report(in);

@@ -68,7 +68,10 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
                    curve(table, "rattlers", "share of rattlers")};
   out.energies = {curve(table, "work", "work"), risen(table, "elastic_energy", "elastic"),
                   risen(table, "kinetic_energy", "kinetic")};
-  if (plan.energy_balance) out.energies.push_back(curve(table, "dissipated", "dissipated"));
+  if (value.sample.motion.energy_balance) {
+    out.energies.push_back(curve(table, "dissipated", "lost"));
+    out.energies.push_back(curve(table, "lost_to_friction", "of it to friction"));
+  }
   return out;
 }
 
@@ -149,6 +152,7 @@ Report page_of(SampleReport report, const StudyResult& result, const Realization
     report.last = &grains->snapshots.back().second;
   }
   report.figures = figure_rows(result.summary, shown_figures());
+  add_energy_rows(result.summary, report.figures);
   report.made = origin_rows(result);
   return sample_report(report);
 }

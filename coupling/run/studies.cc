@@ -18,21 +18,10 @@ namespace grainfield::coupling {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
-      point_load_study(),
-      point_load_verdict_study(),
-      pile_study(),
-      pile_fields_study(),
-      pile_fit_study(),
-      lattice_pile_study(),
-      sample_study(),
-      pair_study(),
-      elastic_layer_study(),
-      elastic_half_space_study(),
-      osl_wedge_study(),
-      osl_layer_study(),
-      orthotropic_layer_study(),
-      wedge_core_study(),
-      wedge_study(),
+      point_load_study(),        point_load_verdict_study(), pile_study(),      pile_fields_study(),
+      pile_fit_study(),          lattice_pile_study(),       sample_study(),    pair_study(),
+      elastic_layer_study(),     elastic_half_space_study(), osl_wedge_study(), osl_layer_study(),
+      orthotropic_layer_study(), wedge_core_study(),         wedge_study(),
   };
   return all;
 }

@@ -67,6 +67,7 @@ Report layer_page(const StudyResult& result, const Realization* first) {
        "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
        "response.peaks", "average.coarse_graining.balance_rms",
        "average.particle_centre.balance_rms"});
+  add_energy_rows(result.summary, page.figures);
   page.made = origin_rows(result);
   return point_load_report(page);
 }
@@ -98,6 +99,15 @@ ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& k
         shown_with_error(summary, key) + (declared->unit == "-" ? "" : " " + declared->unit));
   }
   return rows;
+}
+
+void add_energy_rows(const Summary& summary, ReportRows& rows) {
+  std::vector<std::string> keys;
+  for (const SummaryKey& key : summary_keys()) {
+    if (key.pattern.starts_with("energy.")) keys.push_back(key.pattern);
+  }
+  const ReportRows energies = figure_rows(summary, keys);
+  rows.insert(rows.end(), energies.begin(), energies.end());
 }
 
 ReportRows origin_rows(const StudyResult& result) {

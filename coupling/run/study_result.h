@@ -56,6 +56,8 @@ struct StudyResult {
 using ReportRows = std::vector<std::pair<std::string, std::string>>;
 /// Those of the figures that the summary holds, with meaning and unit, for a table of the report.
 ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys);
+/// Adds the figures energy.*, which are there with motion.energy_balance.
+void add_energy_rows(const Summary& summary, ReportRows& rows);
 /// "VALUE +- ERROR" of KEY and KEY.standard_error; without the latter, or with none, "VALUE".
 std::string shown_with_error(const Summary& summary, const std::string& key);
 /// Case, seed, version and models, likewise.

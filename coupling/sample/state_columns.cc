@@ -88,8 +88,13 @@ std::vector<StateColumn> all_columns() {
       {"kinetic_energy", "J", "J", "of the motion, in a cell of that against its flow", [](F f) { return f.kinetic; }},
       {"elastic_energy", "J", "J", "stored in the contacts", [](F f) { return f.elastic; }},
       {"work", "J", "J", "done on the grains by cell or walls since the first state", [](F f) { return f.work; }},
-      {"dissipated", "J", "J", "lost in contacts and to damping since then; nan without sample.energy_balance", [](F f) { return f.dissipated; }},
-      {"balance_error", "1", "1", "what the sum of energies less the work has changed by since then, over |work|; likewise", [](F f) { return f.work == 0 ? kNan : f.balance / std::fabs(f.work); }},
+      {"dissipated", "J", "J", "lost since then; nan without motion.energy_balance, as the next six", [](F f) { return f.dissipated(); }},
+      {"lost_in_dashpots", "J", "J", "of it in the normal dashpots of contacts", [](F f) { return f.in_dashpots; }},
+      {"lost_to_friction", "J", "J", "of it by sliding and in dashpots along contacts", [](F f) { return f.to_friction; }},
+      {"lost_to_rolling", "J", "J", "of it by rolling and twisting", [](F f) { return f.to_rolling; }},
+      {"lost_to_damping", "J", "J", "of it to damping of single grains", [](F f) { return f.to_damping; }},
+      {"work_of_law", "J", "J", "done by a law that is no gradient, or whose spring stiffens", [](F f) { return f.law_work; }},
+      {"balance_error", "1", "1", "what the sum of energies less the works has changed by since then, over |work|", [](F f) { return f.work == 0 ? kNan : f.balance / std::fabs(f.work); }},
       {"unbalanced_force_ratio", "1", "1", "mean resultant over mean contact force", [](F f) { return f.unbalanced_force_ratio; }},
       {"inertial_number", "1", "1", "rate d sqrt(rho/p), d the mean diameter, rho the grains' density", [](F f) { return f.strain_rate * f.diameter * std::sqrt(f.density / f.pressure()); }},
   };
@@ -125,9 +130,15 @@ StateFacts state_facts(const dem::Snapshot& s, const dem::Snapshot& first) {
   out.kinetic = attribute(s, "kinetic_energy");
   out.elastic = attribute(s, "elastic_energy");
   out.work = attribute(s, "work") - attribute(first, "work");
-  out.dissipated =
-      attribute(s, "dissipated_energy", true) - attribute(first, "dissipated_energy", true);
-  out.balance = attribute(s, "energy_balance", true) - attribute(first, "energy_balance", true);
+  const auto since = [&](const char* name) {
+    return attribute(s, name, true) - attribute(first, name, true);
+  };
+  out.in_dashpots = since("lost_in_dashpots");
+  out.to_friction = since("lost_to_friction");
+  out.to_rolling = since("lost_to_rolling");
+  out.to_damping = since("lost_to_damping");
+  out.law_work = since("work_of_law");
+  out.balance = since("energy_balance");
   out.unbalanced_force_ratio = attribute(s, "unbalanced_force_ratio");
   return out;
 }

@@ -23,13 +23,15 @@ struct StateFacts {
   double strain = 0, strain_rate = 0;  ///< imposed; -, 1/s
   double kinetic = 0, elastic = 0;     ///< J
   double work = 0;                     ///< of the cell or the walls since the first state, J
-  /// Lost in contacts and to damping since the first state, and what the balance of energies has
-  /// changed by, J; nan where the run did not follow them.
-  double dissipated = 0, balance = 0;
+  // Since the first state, J; nan where the run did not follow them.
+  double in_dashpots = 0, to_friction = 0, to_rolling = 0, to_damping = 0;  ///< lost
+  double law_work = 0;  ///< work of the law (dem/engine/energy_balance.h)
+  double balance = 0;   ///< what the balance of energies has changed by
   double unbalanced_force_ratio = 0;
   double diameter = 0, density = 0;  ///< of the grains: mean, m; kg/m3 (kg/m2)
 
   double pressure() const;  ///< -trace/dim of the stress, compression positive
+  double dissipated() const { return in_dashpots + to_friction + to_rolling + to_damping; }
 };
 
 /// Of a snapshot of dem/study/sample.h; `first`: "state_000" of the same realization. Keeps a

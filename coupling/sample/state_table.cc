@@ -95,7 +95,7 @@ std::string StateTable::csv() const {
     out += std::to_string(k);
     for (const Eigen::MatrixXd& values : values_) {
       const Spread spread = spread_at(values, k);
-      out += "," + value_cell(spread.mean) + "," + value_cell(spread.standard_error);
+      out += fmt::format(",{},{}", value_cell(spread.mean), value_cell(spread.standard_error));
     }
     out += "\n";
   }
@@ -107,13 +107,14 @@ std::string StateTable::csv_of_realizations() const {
   out += "realization,state";
   for (const StateColumn& c : columns_) {
     const std::string& unit = c.unit(dim_);
-    out += "," + (unit == "1" || unit == "deg" ? c.name : c.name + "_" + unit);
+    out += fmt::format(",{}", unit == "1" || unit == "deg" ? c.name : c.name + "_" + unit);
   }
   out += "\n";
   for (Eigen::Index r = 0; r < realizations(); ++r) {
     for (Eigen::Index k = 0; k < states(); ++k) {
       out += fmt::format("{},{}", r, k);
-      for (const Eigen::MatrixXd& values : values_) out += "," + value_cell(values(k, r));
+      for (const Eigen::MatrixXd& values : values_)
+        out += fmt::format(",{}", value_cell(values(k, r)));
       out += "\n";
     }
   }

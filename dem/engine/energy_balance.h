@@ -1,51 +1,122 @@
 // Where the energy of grains goes, measured at each contact.
 //
 // A contact takes -F.(v_i - v_j) - tau_i.w_i - tau_j.w_j from the two bodies; what it does not
-// store it loses:
-//   lost += -dt/2 (P(F_n) + P(F_{n+1})) - (E_{n+1} - E_n)
+// store is gone:
+//   gone += -dt/2 (P(F_n) + P(F_{n+1})) - (E_{n+1} - E_n)
 // with the velocities of the half step, which have moved the bodies from n to n+1. Velocity Verlet
 // changes the kinetic energy by just that work and by dt^2/8 m (a_{n+1}^2 - a_n^2), which does not
-// add up. So kinetic + elastic + potential + lost - work of walls and outer forces stays constant
-// to second order in the time step. Of a law whose force is no gradient of what it says it stores,
-// the work that it does by itself counts as lost, too (of either sign).
+// add up. So the sum of Diagnostics::energy_balance stays 0 to second order in the time step.
+//
+// By the parts of the force (ContactParts) it has gone to the normal dashpot, to friction, to
+// rolling and twisting. The rest is the law's own: what a force that is no gradient of the energy
+// it states does by itself (overlap_area), and what a spring gains or loses as its stiffness
+// changes (hertz). It has either sign, and counts as work of the law.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "dem/contacts/kept.h"
+#include "dem/engine/contact_losses.h"
+#include "dem/laws/contact.h"
+#include "dem/laws/rolling.h"
 #include "dem/space/body.h"
 #include "dem/space/lever.h"
 
 namespace grainfield::dem {
 
+/// What acts in a contact, by what takes energy, and what the contact stores.
+template <int D>
+struct ContactParts {
+  ContactForce<D> all;                   ///< of it:
+  ContactForce<D> dashpot;               ///< the normal force but for the elastic one
+  ContactForce<D> along;                 ///< friction
+  SpinOf<D> moment = zero<SpinOf<D>>();  ///< of rolling and twisting, on the first body
+  ContactEnergy stored;                  ///< J
+  double stored_rolling = 0;             ///< J
+  double stiffening = 0;  ///< J, of stored.tangential: by a change of stiffness since the last step
+
+  double stored_in_all() const { return stored.total() + stored_rolling; }
+  /// The same seen from the other body.
+  ContactParts turned() const {
+    ContactParts out = *this;
+    for (auto part : {&ContactParts::all, &ContactParts::dashpot, &ContactParts::along}) {
+      (out.*part).force = -(this->*part).force;
+      (out.*part).torque_i = (this->*part).torque_j;
+      (out.*part).torque_j = (this->*part).torque_i;
+    }
+    out.moment = -moment;
+    return out;
+  }
+};
+
 /// Of one contact.
 template <int D>
 struct Account {
-  ContactForce<D> before;  ///< in the step before
-  double stored = 0;       ///< J
-  double lost = 0;         ///< J, since the last search
+  ContactParts<D> before;  ///< in the step before
+  ContactLosses gone;      ///< since the last search
 
-  bool empty() const { return stored == 0 && before.force.isZero(0); }
+  bool empty() const { return stored() == 0 && before.all.force.isZero(0); }
+  double stored() const { return before.stored_in_all(); }  ///< J
 
-  /// Before its first step: what is there already has not been lost.
-  void begin(const ContactForce<D>& f, double stored_now) {
+  /// Before its first step: what is there already has been put in.
+  void begin(const ContactParts<D>& now) {
     if (!empty()) return;
-    before = f;
-    stored = stored_now;
+    before = now;
+    gone.stored += now.stored_in_all();
   }
   /// A step in which bodies a and b have moved with their velocities.
-  void add(const ContactForce<D>& f, double stored_now, const Body<D>& a, const Body<D>& b,
-           double dt) {
-    const VectorOf<D> force = before.force + f.force;
-    const SpinOf<D> torque_a = before.torque_i + f.torque_i,
-                    torque_b = before.torque_j + f.torque_j;
-    const double power = force.dot(VectorOf<D>(a.velocity - b.velocity)) +
-                         power_of(torque_a, a.spin) + power_of(torque_b, b.spin);
-    lost -= 0.5 * dt * power + (stored_now - stored);
-    before = f;
-    stored = stored_now;
+  void add(const ContactParts<D>& now, const Body<D>& a, const Body<D>& b, double dt) {
+    const auto taken = [&](const ContactForce<D>& first, const ContactForce<D>& second) {
+      const VectorOf<D> force = first.force + second.force;
+      const SpinOf<D> torque_a = first.torque_i + second.torque_i,
+                      torque_b = first.torque_j + second.torque_j;
+      return -0.5 * dt *
+             (force.dot(VectorOf<D>(a.velocity - b.velocity)) + power_of(torque_a, a.spin) +
+              power_of(torque_b, b.spin));
+    };
+    const double dashpot = taken(before.dashpot, now.dashpot);
+    const double friction = taken(before.along, now.along) - now.stored.tangential +
+                            before.stored.tangential + now.stiffening;
+    const double rolling =
+        -0.5 * dt * power_of(SpinOf<D>(before.moment + now.moment), SpinOf<D>(a.spin - b.spin)) -
+        now.stored_rolling + before.stored_rolling;
+    const double all = taken(before.all, now.all) - now.stored_in_all() + stored();
+    gone += {dashpot, friction, rolling, dashpot + friction + rolling - all, 0};
+    before = now;
   }
 };
+
+/// What a contact has done in a step, as the interaction gives it.
+template <int D, class Memory>
+struct Acted {
+  ContactForce<D> force;                     ///< moments of rolling included
+  Memory before, after;                      ///< the law's
+  SpinOf<D> moment = zero<SpinOf<D>>();      ///< of rolling and twisting, on the first body
+  const RollingMemory<D>* rolled = nullptr;  ///< null: no resistance against it
+};
+
+/// Into the account of bodies a and b that overlap; dt = 0: before their first step. `on_second`:
+/// called with each part of the force, where the torque on b is not that about its centroid.
+template <bool central, class Rule, int D, class Memory, class OnSecond>
+void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>& b,
+          const OverlapIn<D>& o, const Acted<D, Memory>& acted, double dt, OnSecond on_second) {
+  const ContactForce<D>& f = acted.force;
+  ContactParts<D> parts;
+  parts.all = f;
+  parts.dashpot = forces_at<central>(o, repulsion_of(f.force, o) - rule.law.repulsion(o),
+                                     zero<TangentialOf<D>>());
+  parts.along = forces_at<central>(o, 0, tangential_of(f.force, o));
+  on_second(parts.dashpot);
+  on_second(parts.along);
+  parts.moment = acted.moment;
+  parts.stored = rule.law.energy(o, acted.after);
+  if (acted.rolled != nullptr) parts.stored_rolling = rule.rolling.energy(*acted.rolled);
+  if (!(dt > 0)) return account.begin(parts);
+  if constexpr (requires { rule.law.stiffening(o, acted.before); }) {
+    parts.stiffening = rule.law.stiffening(o, acted.before);
+  }
+  account.add(parts, a, b, dt);
+}
 
 /// Of the forces from outside on one grain that are no potential's: damping and an applied force.
 template <int D>
@@ -61,13 +132,15 @@ struct EnergyBalance {
   bool on = false;
   std::vector<Account<D>> pairs, walls;  ///< as the list of contacts has them
   std::vector<OuterAccount<D>> outer;    ///< by grain's id
-  double lost = 0;                       ///< in contacts before the last search, J
+  ContactLosses gone;                    ///< in contacts before the last search
+  /// With grains that were added, and by changes of gravity, J.
+  double brought_motion = 0, brought_height = 0;
 
-  /// What contacts have lost, in the order of the list.
-  double lost_in_contacts() const {
-    double sum = lost;
-    for (const auto& account : pairs) sum += account.lost;
-    for (const auto& account : walls) sum += account.lost;
+  /// In contacts, in the order of the list.
+  ContactLosses gone_in_contacts() const {
+    ContactLosses sum = gone;
+    for (const auto& account : pairs) sum += account.gone;
+    for (const auto& account : walls) sum += account.gone;
     return sum;
   }
 
@@ -76,7 +149,9 @@ struct EnergyBalance {
     each(self.pairs);
     each(self.walls);
     each(self.outer);
-    each(self.lost);
+    each(self.gone);
+    each(self.brought_motion);
+    each(self.brought_height);
   }
   bool fits(std::size_t pair_count, std::size_t wall_count, std::size_t grains) const {
     if (!on) return pairs.empty() && walls.empty() && outer.empty();
@@ -88,11 +163,7 @@ struct EnergyBalance {
 template <int D>
 Account<D> turned(const Account<D>& account, bool other) {
   if (!other) return account;
-  Account<D> out = account;
-  out.before.force = -account.before.force;
-  out.before.torque_i = account.before.torque_j;
-  out.before.torque_j = account.before.torque_i;
-  return out;
+  return {account.before.turned(), account.gone};
 }
 
 /// Takes the accounts out of the lists before a search, and puts them back after it.
@@ -104,7 +175,7 @@ class CarryAccounts {
   explicit CarryAccounts(World& world) : world_(world) {
     auto& balance = world.balance;
     if (!balance.on) return;
-    balance.lost = balance.lost_in_contacts();
+    balance.gone = balance.gone_in_contacts();
     const auto& ids = world.grains.ids;
     visit_list(world.contacts.pairs, balance.pairs, [&](int i, int j, const Account<dim>& account) {
       pairs_.add(pair_key(ids[i], ids[j]), turned(account, ids[i] > ids[j]));
@@ -147,7 +218,7 @@ class CarryAccounts {
     for (int i = 0; i < rows.rows(); ++i) {
       for (int k = rows.first(i); k < rows.last(i); ++k) {
         accounts[k] = make(i, rows[k].j);
-        accounts[k].lost = 0;
+        accounts[k].gone = {};
       }
     }
   }

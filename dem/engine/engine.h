@@ -8,12 +8,14 @@
 // time inside (engine_loop.h); this interface hides them.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "dem/computation_failed.h"
+#include "dem/engine/contact_losses.h"
 #include "dem/laws/materials.h"
 #include "dem/motion/applied_force.h"
 #include "dem/motion/registry.h"
@@ -82,15 +84,28 @@ struct Diagnostics {
   /// cell_stress.h, each step's power held for that step. With walls, gravity or an applied force
   /// also what these take from motion with the flow.
   double cell_work = 0;
-  double dissipated_energy = 0;  ///< J, lost in contacts; with EngineSettings::energy_balance, as
-  double damped_energy = 0;      ///< J, by background and local damping, and
+  bool energy_followed = false;  ///< EngineSettings::energy_balance; since the start then:
+  ContactLosses contact_losses;  ///< by mechanism, with the work of the law
+  double damped_energy = 0;      ///< J, by background and local damping
   double applied_work = 0;       ///< J, of the applied force
+  double brought_energy = 0;     ///< J, kinetic and elastic, with grains that were added
+  double gravity_work = 0;       ///< J, on the grains since they were added
 
-  /// Constant to second order in the time step (dem/engine/energy_balance.h), to first order in a
-  /// cell that flows, J.
+  double dissipated_energy() const { return contact_losses.lost(); }
+  /// Done by all that is no grain: walls, cell, force, gravity, and with grains that were added.
+  double work() const {
+    return wall_work + cell_work + applied_work + gravity_work + brought_energy;
+  }
+  /// The same without regard to signs: what an error of the balance is measured by.
+  double size_of_work() const {
+    return std::fabs(wall_work) + std::fabs(cell_work) + std::fabs(applied_work) +
+           std::fabs(gravity_work) + brought_energy;
+  }
+  /// 0 to second order in the time step (dem/engine/energy_balance.h), to first order in a cell
+  /// that flows, J.
   double energy_balance() const {
-    return kinetic_energy + elastic_energy + potential_energy + dissipated_energy + damped_energy -
-           wall_work - cell_work - applied_work;
+    return kinetic_energy + elastic_energy + dissipated_energy() + damped_energy - work() -
+           contact_losses.law;
   }
 };
 

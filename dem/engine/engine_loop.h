@@ -82,6 +82,10 @@ class EngineLoop final : public Engine {
     }
     world_.sleepers.add(b.position, memory.rotation, world_.steps, g.fixed && world_.sleep.on);
     grains.shapes.place(i, b, memory.rotation);
+    if (world_.balance.on && !g.fixed) {
+      world_.balance.brought_motion += Report(world_).kinetic_energy(i);
+      world_.balance.brought_height += Report(world_).potential_energy(i);
+    }
     world_.search_needed = true;
     return i;
   }
@@ -133,7 +137,11 @@ class EngineLoop final : public Engine {
   }
   void set_background_damping(double rate) override { world_.around.drag = rate; }
   void set_gravity(double gx, double gy, double gz) override {
+    const double before = world_.balance.on ? Report(world_).potential_energy() : 0;
     world_.around.gravity = in_space<dim>({gx, gy, gz});
+    if (world_.balance.on) {
+      world_.balance.brought_height += Report(world_).potential_energy() - before;
+    }
     world_.wake_all();
   }
   void set_velocity_gradient(const Eigen::Matrix3d& gradient) override {

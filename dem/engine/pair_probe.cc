@@ -71,7 +71,7 @@ class ProbeOf final : public PairProbe {
     out.tangential_force = signed_size_of(tangential_of(f.force, o));
     out.approach = motion.approach;
     out.depth = o.depth;
-    out.stored = rule_.law.energy(o, memory_) + rule_.rolling.energy(rolling_);
+    out.stored = rule_.law.energy(o, memory_).total() + rule_.rolling.energy(rolling_);
     if constexpr (dim == 2) {
       // A law that reads the depth alone does not ask for the area.
       if (Law::measures == Measures::depth) overlap<Measures::area>(o);

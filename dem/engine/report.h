@@ -81,7 +81,7 @@ class Report {
     visit_listed([&](int i, int k, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
       ++d.contacts;
       force_sum += length_of(f.force);
-      d.elastic_energy += rule(i, pair, wall).law.energy(o, pair.memory);
+      d.elastic_energy += rule(i, pair, wall).law.energy(o, pair.memory).total();
       if (world_.rolling.on)
         d.elastic_energy += rule(i, pair, wall).rolling.energy(rolling(k, wall));
       const double radius =
@@ -94,17 +94,20 @@ class Report {
       resultant[pair.j] -= f.force;
       moment[pair.j] += f.torque_j;
     });
-    if (world_.balance.on) {  // bodies that part faster than their spring follows store energy, too
+    const auto& balance = world_.balance;
+    if (balance.on) {  // bodies that part faster than their spring follows store energy, too
       const auto& list = world_.contacts;
       for (int k = 0; k < list.pairs.size(); ++k) {
-        if (!pushes(list.pair_forces[k])) d.elastic_energy += world_.balance.pairs[k].stored;
+        if (!pushes(list.pair_forces[k])) d.elastic_energy += balance.pairs[k].stored();
       }
       for (int k = 0; k < list.walls.size(); ++k) {
-        if (!pushes(list.wall_forces[k])) d.elastic_energy += world_.balance.walls[k].stored;
+        if (!pushes(list.wall_forces[k])) d.elastic_energy += balance.walls[k].stored();
       }
     }
-    d.dissipated_energy = world_.balance.lost_in_contacts();
-    for (const auto& account : world_.balance.outer) {
+    d.energy_followed = balance.on;
+    d.contact_losses = balance.gone_in_contacts();
+    d.brought_energy = balance.brought_motion + d.contact_losses.stored;
+    for (const auto& account : balance.outer) {
       d.damped_energy += account.damped;
       d.applied_work += account.work;
     }
@@ -116,9 +119,7 @@ class Report {
     for (int i = 0; i < world_.grains.size(); ++i) {
       if (world_.grains.is_fixed(i)) continue;
       ++free;
-      typename World::Vector place = bodies[i].position;
-      if (world_.cell.is_periodic()) place += world_.cell.shift(world_.grains.images[i]);
-      d.potential_energy -= world_.weight(i).dot(place);
+      d.potential_energy += potential_energy(i);
       typename World::Vector force = resultant[i] + world_.weight(i);
       if (i == world_.applied_index) force += applied;
       const double size = length_of(force);
@@ -140,6 +141,7 @@ class Report {
     const Motion m = motion();
     d.kinetic_energy = m.kinetic_energy;
     d.awake = m.awake;
+    if (balance.on) d.gravity_work = balance.brought_height - d.potential_energy;
     for (const double work : world_.grains.cell_work) d.cell_work += work;
     if (!std::isfinite(d.kinetic_energy) || !std::isfinite(d.elastic_energy)) {
       throw ComputationFailed(fmt::format(
@@ -155,14 +157,30 @@ class Report {
   Motion motion() const {
     Motion m;
     for (int i = 0; i < world_.grains.size(); ++i) {
-      const auto& b = world_.grains.bodies[i];
       if (world_.grains.is_fixed(i)) continue;
       if (!world_.sleepers.is_asleep(i)) ++m.awake;
-      m.kinetic_energy +=
-          0.5 * world_.grains.inertias[i].mass * world_.fluctuation(i).squaredNorm() +
-          turning_energy(b, world_.rotation(i), world_.grains.inertias[i]);
+      m.kinetic_energy += kinetic_energy(i);
     }
     return m;
+  }
+  /// Of a free grain, J: against the flow.
+  double kinetic_energy(int i) const {
+    const auto& grains = world_.grains;
+    return 0.5 * grains.inertias[i].mass * world_.fluctuation(i).squaredNorm() +
+           turning_energy(grains.bodies[i], world_.rotation(i), grains.inertias[i]);
+  }
+  /// Of all free grains, J, as Diagnostics has it.
+  double potential_energy() const {
+    double sum = 0;
+    for (int i = 0; i < world_.grains.size(); ++i) {
+      if (!world_.grains.is_fixed(i)) sum += potential_energy(i);
+    }
+    return sum;
+  }
+  double potential_energy(int i) const {
+    typename World::Vector place = world_.grains.bodies[i].position;
+    if (world_.cell.is_periodic()) place += world_.cell.shift(world_.grains.images[i]);
+    return -world_.weight(i).dot(place);
   }
 
   /// Force of all grains on a wall in the last step, and its torque about a place.

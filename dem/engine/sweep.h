@@ -30,6 +30,10 @@ class Sweep {
   static constexpr int dim = World::dim;
   using Force = ContactForce<dim>;
   using Vector = typename World::Vector;
+  using Body = typename World::Body;
+  using Overlap = typename World::Overlap;
+  using Rule = typename World::Acting::Rule;
+  using Memory = typename World::Acting::Memory;
 
   explicit Sweep(World& world)
       : world_(world),
@@ -246,8 +250,7 @@ class Sweep {
   /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
   /// that cross by edges n (pair_force_across). `local`: what of the load is local damping. It is
   /// against the flow and no part of that.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load,
-                                                        const Vector local) {
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load, const Vector local) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
@@ -298,25 +301,15 @@ class Sweep {
     const auto& a = grains.bodies[i];
     const typename World::Body b = world_.image_of(grains.bodies[pair.j], image);
     typename World::Overlap o;
-    const bool balance = world_.balance.on && dt > 0;
     if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) {
       pair.memory = {};
       if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
-      if (balance) world_.balance.pairs[k].add({}, 0, a, b, dt);
+      if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
       return false;
     }
     const auto& rule = world_.pair_rule(i, pair.j);
-    force = world_.acting.force(rule, a, b, o, dt, pair.memory);
-    double rolling = 0;
-    if (rolls_) [[unlikely]] {
-      roll(rule, a, b, o, dt, world_.rolling.pairs[k], force);
-      rolling = rule.rolling.energy(world_.rolling.pairs[k]);
-    }
-    if (balance) {
-      world_.balance.pairs[k].add(force, rule.law.energy(o, pair.memory) + rolling, a, b, dt);
-    } else if (books_) {
-      world_.balance.pairs[k].begin(force, rule.law.energy(o, pair.memory) + rolling);
-    }
+    force =
+        acts(rule, a, b, o, dt, pair.memory, world_.rolling.pairs, world_.balance.pairs, k).force;
     if (world_.cell.flows()) {
       grains.cell_work[pair.j] += dt * force.force.dot(world_.cell.drift(image));
     }
@@ -334,34 +327,34 @@ class Sweep {
     const auto& grains = world_.grains;
     const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
     typename World::Overlap o;
-    Evaluated r;
-    double stored = 0;
-    r.touches = world_.acting.overlap(grains.shapes, i, a, pair.j, b, pair.feature, o);
-    if (r.touches) {
+    if (world_.acting.overlap(grains.shapes, i, a, pair.j, b, pair.feature, o)) {
       const auto& rule = world_.pair_rule(i, pair.j);
-      r.force = world_.acting.force(rule, a, b, o, dt, pair.memory);
-      if (books_) stored = rule.law.energy(o, pair.memory);
-      if (rolls_) {
-        auto& memory = world_.rolling.pairs[k];
-        roll(rule, a, b, o, dt, memory, r.force);
-        stored += rule.rolling.energy(memory);
-      }
-    } else {
-      pair.memory = {};
-      if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
+      auto& rolling = world_.rolling.pairs;
+      return {acts(rule, a, b, o, dt, pair.memory, rolling, world_.balance.pairs, k).force, true};
     }
-    if (!books_) return r;
-    auto& account = world_.balance.pairs[k];
-    if (dt > 0) {
-      account.add(r.force, stored, a, b, dt);
-    } else if (r.touches) {
-      account.begin(r.force, stored);
+    pair.memory = {};
+    if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
+    if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
+    return {};
+  }
+  /// Force of contact k of a list, with resistance against rolling and its account.
+  Acted<dim, Memory> acts(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
+                          double dt, Memory& memory, std::vector<RollingMemory<dim>>& rolling,
+                          std::vector<Account<dim>>& accounts, int k) const {
+    Acted<dim, Memory> out;
+    out.before = memory;
+    out.force = world_.acting.force(rule, a, b, o, dt, memory);
+    if (rolls_) {
+      out.rolled = &rolling[k];
+      out.moment = roll(rule, a, b, o, dt, rolling[k], out.force);
     }
-    return r;
+    if (!books_) return out;
+    out.after = memory;
+    book<World::Acting::central>(accounts[k], rule, a, b, o, out, dt, [](Force&) {});
+    return out;
   }
   /// Moments against rolling and twisting, added to a contact's force; that on the first body.
-  SpinOf<dim> roll(const typename World::Acting::Rule& rule, const typename World::Body& a,
-                   const typename World::Body& b, const typename World::Overlap& o, double dt,
+  SpinOf<dim> roll(const Rule& rule, const Body& a, const Body& b, const Overlap& o, double dt,
                    RollingMemory<dim>& memory, Force& force) const {
     if constexpr (World::Shape::outlines) {
       return zero<SpinOf<dim>>();  // refused by make_engine
@@ -447,11 +440,18 @@ class Sweep {
                [&](int, int k, const typename World::Overlap& o, const typename World::Body& body,
                    const Vector& normal) {
                  auto& memory = contacts.walls[k].memory;
-                 Force f = world_.acting.force(rule, b, body, o, dt, memory);
-                 SpinOf<dim> moment = zero<SpinOf<dim>>();
-                 if (rolls_) moment = roll(rule, b, body, o, dt, world_.rolling.walls[k], f);
-                 world_.add_wall_torque(wall, b, o, f);
-                 if (rolls_) f.torque_j -= moment;
+                 Acted<dim, Memory> acted{{}, memory, {}};
+                 Force& f = acted.force;
+                 f = world_.acting.force(rule, b, body, o, dt, memory);
+                 if (rolls_) {
+                   acted.rolled = &world_.rolling.walls[k];
+                   acted.moment = roll(rule, b, body, o, dt, world_.rolling.walls[k], f);
+                 }
+                 const auto about_centre = [&](Force& part) {
+                   world_.add_wall_torque(wall, b, o, part);
+                 };
+                 about_centre(f);
+                 if (rolls_) f.torque_j -= acted.moment;
                  sum.force += f.force;
                  sum.torque += f.torque_i;
                  felt |= 1U << (k - first);
@@ -460,16 +460,10 @@ class Sweep {
                  if (std::fabs(body.velocity.dot(normal)) * dt > kMaxMoveShare * b.radius) {
                    crossed_ = moved_ = true;
                  }
-                 if (books_) {
-                   double stored = rule.law.energy(o, memory);
-                   if (rolls_) stored += rule.rolling.energy(world_.rolling.walls[k]);
-                   auto& account = world_.balance.walls[k];
-                   if (dt > 0) {
-                     account.add(f, stored, b, at_wall, dt);
-                   } else {
-                     account.begin(f, stored);
-                   }
-                 }
+                 if (!books_) return;
+                 acted.after = memory;
+                 book<World::Acting::central>(world_.balance.walls[k], rule, b, at_wall, o, acted,
+                                              dt, about_centre);
                });
     for (int s = 0; s < slots; ++s) {
       const int k = first + s;
@@ -479,7 +473,7 @@ class Sweep {
       contacts.walls[k].memory = {};
       if (rolls_ && dt > 0) world_.rolling.walls[k] = {};
       contacts.wall_forces[k] = Force{};
-      if (books_ && dt > 0) world_.balance.walls[k].add({}, 0, b, at_wall, dt);
+      if (books_ && dt > 0) world_.balance.walls[k].add({}, b, at_wall, dt);
     }
     return sum;
   }

@@ -15,6 +15,20 @@ struct LawForce {
   TangentialOf<D> tangential = zero<TangentialOf<D>>();
 };
 
+/// Elastic energy of a contact, J.
+struct ContactEnergy {
+  double normal = 0;      ///< of the overlap
+  double tangential = 0;  ///< in the spring of friction
+
+  double total() const { return normal + tangential; }
+};
+
+/// Of a spring of friction with a force, N (a number or a vector), J; without a stiffness none.
+template <class Tangential>
+inline double spring_energy(const Tangential& spring, double stiffness) {
+  return stiffness > 0 ? 0.5 * square_of(spring) / stiffness : 0.0;
+}
+
 /// What a contact with a Cundall-Strack spring remembers.
 template <int D>
 struct SpringMemory {

@@ -72,10 +72,9 @@ struct EnergyLaw {
   LawForce<2> operator()(const Overlap& o, const ContactMotion<2>& m, double mu, double dt,
                          SpringMemory<2>& memory) const {
     const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
-    const double elastic = young * slope(o.area / (o.length * o.length)) * o.chord;
     const double viscous =
         damping * o.chord * m.approach / o.length * std::sqrt(young / inverse_sum);
-    const double normal = std::max(elastic + viscous, 0.0);
+    const double normal = std::max(repulsion(o) + viscous, 0.0);
     const double inverse_tangential = inverse_sum + o.arm_i * o.arm_i * m.inverse_inertia_i +
                                       o.arm_j * o.arm_j * m.inverse_inertia_j;
     const double kt = tangential_stiffness();
@@ -84,11 +83,13 @@ struct EnergyLaw {
     return {normal, force};
   }
 
-  /// Elastic energy, J: U(A) and the spring's.
-  double energy(const Overlap& o, const SpringMemory<2>& memory) const {
-    const double kt = tangential_stiffness();
-    return young * stored(o.area / (o.length * o.length)) * o.length * o.length +
-           (kt > 0 ? 0.5 * memory.spring * memory.spring / kt : 0.0);
+  double repulsion(const Overlap& o) const {
+    return young * slope(o.area / (o.length * o.length)) * o.chord;
+  }
+  /// U(A) and the spring's.
+  ContactEnergy energy(const Overlap& o, const SpringMemory<2>& memory) const {
+    return {young * stored(o.area / (o.length * o.length)) * o.length * o.length,
+            spring_energy(memory.spring, tangential_stiffness())};
   }
 
  private:

@@ -92,12 +92,11 @@ struct HertzLaw {
     const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
     const double a = std::sqrt(o.radius * o.depth);
     const double kn = 2 * effective_young() * a, kt = 8 * effective_shear() * a;
-    const double elastic = kn * (2.0 / 3) * o.depth;
     const double across =
         viscoelastic ? normal_damping * a * mass : 2 * damping * std::sqrt(kn * mass);
     const double along =
         viscoelastic ? tangential_damping * a * mass : 2 * damping * std::sqrt(kt * mass);
-    const double normal = std::max(elastic + across * m.approach, 0.0);
+    const double normal = std::max(kn * (2.0 / 3) * o.depth + across * m.approach, 0.0);
     if (dt > 0) {
       const double before = memory.contact_radius;
       if (a < before || (displacement && before > 0)) memory.spring *= a / before;
@@ -112,12 +111,26 @@ struct HertzLaw {
     memory.contact_radius = std::sqrt(o.radius * o.depth);
   }
 
-  /// Elastic energy, J.
+  double repulsion(const OverlapIn<3>& o) const {
+    return 2 * effective_young() * std::sqrt(o.radius * o.depth) * (2.0 / 3) * o.depth;
+  }
   template <int D>
-  requires(D == 3) double energy(const OverlapIn<D>& o, const HertzMemory<D>& memory) const {
+  requires(D == 3) ContactEnergy energy(const OverlapIn<D>& o, const HertzMemory<D>& memory)
+  const {
     const double a = std::sqrt(o.radius * o.depth);
-    const double normal = 2 * effective_young() * a * (4.0 / 15) * o.depth * o.depth;
-    return normal + 0.5 * memory.spring.squaredNorm() / (8 * effective_shear() * a);
+    return {2 * effective_young() * a * (4.0 / 15) * o.depth * o.depth,
+            spring_energy(memory.spring, 8 * effective_shear() * a)};
+  }
+  /// What the spring's energy changes by, J, because its stiffness goes with the contact's radius:
+  /// after a step, by the memory `before` it. `force`: a loss of either way's; `displacement`: made
+  /// while the contact loads.
+  template <int D>
+  requires(D == 3) double stiffening(const OverlapIn<D>& o, const HertzMemory<D>& before) const {
+    if (!(before.contact_radius > 0)) return 0;
+    const double a = std::sqrt(o.radius * o.depth), share = a / before.contact_radius;
+    const double scale = displacement || share < 1 ? share : 1;
+    return spring_energy(before.spring, 8 * effective_shear() * before.contact_radius) *
+           (scale * scale / share - 1);
   }
 };
 

@@ -28,7 +28,8 @@ concept ContactLaw = PairMemory<typename L::template Memory<D>, D> &&
   { L::name } -> std::convertible_to<const char*>;
   { L::measures } -> std::convertible_to<Measures>;
   { law(overlap, motion, x, x, memory) } -> std::same_as<LawForce<D>>;
-  { law.energy(overlap, memory) } -> std::same_as<double>;  // elastic, J
+  { law.repulsion(overlap) } -> std::same_as<double>;  // normal force without dashpots, N
+  { law.energy(overlap, memory) } -> std::same_as<ContactEnergy>;  // elastic, J
 };
 
 /// A law for the registry: made of the material's numbers, and what of it bounds the time step

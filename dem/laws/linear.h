@@ -43,19 +43,17 @@ struct LinearLaw {
   LawForce<D> operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
                          SpringMemory<D>& memory) const {
     const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
-    const double normal =
-        std::max(normal_stiffness * o.depth + mass * normal_damping * m.approach, 0.0);
+    const double normal = std::max(repulsion(o) + mass * normal_damping * m.approach, 0.0);
     const auto force = friction_force(normal, mu, tangential_stiffness_, mass * tangential_damping,
                                       m.slip, dt, memory.spring);
     return {normal, force};
   }
 
-  /// Elastic energy, J.
+  double repulsion(const auto& o) const { return normal_stiffness * o.depth; }
   template <int D>
-  double energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {
-    return 0.5 * normal_stiffness * o.depth * o.depth +
-           (tangential_stiffness_ > 0 ? 0.5 * square_of(memory.spring) / tangential_stiffness_
-                                      : 0.0);
+  ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {
+    return {0.5 * normal_stiffness * o.depth * o.depth,
+            spring_energy(memory.spring, tangential_stiffness_)};
   }
 };
 

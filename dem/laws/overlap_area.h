@@ -47,11 +47,9 @@ struct OverlapAreaLaw {
   LawForce<2> operator()(const Overlap& o, const ContactMotion<2>& m, double mu, double dt,
                          SpringMemory<2>& memory) const {
     const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
-    const double scale = young / o.length;
-    const double elastic = scale * o.area;
     const double viscous =
         damping * o.chord * m.approach / o.length * std::sqrt(young / inverse_sum);
-    const double normal = std::max(elastic + viscous, 0.0);
+    const double normal = std::max(repulsion(o) + viscous, 0.0);
     const double inverse_tangential = inverse_sum + o.arm_i * o.arm_i * m.inverse_inertia_i +
                                       o.arm_j * o.arm_j * m.inverse_inertia_j;
     const double kt = tangential_stiffness();
@@ -60,13 +58,13 @@ struct OverlapAreaLaw {
     return {normal, force};
   }
 
-  /// Elastic energy, J: the work of R at constant l, (E/l) * integral of A over the depth. The
+  double repulsion(const Overlap& o) const { return young / o.length * o.area; }
+  /// Of the overlap the work of R at constant l, (E/l) * integral of A over the depth. The
   /// integral of the lens area is 2/5 A depth for small overlaps (A ~ depth^{3/2}), to O(depth/r).
   /// Of polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.
-  double energy(const Overlap& o, const SpringMemory<2>& memory) const {
-    return 0.4 * young * o.area / o.length * o.depth +
-           (tangential_ratio > 0 ? 0.5 * memory.spring * memory.spring / tangential_stiffness()
-                                 : 0.0);
+  ContactEnergy energy(const Overlap& o, const SpringMemory<2>& memory) const {
+    return {0.4 * young * o.area / o.length * o.depth,
+            spring_energy(memory.spring, tangential_stiffness())};
   }
 };
 

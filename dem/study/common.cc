@@ -34,6 +34,13 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         m.law, fmt::join(laws_that_feel_edges(), ", ")));
   }
   e.integrator = IntegratorKind::named(motion.integrator);
+  e.energy_balance = motion.energy_balance;
+  if (e.energy_balance && e.integrator != IntegratorKind::verlet) {
+    throw std::invalid_argument(
+        fmt::format("motion.energy_balance: found true with motion.integrator = \"{}\", allowed "
+                    "with verlet",
+                    motion.integrator));
+  }
   if (extremes.steepest_edge > 0 && e.rolling.on()) refuse_rolling_polygons();
   check_materials(e);
   check_rolling(e);
@@ -81,12 +88,21 @@ double round_down(double value) {
   return std::floor(value / unit * (1 + 1e-12)) * unit;
 }
 
-void check_method(const char* key, const std::string& method, const MaterialSetup& material) {
-  if (method != "newton" || !RollingLaw::of(material).on()) return;
-  throw std::invalid_argument(
-      fmt::format("{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
-                  "(the quasi-static solver knows no resistance against rolling)",
-                  key, material.rolling_friction));
+void check_method(const char* key, const std::string& method, const MaterialSetup& material,
+                  const MotionSetup& motion) {
+  if (method != "newton") return;
+  if (RollingLaw::of(material).on()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
+        "(the quasi-static solver knows no resistance against rolling)",
+        key, material.rolling_friction));
+  }
+  if (motion.energy_balance) {
+    throw std::invalid_argument(
+        fmt::format("{}: found \"newton\" with motion.energy_balance = true, allowed: \"damped\" "
+                    "(the quasi-static solver follows no energy)",
+                    key));
+  }
 }
 
 void check_background_damping(const RestSetup& rest, double time_step) {
@@ -144,6 +160,22 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
   figures["dem.unbalanced_force_max_ratio"] = state.max_unbalanced_force / state.mean_contact_force;
   figures["dem.kinetic_to_elastic_energy"] = state.kinetic_energy / state.elastic_energy;
   figures["dem.max_overlap_ratio"] = state.max_overlap_ratio;
+  if (!state.energy_followed) return;
+  const Diagnostics& d = state;
+  const ContactLosses& gone = d.contact_losses;
+  figures["energy.kinetic"] = d.kinetic_energy;
+  figures["energy.elastic"] = d.elastic_energy;
+  figures["energy.lost_in_dashpots"] = gone.dashpot;
+  figures["energy.lost_to_friction"] = gone.friction;
+  figures["energy.lost_to_rolling"] = gone.rolling;
+  figures["energy.lost_to_damping"] = d.damped_energy;
+  figures["energy.brought"] = d.brought_energy;
+  figures["energy.work_of_gravity"] = d.gravity_work;
+  figures["energy.work_of_load"] = d.applied_work;
+  figures["energy.work_of_walls"] = d.wall_work;
+  figures["energy.work_of_cell"] = d.cell_work;
+  figures["energy.work_of_law"] = gone.law;
+  figures["energy.balance_error"] = d.energy_balance() / d.size_of_work();
 }
 
 std::string smaller_step(const MotionSetup& m) {

@@ -35,7 +35,8 @@ EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup&
 double round_down(double value);
 /// Throws std::invalid_argument naming `key` where grains resist rolling, of which the quasi-static
 /// solver knows nothing, and its method is "newton".
-void check_method(const char* key, const std::string& method, const MaterialSetup& material);
+void check_method(const char* key, const std::string& method, const MaterialSetup& material,
+                  const MotionSetup& motion);
 
 /// Throws std::invalid_argument naming rest.background_damping when it would take more than its
 /// velocity from a grain within a time step.
@@ -57,7 +58,8 @@ double rest_progress(const Diagnostics& state, const RestSetup& rest);
 /// Behind that remedy: above the stable limit the step itself may be what keeps grains moving.
 std::string smaller_step(const MotionSetup& motion);
 
-/// Keys dem.*: grains, contacts, steps and how near the state is to rest.
+/// Keys dem.*: grains, contacts, steps and how near the state is to rest; with
+/// motion.energy_balance energy.* as well.
 void add_engine_figures(const Engine& engine, const Diagnostics& state,
                         std::map<std::string, double>& figures);
 

@@ -177,7 +177,7 @@ Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint6
                            std::int64_t most) {
   const PackingSetup& p = s.packing;
   check_packing(p);
-  check_method("load.method", s.load.method, s.material);
+  check_method("load.method", s.load.method, s.material, s.motion);
   Outlook out;
   out.grains = grains_of(p);
   const double radius = draws_pentagons(p) ? 0.85 * p.side : mean_radius(p);

@@ -129,11 +129,18 @@ void check_pile(const PileSetup& s) {
     if (s.sleep.on) refuse_sleep_with_rolling();
     require(s.source.opening == 0, "source.opening", s.source.opening,
             "0 with material.rolling_friction: beside a funnel's plates grains are polygons");
-    if (!s.change.gravity.empty()) check_method("change.method", s.change.method, s.material);
+  }
+  if (s.motion.energy_balance && s.sleep.on) {
+    throw std::invalid_argument(
+        "motion.energy_balance: found true with sleep.on = true, allowed with sleep.on = false (a "
+        "grain that falls asleep loses what it moves with)");
   }
   require_word(s.floor.kind, "floor.kind", {"smooth", "rough"});
   require(s.floor.length > 0, "floor.length", s.floor.length, "above 0");
   require_word(s.change.method, "change.method", {"newton", "damped"});
+  if (!s.change.gravity.empty()) {
+    check_method("change.method", s.change.method, s.material, s.motion);
+  }
   require(s.change.ramp_time > 0, "change.ramp_time", s.change.ramp_time, "above 0");
   for (std::size_t k = 0; k < s.change.gravity.size(); ++k) {
     const double g = s.change.gravity[k];

@@ -86,7 +86,7 @@ PointLoadRun::PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
       random_(seed),
       supply_(checked(setup_.packing), random_),
       phases_(phases_of(setup_.packing)) {
-  check_method("load.method", setup_.load.method, setup_.material);
+  check_method("load.method", setup_.load.method, setup_.material, setup_.motion);
   const double density = setup_.material.density;
   width_ = layer_width(setup_.packing);
   settings_ = engine_settings(setup_.material, setup_.motion, supply_.extremes(density), threads,

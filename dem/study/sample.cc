@@ -426,8 +426,12 @@ void SampleRun::record() {
   put("elastic_energy", d.elastic_energy);
   put("work", d.cell_work + d.wall_work);
   put("unbalanced_force_ratio", d.unbalanced_force_ratio);
-  if (plan_.energy_balance) {
-    put("dissipated_energy", d.dissipated_energy + d.damped_energy);
+  if (d.energy_followed) {
+    put("lost_in_dashpots", d.contact_losses.dashpot);
+    put("lost_to_friction", d.contact_losses.friction);
+    put("lost_to_rolling", d.contact_losses.rolling);
+    put("lost_to_damping", d.damped_energy);
+    put("work_of_law", d.contact_losses.law);
     put("energy_balance", d.energy_balance());
   }
   states_.emplace_back(std::move(s));

@@ -12,8 +12,9 @@ namespace grainfield::dem {
 
 /// Snapshots "state_000" (at rest, compressed) to "state_NNN" with NNN = plan.records, at equal
 /// steps of strain. Attributes of each, as numbers: strain (imposed), kinetic_energy,
-/// elastic_energy, work (of cell and walls since the beginning), dissipated_energy and
-/// energy_balance (with plan.energy_balance), unbalanced_force_ratio, strain_rate. Figure
+/// elastic_energy, work (of cell and walls since the beginning), unbalanced_force_ratio,
+/// strain_rate; with motion.energy_balance lost_in_dashpots, lost_to_friction, lost_to_rolling,
+/// lost_to_damping, work_of_law and energy_balance since the beginning. Figure
 /// "sample.stress_error": largest relative error of a servo during the deformation, at any of its
 /// measurements, "sample.stress_rms_error" the root of their mean square (where there is a servo).
 /// Throws std::invalid_argument naming the key that does not hold ("sample.pressure"). The bits of

@@ -59,11 +59,6 @@ void check_dimension(const SampleSetup& s) {
         fmt::format("motion.integrator: found \"{}\", allowed with sample.dim = 3: verlet",
                     s.motion.integrator));
   }
-  if (p.energy_balance && s.motion.integrator != "verlet") {
-    throw std::invalid_argument(
-        fmt::format("motion.integrator: found \"{}\", allowed with sample.energy_balance: verlet",
-                    s.motion.integrator));
-  }
   const double most = p.dim == 2 ? kMostLoose2 : kMostLoose3;
   if (p.start_fraction > most) {
     refuse("start_fraction", fmt::format("found {:g}, allowed with sample.dim = {}: up to {:g}, "
@@ -218,7 +213,6 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   out.settings =
       engine_settings(s.material, s.motion, extremes, 1, p.shape == "rand1", reserve, shape);
   out.settings.gravity_x = out.settings.gravity_y = out.settings.gravity_z = 0;
-  out.settings.energy_balance = p.energy_balance;
   const double step = out.settings.time_step;
   check_background_damping(s.rest, step);
   const auto box = sample_box(p, mean_volume(p));

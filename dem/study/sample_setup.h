@@ -43,14 +43,12 @@ struct SamplePlan {
   double strain = 0.5, strain_rate = 0.1;    ///< -, 1/s
   double ramp_time = 0.05;                   ///< s from rest to the full rate; walls
   int records = 20;                          ///< recorded states after the first one
-  bool energy_balance = false;
 
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
                     corners_min, corners_max, boundary, height_ratio, start_fraction, compression,
                     compress_to, pressure, solid_fraction, compression_strain, compression_rate,
-                    deformation, constant, sides, strain, strain_rate, ramp_time, records,
-                    energy_balance);
+                    deformation, constant, sides, strain, strain_rate, ramp_time, records);
   }
 };
 

@@ -28,6 +28,7 @@ strain = 0.04
 strain_rate = 0.3
 constant = "stress"
 records = 4
+[motion]
 energy_balance = true
 [material]
 law = "linear"
@@ -45,6 +46,7 @@ strain = 0.03
 strain_rate = 0.2
 ramp_time = 0.02
 records = 3
+[motion]
 energy_balance = true
 [material]
 law = "linear"
@@ -66,6 +68,7 @@ strain = 0.05
 strain_rate = 5
 constant = "stress"
 records = 3
+[motion]
 energy_balance = true
 [material]
 law = "hertz"

@@ -83,7 +83,7 @@ Loop round(const Law& law, const Outlines& shapes, const Path& path, int steps) 
     const ContactForce<2> f = forces_at<false>(o, law(o, at_rest, 0, 0, memory).normal, 0);
     out.work += -f.force.x() * (end.x - begin.x) - f.force.y() * (end.y - begin.y) +
                 f.torque_j * (end.angle - begin.angle);
-    out.stored = std::max(out.stored, law.energy(o, memory));
+    out.stored = std::max(out.stored, law.energy(o, memory).total());
     if (k % 50 == 0)
       out.crossings = std::max(out.crossings, crossings_of(a.corners(), b.corners()));
   }

@@ -70,11 +70,12 @@ struct SquareLaw {
   template <int D>
   LawForce<D> operator()(const OverlapIn<D>& o, const ContactMotion<D>&, double, double,
                          SpringMemory<D>&) const {
-    return {k * o.depth * o.depth, zero<TangentialOf<D>>()};
+    return {repulsion(o), zero<TangentialOf<D>>()};
   }
+  double repulsion(const auto& o) const { return k * o.depth * o.depth; }
   template <int D>
-  double energy(const OverlapIn<D>& o, const SpringMemory<D>&) const {
-    return k * o.depth * o.depth * o.depth / 3;
+  ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>&) const {
+    return {k * o.depth * o.depth * o.depth / 3, 0};
   }
 };
 

@@ -407,7 +407,7 @@ TEST(WallMotion, SameBitsOnAnyThreadsAndAfterARestart) {
     bits::Hash h;
     h.add(bits::hash_of(now));
     const Diagnostics d = engine->measure();
-    for (const double x : {d.wall_work, d.dissipated_energy, d.damped_energy}) h.add(x);
+    for (const double x : {d.wall_work, d.dissipated_energy(), d.damped_energy}) h.add(x);
     int touched = 0;
     for (const Wall& w : now.walls) {
       h.add(w.point);
