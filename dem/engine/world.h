@@ -73,7 +73,8 @@ struct World {
 
   /// A contact with a wall (a pair of contacts.walls) has a memory, of the law or of rolling.
   bool remembers_wall(int k) const {
-    return !contacts.walls[k].memory.empty() || (rolling.on && static_cast<std::size_t>(k) < rolling.walls.size() &&
+    return !contacts.walls[k].memory.empty() ||
+           (rolling.on && static_cast<std::size_t>(k) < rolling.walls.size() &&
             !rolling.walls[k].empty());
   }
   double time() const { return static_cast<double>(steps) * time_step; }

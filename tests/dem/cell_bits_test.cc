@@ -1,9 +1,14 @@
 // Cells, at rest and flowing: the same bits on any number of threads and after a restart; sleeping.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 #include "dem/laws/hertz.h"
+#include "dem/space/moving_cell.h"
 #include "tests/dem/bits_scene.h"
 #include "tests/dem/cell_scene.h"
+#include "tests/dem/damaged_image.h"
 
 namespace grainfield::dem::cells {
 namespace {
@@ -102,6 +107,68 @@ TEST(CellBitsOf, Gear) {
   r.grains = block(ShapeKind::disk, r.settings.cell, 10, 3, 1);
   r.later = simple_shear(2);
   expect_same_bits(r);
+}
+
+/// Few grains in a cell that shrinks to little more than kLeastCell of their radii.
+std::unique_ptr<Engine> narrow_cell(const ShapeKind& shape, bool with_grains) {
+  const int dim = shape == ShapeKind::sphere ? 3 : 2;
+  Matrix3d flow = Matrix3d::Zero();
+  for (int a = 0; a < dim; ++a) flow(a, a) = -5;
+  const double radius = 1.03125 / (kLeastCell * 1.045);
+  const EngineSettings settings =
+      settings_of(shape, cell_of(dim, {0, 0, 0}, square(1.03125), flow));
+  auto engine = make_engine(settings);
+  for (int k = 0; with_grains && k < (dim == 2 ? 4 : 8); ++k) {
+    NewGrain g;
+    g.x = 0.5 * (k % 2) + 0.2 + 0.02 * k;
+    g.y = 0.5 * (k / 2 % 2) + 0.3;
+    g.z = dim == 2 ? 0 : 0.5 * (k / 4) + 0.2;
+    g.vx = -5 * g.x;
+    g.vy = -5 * g.y;
+    g.vz = -5 * g.z;
+    g.radius = radius;
+    g.density = 1000;
+    engine->add(g);
+  }
+  return engine;
+}
+
+// The way across the cell is that of the last search, also after a restart: when to search, and
+// which image is the nearest one, go by it.
+TEST(CellBitsOf, ARestartInANarrowCell) {
+  for (const ShapeKind& shape : {ShapeKind::disk, ShapeKind::sphere}) {
+    constexpr long kEnd = 40;
+    const auto whole = narrow_cell(shape, true);
+    whole->step(kEnd);
+    EXPECT_LT(whole->cell().edges(0, 0), 1.007 * kLeastCell * whole->snapshot().grains[0].radius);
+    const std::uint64_t end = hash_of(whole->snapshot(), *whole);
+    for (long cut = 1; cut < kEnd; ++cut) {
+      const auto first = narrow_cell(shape, true), then = narrow_cell(shape, false);
+      first->step(cut);
+      then->restore(first->image());
+      EXPECT_TRUE(then->image() == first->image()) << cut;
+      then->step(kEnd - cut);
+      EXPECT_EQ(hash_of(then->snapshot(), *then), end) << cut;
+    }
+  }
+}
+
+TEST(CellBitsOf, AnImageWithoutAWayAcrossTheCellIsRefused) {
+  const auto engine = narrow_cell(ShapeKind::disk, true);
+  engine->step(1);
+  const std::string image = engine->image();
+  // The last number with the bits of the first edge: edges, then the way across.
+  const double across = engine->cell().edges(0, 0);
+  const std::size_t at = image.rfind(bytes_of(1.03125));
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_NE(across, 1.03125);  // the edges have moved on since the search
+  const auto refusal = [&](double value) {
+    return refusal_with(*narrow_cell(ShapeKind::disk, false), image, at, value);
+  };
+  EXPECT_EQ(refusal(1.03125), "accepted");
+  for (const double value : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(refusal(value), kBrokenImage) << value;
+  }
 }
 
 // Layers on a floor with periodic sides: they come to rest, sleep across the faces, and are woken

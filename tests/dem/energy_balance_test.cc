@@ -176,6 +176,41 @@ TEST(EnergyBalance, ClosesForACrowd) {
   }
 }
 
+// Damping and the applied force work from a grain's first step on, also of one that comes later.
+TEST(EnergyBalance, HoldsTheFirstStepOfEachGrain) {
+  for (const bool space : {false, true}) {
+    const double step = 1e-4, rate = 20, alpha = 0.2, push = space ? 0.3 : 30;
+    EngineSettings s = settings_of(LinearLaw{1e6, 3e5, 0, 0}, step, space);
+    s.local_damping = alpha;
+    const auto engine = make_engine(s);
+    engine->set_background_damping(rate);
+    for (int k = 0; k < 3; ++k) {
+      NewGrain g = grain(0.1 * k, 0, 0.01);
+      g.vx = 1 + k;
+      (space ? g.vz : g.vy) = -2;
+      g.spin = 5;
+      const std::int64_t id = engine->add(g);
+      AppliedForce force;
+      force.id = id;
+      force.fx = push;
+      engine->apply(force);
+      const Diagnostics before = engine->measure();
+      engine->step(1);
+      const Diagnostics after = engine->measure();
+      const Grain now = engine->snapshot().grains[id];
+      // Of this grain alone: those before it move on under their own damping.
+      const double speed = g.vx * g.vx + 4, spin = g.spin * g.spin;
+      const double drag = rate * (now.mass * speed + now.inertia * spin) + alpha * push * g.vx;
+      if (k == 0) {
+        EXPECT_NEAR(after.applied_work, push * g.vx * step, 1e-2 * push * g.vx * step) << space;
+        EXPECT_NEAR(after.damped_energy, drag * step, 1e-2 * drag * step) << space;
+      }
+      EXPECT_NEAR(after.energy_balance(), before.energy_balance(), 1e-3 * drag * step) << space;
+      engine->step(10);
+    }
+  }
+}
+
 TEST(EnergyBalance, IsRefusedWhereItWouldNotHold) {
   const auto refusal = [](auto change) {
     EngineSettings s = settings_of(LinearLaw{}, 1e-5);

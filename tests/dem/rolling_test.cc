@@ -8,6 +8,7 @@
 #include "dem/random/random.h"
 #include "tests/damaged_files.h"
 #include "tests/dem/bits_scene.h"
+#include "tests/dem/mesh_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -217,6 +218,49 @@ TEST(Rolling, SameBitsOnAnyThreadsAndAfterARestart) {
     bits::Scene brief = scene;
     brief.steps = 1000;
     EXPECT_EQ(hash_with_rolling(bits::end_of(brief, 8)), hash_with_rolling(bits::end_of(brief, 1)));
+  }
+}
+
+// Without friction the law remembers nothing, rolling does: a sphere in the edge of a mesh, first
+// deeper in the floor and then in the wall, keeps at each what it remembers when the list is made
+// anew.
+TEST(Rolling, GoesWithItsContactInACornerOfAMesh) {
+  EngineSettings s = settings_of(true, {300, 0, 0.5});
+  s.friction = 0;
+  s.gravity_y = -3;
+  s.gravity_z = -kGravity;
+  const auto engine = make_engine(s);
+  Wall box{"box", {0, 0, 0}, {0, 0, 1}, 0, "mesh"};
+  box.triangles = box_mesh({0, 0, 0}, {1, 1, 1}, true);
+  engine->add_wall(box);
+  const double depth = mass_of(true) / 1e4;  // by 1 m/s2
+  NewGrain g;
+  g.radius = kRadius;
+  g.density = 2500;
+  g.x = 0.4;
+  g.y = kRadius - 3 * depth;
+  g.z = kRadius - kGravity * depth;
+  g.spin_x = 0.5;
+  engine->add(g);
+  engine->step(200);
+  EXPECT_EQ(engine->snapshot().contacts.at(0).normal, Vec3(0, 0, -1));  // towards the wall
+  engine->set_gravity(0, -kGravity, -3);
+  engine->step(200);
+  const std::vector<Contact> before = engine->snapshot().contacts;
+  g.x = 0.8;  // far away
+  g.y = g.z = 0.5;
+  g.spin_x = 0;
+  engine->add(g);
+  engine->step(1);
+  const std::vector<Contact> after = engine->snapshot().contacts;
+  ASSERT_EQ(before.size(), 2U);
+  ASSERT_EQ(after.size(), 2U);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(before[k].normal, k == 0 ? Vec3(0, -1, 0) : Vec3(0, 0, -1));
+    EXPECT_TRUE(before[k].spring_vector.isZero(0));
+    const double size = before[k].rolling_spring.norm();
+    EXPECT_GT(size, 1e-3);
+    EXPECT_LT((after[k].rolling_spring - before[k].rolling_spring).norm(), 0.02 * size) << k;
   }
 }
 

@@ -279,6 +279,24 @@ TEST_F(Stl, IsReadInBothForms) {
   }
 }
 
+TEST_F(Stl, SolidsAfterTheFirstAreReadToo) {
+  const Triangles other = box_mesh({2, 0, 0}, {3, 1, 1}, false);
+  write(ascii(box_) + "\n" + ascii(other));
+  const Triangles mesh = read_stl(file_, mm_);
+  ASSERT_EQ(mesh.size(), 24U);
+  for (std::size_t t = 0; t < 12; ++t) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR((mesh[12 + t][k] - other[t][k]).norm(), 0, 1e-15);
+  }
+  EXPECT_NEAR(topology_of(mesh, "").volume, 1.125, 1e-13);
+  write(ascii(box_) + "rubbish\n" + ascii(other));  // on line 2 + 12 facets of 7 + 1
+  EXPECT_EQ(refused(mm_), file_ +
+                              ": line 87: found \"rubbish\", expected solid or the end of the "
+                              "file of an ASCII STL file");
+  const std::string both = ascii(box_) + ascii(other);
+  write(both.substr(0, both.rfind("endsolid")));
+  EXPECT_THAT(refused(mm_), HasSubstr("found \"\", expected facet or endsolid"));
+}
+
 TEST_F(Stl, OpenOnesMustBeMeant) {
   Triangles open = box_;
   open.erase(open.begin() + 7);
