@@ -6,6 +6,7 @@
 
 #include "dem/walls/box.h"
 #include "tests/dem/damaged_image.h"
+#include "tests/dem/mesh_scene.h"
 #include "tests/dem/wall_scene.h"
 
 namespace grainfield::dem {
@@ -94,6 +95,54 @@ TEST(WallRefusals, AWallThatTurnsThroughGrainsTooFastFails) {
   } catch (const ComputationFailed& e) {
     EXPECT_THAT(e.what(), HasSubstr("a wall goes through grains by more than half a radius a step; "
                                     "lower its speed or motion.time_step (now 0.001 s)"));
+  }
+}
+
+// A wall that ends somewhere may not turn over grains either, wherever it is seen to.
+TEST(WallRefusals, WallsThatTurnAcrossThemselvesTooFast) {
+  const auto refusal = [](Wall wall, const Vec3& spin, const Vec3& centre,
+                          const Vec3& v = {0, 0, 0}) {
+    const bool space = wall.shape != "cylinder" || wall.length > 0;
+    const LinearLaw law{1e5, 3e4, 0, 0};
+    const auto engine = make_engine(space ? spheres(law, 1e-4) : disks(law, 1e-4));
+    engine->add_wall(wall);
+    engine->add(grain({5, 0, 0}, {0, 0, 0}));
+    WallMotion m = moving(v, spin);
+    m.centre = centre;
+    engine->set_wall_motion(0, m);
+    try {
+      engine->step(1);
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  const auto refused = [](const char* speed) {
+    return std::string("wall wall: speed: found ") + speed +
+           " m/s, allowed: up to 50 m/s, at which it passes half a radius of the smallest grain in "
+           "a step; lower it or motion.time_step (now 0.0001 s)";
+  };
+  const Vec3 z(0, 0, 1), none(0, 0, 0);
+  Wall blade{"wall", none, z, 0, "mesh"};
+  blade.triangles = box_mesh({0, -0.05, -3}, {1, 0.05, 3}, false);
+  EXPECT_EQ(refusal(blade, 49 * z, none), "accepted");  // by the arm from the axis
+  EXPECT_EQ(refusal(blade, 51 * z, none), refused("51.06"));
+  EXPECT_EQ(refusal(blade, 26 * z, Vec3(-1, 0, 0)), refused("52.02"));
+  EXPECT_EQ(refusal(blade, 49 * z, none, Vec3(0, 0, 3)), refused("52.06"));
+  // About its own axis a round wall stays where it is, however fast.
+  Wall ring{"wall", none, z, 0, "cylinder"};
+  ring.radius = 1;
+  ring.inside = false;
+  EXPECT_EQ(refusal(ring, 1000 * z, none), "accepted");
+  EXPECT_EQ(refusal(ring, 1000 * z, Vec3(0.049, 0, 0)), "accepted");
+  EXPECT_EQ(refusal(ring, 1000 * z, Vec3(0.051, 0, 0)), refused("51"));
+  for (const char* shape : {"cylinder", "cone"}) {
+    Wall shell{"wall", none, z, 0, shape};
+    shell.radius = shell.end_radius = 0.5;
+    shell.length = 2;
+    EXPECT_EQ(refusal(shell, 1000 * z, none), "accepted") << shape;
+    EXPECT_EQ(refusal(shell, 1000 * z, Vec3(0.5, 0, 0)), refused("1000")) << shape;
+    EXPECT_EQ(refusal(shell, Vec3(21, 0, 0), none), refused("52.5")) << shape;
   }
 }
 

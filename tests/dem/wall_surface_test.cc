@@ -103,9 +103,13 @@ TEST(WallSurface, EndlessCylindersHaveOneSide) {
   ASSERT_EQ(rod->patches(0.55 * out, 0.1, found), 1);
   EXPECT_NEAR((found[0].plane.normal - out).norm(), 0, 1e-14);
   EXPECT_EQ(found[0].curvature, 2);
-  EXPECT_TRUE(rod->turns_in_place(3 * axis, -4 * axis));
-  EXPECT_FALSE(rod->turns_in_place(3 * axis + out, axis));
-  EXPECT_FALSE(rod->turns_in_place(3 * axis, out));
+  EXPECT_EQ(rod->sweeping_arm(3 * axis, -4 * axis), 0);
+  EXPECT_NEAR(rod->sweeping_arm(3 * axis + 0.2 * out, axis), 0.2, 1e-15);
+  EXPECT_TRUE(std::isinf(rod->sweeping_arm(3 * axis, out)));
+  const auto cone = surface_of<3>(round_wall("cone", 0.5, 0.2, 2, true));
+  EXPECT_EQ(cone->sweeping_arm(3 * axis, axis), 0);
+  EXPECT_NEAR(cone->sweeping_arm(0.1 * out, -axis), 0.6, 1e-15);
+  EXPECT_NEAR(cone->sweeping_arm({0, 0, 0}, 7 * out), 2.2, 1e-12);  // its end turns over
   Wall circle{"ring", {0, 0, 0}, {0, 1, 0}, 0, "cylinder"};
   circle.radius = 0.5;
   Patch<2> flat[kMostPatches];
