@@ -36,8 +36,8 @@ class Search {
     });
     const auto wall_kept =
         contacts.kept_walls(world_.grains.ids, [&](int i) { return sleepers.is_asleep(i); });
-    const auto wall_normals = contacts.kept_normals(
-        world_.grains.ids, [&](int k) { return world_.remembers_wall(k); });
+    const auto wall_normals =
+        contacts.kept_normals(world_.grains.ids, [&](int k) { return world_.remembers_wall(k); });
     CarryAccounts<World> accounts(world_);
     CarryRolling<World> rolling(world_);
     world_.gather_touches();

@@ -62,9 +62,8 @@ void visit_wall(const World& world, int i, const typename World::Body& b, int fi
   const int slots = world.walls.slots_of(wall);
   Patch<dim> patches[kMostPatches];
   const int count = world.walls.touching(wall, b.position, b.radius, patches);
-  const auto slot_of =
-      slots_for<dim>(patches, count, &contacts.wall_normals[first], slots,
-                     [&](int slot) { return world.remembers_wall(first + slot); });
+  const auto slot_of = slots_for<dim>(patches, count, &contacts.wall_normals[first], slots,
+                                      [&](int slot) { return world.remembers_wall(first + slot); });
   for (int rank = 0; rank < count; ++rank) {
     typename World::Overlap o;
     if (!world.overlap_patch(i, b, patches[rank], o)) continue;
