@@ -246,8 +246,7 @@ class Sweep {
   /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
   /// that cross by edges n (pair_force_across). `local`: what of the load is local damping. It is
   /// against the flow and no part of that.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load,
-                                                        const Vector local) {
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load, const Vector local) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
@@ -392,7 +391,10 @@ class Sweep {
     const double rate = world_.around.drag;
     const Vector drag = rate * world_.grains.inertias[i].mass * velocity - local.force;
     SpinOf<dim> turning = zero<SpinOf<dim>>();
-    if (b.inverse_inertia > 0) turning = (rate / b.inverse_inertia) * b.spin - local.torque;
+    if (b.inverse_inertia > 0) {
+      turning = rate * angular_momentum_of(b, world_.rotation(i), world_.grains.inertias[i]) -
+                local.torque;
+    }
     account.damped += 0.5 * dt *
                       (Vector(account.drag + drag).dot(velocity) +
                        power_of(SpinOf<dim>(account.drag_torque + turning), b.spin));

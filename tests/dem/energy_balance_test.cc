@@ -211,6 +211,53 @@ TEST(EnergyBalance, HoldsTheFirstStepOfEachGrain) {
   }
 }
 
+// Damping takes from the angular momentum, which lies aside of the spin where the moments differ.
+TEST(EnergyBalance, ClosesForADampedGrainOfThreeMoments) {
+  double previous = 0;
+  for (const double step : {4e-4, 2e-4, 1e-4}) {
+    const auto engine = make_engine(settings_of(LinearLaw{}, step, true));
+    NewGrain g = grain(0, 0, 0.01);
+    g.moments = {1e-7, 2e-7, 5e-7};
+    g.spin = 30;
+    g.spin_x = 20;
+    g.spin_y = -15;
+    engine->add(g);
+    engine->set_background_damping(5);
+    const Diagnostics before = engine->measure();
+    engine->step(std::lround(0.2 / step));
+    const Diagnostics after = engine->measure();
+    EXPECT_NEAR(after.damped_energy, (1 - std::exp(-2.0)) * before.kinetic_energy,
+                0.05 * before.kinetic_energy);
+    const double error = std::fabs(after.energy_balance() - before.energy_balance());
+    EXPECT_LT(error, 1e-4 * after.damped_energy) << step;
+    if (previous > 0) {
+      EXPECT_NEAR(std::log2(previous / error), 2, 0.3) << step;
+    }
+    previous = error;
+  }
+}
+
+// The motion of a wall told about another centre is the same motion: the change takes nothing.
+TEST(EnergyBalance, GoesOnWhenAWallTurnsAboutAnotherCentre) {
+  for (const bool space : {false, true}) {
+    const double step = 1e-5, turning = 2;
+    const auto engine = make_engine(settings_of(LinearLaw{1e5, 3e4, 0, 0}, step, space));
+    const Vec3 up = space ? Vec3::UnitZ() : Vec3::UnitY(), axis = Vec3::UnitX().cross(up);
+    engine->add_wall({"paddle", {0, 0, 0}, up, 0.5});
+    engine->set_wall_motion("paddle", {{0, 0, 0}, turning * axis, {}});
+    engine->add(space ? grain(0.5, 0, 0.01, 0.01) : grain(0.5, 0.01, 0.01));
+    engine->step(space ? 50 : 300);  // about half of a collision
+    const double force = engine->walls()[0].force.norm();
+    const Diagnostics before = engine->measure();
+    const Vec3 centre(0.4, 0, 0);
+    engine->set_wall_motion("paddle", {turning * axis.cross(centre), turning * axis, centre});
+    engine->step(1);
+    const double work = step * force * turning * centre.norm();  // by the way of the new centre
+    EXPECT_GT(work, 1e-3 * before.kinetic_energy);
+    EXPECT_NEAR(engine->measure().energy_balance(), before.energy_balance(), 1e-2 * work) << space;
+  }
+}
+
 TEST(EnergyBalance, IsRefusedWhereItWouldNotHold) {
   const auto refusal = [](auto change) {
     EngineSettings s = settings_of(LinearLaw{}, 1e-5);
