@@ -341,8 +341,13 @@ class EngineLoop final : public Engine {
   double stiffness_at(int i, int slot) const {
     const auto& law = world_.wall_rule(i, slot).law;
     const double mass = world_.grains.inertias[i].mass, radius = world_.grains.bodies[i].radius;
-    return law.stiffness(radius) +
-           2.0 / 3 * mass * law.viscous_rate(mass, radius) / world_.time_step;
+    double rate = 0;
+    if constexpr (requires { law.normal_rate(mass, radius); }) {
+      rate = law.normal_rate(mass, radius);
+    } else {
+      rate = law.viscous_rate(mass, radius);
+    }
+    return law.stiffness(radius) + 2.0 / 3 * mass * rate / world_.time_step;
   }
   void check_wall_speeds() {
     if (speeds_checked_ && checked_grains_ == world_.grains.size()) return;
