@@ -295,6 +295,27 @@ TEST(CellFlow, ItsBooksCloseWithDamping) {
   }
 }
 
+// Gravity works on what moves with the flow, wherever a grain has been carried from.
+TEST(CellFlow, ItsBooksCloseWithGravity) {
+  for (const ShapeKind& shape : {ShapeKind::disk, ShapeKind::sphere}) {
+    const int dim = shape == ShapeKind::sphere ? 3 : 2;
+    const Matrix3d flow = simple_shear(2.5);
+    EngineSettings settings = settings_of(shape, cell_of(dim, {0.3, -0.2, 0}, square(1), flow));
+    settings.gravity_x = 3;
+    settings.gravity_y = -1;
+    settings.energy_balance = true;
+    auto grains = floating(settings.cell, dim);
+    for (NewGrain& g : grains) g.image = {0, 2, 0};  // two cells above
+    const auto engine = engine_with(settings, grains);
+    const Diagnostics first = engine->measure();
+    engine->step(1000);
+    const Diagnostics last = engine->measure();
+    const double fallen = first.potential_energy - last.potential_energy;
+    EXPECT_GT(fallen, 10 * last.kinetic_energy);
+    EXPECT_NEAR(last.energy_balance(), first.energy_balance(), 2e-3 * fallen) << dim;
+  }
+}
+
 class CellShear : public testing::TestWithParam<ShapeKind> {};
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CellShear,

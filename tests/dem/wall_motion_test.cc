@@ -253,6 +253,53 @@ TEST(WallMotion, WakesSleepersBeforeItTouchesThem) {
   EXPECT_GT(engine->snapshot().grains[1].position.x(), 0.021 + 0.008);
 }
 
+// Two quarter turns about different axes do not commute.
+TEST(WallMotion, TurnsAboutOneAxisAfterTheOther) {
+  const auto engine = make_engine(spheres(LinearLaw{}, 1e-4));
+  engine->add_wall({"wall", {1, 0, 0}, {1, 0, 0}, 0});
+  const double rate = 0.5 * std::numbers::pi / (1000 * 1e-4);
+  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0)}) {
+    engine->set_wall_motion(0, {{0, 0, 0}, rate * axis, Vec3(0, 0, 0)});
+    engine->step(1000);
+  }
+  EXPECT_NEAR((engine->walls()[0].normal - Vec3(0, 0, 1)).norm(), 0, 1e-12);
+  EXPECT_NEAR((engine->walls()[0].point - Vec3(0, 0, 1)).norm(), 0, 1e-12);
+}
+
+TEST(WallMotion, RampsBeginWhenTheyAreSet) {
+  const auto engine = make_engine(disks(LinearLaw{}, 1e-4));
+  engine->add_wall({"lid", {0, 1, 0}, {0, -1, 0}, 0});
+  engine->step(3000);
+  engine->set_wall_motion("lid", {{0, -0.4, 0}, {0, 0, 0}, {}, 0.1});
+  engine->step(500);
+  EXPECT_NEAR(engine->walls()[0].velocity.y(), -0.2, 1e-3);
+  engine->step(500);
+  EXPECT_NEAR(engine->walls()[0].velocity.y(), -0.4, 1e-4);
+  EXPECT_NEAR(engine->walls()[0].point.y(), 1 - 0.5 * 0.4 * 0.1, 1e-6);
+}
+
+// One that passes more than the reach of the sleepers' guard between two reviews.
+TEST(WallMotion, AFastWallWakesASleeperInTime) {
+  EngineSettings s = disks(OverlapAreaLaw{1e6, 0.75}, 2e-5);
+  s.gravity_y = -9.81;
+  s.sleep.on = true;
+  const auto engine = make_engine(s);
+  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+  engine->add_wall({"piston", {-2, 0, 0}, {1, 0, 0}, 0});
+  engine->add(grain({0, kRadius, 0}, {0, 0, 0}));
+  engine->set_wall_motion("piston", moving({4, 0, 0}));
+  bool slept = false;
+  double height = 1;  // of the grain over the piston, in radii
+  while (height > 0.99) {
+    engine->step(1);
+    slept |= engine->motion().awake == 0;
+    if (engine->walls()[1].point.x() < -0.2) continue;
+    height = (engine->snapshot().grains[0].position.x() - engine->walls()[1].point.x()) / kRadius;
+    EXPECT_TRUE(height > 1 || engine->motion().awake == 1) << height;
+  }
+  EXPECT_TRUE(slept);
+}
+
 // A servo, a mesh that shakes, a cylinder that turns; threads, batches of steps, restarts.
 TEST(WallMotion, SameBitsOnAnyThreadsAndAfterARestart) {
   const auto run = [](bool space, int threads, long cut, long batch) {
