@@ -111,10 +111,12 @@ class EngineLoop final : public Engine {
     }
   }
   void set_wall_motion(int wall, const WallMotion& motion) override {
-    if (wall >= 0 && wall < world_.walls.size()) {
-      check_wall_motion(world_.cell.told(), world_.walls.placed(wall), motion);
-    }
+    const bool known = wall >= 0 && wall < world_.walls.size();
+    if (known) check_wall_motion(world_.cell.told(), world_.walls.placed(wall), motion);
+    const typename State::Vector before =
+        known ? world_.walls.state(wall).centre : zero<typename State::Vector>();
     world_.walls.set_motion(wall, motion, time());
+    move_torques(wall, before - world_.walls.state(wall).centre);
     const auto [force, torque] =
         Report(world_).on_wall(wall, to_three(world_.walls.state(wall).centre));
     world_.walls.feel(wall, in_space<dim>(force), turning_in_space<dim>(torque));
@@ -303,6 +305,17 @@ class EngineLoop final : public Engine {
   // Walls: by one thread, while the grains stand still (move_walls, between the sweeps of two
   // steps) or after they have asked for all that moves them (feel_walls).
 
+  /// The torques on a wall in the books of the last step, about a centre from which it is `way` to
+  /// the former one.
+  void move_torques(int wall, const typename State::Vector& way) {
+    if (!world_.balance.on) return;
+    const auto& list = world_.contacts.walls;
+    for (int k = 0; k < list.size(); ++k) {
+      if (world_.walls.wall_of(list[k].j) != wall) continue;
+      ContactForce<dim>& f = world_.balance.walls[k].before;
+      f.torque_j += torque_of(way, typename State::Vector(-f.force));
+    }
+  }
   void move_walls(long step) {
     if (!world_.walls.any_driven()) return;
     world_.walls.advance(static_cast<double>(step) * world_.time_step, world_.time_step);
@@ -336,8 +349,13 @@ class EngineLoop final : public Engine {
   double stiffness_at(int i, int slot) const {
     const auto& law = world_.wall_rule(i, slot).law;
     const double mass = world_.grains.inertias[i].mass, radius = world_.grains.bodies[i].radius;
-    return law.stiffness(radius) +
-           2.0 / 3 * mass * law.viscous_rate(mass, radius) / world_.time_step;
+    double rate = 0;
+    if constexpr (requires { law.normal_rate(mass, radius); }) {
+      rate = law.normal_rate(mass, radius);
+    } else {
+      rate = law.viscous_rate(mass, radius);
+    }
+    return law.stiffness(radius) + 2.0 / 3 * mass * rate / world_.time_step;
   }
   void check_wall_speeds() {
     if (speeds_checked_ && checked_grains_ == world_.grains.size()) return;

@@ -385,7 +385,10 @@ class Sweep {
     const double rate = world_.around.drag;
     const Vector drag = rate * world_.grains.inertias[i].mass * velocity - local.force;
     SpinOf<dim> turning = zero<SpinOf<dim>>();
-    if (b.inverse_inertia > 0) turning = (rate / b.inverse_inertia) * b.spin - local.torque;
+    if (b.inverse_inertia > 0) {
+      turning = rate * angular_momentum_of(b, world_.rotation(i), world_.grains.inertias[i]) -
+                local.torque;
+    }
     account.damped += 0.5 * dt *
                       (Vector(account.drag + drag).dot(velocity) +
                        power_of(SpinOf<dim>(account.drag_torque + turning), b.spin));

@@ -64,23 +64,27 @@ struct HertzLaw {
   double effective_young() const { return young / (2 * (1 - poisson * poisson)); }
   double effective_shear() const { return young / (4 * (1 + poisson) * (2 - poisson)); }
 
-  /// Of grains of this radius, at kMostDepth of it: stiffness that bounds the time step, N/m.
+  /// Of grains of this radius, at kMostDepth of it: the contact's radius, m, and the stiffness that
+  /// bounds the time step, N/m.
   static constexpr double kMostDepth = 0.02;
-  double stiffness(double radius) const {
-    return 2 * effective_young() * 0.5 * radius * std::sqrt(2 * kMostDepth);
-  }
+  static double most_contact(double radius) { return 0.5 * radius * std::sqrt(2 * kMostDepth); }
+  double stiffness(double radius) const { return 2 * effective_young() * most_contact(radius); }
   double tangential_stiffness(double radius) const {
     return stiffness(radius) * 4 * effective_shear() / effective_young();
   }
-  /// Decay rate of the dashpots of grains with twelve neighbours, 1/s. Viscoelastic, by
-  /// c = gamma a m/2: moving against the others 12 c/m, or all spinning alike, twice the slip of
-  /// one and 2/3 of it at the mean contact over 0.4 m R^2: 40 c/m.
+  /// Decay rate of the dashpots of grains with twelve neighbours, 1/s: moving against the others
+  /// 12 c_n/m, or all spinning alike, twice the slip of one and 2/3 of it at the mean contact over
+  /// 0.4 m R^2: 40 c_t/m. Viscoelastic c = gamma a m/2, critical c = 2 zeta sqrt(k m/2).
   double viscous_rate(double mass, double radius) const {
-    if (viscoelastic) {
-      const double a = 0.5 * radius * std::sqrt(2 * kMostDepth);
-      return a * std::max(6 * normal_damping, 20 * tangential_damping);
-    }
-    return 12 * 2 * damping * std::sqrt(stiffness(radius) * 0.5 / mass);
+    const double spinning =
+        viscoelastic ? 20 * tangential_damping * most_contact(radius)
+                     : 40 * 2 * damping * std::sqrt(0.5 * tangential_stiffness(radius) / mass);
+    return std::max(normal_rate(mass, radius), spinning);
+  }
+  /// Of the normal dashpots alone.
+  double normal_rate(double mass, double radius) const {
+    return viscoelastic ? 6 * normal_damping * most_contact(radius)
+                        : 12 * 2 * damping * std::sqrt(0.5 * stiffness(radius) / mass);
   }
   double edge_stiffness(double /*steepness*/) const { return 0; }
   double edge_rate(double /*mass*/, double /*steepness*/) const { return 0; }

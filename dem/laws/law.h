@@ -33,8 +33,9 @@ concept ContactLaw = PairMemory<typename L::template Memory<D>, D> &&
 };
 
 /// A law for the registry: made of the material's numbers, and what of it bounds the time step
-/// (engine.h: stable_time_step). `edges`: by which measure of a polygon its force grows
-/// with the width of a contact.
+/// (engine.h: stable_time_step). It may tell normal_rate(x, x) of its normal dashpots alone, for
+/// the servos of walls, where its viscous_rate is that of others. `edges`: by which measure of a
+/// polygon its force grows with the width of a contact.
 template <class L>
 concept LawEntry = requires(const L& law, double x) {
   { L::name } -> std::convertible_to<const char*>;

@@ -22,4 +22,9 @@ inline double spin_rate_of(const Body<2>& b, const Load<2>& load) {
   return load.torque * b.inverse_inertia - load.drag * b.spin;
 }
 
+/// Angular momentum in the plane, kg m2/s; 0 of a body that does not turn.
+inline double angular_momentum_of(const Body<2>& b, double /*rotation*/, const Inertia<2>&) {
+  return b.inverse_inertia > 0 ? b.spin / b.inverse_inertia : 0.0;
+}
+
 }  // namespace grainfield::dem

@@ -11,6 +11,19 @@
 
 namespace grainfield::dem {
 
+inline bool is_round(const Inertia<3>& inertia) {
+  const Eigen::Vector3d& i = inertia.moments;
+  return i[0] == i[1] && i[1] == i[2];
+}
+/// Angular momentum, kg m2/s; 0 of a body that does not turn.
+inline Eigen::Vector3d angular_momentum_of(const Body<3>& b, const RotationOf<3>& rotation,
+                                           const Inertia<3>& inertia) {
+  if (b.inverse_inertia == 0) return Eigen::Vector3d::Zero();
+  if (is_round(inertia)) return inertia.moments[0] * b.spin;
+  const Eigen::Vector3d in_body = rotation.conjugate() * b.spin;
+  return rotation * inertia.moments.cwiseProduct(in_body);
+}
+
 template <>
 class VerletIntegrator<3> {
  public:
@@ -28,7 +41,7 @@ class VerletIntegrator<3> {
 
   void start(const Body<3>& b, Memory& m, const Inertia<3>& inertia, const Load<3>& load) const {
     m.acceleration = acceleration_of(b, load);
-    m.torque = load.torque - load.drag * momentum_of(b, m, inertia);
+    m.torque = load.torque - load.drag * angular_momentum_of(b, m.rotation, inertia);
   }
   void begin(Body<3>& b, Memory& m, const Inertia<3>& inertia) const {
     b.velocity += 0.5 * dt_ * m.acceleration;
@@ -49,28 +62,18 @@ class VerletIntegrator<3> {
     if (is_round(inertia)) {
       b.spin += (0.5 * dt_ * b.inverse_inertia) * m.torque;
     } else {
-      const Vector momentum = momentum_of(b, m, inertia) + 0.5 * dt_ * m.torque;
+      const Vector momentum = angular_momentum_of(b, m.rotation, inertia) + 0.5 * dt_ * m.torque;
       b.spin = spin_of(m.rotation.conjugate() * momentum, m, inertia);
     }
   }
 
  private:
-  static bool is_round(const Inertia<3>& inertia) {
-    const Vector& i = inertia.moments;
-    return i[0] == i[1] && i[1] == i[2];
-  }
-  static Vector momentum_of(const Body<3>& b, const Memory& m, const Inertia<3>& inertia) {
-    if (b.inverse_inertia == 0) return Vector::Zero();
-    if (is_round(inertia)) return inertia.moments[0] * b.spin;
-    const Vector in_body = m.rotation.conjugate() * b.spin;
-    return m.rotation * inertia.moments.cwiseProduct(in_body);
-  }
   /// From the angular momentum in the body frame.
   static Vector spin_of(const Vector& momentum, const Memory& m, const Inertia<3>& inertia) {
     return m.rotation * momentum.cwiseQuotient(inertia.moments);
   }
   void drift(Body<3>& b, Memory& m, const Inertia<3>& inertia) const {
-    const Vector world = momentum_of(b, m, inertia) + 0.5 * dt_ * m.torque;
+    const Vector world = angular_momentum_of(b, m.rotation, inertia) + 0.5 * dt_ * m.torque;
     Vector momentum = m.rotation.conjugate() * world;
     const auto turn = [&](int axis, double dt) {
       const Vector by = dt * momentum[axis] / inertia.moments[axis] * Vector::Unit(axis);

@@ -323,7 +323,7 @@ bool MovingCell<D>::settle() {
   derive();
   for (int a = 0; a < D; ++a) per_width_[a] = state_.listed.row(a).norm();
   look_ahead();
-  return state_.shortest > 0;
+  return state_.shortest > 0 && std::isfinite(state_.shortest);
 }
 
 template class MovingCell<2>;

@@ -133,7 +133,9 @@ class PathRun final : public PairRun {
       r.first.velocity = way / dt;
       r.first.spin = {0, 0, turn / dt};
     }
-    r.forces = probe_->at(r.first, r.second, dt);
+    // Half of the slip reaches the springs before the forces are taken, the rest after.
+    r.forces = probe_->at(r.first, r.second, 0.5 * dt);
+    if (dt > 0) probe_->at(r.first, r.second, 0.5 * dt);
     now_.work -= r.forces.force.dot(way) + r.forces.torque_first.z() * turn;
     now_.stored = std::max(now_.stored, r.forces.stored);
     now_.deepest = std::max(now_.deepest, r.forces.depth);

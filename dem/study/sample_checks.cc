@@ -101,6 +101,12 @@ void check_servo(const SamplePlan& p) {
 }
 
 void check_strains(const SamplePlan& p) {
+  for (const auto& [key, rate] : {std::pair("compression_rate", p.compression_rate),
+                                  std::pair("strain_rate", p.strain_rate)}) {
+    if (!(rate > 0 && std::isfinite(rate))) {
+      refuse(key, fmt::format("found {:g} 1/s, allowed: above 0", rate));
+    }
+  }
   if (p.compress_to == "solid_fraction" && p.solid_fraction <= p.start_fraction) {
     refuse("solid_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
                                          p.solid_fraction, p.start_fraction));

@@ -53,6 +53,14 @@ class MeshSurface final : public WallSurface<3> {
 
   int slots() const override { return kMostPatches; }
 
+  double sweeping_arm(const Vec3& centre, const Vec3& spin) const override {
+    double far = 0;
+    for (const Vec3& at : mesh_.corners) {
+      far = std::max(far, (at - centre).cross(spin.normalized()).norm());
+    }
+    return far;
+  }
+
   int patches(const Vec3& c, double reach, Patch<3>* found) const override {
     std::array<Minimum, kMostMinima> minima;
     int count = 0;

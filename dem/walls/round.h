@@ -6,6 +6,12 @@
 
 namespace grainfield::dem {
 
+// Round-off of an axis' place and direction, relative.
+inline constexpr double kOnAxis = 1e-9;
+inline bool lies_along(const Eigen::Vector3d& spin, const Eigen::Vector3d& axis) {
+  return spin.cross(axis).norm() <= kOnAxis * spin.norm();
+}
+
 /// One side is the wall's: grains are inside (a round container) or outside (a column).
 template <int D>
 class EndlessCylinder final : public WallSurface<D> {
@@ -31,12 +37,14 @@ class EndlessCylinder final : public WallSurface<D> {
     found->curvature = (inside_ ? -1 : 1) / radius_;
     return 1;
   }
-  bool turns_in_place(const Vector& centre, const Eigen::Vector3d& spin) const override {
+  /// About a line along its axis it is carried as a whole.
+  double sweeping_arm(const Vector& centre, const Eigen::Vector3d& spin) const override {
     if constexpr (D == 2) {
-      return centre == Vector::Zero();
+      return centre.norm();
     } else {
-      const double far = 1e-9 * (radius_ + centre.norm());
-      return spin.cross(axis_).norm() <= 1e-9 * spin.norm() && centre.cross(axis_).norm() <= far;
+      if (!lies_along(spin, axis_)) return WallSurface<D>::sweeping_arm(centre, spin);
+      const double away = centre.cross(axis_).norm();
+      return away <= kOnAxis * (radius_ + centre.norm()) ? 0 : away;
     }
   }
 
@@ -93,9 +101,11 @@ class RoundShell final : public WallSurface<3> {
     found->curvature = rim || at_rho <= 0 ? 0 : (within ? -1 : 1) * along_[1] / at_rho;
     return 1;
   }
-  bool turns_in_place(const Vector& centre, const Eigen::Vector3d& spin) const override {
-    const double far = 1e-9 * (radius_ + end_radius_ + centre.norm());
-    return spin.cross(axis_).norm() <= 1e-9 * spin.norm() && centre.cross(axis_).norm() <= far;
+  double sweeping_arm(const Vector& centre, const Eigen::Vector3d& spin) const override {
+    const double far = kOnAxis * (radius_ + end_radius_ + centre.norm());
+    if (lies_along(spin, axis_) && centre.cross(axis_).norm() <= far) return 0;
+    const Vector along = spin.normalized(), end = length_ * axis_ - centre;
+    return std::max(centre.cross(along).norm() + radius_, end.cross(along).norm() + end_radius_);
   }
 
  private:

@@ -1,6 +1,7 @@
 // What a wall's surface must answer, in the frame of the wall: origin at Wall::point, axes as they
 // were when it was given. A new kind is a file beside this one and an entry in surface.cc.
 #pragma once
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,10 +24,11 @@ class WallSurface {
   /// those that are local minima of the distance, the nearest first. Returns their number.
   virtual int patches(const Vector& centre, double reach, Patch<D>* found) const = 0;
   virtual int slots() const { return 1; }
-  /// Turning about this line (rad/s about an axis through `centre`) leaves the surface in its
-  /// place.
-  virtual bool turns_in_place(const Vector& /*centre*/, const Eigen::Vector3d& /*spin*/) const {
-    return false;
+  /// Turning about this line (rad/s about an axis through `centre`) moves no point of the surface
+  /// across it faster than by an arm of this length, m; 0: it stays in its place, infinite: the
+  /// surface has no end.
+  virtual double sweeping_arm(const Vector& /*centre*/, const Eigen::Vector3d& /*spin*/) const {
+    return std::numeric_limits<double>::infinity();
   }
 };
 

@@ -33,9 +33,9 @@ void check_servo(const WallServo& s, const Wall& wall, int dim) {
                         s.between.size()));
   }
   for (const auto& pair : s.between) {
-    require(pair[0] != pair[1], wall,
-            fmt::format("servo: between: found \"{}\" twice in a pair, allowed: two walls",
-                        pair[0]));
+    require(
+        pair[0] != pair[1], wall,
+        fmt::format("servo: between: found \"{}\" twice in a pair, allowed: two walls", pair[0]));
   }
   require(s.max_speed > 0 && std::isfinite(s.max_speed), wall,
           fmt::format("servo: max_speed: found {:g}, allowed: above 0 m/s", s.max_speed));

@@ -187,7 +187,10 @@ void Walls<D>::check_speeds(double most, double dt) const {
   for (int w = 0; w < size(); ++w) {
     const State& s = states_[w];
     if (!s.driven) continue;
-    const double speed = top_speed(w, s.centre);
+    // A surface without an end is fast far away: what it meets there is seen in the step (sweep.h).
+    const double arm = sweeping_arm(w);
+    const double turning = std::isfinite(arm) ? size_of(s.given_spin) * arm : 0;
+    const double speed = top_speed(w, s.centre) + turning;
     if (speed * dt <= most) continue;
     throw std::invalid_argument(fmt::format(
         "wall {}: speed: found {:.4g} m/s, allowed: up to {:.4g} m/s, at which it passes half a "
@@ -290,19 +293,24 @@ double Walls<D>::work() const {
   return sum;
 }
 
-/// How far from the centre a grain at `at` may feel it turn, m; 0 where turning leaves it in place.
+/// Of its surface, as it is given to turn; 0 without a spin.
 template <int D>
-double Walls<D>::lever(int wall, const Vector& at, double reach) const {
+double Walls<D>::sweeping_arm(int wall) const {
   const State& s = states_[wall];
   if (size_of(s.given_spin) == 0) return 0;
-  Vector centre = s.centre - s.place, far = at - s.centre;
+  Vector centre = s.centre - s.place;
   Eigen::Vector3d spin = turning_to_three(s.given_spin);
   if (s.turned) {
     centre = (s.turn.transpose() * centre).eval();
     if constexpr (D == 3) spin = (s.turn.transpose() * spin).eval();
   }
-  if (surfaces_[wall]->turns_in_place(centre, spin)) return 0;
-  return far.norm() + reach;
+  return surfaces_[wall]->sweeping_arm(centre, spin);
+}
+
+/// How far from the centre a grain at `at` may feel it turn, m; 0 where turning leaves it in place.
+template <int D>
+double Walls<D>::lever(int wall, const Vector& at, double reach) const {
+  return sweeping_arm(wall) == 0 ? 0 : (at - states_[wall].centre).norm() + reach;
 }
 
 template <int D>

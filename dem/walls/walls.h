@@ -96,7 +96,8 @@ class Walls {
   bool any_servo() const { return any_servo_; }
   /// Largest speed at which it may come nearer to a grain at `at`, m/s.
   double top_speed(int wall, const Vector& at) const;
-  /// Throws std::invalid_argument when a given speed passes more than `most` metres a step.
+  /// Throws std::invalid_argument when a given speed, with the turning of a wall that ends
+  /// somewhere, passes more than `most` metres a step.
   void check_speeds(double most, double dt) const;
 
   /// Moves all by a step, before which they were at `time`.
@@ -135,6 +136,7 @@ class Walls {
  private:
   void mark(int wall);
   double across(int wall, const Vector& way) const;
+  double sweeping_arm(int wall) const;
   double servo_speed(State& s, double dt) const;
   double target_of(const State& s) const;
   Plane<D> placed_plane(int wall) const;

@@ -1,9 +1,14 @@
 // Cells, at rest and flowing: the same bits on any number of threads and after a restart; sleeping.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 #include "dem/laws/hertz.h"
+#include "dem/space/moving_cell.h"
 #include "tests/dem/bits_scene.h"
 #include "tests/dem/cell_scene.h"
+#include "tests/dem/damaged_image.h"
 
 namespace grainfield::dem::cells {
 namespace {
@@ -102,6 +107,64 @@ TEST(CellBitsOf, Gear) {
   r.grains = block(ShapeKind::disk, r.settings.cell, 10, 3, 1);
   r.later = simple_shear(2);
   expect_same_bits(r);
+}
+
+/// A grain among small ones in a cell that shrinks to little more than kLeastCell of its radius.
+std::unique_ptr<Engine> narrow_cell(const ShapeKind& shape, bool with_grains) {
+  const int dim = shape == ShapeKind::sphere ? 3 : 2;
+  Matrix3d flow = Matrix3d::Zero();
+  for (int a = 0; a < dim; ++a) flow(a, a) = -5;
+  auto engine = make_engine(settings_of(shape, cell_of(dim, {0, 0, 0}, square(1.03125), flow)));
+  Random random(7);
+  for (int k = 0; with_grains && k < (dim == 2 ? 40 : 80); ++k) {
+    const auto place = [&] { return random.uniform(0, 1.03125); };
+    const auto speed = [&](double x) { return random.uniform(-4, 4) - 5 * x; };
+    NewGrain g;
+    g.x = place(), g.y = place(), g.z = dim == 2 ? 0 : place();
+    g.vx = speed(g.x), g.vy = speed(g.y), g.vz = dim == 2 ? 0 : speed(g.z);
+    g.radius = k == 0 ? 1.03125 / (1.045 * kLeastCell) : random.uniform(0.05, 0.09);
+    g.density = 1000;
+    engine->add(g);
+  }
+  return engine;
+}
+
+// The way across the cell is that of the last search, also after a restart: when to search, and
+// which image is the nearest one, go by it.
+TEST(CellBitsOf, ARestartInANarrowCell) {
+  for (const ShapeKind& shape : {ShapeKind::disk, ShapeKind::sphere}) {
+    constexpr long kEnd = 40;
+    const auto whole = narrow_cell(shape, true);
+    whole->step(kEnd);
+    EXPECT_LT(whole->cell().edges(0, 0), 1.007 * kLeastCell * whole->snapshot().grains[0].radius);
+    const std::uint64_t end = hash_of(whole->snapshot(), *whole);
+    for (long cut = 1; cut < kEnd; cut += 3) {
+      const auto first = narrow_cell(shape, true), then = narrow_cell(shape, false);
+      first->step(cut);
+      then->restore(first->image());
+      EXPECT_TRUE(then->image() == first->image()) << cut;
+      then->step(kEnd - cut);
+      EXPECT_EQ(hash_of(then->snapshot(), *then), end) << cut;
+    }
+  }
+}
+
+TEST(CellBitsOf, AnImageWithoutAWayAcrossTheCellIsRefused) {
+  const auto engine = narrow_cell(ShapeKind::disk, true);
+  engine->step(1);
+  const std::string image = engine->image();
+  // The last number with the bits of the first edge: edges, then the way across.
+  const double across = engine->cell().edges(0, 0);
+  const std::size_t at = image.rfind(bytes_of(1.03125));
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_NE(across, 1.03125);  // the edges have moved on since the search
+  const auto refusal = [&](double value) {
+    return refusal_with(*narrow_cell(ShapeKind::disk, false), image, at, value);
+  };
+  EXPECT_EQ(refusal(1.03125), "accepted");
+  for (const double value : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(refusal(value), kBrokenImage) << value;
+  }
 }
 
 // Layers on a floor with periodic sides: they come to rest, sleep across the faces, and are woken

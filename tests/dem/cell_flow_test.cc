@@ -261,6 +261,61 @@ TEST(CellFlow, ItsWorkIsTheEnergyGained) {
   }
 }
 
+// Damping acts against the flow: what it takes is damped energy, none of it work of the flow.
+TEST(CellFlow, ItsBooksCloseWithDamping) {
+  for (const ShapeKind& shape : {ShapeKind::disk, ShapeKind::sphere}) {
+    const int dim = shape == ShapeKind::sphere ? 3 : 2;
+    for (const bool local : {false, true}) {
+      double before = 0;
+      for (const double step : {2e-5, 1e-5}) {
+        EngineSettings settings = settings_of(shape, cell_of(dim, {0, 0, 0}, square(1)));
+        settings.law = LinearLaw{1e4, 0, 0, 0};
+        settings.time_step = step;
+        settings.energy_balance = true;
+        settings.local_damping = local ? 0.3 : 0;
+        const auto engine =
+            engine_with(settings, block(shape, settings.cell, dim == 2 ? 10 : 5, 6));
+        engine->set_background_damping(local ? 0 : 20);
+        engine->step(1);
+        engine->set_velocity_gradient(simple_shear(20));
+        const Diagnostics first = engine->measure();
+        engine->step(std::lround(0.1 / step));
+        const Diagnostics last = engine->measure();
+        const double damped = last.damped_energy - first.damped_energy;
+        EXPECT_GT(damped, 0.5 * first.kinetic_energy);
+        EXPECT_GT(last.cell_work - first.cell_work, 0.1 * damped);
+        const double error = std::fabs(last.energy_balance() - first.energy_balance());
+        EXPECT_LT(error, 2e-3 * damped) << dim << local;
+        if (before > 0) {
+          EXPECT_LT(error, 0.7 * before) << dim << local;
+        }
+        before = error;
+      }
+    }
+  }
+}
+
+// Gravity works on what moves with the flow, wherever a grain has been carried from.
+TEST(CellFlow, ItsBooksCloseWithGravity) {
+  for (const ShapeKind& shape : {ShapeKind::disk, ShapeKind::sphere}) {
+    const int dim = shape == ShapeKind::sphere ? 3 : 2;
+    const Matrix3d flow = simple_shear(2.5);
+    EngineSettings settings = settings_of(shape, cell_of(dim, {0.3, -0.2, 0}, square(1), flow));
+    settings.gravity_x = 3;
+    settings.gravity_y = -1;
+    settings.energy_balance = true;
+    auto grains = floating(settings.cell, dim);
+    for (NewGrain& g : grains) g.image = {0, 2, 0};  // two cells above
+    const auto engine = engine_with(settings, grains);
+    const Diagnostics first = engine->measure();
+    engine->step(1000);
+    const Diagnostics last = engine->measure();
+    const double fallen = first.potential_energy - last.potential_energy;
+    EXPECT_GT(fallen, 10 * last.kinetic_energy);
+    EXPECT_NEAR(last.energy_balance(), first.energy_balance(), 2e-3 * fallen) << dim;
+  }
+}
+
 class CellShear : public testing::TestWithParam<ShapeKind> {};
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CellShear,

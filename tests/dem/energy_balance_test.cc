@@ -1,4 +1,6 @@
 // Work of walls, energy stored and lost: what goes in is there or has been measured where it went.
+#include "dem/engine/energy_balance.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -173,6 +175,119 @@ TEST(EnergyBalance, ClosesForACrowd) {
       EXPECT_GT(lost, last - 1e-4 * d.dissipated_energy());
       last = lost;
     }
+  }
+}
+
+// Damping and the applied force work from a grain's first step on, also of one that comes later.
+TEST(EnergyBalance, HoldsTheFirstStepOfEachGrain) {
+  for (const bool space : {false, true}) {
+    const double step = 1e-4, rate = 20, alpha = 0.2, push = space ? 0.3 : 30;
+    EngineSettings s = settings_of(LinearLaw{1e6, 3e5, 0, 0}, step, space);
+    s.local_damping = alpha;
+    const auto engine = make_engine(s);
+    engine->set_background_damping(rate);
+    for (int k = 0; k < 3; ++k) {
+      NewGrain g = grain(0.1 * k, 0, 0.01);
+      g.vx = 1 + k;
+      (space ? g.vz : g.vy) = -2;
+      g.spin = 5;
+      const std::int64_t id = engine->add(g);
+      AppliedForce force;
+      force.id = id;
+      force.fx = push;
+      engine->apply(force);
+      const Diagnostics before = engine->measure();
+      engine->step(1);
+      const Diagnostics after = engine->measure();
+      const Grain now = engine->snapshot().grains[id];
+      // Of this grain alone: those before it move on under their own damping.
+      const double speed = g.vx * g.vx + 4, spin = g.spin * g.spin;
+      const double drag = rate * (now.mass * speed + now.inertia * spin) + alpha * push * g.vx;
+      if (k == 0) {
+        EXPECT_NEAR(after.applied_work, push * g.vx * step, 1e-2 * push * g.vx * step) << space;
+        EXPECT_NEAR(after.damped_energy, drag * step, 1e-2 * drag * step) << space;
+      }
+      EXPECT_NEAR(after.energy_balance(), before.energy_balance(), 1e-3 * drag * step) << space;
+      engine->step(10);
+    }
+  }
+}
+
+// The books of a contact go on when the other grain comes to be the first.
+TEST(EnergyBalance, AnAccountIsTheSameFromEitherGrain) {
+  Random random(9);
+  const auto number = [&] { return random.uniform(-1, 1); };
+  const auto force = [&] {
+    ContactForce<2> f;
+    f.force = {number(), number()};
+    f.torque_i = number();
+    f.torque_j = number();
+    return f;
+  };
+  Body<2> a, b;
+  for (Body<2>* body : {&a, &b}) {
+    body->velocity = {number(), number()};
+    body->spin = number();
+  }
+  Account<2> one{force(), 0.3, 0}, next{force(), 0.7, 0};
+  Account<2> other = turned(one, true);
+  EXPECT_EQ(turned(one, false).before.torque_i, one.before.torque_i);
+  one.add(next.before, next.stored, a, b, 0.1);
+  other.add(turned(next, true).before, next.stored, b, a, 0.1);
+  EXPECT_NE(one.lost, 0);
+  EXPECT_NEAR(other.lost, one.lost, 1e-15);
+}
+
+// Damping takes from the angular momentum, which lies aside of the spin where the moments differ.
+TEST(EnergyBalance, ClosesForADampedGrainOfThreeMoments) {
+  double previous = 0;
+  for (const double step : {4e-4, 2e-4, 1e-4}) {
+    const auto engine = make_engine(settings_of(LinearLaw{}, step, true));
+    NewGrain g = grain(0, 0, 0.01);
+    g.moments = {1e-7, 2e-7, 5e-7};
+    g.spin = 30;
+    g.spin_x = 20;
+    g.spin_y = -15;
+    engine->add(g);
+    engine->set_background_damping(5);
+    const Diagnostics before = engine->measure();
+    engine->step(std::lround(0.2 / step));
+    const Diagnostics after = engine->measure();
+    EXPECT_NEAR(after.damped_energy, (1 - std::exp(-2.0)) * before.kinetic_energy,
+                0.05 * before.kinetic_energy);
+    const double error = std::fabs(after.energy_balance() - before.energy_balance());
+    EXPECT_LT(error, 1e-4 * after.damped_energy) << step;
+    if (previous > 0) {
+      EXPECT_NEAR(std::log2(previous / error), 2, 0.3) << step;
+    }
+    previous = error;
+  }
+}
+
+// The motion of a wall told about another centre is the same motion: the change takes nothing.
+TEST(EnergyBalance, GoesOnWhenAWallTurnsAboutAnotherCentre) {
+  for (const bool space : {false, true}) {
+    const double step = 1e-5, turning = 2;
+    EngineSettings s = settings_of(LinearLaw{1e5, 0, 0, 0}, step, space);
+    const auto engine = make_engine(s);
+    const Vec3 up = space ? Vec3::UnitZ() : Vec3::UnitY(), axis = Vec3::UnitX().cross(up);
+    engine->add_wall({"paddle", {0, 0, 0}, up, 0.5});
+    engine->set_wall_motion("paddle", {{0, 0, 0}, turning * axis, {}});
+    engine->add(space ? grain(0.5, 0, 0.01, 0.01) : grain(0.5, 0.01, 0.01));
+    engine->step(space ? 50 : 300);  // about half of a collision
+    const double force = engine->walls()[0].force.norm();
+    const Diagnostics before = engine->measure();
+    const Vec3 centre(0.4, 0, 0);
+    engine->set_wall_motion("paddle", {turning * axis.cross(centre), turning * axis, centre});
+    engine->step(1);
+    const double work = step * force * turning * centre.norm();  // by the way of the new centre
+    EXPECT_GT(work, 1e-3 * before.kinetic_energy);
+    EXPECT_NEAR(engine->measure().energy_balance(), before.energy_balance(), 1e-2 * work) << space;
+    // What the wall does about its new centre is done on the grain: the contact takes nothing.
+    engine->step(space ? 10 : 100);
+    const Diagnostics after = engine->measure();
+    EXPECT_GT(after.wall_work, before.wall_work + 5 * work);
+    EXPECT_NEAR(after.dissipated_energy, before.dissipated_energy, 0.1 * work) << space;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "dem/laws/registry.h"
 #include "dem/random/random.h"
 #include "dem/space/space3.h"
+#include "tests/dem/cell_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -176,6 +177,44 @@ TEST(Hertz, ViscoelasticDashpotsGoByTheContactsRadius) {
               1e-12 * f.tangential.norm());
   // Faster dashpots shorten the step.
   EXPECT_NEAR(law.viscous_rate(1, kRadius), 0.1 * kRadius * 20 * 1e5, 1e-9 * 2e4);
+}
+
+// Spheres of a close packing that all spin alike: the fastest mode that the step's bound counts.
+TEST(Hertz, SpheresThatSpinAlikeSlowAsFastAsTheBoundSays) {
+  for (const bool viscoelastic : {false, true}) {
+    HertzLaw law{kYoung, kPoisson, 0.4};
+    law.viscoelastic = viscoelastic;
+    law.normal_damping = law.tangential_damping = 1e4;
+    Eigen::Matrix3d edges;
+    edges << 0, 1, 1, 1, 0, 1, 1, 1, 0;
+    edges *= 3 * kRadius * (2 - HertzLaw::kMostDepth) / std::numbers::sqrt2;
+    EngineSettings s = cells::settings_of(ShapeKind::sphere, cells::cell_of(3, {0, 0, 0}, edges));
+    s.law = law;
+    s.friction = 1e9;
+    NewGrain g;
+    g.radius = kRadius;
+    g.density = 2500;
+    g.spin = 1;
+    const double mass = 4.0 / 3 * std::numbers::pi * std::pow(kRadius, 3) * g.density;
+    const double bound = law.viscous_rate(mass, kRadius);
+    s.time_step = 1e-6 / bound;
+    const auto engine = make_engine(s);
+    for (int k = 0; k < 27; ++k) {
+      const Vec3 at = edges * Vec3(k % 3, k / 3 % 3, k / 9) / 3;
+      g.x = at.x();
+      g.y = at.y();
+      g.z = at.z();
+      engine->add(g);
+    }
+    engine->step(1);
+    const Snapshot now = engine->snapshot();
+    EXPECT_EQ(now.contacts.size(), 6U * 27);
+    for (const Grain& grain : now.grains) {
+      const double rate = (g.spin - grain.spin) / s.time_step;
+      EXPECT_LT(rate, bound) << viscoelastic;
+      EXPECT_GT(rate, 0.95 * bound) << viscoelastic;
+    }
+  }
 }
 
 TEST(Hertz, MaterialNamesItsModels) {

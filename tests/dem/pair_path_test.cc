@@ -69,6 +69,22 @@ INSTANTIATE_TEST_SUITE_P(All, Sliding,
                          testing::Values(Slide{"disk", "grain"}, Slide{"disk", "wall"},
                                          Slide{"sphere", "grain"}, Slide{"sphere", "wall"}));
 
+// A spring that sticks is linear in the way: the work of steps is that of the whole, and settles at
+// once.
+TEST(Sticking, TakesWhatItsSpringHolds) {
+  for (const char* shape : {"disk", "sphere"}) {
+    PairSetup s = linear_path("waypoints", shape);
+    s.partner = "wall";
+    s.material.friction = 0.9;
+    s.waypoints = {0.01, 0, 0, 0.01, 0.002, 0, 0.01, -0.002, 0};
+    const RunResult r = result_of(s);
+    const double way = 0.002 * s.radius, stiffness = s.material.tangential_stiffness;
+    EXPECT_NEAR(r.figures.at("pair.work"), 0.5 * stiffness * way * way,
+                1e-9 * stiffness * way * way);
+    EXPECT_EQ(r.figures.at("pair.loops_unsettled"), 0);
+  }
+}
+
 class Rolling : public testing::TestWithParam<Slide> {};
 
 TEST_P(Rolling, WithoutSlipNothingActsAcrossTheNormal) {

@@ -112,29 +112,5 @@ TEST_P(SampleTest, HasTheSameBitsOnThreadsAndAfterItWasSaved) {
 
 INSTANTIATE_TEST_SUITE_P(All, SampleTest, testing::Values(disks, spheres, box));
 
-std::string refusal(const SampleSetup& setup) {
-  try {
-    make_sample_run(setup, 1, 1);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "none";
-}
-
-TEST(Sample, RefusesWhatDoesNotGoTogether) {
-  SampleSetup s = disks();
-  s.plan.shape = "sphere";
-  EXPECT_THAT(refusal(s), testing::HasSubstr("sample.shape"));
-  s = disks();
-  s.plan.pressure = 0;
-  EXPECT_THAT(refusal(s), testing::HasSubstr("sample.pressure"));
-  s = disks();
-  s.plan.grains = 4;
-  EXPECT_NE(refusal(s), "none");
-  s = box();
-  s.plan.strain_rate = 1e6;
-  EXPECT_NE(refusal(s), "none");
-}
-
 }  // namespace
 }  // namespace grainfield::dem

@@ -103,9 +103,13 @@ TEST(WallSurface, EndlessCylindersHaveOneSide) {
   ASSERT_EQ(rod->patches(0.55 * out, 0.1, found), 1);
   EXPECT_NEAR((found[0].plane.normal - out).norm(), 0, 1e-14);
   EXPECT_EQ(found[0].curvature, 2);
-  EXPECT_TRUE(rod->turns_in_place(3 * axis, -4 * axis));
-  EXPECT_FALSE(rod->turns_in_place(3 * axis + out, axis));
-  EXPECT_FALSE(rod->turns_in_place(3 * axis, out));
+  EXPECT_EQ(rod->sweeping_arm(3 * axis, -4 * axis), 0);
+  EXPECT_NEAR(rod->sweeping_arm(3 * axis + 0.2 * out, axis), 0.2, 1e-15);
+  EXPECT_TRUE(std::isinf(rod->sweeping_arm(3 * axis, out)));
+  const auto cone = surface_of<3>(round_wall("cone", 0.5, 0.2, 2, true));
+  EXPECT_EQ(cone->sweeping_arm(3 * axis, axis), 0);
+  EXPECT_NEAR(cone->sweeping_arm(0.1 * out, -axis), 0.6, 1e-15);
+  EXPECT_NEAR(cone->sweeping_arm({0, 0, 0}, 7 * out), 2.2, 1e-12);  // its end turns over
   Wall circle{"ring", {0, 0, 0}, {0, 1, 0}, 0, "cylinder"};
   circle.radius = 0.5;
   Patch<2> flat[kMostPatches];
@@ -277,6 +281,24 @@ TEST_F(Stl, IsReadInBothForms) {
     const Triangles turned = read_stl(file_, {1e-3, true, false});
     EXPECT_NEAR(topology_of(turned, "").volume, -0.125, 1e-14);
   }
+}
+
+TEST_F(Stl, SolidsAfterTheFirstAreReadToo) {
+  const Triangles other = box_mesh({2, 0, 0}, {3, 1, 1}, false);
+  write(ascii(box_) + "\n" + ascii(other));
+  const Triangles mesh = read_stl(file_, mm_);
+  ASSERT_EQ(mesh.size(), 24U);
+  for (std::size_t t = 0; t < 12; ++t) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR((mesh[12 + t][k] - other[t][k]).norm(), 0, 1e-15);
+  }
+  EXPECT_NEAR(topology_of(mesh, "").volume, 1.125, 1e-13);
+  write(ascii(box_) + "rubbish\n" + ascii(other));  // on line 2 + 12 facets of 7 + 1
+  EXPECT_EQ(refused(mm_), file_ +
+                              ": line 87: found \"rubbish\", expected solid or the end of the "
+                              "file of an ASCII STL file");
+  const std::string both = ascii(box_) + ascii(other);
+  write(both.substr(0, both.rfind("endsolid")));
+  EXPECT_THAT(refused(mm_), HasSubstr("found \"\", expected facet or endsolid"));
 }
 
 TEST_F(Stl, OpenOnesMustBeMeant) {
