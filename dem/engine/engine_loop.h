@@ -312,8 +312,10 @@ class EngineLoop final : public Engine {
     const auto& list = world_.contacts.walls;
     for (int k = 0; k < list.size(); ++k) {
       if (world_.walls.wall_of(list[k].j) != wall) continue;
-      ContactForce<dim>& f = world_.balance.walls[k].before;
-      f.torque_j += torque_of(way, typename State::Vector(-f.force));
+      auto& parts = world_.balance.walls[k].before;
+      for (ContactForce<dim>* f : {&parts.all, &parts.dashpot, &parts.along}) {
+        f->torque_j += torque_of(way, typename State::Vector(-f->force));
+      }
     }
   }
   void move_walls(long step) {
