@@ -153,9 +153,12 @@ struct EnergyBalance {
     each(self.brought_motion);
     each(self.brought_height);
   }
-  bool fits(std::size_t pair_count, std::size_t wall_count, std::size_t grains) const {
+  /// `searched`: no grain has come since the last search.
+  bool fits(std::size_t pair_count, std::size_t wall_count, std::size_t grains,
+            bool searched) const {
     if (!on) return pairs.empty() && walls.empty() && outer.empty();
-    return pairs.size() == pair_count && walls.size() == wall_count && outer.size() <= grains;
+    return pairs.size() == pair_count && walls.size() == wall_count && outer.size() <= grains &&
+           (!searched || outer.size() == grains);
   }
 };
 

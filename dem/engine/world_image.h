@@ -56,7 +56,7 @@ void read_world(World& world, Search<World>& search, ImageReader& r) {
       world.sleepers.fits(world.grains.bodies.size()) &&
       world.contacts.fits(searched, world.awake, n, world.walls.slots()) && world.walls.fits() &&
       world.balance.fits(world.contacts.pairs.with_idle(), world.contacts.walls.with_idle(),
-                         world.grains.bodies.size()) &&
+                         world.grains.bodies.size(), searched) &&
       world.rolling.fits(world.contacts.pairs.with_idle(), world.contacts.walls.with_idle()) &&
       (!searched || world.margins.size() == static_cast<std::size_t>(world.awake)));
   for (const std::int64_t id : world.grains.ids) r.require(id >= 0 && id < n);
