@@ -96,9 +96,13 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
     const double room = y.high - y.low > kFlat * size ? 0.06 * (y.high - y.low) : 0.05 * size;
     if (!log_x && x.low > 0 && x.low < kNearZero * x.high) x.low = 0;
     std::string head = fmt::format("set title {} noenhanced\n", style::quoted(frames[f].title));
-    if (x.any && x.high > x.low) head += fmt::format("set xrange [{}:{}]\n", x.low, x.high);
-    if (y.any && y.high > y.low)
-      head += fmt::format("set yrange [{}:{}]\n", y.low - room, y.high + room);
+    // A range of its own for every frame: gnuplot would go on with that of the one before.
+    head += x.any && x.high > x.low ? fmt::format("set xrange [{}:{}]\n", x.low, x.high)
+                                    : std::string("set xrange [*:*]\n");
+    const bool flat = !(room > 0);
+    head += y.any ? fmt::format("set yrange [{}:{}]\n", flat ? -1 : y.low - room,
+                                flat ? 1 : y.high + room)
+                  : std::string("set yrange [*:*]\n");
     plots.push_back(head + "plot " + plot + "\n");
   }
   const std::size_t entries = frames.empty() ? 0 : frames.front().series.size() + 1;

@@ -71,7 +71,10 @@ Report sample_report(const SampleReport& in) {
   stresses.caption = "Compression positive for p; from the contacts alone (Love and Weber).";
   report.sections.emplace_back(std::move(stresses));
   Picture energies = together(in, "Energies", "J", in.energies);
-  energies.caption = "Since the first state.";
+  energies.caption =
+      in.energies.size() > 3
+          ? "Since the first state. Work + work of the law = elastic + kinetic + lost."
+          : "Since the first state.";
   report.sections.emplace_back(std::move(energies));
   for (const auto& [title, rows] :
        {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {

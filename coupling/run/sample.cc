@@ -16,7 +16,9 @@ namespace grainfield::coupling {
 namespace {
 
 const char* strain_name(const std::string& deformation) {
-  return deformation == "simple_shear" ? "shear strain" : "axial strain";
+  return deformation == "simple_shear" ? "shear strain"
+         : deformation == "isotropic"  ? "strain of the edges"
+                                       : "axial strain";
 }
 
 SampleCurve curve(const StateTable& table, const std::string& column, const std::string& title) {
@@ -71,6 +73,7 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   if (value.sample.motion.energy_balance) {
     out.energies.push_back(curve(table, "dissipated", "lost"));
     out.energies.push_back(curve(table, "lost_to_friction", "of it to friction"));
+    out.energies.push_back(curve(table, "work_of_law", "work of the law"));
   }
   return out;
 }
@@ -80,6 +83,10 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.initial_pressure",
                                              "sample.initial_solid_fraction",
                                              "sample.initial_coordination",
+                                             "sample.final_pressure",
+                                             "sample.lost_strength",
+                                             "sample.strain_at_loss",
+                                             "sample.lateral_stress_ratio",
                                              "sample.peak_stress_ratio",
                                              "sample.strain_at_peak",
                                              "sample.peak_friction_angle_deg",
@@ -102,7 +109,9 @@ const std::vector<std::string>& shown_figures() {
 
 // "0.61 ± 0.02", or "0.61" of one realization.
 std::string told(const Summary& summary, const std::string& key) {
-  const double value = std::get<double>(summary.at(key));
+  const auto found = summary.find(key);
+  if (found == summary.end()) return "-";
+  const double value = std::get<double>(found->second);
   const auto error = summary.find(key + ".standard_error");
   return error == summary.end()
              ? fmt::format("{:.3g}", value)
@@ -111,18 +120,42 @@ std::string told(const Summary& summary, const std::string& key) {
 
 std::string sentence(const Case& value, const StateTable& table, const Summary& summary) {
   const dem::SamplePlan& plan = value.sample.plan;
+  const auto has = [&](const char* key) { return summary.count(key) != 0; };
+  const auto number = [&](const char* key) { return std::get<double>(summary.at(key)); };
+  const char* unit = plan.dim == 2 ? "N/m" : "Pa";
   std::string out = fmt::format(
-      "From p = {} {} and the solid fraction {}: q/p rises to {} at a strain of {}",
-      told(summary, "sample.initial_pressure"), plan.dim == 2 ? "N/m" : "Pa",
-      told(summary, "sample.initial_solid_fraction"), told(summary, "sample.peak_stress_ratio"),
-      told(summary, "sample.strain_at_peak"));
-  if (summary.count("sample.critical_stress_ratio") != 0) {
+      "From p = {} {} and the solid fraction {}: ", told(summary, "sample.initial_pressure"), unit,
+      told(summary, "sample.initial_solid_fraction"));
+  if (plan.deformation == "uniaxial" || plan.deformation == "isotropic") {
+    out += fmt::format("p is {} {} at the end, the secant modulus {}",
+                       told(summary, "sample.final_pressure"), unit,
+                       told(summary, "sample.secant_modulus"));
+    if (has("sample.lateral_stress_ratio")) {
+      out += fmt::format(", lateral over axial stress {}",
+                         told(summary, "sample.lateral_stress_ratio"));
+    }
+  } else if (has("sample.peak_stress_ratio") && number("sample.strain_at_peak") > 0) {
+    out +=
+        fmt::format("q/p rises to {} at a strain of {}", told(summary, "sample.peak_stress_ratio"),
+                    told(summary, "sample.strain_at_peak"));
+  } else {
+    out +=
+        fmt::format("q/p is largest at the start, {}", told(summary, "sample.peak_stress_ratio"));
+  }
+  if (has("sample.critical_stress_ratio")) {
     out += fmt::format("; beyond {:.0f} % of the strain it is {} at the solid fraction {}",
                        100 * kCriticalFrom, told(summary, "sample.critical_stress_ratio"),
                        told(summary, "sample.critical_solid_fraction"));
   }
-  out += fmt::format("; {} realization{}.", table.realizations(),
-                     table.realizations() == 1 ? "" : "s");
+  if (has("sample.strain_at_loss")) {
+    out += fmt::format(
+        "; strength is lost (p below {:.0f} % of the first, or an inertial number above {:g}) at a "
+        "strain of {} in {:.0f} of",
+        100 * kLeastPressure, kMostInertia, told(summary, "sample.strain_at_loss"),
+        number("sample.lost_strength") * static_cast<double>(table.realizations()));
+  }
+  out += fmt::format("{} {} realization{}.", has("sample.strain_at_loss") ? "" : ";",
+                     table.realizations(), table.realizations() == 1 ? "" : "s");
   return out;
 }
 

@@ -95,6 +95,10 @@ std::vector<StateColumn> all_columns() {
       {"lost_to_damping", "J", "J", "of it to damping of single grains", [](F f) { return f.to_damping; }},
       {"work_of_law", "J", "J", "done by a law that is no gradient, or whose spring stiffens", [](F f) { return f.law_work; }},
       {"balance_error", "1", "1", "what the sum of energies less the works has changed by since then, over |work|", [](F f) { return f.work == 0 ? kNan : f.balance / std::fabs(f.work); }},
+      {"pressure_on_right", "N/m", "Pa", "of the grains on the right wall, which a servo leads; nan in a cell, as the next", [](F f) { return f.now.moved_pressure.x(); }},
+      {"pressure_on_lid", "N/m", "Pa", "likewise on the lid", [](F f) { return f.now.moved_pressure[f.dim - 1]; }},
+      {"pressure_on_back", "Pa", "Pa", "likewise on the back", [](F f) { return f.now.moved_pressure.y(); }, true},
+      {"lid_shear", "N/m", "Pa", "force of the grains on the lid along x over the floor's area", [](F f) { return f.now.lid_shear; }},
       {"unbalanced_force_ratio", "1", "1", "mean resultant over mean contact force", [](F f) { return f.unbalanced_force_ratio; }},
       {"inertial_number", "1", "1", "rate d sqrt(rho/p), d the mean diameter, rho the grains' density", [](F f) { return f.strain_rate * f.diameter * std::sqrt(f.density / f.pressure()); }},
   };

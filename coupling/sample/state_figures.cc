@@ -33,6 +33,25 @@ Eigen::Index critical_states(Eigen::Index states) {
   return states - static_cast<Eigen::Index>(first);
 }
 
+std::vector<bool> bearing(const Eigen::VectorXd& p, const Eigen::VectorXd& inertial_number,
+                          const Eigen::VectorXd& ratio) {
+  std::vector<bool> out;
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    out.push_back(p[k] > kLeastPressure * p[0] && inertial_number[k] < kMostInertia &&
+                  std::isfinite(ratio[k]));
+  }
+  return out;
+}
+
+// Without states that have none.
+double largest_number(const Eigen::VectorXd& values) {
+  double out = kNan;
+  for (const double v : values) {
+    if (std::isfinite(v) && !(v <= out)) out = v;
+  }
+  return out;
+}
+
 }  // namespace
 
 Driving driving_of(const std::string& deformation, int dim) {
@@ -60,12 +79,14 @@ std::map<std::string, std::vector<double>> state_figures(const StateTable& table
     put("initial_pressure", column("p")[0]);
     put("initial_solid_fraction", column("solid_fraction")[0]);
     put("initial_coordination", column("coordination_bearing")[0]);
-    Eigen::Index peak = 0;
-    put("peak_stress_ratio", ratio.maxCoeff(&peak));
-    put("strain_at_peak", strain[peak]);
-    put("peak_friction_angle_deg", column("friction_angle_deg")[peak]);
-    put("volumetric_strain", column("volumetric_strain")[strain.size() - 1]);
-    put("inertial_number", column("inertial_number").maxCoeff());
+    const std::vector<bool> bears = bearing(column("p"), column("inertial_number"), ratio);
+    const Eigen::Index last = strain.size() - 1;
+    put("final_pressure", column("p")[last]);
+    const auto lost = std::find(bears.begin(), bears.end(), false);
+    put("lost_strength", lost != bears.end());
+    if (lost != bears.end()) put("strain_at_loss", strain[lost - bears.begin()]);
+    put("volumetric_strain", column("volumetric_strain")[last]);
+    put("inertial_number", largest_number(column("inertial_number")));
     const Eigen::VectorXd stress =
         driving.compression ? Eigen::VectorXd(-column(driving.stress)) : column(driving.stress);
     const Secant secant = secant_of(strain, stress);
@@ -75,8 +96,21 @@ std::map<std::string, std::vector<double>> state_figures(const StateTable& table
     if (balance.size() > 1 && balance.tail(balance.size() - 1).allFinite()) {
       put("energy_balance_error", balance.tail(balance.size() - 1).cwiseAbs().maxCoeff());
     }
+    if (deformation == "uniaxial") {
+      put("lateral_stress_ratio", column("sigma_xx")[last] / column(driving.stress)[last]);
+    }
+    if (deformation == "uniaxial" || deformation == "isotropic") continue;
+    Eigen::Index peak = -1;
+    for (Eigen::Index k = 0; k <= last; ++k) {
+      if (bears[static_cast<std::size_t>(k)] && (peak < 0 || ratio[k] > ratio[peak])) peak = k;
+    }
+    if (peak >= 0) {
+      put("peak_stress_ratio", ratio[peak]);
+      put("strain_at_peak", strain[peak]);
+      put("peak_friction_angle_deg", column("friction_angle_deg")[peak]);
+    }
     const Eigen::Index n = critical_states(strain.size()), half = n / 2;
-    if (n < 2) continue;
+    if (n < 2 || std::find(bears.end() - n, bears.end(), false) != bears.end()) continue;
     put("critical_stress_ratio", ratio.tail(n).mean());
     put("critical_friction_angle_deg", column("friction_angle_deg").tail(n).mean());
     put("critical_solid_fraction", column("solid_fraction").tail(n).mean());

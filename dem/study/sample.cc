@@ -28,6 +28,10 @@ constexpr long kServoEvery = 3, kTiltEvery = 100, kCheckEvery = 200;
 constexpr double kNearTarget = 0.9, kMet = 2e-3;
 // More than grains can fill: they would be inside each other.
 constexpr double kTooDense = 1.3;
+// Below these no packing carries load (random loose ones of round grains: 0.77, 0.55) ...
+constexpr double kLoose2 = 0.7, kLoose3 = 0.5;
+// ... and near these, about, pressures are reached; for the progress.
+constexpr double kDense2 = 0.84, kDense3 = 0.64;
 
 enum class Phase : int { compress, rest, deform, done };
 
@@ -82,6 +86,7 @@ class SampleRun final : public ArchivedRun {
   EngineSettings settings_;
   std::array<double, 3> box_{};  // edges at the start, m
   double solid_volume_ = 0;      // of all grains, m3 (m2)
+  double compression_time_ = 0;  // s, at least
   CellServo cell_servo_;
   Phases<Phase> phases_{{{"compress", true, 0, 0.3},
                          {"rest", true, 0.3, 0.4},
@@ -105,7 +110,9 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
   Random random(seed);
   const double density = setup_.material.density;
   const std::vector<ShapedGrain> grains = draw_sample(plan_, random);
-  settings_ = sample_frame(setup_, sample_extremes(plan_, density, grains)).settings;
+  const SampleFrame frame = sample_frame(setup_, sample_extremes(plan_, density, grains));
+  settings_ = frame.settings;
+  compression_time_ = frame.compression_time;
   settings_.threads = threads;
   solid_volume_ = total_area(grains);
   box_ = sample_box(plan_, solid_volume_);
@@ -250,6 +257,14 @@ void SampleRun::decide_compression() {
     near = near && (!is_led(Phase::compress, a) || now[a] >= kNearTarget * plan_.pressure);
   }
   if (near) return begin(Phase::rest);
+  const double most = 2 * compression_time_ + setup_.rest.max_time;
+  if (in_phase() > most) {
+    throw ComputationFailed(fmt::format(
+        "sample.pressure = {:g} has not been reached within {:.3g} s (twice the way at "
+        "sample.compression_rate, and rest.max_time): the lower it is beside the contacts' "
+        "stiffness, the slower it is found; raise it, or rest.max_time",
+        plan_.pressure, most));
+  }
   if (solid_fraction() > kTooDense) {
     throw ComputationFailed(
         fmt::format("the sample has been compressed to a solid fraction of {:.3g} without reaching "
@@ -270,6 +285,14 @@ void SampleRun::decide_rest() {
         "sheared; raise sample.{}",
         setup_.rest.max_time,
         plan_.compress_to == "strain" ? "compression_strain" : "solid_fraction"));
+  }
+  if (at_rest(d, setup_.rest)) {
+    const Vec3 now = pressure();
+    throw ComputationFailed(fmt::format(
+        "sample.pressure = {:g} has not been met within rest.max_time = {:g} s: the grains rest at "
+        "pressures of {:.4g} along x and {:.4g} along {}; raise it, or lower "
+        "sample.compression_rate",
+        plan_.pressure, setup_.rest.max_time, now[0], now[last()], plan_.dim == 2 ? "y" : "z"));
   }
   fail_to_rest(d, setup_.rest, "after the compression",
                to_pressure() ? ", or lower sample.compression_rate"
@@ -297,8 +320,12 @@ void SampleRun::lead_cell() {
   if (any_led(now)) {
     if (now == Phase::deform) note_error();
     const Vec3 held = pressure();
+    const bool loose = solid_fraction() < (plan_.dim == 2 ? kLoose2 : kLoose3);
     for (int a = 0; a < plan_.dim; ++a) {
-      if (is_led(now, a)) flow(a, a) = cell_servo_.rate(a, held[a], plan_.pressure);
+      if (!is_led(now, a)) continue;
+      // Without contacts there is nothing that a servo could go by.
+      const bool free = now == Phase::compress && loose && held[a] < plan_.pressure;
+      flow(a, a) = free ? -plan_.compression_rate : cell_servo_.rate(a, held[a], plan_.pressure);
     }
   }
   engine_->set_velocity_gradient(flow);
@@ -448,7 +475,8 @@ Progress SampleRun::progress() const {
   double share = 1;
   switch (phases_.now()) {
     case Phase::compress:
-      share = to_pressure() ? in_phase() * plan_.compression_rate : compressed();
+      share =
+          to_pressure() ? solid_fraction() / (plan_.dim == 2 ? kDense2 : kDense3) : compressed();
       break;
     case Phase::rest:
       share = rest_progress(d, setup_.rest);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <cmath>
+#include <numeric>
 
 #include "check_scene.h"
 #include "coupling/output/tables.h"
@@ -185,6 +186,80 @@ void expect_own_stress(const Folder& folder, const Ran& ran, int dim, int states
     }
     EXPECT_NEAR(told("q"), q, 1e-7 * p);
   }
+}
+
+// A sample that liquefies: q/p without load counts nowhere, and the report says so.
+TEST(SampleRun, WhatBearsNoLoadIsNoStrength) {
+  const Folder folder;
+  const Ran ran = run(folder, R"(study = "sample"
+[sample]
+grains = 70
+strain = 0.3
+strain_rate = 1
+constant = "volume"
+pressure = 600
+records = 12
+[material]
+law = "linear"
+normal_damping = 4000
+tangential_damping = 2000
+friction = 0.5
+[ensemble]
+realizations = 2
+)");
+  const auto& p = ran.states.at("p_N/m");
+  const auto& ratio = ran.states.at("q_over_p");
+  const auto& inertia = ran.states.at("inertial_number");
+  ASSERT_EQ(p.size(), 26U);
+  std::vector<double> losses, peaks, critical;
+  double highest = 0;
+  for (const std::size_t first : {0, 13}) {
+    double peak = 0, tail = 0, loss = 0;
+    bool bears_at_the_end = true;
+    for (std::size_t k = first; k < first + 13; ++k) {
+      const bool bears = p[k] > 0.01 * p[first] && inertia[k] < 0.1;
+      if (!bears && loss == 0) loss = ran.states.at("strain")[k];
+      if (bears) peak = std::max(peak, ratio[k]);
+      highest = std::max(highest, ratio[k]);
+      if (k < first + 9) continue;
+      tail += ratio[k] / 4;
+      bears_at_the_end = bears_at_the_end && bears;
+    }
+    peaks.push_back(peak);
+    if (loss > 0) losses.push_back(loss);
+    if (bears_at_the_end) critical.push_back(tail);
+  }
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_GT(highest, std::max(peaks[0], peaks[1]));
+  EXPECT_EQ(number(ran.summary, "sample.lost_strength"), 0.5);
+  EXPECT_NEAR(number(ran.summary, "sample.strain_at_loss"), losses[0], 1e-8);
+  EXPECT_NEAR(number(ran.summary, "sample.peak_stress_ratio"), 0.5 * (peaks[0] + peaks[1]), 1e-8);
+  ASSERT_FALSE(critical.empty());
+  EXPECT_NEAR(
+      number(ran.summary, "sample.critical_stress_ratio"),
+      std::accumulate(critical.begin(), critical.end(), 0.0) / static_cast<double>(critical.size()),
+      1e-8);
+  EXPECT_THAT(std::get<std::string>(ran.summary.at("verdict.sentence")),
+              HasSubstr("in 1 of 2 realizations."));
+}
+
+// No shear, no strength: uniaxial and isotropic compression tell stiffness.
+TEST(SampleRun, CompressionHasNoPeak) {
+  const Folder folder;
+  std::string text = kDisks;
+  text.replace(text.find("constant = \"stress\""), 19, "deformation = \"uniaxial\"");
+  const Ran ran = run(folder, text.c_str());
+  EXPECT_EQ(ran.summary.count("sample.peak_stress_ratio"), 0U);
+  EXPECT_EQ(ran.summary.count("sample.critical_stress_ratio"), 0U);
+  const double lateral = number(ran.summary, "sample.lateral_stress_ratio");
+  const auto& xx = ran.states.at("sigma_xx_N/m");
+  const auto& yy = ran.states.at("sigma_yy_N/m");
+  EXPECT_NEAR(lateral, 0.5 * (xx[4] / yy[4] + xx[9] / yy[9]), 1e-8);
+  EXPECT_GT(lateral, 0.2);
+  EXPECT_LT(lateral, 1);
+  const std::string sentence = std::get<std::string>(ran.summary.at("verdict.sentence"));
+  EXPECT_THAT(sentence, HasSubstr("lateral over axial stress"));
+  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("rises")));
 }
 
 TEST(SampleRun, DisksInACell) {

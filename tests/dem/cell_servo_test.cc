@@ -62,6 +62,24 @@ TEST(CellServo, LeavesNoErrorWhereTheMediumDilatesSteadily) {
   EXPECT_EQ(s.bias[1], 0);
 }
 
+// What it has learnt near the target does not hold an error far from it.
+TEST(CellServo, GivesBackWhatIsAgainstTheError) {
+  CellServo s = servo();
+  s.most = 10;
+  Medium medium{0.25 * kStiff, 0, 0, 1.5 * kTarget, 0};
+  const double answer = 0.5 * kTarget / (kStiff * (s.interval + s.slowness));
+  s.bias[0] = -answer;
+  EXPECT_NEAR(s.rate(0, medium.pressure(), kTarget), answer / 20, 1e-12 * answer);
+  for (int k = 0; k < 2000; ++k) {
+    medium.go_on(s.rate(0, medium.pressure(), kTarget), s.interval);
+  }
+  EXPECT_LT(std::fabs(medium.pressure() / kTarget - 1), 1e-3);
+  // ... and what is with it neither grows nor goes.
+  s.bias[0] = 1;
+  s.rate(0, 2 * kTarget, kTarget);
+  EXPECT_EQ(s.bias[0], 1);
+}
+
 TEST(CellServo, NeverAsksForMoreThanItMay) {
   CellServo s = servo();
   EXPECT_EQ(s.rate(0, 1e9, kTarget), 1);
