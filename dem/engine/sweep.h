@@ -111,6 +111,7 @@ class Sweep {
     auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     const bool flows = in_cell && world_.cell.flows();
+    const bool settles = world_.sleep.on;
     bool moved = false;
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
@@ -139,7 +140,10 @@ class Sweep {
       if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
         record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping, dt);
       }
-      const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
+      Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
+      if (settles) [[unlikely]] {
+        if (world_.sleepers.is_settling(i)) load.drag += world_.sleep.quiet_damping;
+      }
       if constexpr (kind == SweepKind::start) {
         if (grains.ids[i] >= first_new) start(i, load);
       } else {
@@ -190,7 +194,7 @@ class Sweep {
           Sum& felt = contacts.felt[k];
           felt.force += f.force;
           felt.torque += f.torque_j;
-          felt.press += sum_of_sizes(f.force);
+          felt.press += f.force.norm();
         }
       }
       force += f.force;
@@ -246,8 +250,7 @@ class Sweep {
   /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
   /// that cross by edges n (pair_force_across). `local`: what of the load is local damping. It is
   /// against the flow and no part of that.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load,
-                                                        const Vector local) {
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load, const Vector local) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
