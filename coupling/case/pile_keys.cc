@@ -114,10 +114,6 @@ void sleep(Section s) {
            "sleeps: out of balance by less than this share of its load, half the sum of the "
            "lengths of all forces on it; 1e-12: none sleeps");
   s.only("sleep.on", {"true"});
-  s.number("quiet_damping", "1/s", +IN(double, pile.sleep.quiet_damping), {0, 1e6},
-           "background damping of quiet grains alone, which ends the swings of a pile that no "
-           "dashpot feels; 0: none");
-  s.only("sleep.on", {"true"});
   s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), {1e-12, 1e3},
            "wakes: out of balance by more than this share of its load; less wakes more");
   s.only("sleep.on", {"true"});

@@ -13,10 +13,9 @@
 //          by kLookWay of its diameter (Sleepers::creep): there it sleeps again only with half of
 //          what is out of balance then;
 //          A wall that moves wakes what it will touch before the next review.
-//   damp   by quiet_damping a grain that has moved by less than quiet_move of its diameter during
-//          quiet_time, until it leaves that place;
-//   sleep  such a grain when its forces at zero velocity balance to quiet_force of its load, and
-//          it has crept by less than quiet_creep diameters a second since it is quiet.
+//   sleep  a grain that has moved by less than quiet_move of its diameter during quiet_time, when
+//          it has crept by less than quiet_creep diameters a second since it is quiet and its
+//          forces at zero velocity balance to quiet_force of its load.
 // A contact between two sleepers, or of a sleeper with a wall at rest, is frozen: it keeps its
 // memory and its force at zero velocity until one of them wakes.
 //
@@ -239,11 +238,12 @@ class Review {
       const auto still = world_.sleepers.stillness(i, b.position, world_.rotation(i), b.radius,
                                                    world_.steps, world_.sleep);
       const double time = static_cast<double>(still.steps) * world_.time_step;
-      const bool quiet = time >= world_.sleep.quiet_time && b.inverse_mass != 0 &&
-                         i != world_.applied_index && !is_at_driven_wall(i) &&
-                         !(world_.walls.any_driven() && is_reached_by_wall(i));
-      world_.sleepers.set_settling(i, quiet);
-      if (!quiet || still.way > world_.sleep.quiet_creep * time) continue;
+      if (still.steps < 0 || time < world_.sleep.quiet_time ||
+          still.way > world_.sleep.quiet_creep * time || b.inverse_mass == 0 ||
+          i == world_.applied_index || is_at_driven_wall(i) ||
+          (world_.walls.any_driven() && is_reached_by_wall(i))) {
+        continue;
+      }
       marked_[i] = 1;
       any = true;
     }

@@ -111,7 +111,6 @@ class Sweep {
     auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     const bool flows = in_cell && world_.cell.flows();
-    const bool settles = world_.sleep.on;
     bool moved = false;
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
@@ -140,10 +139,7 @@ class Sweep {
       if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
         record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping, dt);
       }
-      Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
-      if (settles) [[unlikely]] {
-        if (world_.sleepers.is_settling(i)) load.drag += world_.sleep.quiet_damping;
-      }
+      const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
       if constexpr (kind == SweepKind::start) {
         if (grains.ids[i] >= first_new) start(i, load);
       } else {

@@ -39,7 +39,6 @@ class Sleepers {
   /// A new body, the last one.
   void add(const Vector& position, const Rotation& rotation, long step, bool asleep) {
     asleep_.push_back(asleep ? 1 : 0);
-    settling_.push_back(0);
     stirred_.push_back(0);
     quiet_.push_back({position, rotation, step});
     rests_.push_back({});
@@ -60,7 +59,6 @@ class Sleepers {
       while (low <= high && asleep_[high]) --high;
       if (low >= high) break;
       std::swap(asleep_[low], asleep_[high]);
-      std::swap(settling_[low], settling_[high]);
       std::swap(stirred_[low], stirred_[high]);
       std::swap(quiet_[low], quiet_[high]);
       std::swap(rests_[low], rests_[high]);
@@ -74,14 +72,9 @@ class Sleepers {
   }
   /// The first bodies, all awake, in this order.
   void sort(const std::vector<int>& order) {
-    std::vector<Quiet> quiet(order.size());
-    std::vector<unsigned char> settling(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      quiet[k] = quiet_[order[k]];
-      settling[k] = settling_[order[k]];
-    }
-    std::copy(quiet.begin(), quiet.end(), quiet_.begin());
-    std::copy(settling.begin(), settling.end(), settling_.begin());
+    std::vector<Quiet> sorted(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = quiet_[order[k]];
+    std::copy(sorted.begin(), sorted.end(), quiet_.begin());
   }
   /// The bodies behind the awake ones are other ones since settled() was called.
   bool have_changed() const { return changed_; }
@@ -92,7 +85,6 @@ class Sleepers {
   bool set_asleep(int i, bool asleep, const Vector& position, const Rotation& rotation, long step) {
     if (is_asleep(i) == asleep) return false;
     asleep_[i] = asleep ? 1 : 0;
-    settling_[i] = 0;
     quiet_[i] = {position, rotation, step};
     return true;
   }
@@ -102,7 +94,6 @@ class Sleepers {
   bool wake_for_look(int i, const Residual& residual, double radius, long step) {
     if (!is_asleep(i)) return false;
     asleep_[i] = 0;
-    settling_[i] = 0;
     quiet_[i].since = step;
     quiet_[i].share = 0.5 * residual.unbalanced(radius) / residual.load;
     return true;
@@ -112,7 +103,6 @@ class Sleepers {
   /// Falls asleep: from now on it carries this weight.
   void put_to_sleep(int i, const Vector& weight) {
     asleep_[i] = 1;
-    settling_[i] = 0;
     rests_[i] = {};
     rests_[i].force = weight;
     rests_[i].press = weight.norm();
@@ -136,9 +126,6 @@ class Sleepers {
   double sleeping_share(int i, const SleepSettings& settings) const {
     return std::min(settings.quiet_force, quiet_[i].share);
   }
-  /// An awake body that is quiet: damped by quiet_damping.
-  bool is_settling(int i) const { return settling_[i] != 0; }
-  void set_settling(int i, bool settling) { settling_[i] = settling ? 1 : 0; }
 
   /// What a sleeper carries: its weight and the frozen contacts.
   const Sum& rest(int i) const { return rests_[i]; }
@@ -199,7 +186,6 @@ class Sleepers {
   static void visit(Self& self, Each each) {
     each(self.changed_);
     each(self.asleep_);
-    each(self.settling_);
     each(self.stirred_);
     each(self.quiet_);
     each(self.rests_);
@@ -207,9 +193,8 @@ class Sleepers {
     each(self.hidden_);
   }
   bool fits(std::size_t grains) const {
-    return asleep_.size() == grains && settling_.size() == grains && stirred_.size() == grains &&
-           quiet_.size() == grains && rests_.size() == grains && touches_.size() == grains &&
-           hidden_.size() == grains;
+    return asleep_.size() == grains && stirred_.size() == grains && quiet_.size() == grains &&
+           rests_.size() == grains && touches_.size() == grains && hidden_.size() == grains;
   }
 
  private:
@@ -229,8 +214,7 @@ class Sleepers {
 
   bool changed_ = true;
   std::vector<unsigned char> asleep_;
-  std::vector<unsigned char> settling_;  // of the awake
-  std::vector<unsigned char> stirred_;   // of sleepers
+  std::vector<unsigned char> stirred_;  // of sleepers
   std::vector<Quiet> quiet_;
   std::vector<Sum> rests_;      // of sleepers: weight and forces of the frozen contacts
   std::vector<Sum> touches_;    // of sleepers: forces of awake neighbours, summed over the steps

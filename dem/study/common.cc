@@ -89,22 +89,12 @@ void check_method(const char* key, const std::string& method, const MaterialSetu
                   key, material.rolling_friction));
 }
 
-namespace {
-
-void check_damping(const char* key, double rate, double time_step) {
-  if (rate * time_step <= 1) return;
-  throw std::invalid_argument(
-      fmt::format("{}: found {:g}, allowed: at most {:g} 1/s, one over the time step of {:.3g} s",
-                  key, rate, round_down(1 / time_step), time_step));
-}
-
-}  // namespace
-
 void check_background_damping(const RestSetup& rest, double time_step) {
-  check_damping("rest.background_damping", rest.background_damping, time_step);
-}
-void check_quiet_damping(const SleepSetup& sleep, double time_step) {
-  check_damping("sleep.quiet_damping", sleep.on ? sleep.quiet_damping : 0, time_step);
+  if (rest.background_damping * time_step <= 1) return;
+  throw std::invalid_argument(fmt::format(
+      "rest.background_damping: found {:g}, allowed: at most {:g} 1/s, one over the time step of "
+      "{:.3g} s",
+      rest.background_damping, round_down(1 / time_step), time_step));
 }
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {

@@ -41,9 +41,6 @@ void check_method(const char* key, const std::string& method, const MaterialSetu
 /// velocity from a grain within a time step.
 void check_background_damping(const RestSetup& rest, double time_step);
 
-/// The same for sleep.quiet_damping.
-void check_quiet_damping(const SleepSetup& sleep, double time_step);
-
 /// Throws std::invalid_argument naming the key when its time, s, takes more steps than anyone waits
 /// for (kMostSteps, dem/study/outlook.h).
 void check_countable(const char* key, double time, double time_step);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/dem/polygon_engine_scene.h"
@@ -30,8 +31,8 @@ TEST(Sleep, SettledBoxFallsAsleepAndKeepsItsForces) {
   const Diagnostics asleep = engine->measure();
   EXPECT_LE(asleep.awake, 4);
   const Snapshot before = engine->snapshot();
-  // Each grain fell asleep in balance to quiet_force = 0.1 of the forces on it.
-  EXPECT_NEAR(ground_force(before), weight(before), 0.1 * weight(before));
+  // Each grain fell asleep in balance to quiet_force = 0.01 of its load.
+  EXPECT_NEAR(ground_force(before), weight(before), 0.01 * weight(before));
   engine->step(1000);
   const Snapshot after = engine->snapshot();
   ASSERT_EQ(before.contacts.size(), after.contacts.size());
@@ -218,6 +219,81 @@ TEST(Sleep, AFixedGrainThatComesLateHolds) {
   engine->step(10000);
   const Snapshot s = engine->snapshot();
   EXPECT_NEAR(s.grains[8].position.y(), 0.13, 1e-3);
+}
+
+const Outline kBlock{{-0.02, -0.01}, {0.02, -0.01}, {0.02, 0.01}, {-0.02, 0.01}};
+const double kBlockDiameter = 2 * std::hypot(0.02, 0.01);
+
+/// `blocks` on each other on a floor with friction 0.5, tilted so far that the share `beyond` of
+/// the weight drives the lowest down the slope against the friction.
+std::unique_ptr<Engine> blocks_on_slope(const EngineSettings& like, int blocks, double beyond) {
+  EngineSettings s = like;
+  const double angle = std::atan(0.5) + std::asin(beyond / std::sqrt(1.25));
+  s.gravity_x = 9.81 * std::sin(angle);
+  s.gravity_y = -9.81 * std::cos(angle);
+  auto engine = make_engine(s);
+  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+  for (int k = 0; k < blocks; ++k) {
+    NewGrain g;
+    g.density = 5000;
+    g.outline = kBlock;
+    g.y = 0.01 + 0.02 * k;
+    engine->add(g);
+  }
+  return engine;
+}
+
+// Just beyond the friction angle it must go, however little it lacks: less than quiet_force.
+TEST(Sleep, ASlopeOnTheEdgeGoes) {
+  EngineSettings s = polygon_settings(1, true);
+  const auto way = [&](double beyond, int& awake) {
+    const auto engine = blocks_on_slope(s, 1, beyond);
+    engine->step(75000);  // 3 s
+    awake = engine->measure().awake;
+    return engine->snapshot().grains[0].position.x() / kBlockDiameter;
+  };
+  int awake = 0;
+  EXPECT_LT(way(-0.004, awake), 0.01);
+  EXPECT_EQ(awake, 0);
+  EXPECT_GT(way(0.004, awake), 1);
+  EXPECT_EQ(awake, 1);
+}
+
+// At 0.04 diameters a second, against a drag; in quiet_time that is a thirtieth of quiet_move.
+TEST(Sleep, WhatCreepsIsNotFrozen) {
+  EngineSettings s = polygon_settings(1, true);
+  const double drag = 50, beyond = 0.04 * kBlockDiameter * drag / 9.81;
+  EXPECT_LT(beyond, s.sleep.quiet_force);
+  EXPECT_GT(s.sleep.quiet_move / s.sleep.quiet_time, 0.04);
+  const auto engine = blocks_on_slope(s, 1, beyond);
+  engine->set_background_damping(drag);
+  engine->step(25000);
+  const double before = engine->snapshot().grains[0].position.x();
+  engine->step(25000);  // 1 s
+  const double after = engine->snapshot().grains[0].position.x();
+  EXPECT_NEAR((after - before) / kBlockDiameter, 0.04, 0.004);
+}
+
+// What hits the top of a column wakes all of it at once, not a block a review.
+TEST(Sleep, AForceWakesAlongTheNetwork) {
+  EngineSettings s = polygon_settings(1, true);
+  s.sleep.wake_reach = 0;
+  s.sleep.wake_speed = 1e6;
+  const auto engine = blocks_on_slope(s, 6, -0.3);
+  engine->step(30000);
+  ASSERT_EQ(engine->measure().awake, 0);
+  NewGrain falling;
+  falling.density = 5000;
+  falling.outline = kBlock;
+  falling.y = 0.14;
+  falling.vy = -2;
+  engine->add(falling);
+  int awake = 1;
+  for (int k = 0; k < 100 && awake == 1; ++k) {
+    engine->step(50);
+    awake = engine->measure().awake;
+  }
+  EXPECT_EQ(awake, 7);
 }
 
 TEST(Sleep, GravityWakesAll) {
