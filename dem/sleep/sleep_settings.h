@@ -18,7 +18,7 @@ struct SleepSettings {
   double quiet_move = 8e-4;   ///< quiet: moved less than this share of its diameter in quiet_time
   double quiet_creep = 0.02;  ///< sleeps: has crept more slowly than this, diameters/s, while quiet
   double quiet_force = 0.01;  ///< sleeps: out of balance by less than this share of its load
-  double wake_force = 0.03;   ///< wakes: out of balance by more than this share of its load
+  double wake_force = 0.015;  ///< wakes: out of balance by more than this share of its load
   double wake_speed = 0.5;    ///< wakes: touched at more than this times sqrt(g d), ...
   double wake_reach = 2;  ///< ... or within this times d v / sqrt(g d) of a grain at such a speed v
 };

@@ -55,7 +55,7 @@ struct SleepSetup {
   double quiet_move = 8e-4;   ///< diameters within quiet_time
   double quiet_creep = 0.02;  ///< diameters/s
   double quiet_force = 0.01;  ///< out of balance over the grain's load
-  double wake_force = 0.03;   ///< likewise
+  double wake_force = 0.015;  ///< likewise
   double wake_speed = 0.5;    ///< sqrt(g d)
   double wake_reach = 2;      ///< d v / sqrt(g d), of a grain that comes at the speed v
 
