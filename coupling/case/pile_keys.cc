@@ -107,11 +107,15 @@ void sleep(Section s) {
   s.number("quiet_move", "-", +IN(double, pile.sleep.quiet_move), {1e-12, 1e3},
            "quiet: moved less than this share of its diameter in quiet_time");
   s.only("sleep.on", {"true"});
+  s.number("quiet_creep", "1/s", +IN(double, pile.sleep.quiet_creep), {1e-12, 1e6},
+           "sleeps: has crept by less than so many diameters a second since it is quiet");
+  s.only("sleep.on", {"true"});
   s.number("quiet_force", "-", +IN(double, pile.sleep.quiet_force), {1e-12, 1e3},
-           "quiet: resultant below this share of the forces on it");
+           "sleeps: out of balance by less than this share of its load, half the sum of the "
+           "lengths of all forces on it; 1e-12: none sleeps");
   s.only("sleep.on", {"true"});
   s.number("wake_force", "-", +IN(double, pile.sleep.wake_force), {1e-12, 1e3},
-           "wakes: resultant above this share of the forces on it; less wakes more");
+           "wakes: out of balance by more than this share of its load; less wakes more");
   s.only("sleep.on", {"true"});
   s.number("wake_speed", "-", +IN(double, pile.sleep.wake_speed), {1e-6, 1e6},
            "wakes: touched at more than this times sqrt(g d)");

@@ -194,7 +194,7 @@ class Sweep {
           Sum& felt = contacts.felt[k];
           felt.force += f.force;
           felt.torque += f.torque_j;
-          felt.press += sum_of_sizes(f.force);
+          felt.press += f.force.norm();
         }
       }
       force += f.force;

@@ -38,6 +38,7 @@ class FrozenContacts {
 
   bool empty() const { return contacts_.empty(); }
   void keep(const Contact& contact) { contacts_[contact.key] = contact; }
+  bool has(PairKey key) const { return contacts_.count(key) != 0; }
   /// Takes the contact out, if it is there: true, and `out` is it.
   bool take(PairKey key, Contact& out) {
     const auto at = contacts_.find(key);

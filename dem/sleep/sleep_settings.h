@@ -1,18 +1,25 @@
 // Who may sleep, and what wakes a sleeper.
+//
+// The load of a grain is half the sum of the lengths of all forces on it, its weight too; what is
+// out of balance is the length of their resultant and that of their moment over the radius. Ways
+// and speeds are the centroid's and, added to them, the rim's about it. Nothing of it depends on
+// the axes.
 #pragma once
 
 namespace grainfield::dem {
 
 /// Grains at rest may sleep: their places are frozen, contacts between them keep their forces, and
 /// the cost of a step follows the grains in motion. A sleeper wakes when the forces from its moving
-/// neighbours leave it out of balance, or when one of them touches it at speed.
+/// neighbours leave it out of balance, when one of them touches it at speed, or for a look, when
+/// what is left out of balance would have moved it.
 struct SleepSettings {
   bool on = false;
-  double quiet_time = 1e-2;  ///< s that a grain must be quiet; longer: fewer errors, more awake
-  double quiet_move = 8e-4;  ///< quiet: moved less than this share of its diameter in quiet_time
-  double quiet_force = 0.1;  ///< quiet: resultant below this share of the forces on it
-  double wake_force = 0.15;  ///< wakes: resultant above this share of the forces on it
-  double wake_speed = 0.5;   ///< wakes: touched at more than this times sqrt(g d), ...
+  double quiet_time = 1e-2;   ///< s that a grain must be quiet; longer: fewer errors, more awake
+  double quiet_move = 8e-4;   ///< quiet: moved less than this share of its diameter in quiet_time
+  double quiet_creep = 0.02;  ///< sleeps: has crept more slowly than this, diameters/s, while quiet
+  double quiet_force = 0.01;  ///< sleeps: out of balance by less than this share of its load
+  double wake_force = 0.015;  ///< wakes: out of balance by more than this share of its load
+  double wake_speed = 0.5;    ///< wakes: touched at more than this times sqrt(g d), ...
   double wake_reach = 2;  ///< ... or within this times d v / sqrt(g d) of a grain at such a speed v
 };
 

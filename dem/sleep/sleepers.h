@@ -23,12 +23,27 @@ class Sleepers {
 
   FrozenContacts<D, Memory> frozen;
 
+  /// How still a body has been.
+  struct Stillness {
+    long steps = 0;  ///< since it is within quiet_move of one place; -1: it has just left that
+    double way = 0;  ///< from where it was then, in its diameters
+  };
+  /// What leaves a sleeper out of balance.
+  struct Residual {
+    Vector force = zero<Vector>();         ///< N
+    SpinOf<D> torque = zero<SpinOf<D>>();  ///< N m
+    double load = 0;                       ///< N
+    double unbalanced(double radius) const { return force.norm() + size_of(torque) / radius; }
+  };
+
   /// A new body, the last one.
   void add(const Vector& position, const Rotation& rotation, long step, bool asleep) {
     asleep_.push_back(asleep ? 1 : 0);
+    stirred_.push_back(0);
     quiet_.push_back({position, rotation, step});
     rests_.push_back({});
     touches_.push_back({});
+    hidden_.push_back({});
     changed_ |= asleep;
   }
   bool is_asleep(int i) const { return asleep_[i] != 0; }
@@ -43,10 +58,12 @@ class Sleepers {
       while (low <= high && !asleep_[low]) ++low;
       while (low <= high && asleep_[high]) --high;
       if (low >= high) break;
+      std::swap(asleep_[low], asleep_[high]);
+      std::swap(stirred_[low], stirred_[high]);
       std::swap(quiet_[low], quiet_[high]);
       std::swap(rests_[low], rests_[high]);
       std::swap(touches_[low], touches_[high]);
-      std::swap(asleep_[low], asleep_[high]);
+      std::swap(hidden_[low], hidden_[high]);
       swap_bodies(low, high);
       changed_ = true;
     }
@@ -71,6 +88,16 @@ class Sleepers {
     quiet_[i] = {position, rotation, step};
     return true;
   }
+  /// Wakes a sleeper for a look: it must be quiet anew, but where it was quiet first, so that what
+  /// it creeps from look to look adds up, and sleeps again there only with half of what is out of
+  /// balance now: what neither relaxes nor moves it is none of the motion's.
+  bool wake_for_look(int i, const Residual& residual, double radius, long step) {
+    if (!is_asleep(i)) return false;
+    asleep_[i] = 0;
+    quiet_[i].since = step;
+    quiet_[i].share = 0.5 * residual.unbalanced(radius) / residual.load;
+    return true;
+  }
   /// The body goes on at another image of its place.
   void shift(int i, const Vector& way) { quiet_[i].position += way; }
   /// Falls asleep: from now on it carries this weight.
@@ -78,31 +105,45 @@ class Sleepers {
     asleep_[i] = 1;
     rests_[i] = {};
     rests_[i].force = weight;
+    rests_[i].press = weight.norm();
     touches_[i] = {};
+    hidden_[i] = {};
   }
 
-  /// Steps for which a body has been within quiet_move of its diameter and turned as little; -1
-  /// when it has just left that place.
-  long quiet_steps(int i, const Vector& position, const Rotation& rotation, double radius,
-                   long step, const SleepSettings& settings) {
+  /// How still an awake body is; its place is a new one when it leaves quiet_move.
+  Stillness stillness(int i, const Vector& position, const Rotation& rotation, double radius,
+                      long step, const SleepSettings& settings) {
     Quiet& q = quiet_[i];
-    const double limit = settings.quiet_move * 2 * radius;
     const double turn = Space<D>::angle_between(rotation, q.rotation) * radius;
-    if (!((position - q.position).squaredNorm() <= limit * limit) || !(turn <= limit)) {
+    const double way = ((position - q.position).norm() + turn) / (2 * radius);
+    if (!(way <= settings.quiet_move)) {
       q = {position, rotation, step};
-      return -1;
+      return {-1, 0};
     }
-    return step - q.since;
+    return {step - q.since, way};
+  }
+  /// Out of balance by at most this share of its load an awake body may fall asleep.
+  double sleeping_share(int i, const SleepSettings& settings) const {
+    return std::min(settings.quiet_force, quiet_[i].share);
   }
 
   /// What a sleeper carries: its weight and the frozen contacts.
-  Sum& rest(int i) { return rests_[i]; }
+  const Sum& rest(int i) const { return rests_[i]; }
+  /// A contact has frozen: the sleeper carries its force.
+  void carry(int i, const ContactForce<D>& on_sleeper) {
+    Sum& rest = rests_[i];
+    rest.force += on_sleeper.force;
+    rest.torque += on_sleeper.torque_i;
+    rest.press += on_sleeper.force.norm();
+    stir(i);
+  }
   /// A frozen contact is felt anew from now on: it leaves what the sleeper carries.
   void release(int i, const ContactForce<D>& on_sleeper) {
     Sum& rest = rests_[i];
     rest.force -= on_sleeper.force;
     rest.torque -= on_sleeper.torque_i;
-    rest.press -= sum_of_sizes(on_sleeper.force);
+    rest.press -= on_sleeper.force.norm();
+    stir(i);
   }
   /// What a sleeper has felt of awake neighbours, summed over the steps since the last review.
   void touch(int i, const Sum& felt) {
@@ -110,46 +151,74 @@ class Sleepers {
     t.force -= felt.force;
     t.torque += felt.torque;
     t.press += felt.press;
+    stir(i);
   }
-  void forget_touches(int i) { touches_[i] = Sum{}; }
-  /// True when weight, frozen contacts and the mean touch of `steps` steps leave more than
-  /// wake_force of the forces unbalanced; also for nan.
-  bool is_unbalanced(int i, double radius, long steps, const SleepSettings& settings) const {
+  /// Its forces may be other ones than when it was judged last.
+  void stir(int i) { stirred_[i] = 1; }
+  bool is_stirred(int i) const { return stirred_[i] != 0; }
+  void set_judged(int i) {
+    stirred_[i] = 0;
+    touches_[i] = Sum{};
+  }
+  /// Of weight, frozen contacts and the mean touch of `steps` steps.
+  Residual residual(int i, long steps) const {
     const double share = steps > 0 ? 1.0 / static_cast<double>(steps) : 0.0;
     const Sum &rest = rests_[i], &touch = touches_[i];
-    const Vector force = rest.force + share * touch.force;
-    const SpinOf<D> torque = rest.torque + share * touch.torque;
-    const double press = rest.press + share * touch.press;
-    const double unbalanced = sum_of_sizes(force) + sum_of_sizes(torque) / radius;
-    return !(unbalanced <= settings.wake_force * press);
+    Sum mean;
+    mean.press = rest.press + share * touch.press;
+    return {rest.force + share * touch.force, rest.torque + share * touch.torque, mean.load()};
+  }
+  /// Moves a sleeper in thought for `time`, s, as what is out of balance would move a free grain
+  /// with the acceleration `gravity` times its share of the load. Returns how far it would have
+  /// gone since it fell asleep, m. Imbalance that comes and goes does not add up.
+  double creep(int i, const Residual& residual, double radius, double gravity, double time) {
+    Hidden& h = hidden_[i];
+    if (!(residual.load > 0)) return 0;
+    const double step = gravity * time / residual.load;
+    h.speed += step * residual.force;
+    h.rim_speed += step / radius * residual.torque;
+    h.way += time * h.speed;
+    h.rim_way += time * h.rim_speed;
+    return h.way.norm() + size_of(h.rim_way);
   }
 
   template <class Self, class Each>
   static void visit(Self& self, Each each) {
     each(self.changed_);
     each(self.asleep_);
+    each(self.stirred_);
     each(self.quiet_);
     each(self.rests_);
     each(self.touches_);
+    each(self.hidden_);
   }
   bool fits(std::size_t grains) const {
-    return asleep_.size() == grains && quiet_.size() == grains && rests_.size() == grains &&
-           touches_.size() == grains;
+    return asleep_.size() == grains && stirred_.size() == grains && quiet_.size() == grains &&
+           rests_.size() == grains && touches_.size() == grains && hidden_.size() == grains;
   }
 
  private:
-  /// Since when, and from where, a grain has hardly moved.
+  /// Since when, and from where, a body has hardly moved.
   struct Quiet {
     Vector position = zero<Vector>();
     Rotation rotation = no_rotation<Rotation>();
     long since = 0;
+    double share = 1;  // after a look: out of balance by at most this share of its load there
+  };
+
+  /// Motion in thought of a sleeper.
+  struct Hidden {
+    Vector speed = zero<Vector>(), way = zero<Vector>();                   // m/s, m
+    SpinOf<D> rim_speed = zero<SpinOf<D>>(), rim_way = zero<SpinOf<D>>();  // of its rim
   };
 
   bool changed_ = true;
   std::vector<unsigned char> asleep_;
+  std::vector<unsigned char> stirred_;  // of sleepers
   std::vector<Quiet> quiet_;
-  std::vector<Sum> rests_;    // of sleepers: weight and forces of the frozen contacts
-  std::vector<Sum> touches_;  // of sleepers: forces of awake neighbours, summed over the steps
+  std::vector<Sum> rests_;      // of sleepers: weight and forces of the frozen contacts
+  std::vector<Sum> touches_;    // of sleepers: forces of awake neighbours, summed over the steps
+  std::vector<Hidden> hidden_;  // of sleepers
 };
 
 }  // namespace grainfield::dem

@@ -37,7 +37,11 @@ template <int D>
 struct alignas(32) ForceSum {
   VectorOf<D> force = zero<VectorOf<D>>();
   SpinOf<D> torque = zero<SpinOf<D>>();
-  double press = 0;  ///< sum of the forces' sizes (sum_of_sizes); where sleeping is judged
+  double press = 0;  ///< sum of the forces' lengths; where sleeping is judged
+
+  /// What a grain passes on when all forces on it, its weight too, are in the sum, N: a column of
+  /// grains carries its weight above each of them and the grain's own.
+  double load() const { return 0.5 * press; }
 };
 
 }  // namespace grainfield::dem

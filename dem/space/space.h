@@ -91,13 +91,4 @@ double square_of(const Eigen::MatrixBase<Derived>& value) {
   return value.squaredNorm();
 }
 
-/// Sum of the sizes of the components: a size without a square root.
-template <class Derived>
-double sum_of_sizes(const Eigen::MatrixBase<Derived>& v) {
-  double sum = std::fabs(v[0]) + std::fabs(v[1]);
-  if constexpr (Derived::RowsAtCompileTime == 3) sum += std::fabs(v[2]);
-  return sum;
-}
-inline double sum_of_sizes(double value) { return std::fabs(value); }
-
 }  // namespace grainfield::dem

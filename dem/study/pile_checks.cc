@@ -48,17 +48,38 @@ double round_up(double value) {
   return std::ceil(value / unit * (1 - 1e-12)) * unit;
 }
 
-// 1 for the free grains that touch something and are slower than a fall over their own diameter:
-// not for those in the air, nor for those on a funnel's plates (fixed, above the floor).
+// 1 for the free grains that a wall or the floor's grains carry, through others too, and that are
+// slower than a fall over their own diameter: not for those in the air, nor for those on a funnel's
+// plates (fixed, above the floor) or stuck between these.
 std::vector<char> standing(const Snapshot& s) {
   std::vector<char> stands(s.grains.size(), 0);
+  std::vector<std::vector<std::int64_t>> beside(s.grains.size());
+  std::vector<std::int64_t> next;
   const auto plate = [&s](std::int64_t g) {
     return g >= 0 && s.grains[g].fixed && s.grains[g].position.y() > 0;
   };
+  const auto reach = [&](std::int64_t g) {
+    if (stands[g]) return;
+    stands[g] = 1;
+    next.push_back(g);
+  };
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const auto g = static_cast<std::int64_t>(k);
+    if (s.grains[k].fixed && !plate(g)) reach(g);
+  }
   for (const Contact& c : s.contacts) {
     if (plate(c.i) || plate(c.j)) continue;
-    stands[c.i] = 1;
-    if (c.j >= 0) stands[c.j] = 1;
+    if (c.j < 0) {
+      reach(c.i);
+    } else {
+      beside[c.i].push_back(c.j);
+      beside[c.j].push_back(c.i);
+    }
+  }
+  while (!next.empty()) {
+    const std::int64_t g = next.back();
+    next.pop_back();
+    for (const std::int64_t other : beside[g]) reach(other);
   }
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     const Grain& g = s.grains[k];

@@ -63,6 +63,9 @@ Scene rough_floor(std::string name, std::uint64_t hash, Kind kind, bool sleep) {
   Scene s = falling(std::move(name), hash, kind, false, IntegratorKind::verlet);
   s.settings.sleep.on = sleep;
   s.settings.sleep.quiet_move = 1e-2;
+  s.settings.sleep.quiet_creep = 1;
+  s.settings.sleep.quiet_force = 0.2;
+  s.settings.sleep.wake_force = 0.3;
   s.grains[3].rotates = false;
   for (int k = 0; k < 8; ++k) {
     NewGrain g = s.grains[static_cast<std::size_t>(k)];
@@ -100,13 +103,13 @@ std::vector<Scene> scenes() {
       falling("PolygonsLinearVerlet", 0xcd76f356f2db47e8, Kind::polygons, true, verlet),
       falling("PolygonsLinearGear", 0x467c22f0ddb588d5, Kind::polygons, true, gear),
       falling("SlenderAreaVerlet", 0x845090abc92e2737, Kind::slender, false, verlet),
-      sleeping_pour("SleepingDisks", 0x0afc2fdccb2779e3, Kind::disks, verlet),
-      sleeping_pour("SleepingPolygons", 0x1cff7b9fbe079475, Kind::polygons, verlet),
-      sleeping_pour("SleepingSlender", 0x4c3d53fdcb9dcdc1, Kind::slender, verlet),
-      sleeping_pour("SleepingPolygonsGear", 0x0ed0c8de48c0aaea, Kind::polygons, gear),
+      sleeping_pour("SleepingDisks", 0x446c3a6a6712cea6, Kind::disks, verlet),
+      sleeping_pour("SleepingPolygons", 0xcbbb791be3505a60, Kind::polygons, verlet),
+      sleeping_pour("SleepingSlender", 0x8b2d71551d5bb497, Kind::slender, verlet),
+      sleeping_pour("SleepingPolygonsGear", 0xfbd40d34e881ccfb, Kind::polygons, gear),
       rough_floor("RoughFloorDisks", 0x418b2b8a0738b733, Kind::disks, false),
       rough_floor("RoughFloorPolygons", 0x6c8ceb4054570a88, Kind::polygons, false),
-      rough_floor("RoughFloorAsleep", 0xa78a84ae224cb66e, Kind::polygons, true),
+      rough_floor("RoughFloorAsleep", 0x6be157f57565b298, Kind::polygons, true),
   };
 }
 

@@ -180,6 +180,9 @@ Case layers(const ShapeKind& shape) {
   r.settings.time_step = 5e-5;
   r.settings.gravity_y = -9.81;
   r.settings.sleep.on = true;
+  r.settings.sleep.quiet_creep = 1;
+  r.settings.sleep.quiet_force = 0.2;
+  r.settings.sleep.wake_force = 0.3;
   r.walls = {{"floor", {0, 0, 0}, {0, 1, 0}, 0.5}};
   Random random(4);
   const int depth = shape == ShapeKind::sphere ? 6 : 1;

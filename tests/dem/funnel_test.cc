@@ -178,9 +178,13 @@ TEST(Funnel, SaysWhenGrainsAreStuck) {
   c.j = 0;
   now.contacts.push_back(c);
   EXPECT_EQ(resting_top(now, 10), 0);
-  // Nor is one that lies on another above the mouth.
+  // Nor is one that lies on another stuck there, or on the pile above the mouth.
   now.grains.push_back(now.grains[1]);
   now.contacts[0].j = 2;
+  EXPECT_EQ(resting_top(now, 10), 0);
+  c.i = 2;
+  c.j = -1;
+  now.contacts.push_back(c);
   EXPECT_GT(resting_top(now, 10), 1);
   EXPECT_EQ(resting_top(now, 1), 0);
   EXPECT_NO_THROW(check_not_waiting(s, 1.9));

@@ -279,6 +279,10 @@ TEST(PileChecks, RestingTopLeavesOutWhatFlies) {
   c.i = 2;
   s.contacts.push_back(c);
   s.grains[2].velocity = Vec3(0, 2, 0);  // bounces off
+  EXPECT_EQ(resting_top(s, 1), 0);       // nothing stands on the floor
+  c.i = 0;
+  c.j = -1;
+  s.contacts.push_back(c);
   EXPECT_DOUBLE_EQ(resting_top(s, 1), 0.04);
   EXPECT_EQ(resting_top(Snapshot{}, 1), 0);
 }

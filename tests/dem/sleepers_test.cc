@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <limits>
+#include <vector>
 
 #include "dem/laws/contact.h"
 
@@ -19,7 +21,9 @@ TEST(Sleepers, ComeBehindTheAwakeAndKeepWhatTheyCarry) {
   for (int k = 0; k < 6; ++k) {
     s.add(Eigen::Vector2d(k, 0), 0, 0, k % 2 == 0);
     bodies.push_back(k);
-    s.rest(k).press = k;
+    ContactForce<2> f;
+    f.force = {0, k};
+    s.carry(k, f);
   }
   EXPECT_TRUE(s.have_changed());
   s.settled();
@@ -41,42 +45,111 @@ TEST(Sleepers, QuietIsWhoStaysInPlace) {
   settings.quiet_move = 0.01;  // of the diameter 2: 0.02
   Plane2 s;
   s.add({0, 0}, 0, 100, false);
-  EXPECT_EQ(s.quiet_steps(0, {0.01, 0.01}, 0.01, 1, 150, settings), 50);
-  EXPECT_EQ(s.quiet_steps(0, {0.03, 0}, 0, 1, 160, settings), -1);
-  EXPECT_EQ(s.quiet_steps(0, {0.03, 0}, 0, 1, 170, settings), 10);  // from where it is now
-  EXPECT_EQ(s.quiet_steps(0, {0.03, 0}, 0.03, 1, 180, settings), -1);
+  const auto still = s.stillness(0, {0.006, 0.008}, 0.009, 1, 150, settings);
+  EXPECT_EQ(still.steps, 50);
+  EXPECT_DOUBLE_EQ(still.way, 0.0095);
+  // Neither the way nor the rim's is too long, but both together are.
+  EXPECT_EQ(s.stillness(0, {0.006, 0.008}, 0.011, 1, 160, settings).steps, -1);
+  EXPECT_EQ(s.stillness(0, {0.006, 0.008}, 0.011, 1, 170, settings).steps, 10);  // where it is now
+  EXPECT_EQ(s.stillness(0, {0.006, 0.008}, 0.04, 1, 180, settings).steps, -1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(s.quiet_steps(0, {nan, 0}, 0.03, 1, 190, settings), -1);
+  EXPECT_EQ(s.stillness(0, {nan, 0}, 0.04, 1, 190, settings).steps, -1);
 }
 
-TEST(Sleepers, WakeWhenWhatTheyCarryIsOutOfBalance) {
-  SleepSettings settings;
-  settings.wake_force = 0.15;
+TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {
   Plane2 s;
   s.add({0, 0}, 0, 0, false);
   s.put_to_sleep(0, {0, -10});
   ContactForce<2> from_below;
   from_below.force = {0, 10};
-  s.rest(0).force += from_below.force;
-  s.rest(0).press += 10;
-  EXPECT_FALSE(s.is_unbalanced(0, 1, 50, settings));
+  s.carry(0, from_below);
+  EXPECT_EQ(s.residual(0, 50).unbalanced(1), 0);
+  EXPECT_EQ(s.residual(0, 50).load, 10);  // its weight, and nothing on it
   // A neighbour presses with 3 N from above, summed over 50 steps: felt is on the neighbour.
   ForceSum<2> felt;
   felt.force = {0, 150};
   felt.press = 150;
   s.touch(0, felt);
-  EXPECT_TRUE(s.is_unbalanced(0, 1, 50, settings));
-  EXPECT_FALSE(s.is_unbalanced(0, 1, 500, settings));
-  s.forget_touches(0);
-  EXPECT_FALSE(s.is_unbalanced(0, 1, 50, settings));
+  EXPECT_DOUBLE_EQ(s.residual(0, 50).unbalanced(1), 3);
+  EXPECT_DOUBLE_EQ(s.residual(0, 50).load, 11.5);
+  EXPECT_DOUBLE_EQ(s.residual(0, 500).unbalanced(1), 0.3);
+  s.set_judged(0);
+  EXPECT_FALSE(s.is_stirred(0));
   felt = {};
-  felt.torque = 100;  // 2 N m a step over a radius of 1 m against 10 N
-  felt.press = 1;
+  felt.torque = 100;
   s.touch(0, felt);
-  EXPECT_TRUE(s.is_unbalanced(0, 1, 50, settings));
-  s.forget_touches(0);
+  EXPECT_TRUE(s.is_stirred(0));
+  EXPECT_DOUBLE_EQ(s.residual(0, 50).unbalanced(0.5), 4);  // 2 N m a step
+  s.set_judged(0);
   s.release(0, from_below);  // the support is gone
-  EXPECT_TRUE(s.is_unbalanced(0, 1, 50, settings));
+  EXPECT_TRUE(s.is_stirred(0));
+  EXPECT_EQ(s.residual(0, 50).unbalanced(1), 10);
+}
+
+// What is out of balance, and of what load, is the same whichever way the axes lie.
+TEST(Sleepers, JudgeAlikeInTurnedAxes) {
+  const auto judged = [](double angle) {
+    const Eigen::Rotation2Dd turn(angle);
+    Plane2 s;
+    s.add({0, 0}, 0, 0, false);
+    s.put_to_sleep(0, turn * Eigen::Vector2d(0, -10));
+    for (const Eigen::Vector2d& force : {Eigen::Vector2d(3, 6), Eigen::Vector2d(-2, 4)}) {
+      ContactForce<2> f;
+      f.force = turn * force;
+      f.torque_i = 0.5;
+      s.carry(0, f);
+    }
+    const auto r = s.residual(0, 1);
+    SleepSettings settings;
+    const double way = s.stillness(0, turn * Eigen::Vector2d(1e-4, 2e-4), 1e-4, 1, 1, settings).way;
+    return std::vector<double>{r.unbalanced(2), r.load, s.creep(0, r, 2, 9.81, 0.1), way};
+  };
+  const std::vector<double> upright = judged(0);
+  EXPECT_DOUBLE_EQ(upright[0], 1.5);
+  for (const double angle : {0.3, 0.785, 2.0}) {
+    const std::vector<double> turned = judged(angle);
+    for (std::size_t k = 0; k < upright.size(); ++k) {
+      EXPECT_NEAR(turned[k], upright[k], 1e-13 * upright[k]) << angle;
+    }
+  }
+}
+
+// As a free grain would go, accelerated by g times the share of its load: s g t^2/2. Forces that
+// come and go hardly count.
+TEST(Sleepers, AddUpWhatLeavesThemOutOfBalance) {
+  Plane2 s;
+  s.add({0, 0}, 0, 0, false);
+  s.put_to_sleep(0, {0, -10});
+  Plane2::Residual r;
+  r.load = 20;
+  double way = 0;
+  for (int k = 0; k < 1000; ++k) {
+    r.force = {k % 2 == 0 ? 1 : -1, 0};
+    way = s.creep(0, r, 1, 9.81, 1e-3);
+  }
+  EXPECT_LT(way, 1e-3);
+  s.put_to_sleep(0, {0, -10});
+  r.force = {0.2, 0};
+  for (int k = 0; k < 1000; ++k) way = s.creep(0, r, 1, 9.81, 1e-3);
+  EXPECT_NEAR(way, 0.01 * 9.81 / 2, 2e-3 * way);
+}
+
+TEST(Sleepers, SleepAgainAfterALookOnlyWithHalfOfIt) {
+  SleepSettings settings;
+  settings.quiet_force = 0.01;
+  Plane2 s;
+  s.add({0, 0}, 0, 0, false);
+  EXPECT_EQ(s.sleeping_share(0, settings), 0.01);
+  s.put_to_sleep(0, {0, -10});
+  Plane2::Residual r;
+  r.load = 10;
+  r.force = {0, 0.08};
+  EXPECT_TRUE(s.wake_for_look(0, r, 1, 500));
+  EXPECT_FALSE(s.wake_for_look(0, r, 1, 500));
+  EXPECT_DOUBLE_EQ(s.sleeping_share(0, settings), 0.004);
+  EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 510, settings).steps, 10);
+  EXPECT_EQ(s.stillness(0, {1, 0}, 0, 1, 520, settings).steps, -1);  // it has gone elsewhere
+  EXPECT_EQ(s.sleeping_share(0, settings), 0.01);
 }
 
 TEST(Sleepers, FrozenContactsAreInNobodysOrder) {

@@ -258,15 +258,17 @@ TEST(Spheres, EnergyStaysWithoutDampingAndFriction) {
 }
 
 TEST(Spheres, SameBitsOnAnyThreadsAndAfterARestart) {
-  const auto run = [](int threads, long cut, bool sleep, long steps = 20000) {
+  const auto run = [](int threads, long cut, bool sleep, long steps = 30000) {
     EngineSettings s = spheres(HertzLaw{1e7, 0.3, 0.3}, 1e-5);
     s.gravity_z = -9.81;
     s.threads = threads;
     s.sleep.on = sleep;
-    s.sleep.quiet_time = 2e-3;
+    s.sleep.quiet_time = 4e-3;
     s.sleep.quiet_move = 5e-2;
+    s.sleep.quiet_creep = 12.5;
     s.sleep.quiet_force = 0.4;
     s.sleep.wake_force = 0.6;
+    s.sleep.wake_speed = 5;
     const auto walled = [](std::unique_ptr<Engine> engine) {
       engine->add_wall({"floor", {0, 0, 0}, {0, 0, 1}, 0.5});
       const double w = 0.05;
@@ -285,7 +287,7 @@ TEST(Spheres, SameBitsOnAnyThreadsAndAfterARestart) {
       engine->restore(image);
     }
     engine->step(steps - engine->steps());
-    if (steps == 20000) {
+    if (steps == 30000) {
       EXPECT_GT(engine->measure().contacts, 60);
       EXPECT_LT(engine->measure().awake, sleep ? 50 : 61);
     }
