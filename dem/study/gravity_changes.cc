@@ -99,7 +99,8 @@ void GravityChanges::move(std::size_t k, long steps) {
   const auto on_the_way = static_cast<long>(std::ceil(change_.ramp_time / settings_.time_step));
   const double from = packing_.gravity.norm(), to = change_.gravity[k];
   while (steps > 0) {
-    const bool ramp = steps_ < on_the_way;
+    // By where a stretch has begun: a stop may fall into the last one of the ramp.
+    const bool ramp = steps_ - steps_ % kRampEvery < on_the_way;
     const long every = ramp ? kRampEvery : kCheckEvery;
     const long chunk = std::min(steps, every - steps_ % every);
     engine_->step(chunk);

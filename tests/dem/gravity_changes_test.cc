@@ -125,6 +125,30 @@ TEST(GravityChanges, SnapshotsThatCannotGoOnAreRefused) {
   EXPECT_THROW(make_engine(EngineSettings{}, s), std::invalid_argument);
 }
 
+// Stops anywhere, also between the ramp's end and the next setting of gravity.
+TEST(GravityChanges, TheSameBitsWhereverARunStops) {
+  const InFile file;
+  PileSetup s = poured("disk");
+  s.change.gravity = {5};
+  const auto whole = make_pile_run(s, 5, 1);
+  finish(*whole);
+  write_snapshot(file.path(), "/r/pile", whole->result().snapshots[0].second);
+  const auto changed = [&](long first) {
+    const auto run = make_pile_change_run(s, file.path(), "/r", 1);
+    run->advance(first);
+    finish(*run);
+    return run->result().snapshots[1].second;
+  };
+  const Snapshot once = changed(1000000);
+  const double step =
+      once.time / std::round(once.time / whole->result().figures.at("dem.time_step"));
+  const long end = static_cast<long>(std::ceil(s.change.ramp_time / step));
+  ASSERT_NE(end % 20, 0);
+  for (const long first : {end - 1, end, end + 1, end + 20}) {
+    EXPECT_EQ(difference(changed(first), once), std::pair(0.0, 0.0)) << first - end;
+  }
+}
+
 TEST(GravityChanges, AFinishedPileGivesWhatThePouredOneGave) {
   const InFile file;
   for (const char* shape : {"rand1", "disk"}) {
