@@ -325,14 +325,24 @@ TEST(PairCheck, RefusesWhatRunWould) {
               HasSubstr("motion.time_step: found 1 s, allowed: at most"));
   EXPECT_THAT(refusal("", "[material]\ngravity = 1.0\n"), HasSubstr("has no meaning"));
   EXPECT_THAT(refusal("", "[compare]\nmodels = [\"flamant\"]\n"), HasSubstr("has no meaning"));
-  EXPECT_THAT(refusal("kind = \"path\"\npath = \"random\"\nradius_second = 1e-4\n"),
-              HasSubstr("pair.radius_second: found 0.0001 m beside"));
+  EXPECT_THAT(refusal("kind = \"path\"\npath = \"random\"\nradius = 1e-6\nradius_second = 1e3\n"),
+              HasSubstr("pair.radius_second: found 1000 m beside"));
+  EXPECT_EQ(refusal("kind = \"path\"\npath = \"random\"\nradius_second = 0.1\n"), "");
+  EXPECT_EQ(refusal("kind = \"path\"\n", "[motion]\ntime_step = 1.0\n"), "");
+  EXPECT_THAT(refusal("speeds = [0.1, 1e4]\n"),
+              HasSubstr("x.toml:3: pair.speeds: found 10000, allowed: at most "));
+  EXPECT_THAT(refusal("offset = 1.9\nangles = [-80, 80]\n"),
+              HasSubstr("x.toml:4: pair.angles: found 80: the bodies move apart"));
   EXPECT_THAT(refusal("spedes = [1]\n"), HasSubstr("nearest: pair.speed"));
 
   const Folder folder;
   const Output output =
       program("check " + folder.write("x.toml", "study = \"pair\"\n[pair]\nspeed = 0\n"));
   EXPECT_EQ(output.code, 2);
+  const Output fast =
+      program("check " + folder.write("f.toml", "study = \"pair\"\n[pair]\nspeed = 1e4\n"));
+  EXPECT_EQ(fast.code, 2);
+  EXPECT_THAT(fast.err, HasSubstr("f.toml:3: pair.speed: found 10000, allowed: at most"));
   EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
 }
 
