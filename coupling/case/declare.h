@@ -46,10 +46,10 @@ class Section {
   void or_none() { keys_.back().may_be_empty = true; }
   /// The last key, a list, may hold a value more than once.
   void with_repeats() { keys_.back().may_repeat = true; }
-  /// The last key has an effect only where another one is (or, of a list, holds) one of these.
-  void only(const std::string& needs, std::vector<std::string> needed) {
-    keys_.back().needs = needs;
-    keys_.back().needed = std::move(needed);
+  /// The last key has an effect only where another one is (or, of a list, holds) one of these. Of
+  /// several such needs all hold; those of keys that a study does not have do not concern it.
+  void only(const std::string& key, std::vector<std::string> values) {
+    keys_.back().needs.push_back({key, std::move(values)});
   }
   /// The last key means something in three dimensions only.
   void space() { keys_.back().space = true; }

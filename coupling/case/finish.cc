@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
-#include <set>
+#include <map>
 #include <stdexcept>
 #include <type_traits>
 
@@ -190,7 +190,7 @@ void check_list(const Assignment& where, const Key& key, const std::vector<T>& l
   }
   if (key.may_repeat) return;
   // As they name curves, fields and keys: numbers to six digits.
-  std::set<std::string> seen;
+  std::map<std::string, T> seen;
   for (const T& entry : list) {
     std::string name;
     if constexpr (std::is_same_v<T, double>) {
@@ -198,9 +198,15 @@ void check_list(const Assignment& where, const Key& key, const std::vector<T>& l
     } else {
       name = entry;
     }
-    if (!seen.insert(name).second) {
-      reject(where, key.path(), fmt::format("found {} twice, allowed: every entry once", name));
+    const auto [other, fresh] = seen.emplace(name, entry);
+    if (fresh) continue;
+    if (other->second != entry) {
+      reject(where, key.path(),
+             fmt::format("found {} beside {}, allowed: numbers that differ in their first six "
+                         "digits, which name figures and curves",
+                         entry, other->second));
     }
+    reject(where, key.path(), fmt::format("found {} twice, allowed: every entry once", entry));
   }
 }
 
@@ -301,9 +307,15 @@ void finish(Draft& draft) {
   for (const auto& [path, a] : draft.last) {
     const Key& key = *find_key(path);
     if (!is_idle(key, draft.value)) continue;
-    draft.value.idle.push_back(fmt::format("{}: {}: has no effect, only with {} (now {})", a.origin,
-                                           path, condition(key),
-                                           value_text(*find_key(key.needs), draft.value)));
+    draft.value.idle.push_back(
+        fmt::format("{}: {}: {}", a.origin, path, idle_text(key, draft.value)));
+  }
+  // Its members differ in nothing but their names.
+  const Key* swept = find_key(draft.value.sweep.key);
+  if (swept != nullptr && is_idle(*swept, draft.value)) {
+    draft.value.idle.push_back(fmt::format("{}: sweep.key: {} {}",
+                                           written(draft, "sweep.key").origin, swept->path(),
+                                           idle_text(*swept, draft.value)));
   }
 }
 

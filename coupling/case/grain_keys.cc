@@ -182,6 +182,7 @@ void material(Section s) {
            kBoth);
   s.number("wall_friction", "-", +MATERIAL(double, wall_friction), {0, 10},
            "Coulomb coefficient grain on side walls; above 0 the walls carry weight");
+  s.only("sample.boundary", {"walls"});
   s.number("gravity", "m/s2", +MATERIAL(double, gravity), kAcceleration, "downwards", kBoth);
   s.number(
       "rolling_friction", "-", +MATERIAL(double, rolling_friction), {0, 10},
@@ -212,14 +213,17 @@ void motion(Section s) {
   s.word("integrator", +MOTION(string, integrator), dem::words_of<dem::AnyIntegrator>(),
          "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
          "Roul 2.5");
+  s.only("pair.kind", {"collision"});
   s.number("time_step", "s", +MOTION(double, time_step), Range{1e-12, 1}.with_zero(),
            "0: time_step_fraction of the stable limit");
+  s.only("pair.kind", {"collision"});
   s.number("time_step_fraction", "-", +MOTION(double, time_step_fraction), {1e-6, 2.5},
            "share of the stable limit; less is more exact and takes longer. Above 1 for irregular "
            "polygons (rand1, irregular) with verlet only: the limit holds for chains of equal "
            "grains edge "
            "on edge",
            "Roul 2.10");
+  s.only("pair.kind", {"collision"});
   s.only("motion.time_step", {"0.0"});
   s.number(
       "local_damping", "-", +MOTION(double, local_damping), {0, 0.99},

@@ -96,6 +96,44 @@ std::string type_shown(const Key& key) {
   return type_name(key) + (entries.empty() ? "" : ", " + entries);
 }
 
+// " (study pair)": of a need that not all studies with the key have.
+std::string studies_of(const Need& need, const Key& key) {
+  std::vector<std::string> names;
+  bool fewer = false;
+  for (const Study& study : studies()) {
+    if (!key_applies(key, study.name)) continue;
+    if (key_applies(*find_key(need.key), study.name)) {
+      names.push_back(study.name);
+    } else {
+      fewer = true;
+    }
+  }
+  return fewer ? fmt::format(" (study {})", fmt::join(names, ", ")) : "";
+}
+
+bool is_unmet(const Need& need, const Case& value) {
+  const Key& other = *find_key(need.key);
+  if (!key_applies(other, value.study)) return false;
+  if (value.sweep.key == "variant" || value.sweep.key == need.key) return false;
+  if (is_idle(other, value)) return true;
+  const auto is_needed = [&](const std::string& word) {
+    return std::find(need.values.begin(), need.values.end(), word) != need.values.end();
+  };
+  return std::visit(
+      [&](auto where) {
+        const auto& held = where(const_cast<Case&>(value));  // only read
+        using T = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+          return std::none_of(held.begin(), held.end(), is_needed);
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          return !is_needed(held);
+        } else {
+          return !is_needed(value_text(other, value));
+        }
+      },
+      other.where);
+}
+
 // What stands before a key's meaning: for which studies and with which choices it has an effect.
 std::string limits(const Key& key) {
   const std::string with = condition(key);
@@ -204,34 +242,34 @@ bool is_idle(const Key& key, const Case& value) {
                         (study != nullptr && value.sweep.key == study->dimension_key);
     if (!varied) return true;
   }
-  const Key* other = key.needs.empty() ? nullptr : find_key(key.needs);
-  if (other == nullptr || !key_applies(*other, value.study)) return false;
-  if (value.sweep.key == "variant" || value.sweep.key == other->path()) return false;
-  if (is_idle(*other, value)) return true;
-  return std::visit(
-      [&](auto where) {
-        const auto& held = where(const_cast<Case&>(value));  // only read
-        const auto& needed = key.needed;
-        const auto is_needed = [&](const std::string& word) {
-          return std::find(needed.begin(), needed.end(), word) != needed.end();
-        };
-        using T = std::decay_t<decltype(held)>;
-        if constexpr (std::is_same_v<T, std::vector<std::string>>) {
-          return std::none_of(held.begin(), held.end(), is_needed);
-        } else if constexpr (std::is_same_v<T, std::string>) {
-          return !is_needed(held);
-        } else {
-          return !is_needed(value_text(*other, value));
-        }
-      },
-      other->where);
+  return unmet_need(key, value) != nullptr;
+}
+
+const Need* unmet_need(const Key& key, const Case& value) {
+  for (const Need& need : key.needs) {
+    if (is_unmet(need, value)) return &need;
+  }
+  return nullptr;
 }
 
 std::string condition(const Key& key) {
-  const std::string choice =
-      key.needs.empty() ? "" : fmt::format("{} = {}", key.needs, fmt::join(key.needed, " or "));
-  if (!key.space) return choice;
-  return choice.empty() ? "3D" : "3D, " + choice;
+  std::vector<std::string> all;
+  if (key.space) all.emplace_back("3D");
+  for (const Need& need : key.needs) {
+    all.push_back(
+        fmt::format("{} = {}{}", need.key, fmt::join(need.values, " or "), studies_of(need, key)));
+  }
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+std::string idle_text(const Key& key, const Case& value) {
+  const Need* need = unmet_need(key, value);
+  const Study* study = find_study(value.study);
+  const std::string decides =
+      study == nullptr || study->dimension_key.empty() ? "study" : study->dimension_key;
+  const std::string now = need != nullptr ? need->key : decides;
+  return fmt::format("has no effect, only with {} (now {})", condition(key),
+                     value_text(*find_key(now), value));
 }
 
 std::string type_name(const Key& key) {

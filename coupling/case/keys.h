@@ -18,6 +18,12 @@ using Binding = std::variant<double& (*)(Case&), std::int64_t& (*)(Case&), int& 
 /// Most entries of any list.
 inline constexpr std::size_t kMostEntries = 1000;
 
+/// What gives a key its effect: another one that is (of a list: holds) one of these values.
+struct Need {
+  std::string key;                  ///< its path
+  std::vector<std::string> values;  ///< as TOML, words bare
+};
+
 struct Key {
   std::string section;  ///< empty: top level
   std::string name;
@@ -30,9 +36,7 @@ struct Key {
   bool or_zero = false;              ///< 0 is allowed besides
   bool may_be_empty = false;         ///< lists: without any value
   bool may_repeat = false;           ///< lists: a value more than once
-  std::string needs;                 ///< path of the key on which it depends; empty: on none
-  std::vector<std::string>
-      needed;  ///< ... and the values (as TOML, words bare) that give it effect
+  std::vector<Need> needs;           ///< all of them, of the keys that the study has
 
   bool space = false;                    ///< only in three dimensions
   std::vector<std::string> plane_words;  ///< of the choices, those of two dimensions only
@@ -51,8 +55,13 @@ bool key_applies(const Key& key, const std::string& study);
 /// Whether what the case chooses elsewhere leaves a key without effect (source.height of a line
 /// source). Not when the run varies that choice.
 bool is_idle(const Key& key, const Case& value);
-/// "source.kind = point", "3D"; empty for a key that depends on no other.
+/// The first need that leaves it so; null where none does.
+const Need* unmet_need(const Key& key, const Case& value);
+/// "source.kind = point", "3D"; empty for a key that depends on no other. A need of some of the
+/// key's studies alone says of which: "pair.kind = collision (study pair)".
 std::string condition(const Key& key);
+/// What is said of a key that is idle: "has no effect, only with source.kind = point (now "line")".
+std::string idle_text(const Key& key, const Case& value);
 
 /// The number of dimensions of the case's grains (coupling/run/studies.h).
 int dimension_of(const Case& value);

@@ -82,7 +82,8 @@ void path(Section& s) {
          "with a swing; random: closed loops drawn for every pair; waypoints: straight pieces");
   s.only("pair.kind", {"path"});
   s.number("depth", "-", +IN(double, depth), kDepth,
-           "how far the first body comes beyond touching, over the radius");
+           "how far the first body comes beyond touching, over the radius; loop: the centre of its "
+           "ellipse, so the body itself by up to pair.amplitude further");
   s.only("pair.path", {"approach", "slide", "roll", "loop"});
   s.number("amplitude", "-", +IN(double, amplitude), kAmplitude,
            "slide: to either side; loop: half axes; over the radius");
@@ -96,9 +97,10 @@ void path(Section& s) {
            "of a path, at least: it is passed again in steps four times finer, down to a 256th, "
            "until its work changes by less than 2e-6 of the largest stored energy");
   s.only("pair.kind", {"path"});
-  s.number("loops", "-", +IN(int, loops), {1, 4000},
-           "random: pairs drawn, each with a loop of its own; of rand1 every fourth pair is two "
-           "bars across each other");
+  s.number(
+      "loops", "-", +IN(int, loops), {1, 4000},
+      "random: pairs drawn, each with a loop of its own on which the outlines cross, of half axes "
+      "0.05 to 0.4 of the mean radius; of rand1 every fourth pair is two bars across each other");
   s.only("pair.path", {"random"});
   s.number("waypoints", "-", +IN(Numbers, waypoints), kWaypoints,
            "x, y, angle, x, y, angle, ...: places of the first body from where the bodies touch, "

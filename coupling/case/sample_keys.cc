@@ -87,6 +87,7 @@ void deformation(Section& s) {
          "of a simple shear between walls: the sides tilt with the lid, or stay upright, which "
          "forbids a uniform shear");
   s.only("sample.boundary", {"walls"});
+  s.only("sample.deformation", {"simple_shear"});
   s.number("strain", "-", +IN(double, strain), {1e-6, 1e3},
            "imposed: tangent of the shear; of an edge its logarithm in a cell, its share between "
            "walls");

@@ -8,6 +8,10 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180;
+// Springs whose stiffnesses miss the ratio that swings in step by less than this share of it:
+// stiffnesses are written with a few digits. cos(pi sqrt(x)) at x = 1 then misses -1 by less than
+// the square of it.
+constexpr double kInStep = 1e-6;
 
 bool is_round(const dem::PairSetup& s) { return s.shape == "disk" || s.shape == "sphere"; }
 
@@ -84,7 +88,13 @@ double elastic_slip(const dem::PairSetup& s, double angle_deg) {
   if (slope >= mu * std::max(springs, 2 * ratio - springs)) {
     return restitution_of_slip(s, 1, angle_deg);
   }
-  return -std::cos(std::numbers::pi * std::sqrt(ratio / springs));
+  return std::fabs(springs / ratio - 1) < kInStep ? 1 : PairClosedForm::kNone;
+}
+
+// Round bodies that meet head on.
+bool head_on(const dem::PairSetup& s) {
+  return s.kind == "collision" && is_round(s) && s.offset == 0 && is_zero(s.spin_first) &&
+         is_zero(s.spin_second);
 }
 
 }  // namespace
@@ -93,6 +103,7 @@ double restitution_of_dashpot(double share) { return std::exp(-share * time_of_d
 
 double restitution_of_slip(const dem::PairSetup& setup, double restitution_normal,
                            double angle_deg) {
+  if (!head_on(setup) || setup.material.rolling_friction > 0) return PairClosedForm::kNone;
   return -1 + setup.material.friction * (1 + restitution_normal) * slip_ratio(setup) /
                   std::tan(std::fabs(angle_deg) * kDegrees);
 }
@@ -105,9 +116,7 @@ double pair_elastic_force(const dem::PairSetup& setup, double depth) {
 PairClosedForm pair_closed_form(const dem::PairSetup& s, double speed, double angle_deg) {
   PairClosedForm out;
   const PowerForce f = force_of(s);
-  const bool head_on =
-      s.offset == 0 && is_zero(s.spin_first) && is_zero(s.spin_second) && s.kind == "collision";
-  if (f.power == 0 || !head_on || s.motion.local_damping > 0) return out;
+  if (f.power == 0 || !head_on(s) || s.motion.local_damping > 0) return out;
   const double mass = scales_of(s).mass, approach = speed * std::cos(angle_deg * kDegrees);
   const double half = 0.5 * (f.power + 1);
   const double frequency = std::sqrt(half * f.stiffness / mass);
@@ -123,7 +132,8 @@ PairClosedForm pair_closed_form(const dem::PairSetup& s, double speed, double an
     out.duration = time_of_dashpot(share) / frequency;
   }
   const dem::MaterialSetup& m = s.material;
-  if (m.law == "linear" && angle_deg != 0 && m.normal_damping == 0 && m.tangential_damping == 0) {
+  if (m.law == "linear" && angle_deg != 0 && m.normal_damping == 0 && m.tangential_damping == 0 &&
+      m.rolling_friction == 0) {
     out.restitution_tangential = elastic_slip(s, angle_deg);
   }
   return out;

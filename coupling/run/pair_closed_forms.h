@@ -28,10 +28,10 @@ struct PairClosedForm {
   double duration = kNone;   ///< s
   double max_depth = kNone;  ///< m
   double max_force = kNone;  ///< N; without dashpot
-  /// Linear law without dashpots: slip throughout where tan(angle) >= mu max(k_n/k_t, 2 m/m_t -
-  /// k_n/k_t), for then the spring of friction is at its limit at every instant; else as without
-  /// any slip, -cos(pi sqrt(k_t/k_n m/m_t)). That is exact where both springs swing in step
-  /// (k_n/k_t = m/m_t), else the limit of small angles.
+  /// Linear law without dashpots and rolling resistance: slip throughout where tan(angle) >= mu
+  /// max(k_n/k_t, 2 m/m_t - k_n/k_t), for then the spring of friction is at its limit at every
+  /// instant. Else 1 where both springs swing in step (k_n/k_t = m/m_t), and none where they do
+  /// not: such a contact sticks and slips in turn.
   double restitution_tangential = kNone;
 };
 
@@ -40,7 +40,8 @@ struct PairClosedForm {
 PairClosedForm pair_closed_form(const dem::PairSetup& setup, double speed, double angle_deg);
 
 /// Tangential restitution of round bodies that slip throughout, whatever the law:
-/// -1 + mu (1 + e_n) (m/m_t)/tan(angle), m/m_t = 3 of disks, 7/2 of spheres. At an angle of 0: inf.
+/// -1 + mu (1 + e_n) (m/m_t)/tan(angle), m/m_t = 3 of disks, 7/2 of spheres. At an angle of 0: inf;
+/// nan unless they meet head on, without spin and rolling resistance.
 double restitution_of_slip(const dem::PairSetup& setup, double restitution_normal,
                            double angle_deg);
 

@@ -124,7 +124,8 @@ void add_angle_chart(const PairResults& results, std::vector<Chart>& out) {
   }
   chart.frames.push_back(std::move(frame));
   chart.caption =
-      "Closed form, of linear springs: slip throughout, or none; in between it is not known. Slip "
+      "Closed form, of linear springs without dashpots: slip throughout, or springs in step; "
+      "elsewhere there is none. Slip "
       "throughout alone, with the normal restitution that was found, holds for every law at large "
       "angles.";
   out.push_back(std::move(chart));

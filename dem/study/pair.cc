@@ -63,9 +63,13 @@ void PairRun::visit_figures(Archive& archive) {
 }
 
 std::vector<PairLaunch> pair_launches(const PairSetup& s) {
-  std::vector<PairLaunch> out{{s.speed, s.angle, "pair."}};
-  for (const double v : s.speeds) out.push_back({v, s.angle, fmt::format("pair.speed_{:g}.", v)});
-  for (const double a : s.angles) out.push_back({s.speed, a, fmt::format("pair.angle_{:g}.", a)});
+  std::vector<PairLaunch> out{{s.speed, s.angle, "pair.", "pair.speed", "pair.angle"}};
+  for (const double v : s.speeds) {
+    out.push_back({v, s.angle, fmt::format("pair.speed_{:g}.", v), "pair.speeds", "pair.angle"});
+  }
+  for (const double a : s.angles) {
+    out.push_back({s.speed, a, fmt::format("pair.angle_{:g}.", a), "pair.speed", "pair.angles"});
+  }
   return out;
 }
 
@@ -87,7 +91,7 @@ Outlook foresee_pair(const PairSetup& setup, const std::vector<std::uint64_t>& s
     make_pair_run(setup, seed, 1);
     Random random(seed);
     const double step = make_pair(setup, random, 1).settings.time_step;
-    if (out.time_step == 0) out.time_step = step;
+    if (out.time_step == 0 && setup.kind == "collision") out.time_step = step;
     if (!drawn) break;
   }
   out.grains = setup.partner == "wall" ? 1 : 2;

@@ -31,8 +31,9 @@ struct PairSetup {
   std::vector<double> spin_first, spin_second;  ///< rad/s: one number, in 3D three; none: 0
   std::vector<double> speeds;                   ///< collision: further ones at these speeds, m/s
   std::vector<double> angles;                   ///< and at these angles, deg
-  std::string path = "loop";      ///< approach | slide | roll | loop | random | waypoints
-  double depth = 0.02;            ///< how far the first comes beyond touching, over the radius
+  std::string path = "loop";  ///< approach | slide | roll | loop | random | waypoints
+  /// How far the first comes beyond touching, over the radius; loop: the middle of its ellipse.
+  double depth = 0.02;
   double amplitude = 0.1;         ///< slide, loop: over the radius
   double swing = 10;              ///< roll, loop: deg
   int turns = 1;                  ///< approach, slide, roll
@@ -83,8 +84,9 @@ inline constexpr const char* kLoopColumns[] = {"loop_work_over_energy", "loop_st
 
 /// One of the collisions asked for.
 struct PairLaunch {
-  double speed = 0, angle = 0;  ///< m/s, deg
-  std::string name;             ///< its figures begin so: "pair.", "pair.speed_0.1."
+  double speed = 0, angle = 0;       ///< m/s, deg
+  std::string name;                  ///< its figures begin so: "pair.", "pair.speed_0.1."
+  std::string speed_key, angle_key;  ///< where both are given: "pair.speeds", "pair.angle"
 };
 
 /// In the order in which they are run: the setup's own, then those of its speeds, then its angles.

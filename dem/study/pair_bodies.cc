@@ -75,6 +75,17 @@ double step_of(const PairSetup& s, double limit) {
          fmt::format("at most {:g} for this pair", most / limit));
 }
 
+using Point = std::array<double, 2>;
+
+std::vector<Point> placed(const Outline& outline, const PairState& at) {
+  std::vector<Point> out;
+  const auto [c, s] = rotation_of(at.angle);
+  for (const auto& p : outline) {
+    out.push_back({at.position.x() + c * p[0] - s * p[1], at.position.y() + s * p[0] + c * p[1]});
+  }
+  return out;
+}
+
 }  // namespace
 
 void check_pair(const PairSetup& s) {
@@ -133,7 +144,7 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   e.friction = s.material.friction;
   e.rolling = RollingLaw::of(s.material);
   e.local_damping = s.motion.local_damping;
-  e.integrator = IntegratorKind::named(s.motion.integrator);
+  if (s.kind == "collision") e.integrator = IntegratorKind::named(s.motion.integrator);
   e.shape = s.in_space()        ? ShapeKind::sphere
             : s.shape == "disk" ? ShapeKind::disk
                                 : ShapeKind::polygon;
@@ -145,7 +156,8 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   extremes.least_mass = out.has_wall ? mass : std::min(mass, mass_b);
   extremes.least_radius = out.has_wall ? a.radius : std::min(a.radius, b.radius);
   out.stable_step = stable_time_step(e, extremes);
-  e.time_step = step_of(s, out.stable_step);
+  // On a path nothing moves by itself.
+  e.time_step = s.kind == "collision" ? step_of(s, out.stable_step) : out.stable_step;
   return out;
 }
 
@@ -216,15 +228,6 @@ PairPose touching_pose(const PairBodies& bodies, double offset) {
 }
 
 int crossings(const PairBodies& bodies, const PairState& first, const PairState& second) {
-  using Point = std::array<double, 2>;
-  const auto placed = [](const Outline& outline, const PairState& at) {
-    std::vector<Point> out;
-    const auto [c, s] = rotation_of(at.angle);
-    for (const auto& p : outline) {
-      out.push_back({at.position.x() + c * p[0] - s * p[1], at.position.y() + s * p[0] + c * p[1]});
-    }
-    return out;
-  };
   if (bodies.has_wall) return 0;
   const auto a = placed(bodies.first.outline, first), b = placed(bodies.second.outline, second);
   const auto side = [](const Point& p, const Point& q, const Point& r) {
@@ -238,6 +241,21 @@ int crossings(const PairBodies& bodies, const PairState& first, const PairState&
     }
   }
   return count;
+}
+
+bool outlines_cross(const PairBodies& bodies, const PairState& first, const PairState& second) {
+  const bool round = bodies.first.outline.empty();
+  const double a = bodies.first.radius, b = bodies.second.radius;
+  if (bodies.has_wall) {
+    if (round) return std::fabs(first.position.x()) < a;
+    const auto corners = placed(bodies.first.outline, first);
+    const auto inside = [](const Point& p) { return p[0] > 0; };
+    return std::any_of(corners.begin(), corners.end(), inside) &&
+           !std::all_of(corners.begin(), corners.end(), inside);
+  }
+  if (!round) return crossings(bodies, first, second) > 0;
+  const double distance = (first.position - second.position).norm();
+  return distance > std::fabs(a - b) && distance < a + b;
 }
 
 }  // namespace grainfield::dem

@@ -41,7 +41,10 @@ PairBodies make_pair(const PairSetup& setup, Random& random, int threads);
 /// overlap is only just above 0. Throws std::invalid_argument naming pair.offset where they miss.
 PairPose touching_pose(const PairBodies& bodies, double offset);
 
-/// How often the outlines cross at these states; 0 where one is round.
+/// How often the outlines of two polygons cross at these states; 0 where one is round.
 int crossings(const PairBodies& bodies, const PairState& first, const PairState& second);
+/// Whether the outlines of any two bodies, or of the body and the wall, cross: neither lies apart
+/// nor one within the other.
+bool outlines_cross(const PairBodies& bodies, const PairState& first, const PairState& second);
 
 }  // namespace grainfield::dem

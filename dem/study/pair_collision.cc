@@ -13,8 +13,13 @@
 namespace grainfield::dem {
 namespace {
 
-// An impact that takes longer than so many half periods of the contact counts as without end.
-constexpr double kLongest = 2000;
+// After so many half periods of the contact bodies count as parted when nothing pushes them any
+// more and they recede, overlap or not. An impact that then still goes on is ended after so many
+// times its largest depth over the speed: that takes long under a soft law at small speeds, and up
+// to 2 ln(2 b) such times under a dashpot b times the critical one.
+constexpr double kLongest = 2000, kLongestFlight = 100;
+// The engine bears no way in a step beyond this share of the radius.
+constexpr double kMostWay = 0.5;
 // Speeds below this share of the whole are round-off.
 constexpr double kNoSpeed = 1e-12;
 
@@ -41,7 +46,7 @@ PairState start_of(const PairBodies& bodies, const PairPose& pose, const PairLau
   return out;
 }
 
-/// Throws std::invalid_argument when they do not approach each other where they touch.
+/// Normal and lever arms where they touch.
 Touch touch_of(const PairBodies& bodies, const PairState& first) {
   const PairState second = bodies.state_of_second();
   const PairForces f = bodies.probe()->at(first, second, 0);
@@ -49,14 +54,48 @@ Touch touch_of(const PairBodies& bodies, const PairState& first) {
   out.normal = f.normal;
   out.arm_first = f.point - first.position;
   if (!bodies.has_wall) out.arm_second = f.point - second.position;
-  const double approach = out.velocity(first, second).dot(out.normal);
-  if (!(approach > 0)) {
-    throw std::invalid_argument(fmt::format(
-        "pair.angle: the bodies move apart at {:.3g} m/s where they touch, allowed: angle, "
-        "offset and spins with which they approach",
-        -approach));
-  }
   return out;
+}
+
+// Throws std::invalid_argument naming the launch's key when they do not approach each other where
+// they touch: the approach is v cos(angle - phi) + w, phi the normal's angle and w that of the
+// spins.
+void check_approach(const PairBodies& bodies, const PairPose& pose, const PairLaunch& launch) {
+  const PairState first = start_of(bodies, pose, launch), second = bodies.state_of_second();
+  const Touch touch = touch_of(bodies, first);
+  const double approach = touch.velocity(first, second).dot(touch.normal);
+  if (approach > 0) return;
+  constexpr double kDegree = std::numbers::pi / 180;
+  const double phi = std::atan2(touch.normal.y(), touch.normal.x());
+  const double along = std::cos(launch.angle * kDegree - phi);  // of the velocity to the normal
+  const double spins = approach - launch.speed * along, share = -spins / launch.speed;
+  const bool by_speed = launch.speed_key == "pair.speeds" || share >= 1;
+  std::string allowed = "offset and spins with which they approach";
+  if (by_speed && along > 0) {
+    allowed = fmt::format("above {:.6g}", -spins / along);
+  } else if (by_speed && spins > 0 && along < 0) {
+    allowed = fmt::format("below {:.6g}", -spins / along);
+  } else if (!by_speed) {
+    const double half = std::acos(std::clamp(share, -1.0, 1.0));
+    allowed = fmt::format("above {:.6g} and below {:.6g}", (phi - half) / kDegree,
+                          (phi + half) / kDegree);
+  }
+  throw std::invalid_argument(fmt::format(
+      "{}: found {:g}: the bodies move apart at {:.3g} m/s where they touch, allowed: {}",
+      by_speed ? launch.speed_key : launch.angle_key, by_speed ? launch.speed : launch.angle,
+      -approach, allowed));
+}
+
+// The same when the engine would lose the first body in its first step.
+void check_way(const PairBodies& bodies, const PairLaunch& launch) {
+  const double least =
+      bodies.has_wall ? bodies.first.radius : std::min(bodies.first.radius, bodies.second.radius);
+  const double most = kMostWay * least / bodies.settings.time_step;
+  if (launch.speed <= most) return;
+  throw std::invalid_argument(
+      fmt::format("{}: found {:g}, allowed: at most {:.4g} m/s, half a radius in a time step of "
+                  "{:.3g} s (motion.time_step)",
+                  launch.speed_key, launch.speed, round_down(most), bodies.settings.time_step));
 }
 
 class CollisionRun final : public PairRun {
@@ -64,7 +103,10 @@ class CollisionRun final : public PairRun {
   CollisionRun(const PairSetup& setup, std::uint64_t seed, int threads)
       : PairRun(setup, seed, threads), bodies_(draw()), launches_(pair_launches(setup_)) {
     pose_ = touching_pose(bodies_, setup_.offset * setup_.radius);
-    for (const PairLaunch& launch : launches_) touch_of(bodies_, start_of(bodies_, pose_, launch));
+    for (const PairLaunch& launch : launches_) {
+      check_approach(bodies_, pose_, launch);
+      check_way(bodies_, launch);
+    }
     geometry_ = bodies_.probe();
     const double stiffness = std::visit(
         [&](const auto& law) { return law.stiffness(bodies_.first.radius); }, bodies_.settings.law);
@@ -166,14 +208,18 @@ class CollisionRun final : public PairRun {
       before_last_ = last_force_;
       last_force_ = force;
     }
-    const bool long_enough = r.time > longest_;
-    if (r.forces.touching && !long_enough) return;
+    const bool parted = !r.forces.touching || (r.time > longest_ && force == 0 && recedes(r));
+    const double flight = impact_.max_depth / launches_[at_].speed;
+    if (!parted && r.time <= std::max(longest_, kLongestFlight * flight)) return;
     // The force goes on as it fell until it is 0.
-    if (!r.forces.touching && before_last_ > last_force_) {
+    if (parted && before_last_ > last_force_) {
       impact_.duration += dt * std::min(1.0, last_force_ / (before_last_ - last_force_));
     }
-    impact_.parted = r.forces.touching ? 0 : 1;
+    impact_.parted = parted ? 1 : 0;
     finish(r);
+  }
+  bool recedes(const PairRecord& r) const {
+    return touch_of(bodies_, before_first_).velocity(r.first, r.second).dot(r.forces.normal) < 0;
   }
   void finish(const PairRecord& r) {
     const Touch touch = touch_of(bodies_, before_first_);

@@ -42,15 +42,17 @@ PairPath::PairPath(const PairSetup& s, const PairBodies& bodies)
 }
 
 PairPath::PairPath(const PairSetup& s, Random& random, bool crossing) : radius_(s.radius) {
-  const double away = radius_ * (crossing ? random.uniform(0, 1) : random.uniform(1.2, 1.8));
+  at_wall_ = s.partner == "wall";
+  const double other = s.radius_second > 0 && !at_wall_ ? s.radius_second : s.radius;
+  const double unit = 0.5 * (s.radius + other);
+  const double away = unit * (crossing ? random.uniform(0, 1) : random.uniform(1.2, 1.8));
   const auto [c, sine] = rotation_of(random.uniform(0, kTwoPi));
-  along_ = radius_ * random.uniform(0.05, 0.4);
-  across_ = radius_ * random.uniform(0.05, 0.4);
+  along_ = unit * random.uniform(0.05, 0.4);
+  across_ = unit * random.uniform(0.05, 0.4);
   start_ = {away * c, away * sine, random.uniform(0, kTwoPi)};
   swing_ = random.uniform(0, 1);
   phase_ = random.uniform(0, kTwoPi);
   rounds_ = random.uniform() < 0.2 ? 1 : 0;
-  at_wall_ = s.partner == "wall";
   if (at_wall_) start_.x = -std::fabs(start_.x);
 }
 

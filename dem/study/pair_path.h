@@ -10,7 +10,8 @@ class PairPath {
  public:
   /// Of the setup, from where the bodies touch.
   PairPath(const PairSetup& setup, const PairBodies& bodies);
-  /// A closed loop drawn of `random`, lengths in units of the radius, near the second body.
+  /// A closed loop drawn of `random`, lengths in units of the mean of both radii (at a wall: of the
+  /// radius), near the second body; `crossing`: centre over centre.
   PairPath(const PairSetup& setup, Random& random, bool crossing);
 
   /// At the share t of the path, in [0, 1].

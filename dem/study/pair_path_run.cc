@@ -17,8 +17,8 @@ namespace {
 // stored energy; steps are made finer by these factors.
 constexpr double kSettled = 2e-6;
 constexpr int kFiner = 4, kFinest = 256;
-// Random loops during which the bodies overlap by less than this share of r^2 (of r: spheres) are
-// drawn again.
+// Random loops during which the bodies overlap by less than this share of r^2 (of r: spheres), r of
+// the smaller one, while their outlines cross, are drawn again.
 constexpr double kHardlyMet = 0.01;
 constexpr int kMostTries = 1000;  // loops drawn until the bodies meet
 constexpr int kLookAt = 200;
@@ -97,12 +97,15 @@ class PathRun final : public PairRun {
   }
   bool meets() const {
     const std::unique_ptr<PairProbe> probe = bodies_->probe();
+    const bool two = !bodies_->has_wall && setup_.radius_second > 0;
+    const double r = two ? std::min(setup_.radius, setup_.radius_second) : setup_.radius;
+    const PairState second = bodies_->state_of_second();
     for (int k = 0; k < kLookAt; ++k) {
       probe->forget();
-      const PairForces f = probe->at(bodies_->state_of_first(path_->at((k + 0.5) / kLookAt)),
-                                     bodies_->state_of_second(), 0);
-      const double r = setup_.radius;
-      if (setup_.in_space() ? f.depth > kHardlyMet * r : f.area > kHardlyMet * r * r) return true;
+      const PairState first = bodies_->state_of_first(path_->at((k + 0.5) / kLookAt));
+      const PairForces f = probe->at(first, second, 0);
+      const bool met = setup_.in_space() ? f.depth > kHardlyMet * r : f.area > kHardlyMet * r * r;
+      if (met && outlines_cross(*bodies_, first, second)) return true;
     }
     return false;
   }

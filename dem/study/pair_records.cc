@@ -72,8 +72,10 @@ double column(const PairRecord& r, std::size_t k, bool in_space) {
 }  // namespace
 
 void PairRecords::add(const PairRecord& record, int wanted) {
-  if (seen++ % every != 0) return;
+  // The last record stands beside the n-th ones until the next comes.
+  if (seen > 0 && (seen - 1) % every != 0) kept.pop_back();
   kept.push_back(record);
+  ++seen;
   if (kept.size() <= 2 * static_cast<std::size_t>(wanted)) return;
   for (std::size_t k = 0; 2 * k < kept.size(); ++k) kept[k] = kept[2 * k];
   kept.resize((kept.size() + 1) / 2);

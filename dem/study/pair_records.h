@@ -12,7 +12,8 @@ struct PairRecord {
   PairForces forces;
 };
 
-/// Keeps every n-th record, n twice as large whenever there are more than twice the number wanted.
+/// Keeps every n-th record and the last, n twice as large whenever there are more than twice the
+/// number wanted.
 struct PairRecords {
   std::vector<PairRecord> kept;
   long seen = 0, every = 1;

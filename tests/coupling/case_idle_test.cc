@@ -79,31 +79,32 @@ std::string changed(const Key& key) {
   throw std::logic_error("no other value of " + key.path());
 }
 
-/// A choice that leaves the key without effect and that these tiny cases can run.
-std::string choice_against(const Key& key) {
-  const Key& other = *find_key(key.needs);
+/// A choice against the need and that these tiny cases can run.
+std::string choice_against(const Need& need) {
+  const Key& other = *find_key(need.key);
   if (type_name(other) == "boolean") return other.path() + "=false";
   if (type_name(other) == "number") return other.path() + "=1e-5";
   for (const std::string& choice : other.choices) {
-    if (std::find(key.needed.begin(), key.needed.end(), choice) == key.needed.end() &&
+    if (std::find(need.values.begin(), need.values.end(), choice) == need.values.end() &&
         choice != "outline") {
       return other.path() + "=" + choice;
     }
   }
-  throw std::logic_error("every " + other.path() + " gives effect to " + key.path());
+  throw std::logic_error("every " + other.path() + " meets the need");
 }
 
 TEST(IdleKeys, DependOnKeysAndValuesThatExist) {
   for (const Key& key : keys()) {
-    if (key.needs.empty()) continue;
-    const Key* other = find_key(key.needs);
-    ASSERT_NE(other, nullptr) << key.path();
-    EXPECT_FALSE(key.needed.empty()) << key.path();
-    for (const std::string& value : key.needed) {
-      if (other->choices.empty()) continue;
-      EXPECT_THAT(other->choices, ::testing::Contains(value)) << key.path();
+    for (const Need& need : key.needs) {
+      const Key* other = find_key(need.key);
+      ASSERT_NE(other, nullptr) << key.path();
+      EXPECT_FALSE(need.values.empty()) << key.path();
+      for (const std::string& value : need.values) {
+        if (other->choices.empty()) continue;
+        EXPECT_THAT(other->choices, ::testing::Contains(value)) << key.path();
+      }
+      EXPECT_NO_THROW(choice_against(need)) << key.path();
     }
-    EXPECT_NO_THROW(choice_against(key));
   }
 }
 
@@ -113,15 +114,16 @@ TEST(IdleKeys, ChangeNothing) {
   std::map<std::string, std::vector<double>> baselines;
   int seen = 0;
   for (const Key& key : keys()) {
-    if (key.needs.empty() ||
-        std::find(of_grains.begin(), of_grains.end(), key.section) == of_grains.end()) {
-      continue;
-    }
+    if (std::find(of_grains.begin(), of_grains.end(), key.section) == of_grains.end()) continue;
     const bool pile = key_applies(key, "pile");
+    const auto need = std::find_if(key.needs.begin(), key.needs.end(), [&](const Need& n) {
+      return key_applies(*find_key(n.key), pile ? "pile" : "point-load");
+    });
+    if (need == key.needs.end()) continue;
     const std::string text = pile ? kTinyPile : testing::tiny_case();
-    Overrides set{choice_against(key)};
+    Overrides set{choice_against(*need)};
     if (!pile) set.insert(set.end(), {"packing.width=0.1", "packing.depth=0.03"});
-    if (key.needs == "packing.sizes" || key.needs == "packing.shape") {
+    if (need->key == "packing.sizes" || need->key == "packing.shape") {
       set.push_back("packing.kind=layered");
     }
     if (pile && key.section == "material") set.push_back("shape.kind=disk");
@@ -168,6 +170,75 @@ TEST(IdleKeys, AreNotWhatARunVaries) {
   EXPECT_THAT(read(text).idle, ElementsAre(HasSubstr("source.length")));
   EXPECT_THAT(read(text + "[sweep]\nkey = \"source.kind\"\nvalues = [\"line\", \"point\"]\n").idle,
               IsEmpty());
+}
+
+const char* const kTinySample = R"(study = "sample"
+[sample]
+grains = 20
+pressure = 1e4
+strain = 0.002
+strain_rate = 1
+records = 1
+[material]
+law = "linear"
+normal_damping = 4000
+)";
+
+// Each of its needs leaves a key idle, and the message says which.
+TEST(IdleKeys, MayHaveSeveralNeeds) {
+  const std::string only =
+      "only with sample.boundary = walls, sample.deformation = simple_shear (now ";
+  EXPECT_THAT(read(kTinySample, {"sample.sides=upright"}).idle,
+              ElementsAre("--set: sample.sides: has no effect, " + only + "\"periodic\")"));
+  EXPECT_THAT(read(kTinySample,
+                   {"sample.sides=upright", "sample.boundary=walls", "sample.deformation=axial"})
+                  .idle,
+              ElementsAre("--set: sample.sides: has no effect, " + only + "\"axial\")"));
+  EXPECT_THAT(read(kTinySample, {"sample.sides=upright", "sample.boundary=walls"}).idle, IsEmpty());
+}
+
+TEST(IdleKeys, OfSamplesChangeNothing) {
+  const auto periodic = outcome(read(kTinySample));
+  const Case rough = read(kTinySample, {"material.wall_friction=0.7"});
+  EXPECT_THAT(rough.idle, ElementsAre(HasSubstr("material.wall_friction: has no effect, only with "
+                                                "sample.boundary = walls (study sample) (now ")));
+  EXPECT_EQ(outcome(rough), periodic);
+  EXPECT_THAT(read(kTinySample, {"material.wall_friction=0.7", "sample.boundary=walls"}).idle,
+              IsEmpty());
+  const Overrides axial{"sample.boundary=walls", "sample.deformation=axial"};
+  Overrides upright = axial;
+  upright.emplace_back("sample.sides=upright");
+  EXPECT_EQ(outcome(read(kTinySample, upright)), outcome(read(kTinySample, axial)));
+  // Other studies always have walls.
+  EXPECT_THAT(read(testing::tiny_case(), {"material.wall_friction=0.7"}).idle, IsEmpty());
+}
+
+TEST(IdleKeys, OfPathsAreTheTimeStepAndItsIntegrator) {
+  const std::string path = "study = \"pair\"\n[pair]\nkind = \"path\"\nsteps = 50\n";
+  const Case usual = read(path);
+  for (const char* set :
+       {"motion.time_step=1.0", "motion.time_step_fraction=0.5", "motion.integrator=gear"}) {
+    const Case other = read(path, {set});
+    EXPECT_THAT(other.idle, ElementsAre(HasSubstr("only with pair.kind = collision"))) << set;
+    EXPECT_EQ(outcome(other), outcome(usual)) << set;
+  }
+  EXPECT_THAT(read("study = \"pair\"\n", {"motion.integrator=gear"}).idle, IsEmpty());
+  EXPECT_THAT(read(testing::tiny_case(), {"motion.integrator=gear"}).idle, IsEmpty());
+  const Folder folder;
+  const auto check = [&](const std::string& text) {
+    return testing::program("check " + folder.write("x.toml", text)).out;
+  };
+  EXPECT_THAT(check(path), ::testing::Not(HasSubstr("steps of")));
+  EXPECT_THAT(check("study = \"pair\"\n"), HasSubstr("steps of"));
+}
+
+TEST(IdleKeys, ASweptOneIsWarnedOf) {
+  const std::string pile = "study = \"pile\"\n[source]\n";
+  const std::string sweep = "[sweep]\nkey = \"source.height\"\nvalues = [\"0.5\", \"0.4\"]\n";
+  EXPECT_THAT(read(pile + "kind = \"line\"\n" + sweep).idle,
+              ElementsAre(HasSubstr("x.toml:5: sweep.key: source.height has no effect, only with "
+                                    "source.kind = point (now \"line\")")));
+  EXPECT_THAT(read(pile + "kind = \"point\"\n" + sweep).idle, IsEmpty());
 }
 
 TEST(IdleKeys, AWrittenOutCaseHasNone) {

@@ -38,7 +38,10 @@ TEST(CheckLists, NoValueStandsTwice) {
                         "entry once"));
   // Curves and keys are named by six digits.
   EXPECT_THAT(complaint("[average]\ndepths = [0.5, 0.25, 0.50000001]\n"),
-              HasSubstr("average.depths: found 0.5 twice"));
+              HasSubstr("average.depths: found 0.50000001 beside 0.5, allowed: numbers that "
+                        "differ in their first six digits"));
+  EXPECT_THAT(complaint("[average]\ndepths = [0.50000001, 0.50000001]\n"),
+              HasSubstr("average.depths: found 0.50000001 twice, allowed: every entry once"));
   EXPECT_THAT(complaint("study = \"pile-fields\"\n[fields]\ntopics = [\"fabric\", \"fabric\"]\n"),
               HasSubstr("fields.topics: found fabric twice"));
   EXPECT_THAT(complaint("study = \"pile\"\n[grains]\nfiles = [\"a.h5\", \"a.h5\"]\n"),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 
 #include "dem/study/pair.h"
 
@@ -13,6 +14,21 @@ namespace {
 RunResult finish(Run& run) {
   while (!run.done()) run.advance(10000);
   return run.result();
+}
+std::vector<double> column(const RunResult& result, const std::string& name) {
+  std::istringstream words(result.snapshots.front().second.attributes.at("pair:" + name));
+  std::vector<double> out;
+  for (double x; words >> x;) out.push_back(x);
+  return out;
+}
+// What making a run refuses; "": nothing.
+std::string refusal_of(const PairSetup& setup) {
+  try {
+    make_pair_run(setup, 1, 1);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
 }
 std::map<std::string, double> figures_of(const PairSetup& setup) {
   return finish(*make_pair_run(setup, 3, 1)).figures;
@@ -93,6 +109,116 @@ TEST(Pair, ClosedLoopsOfPolygons) {
   EXPECT_LT(figures_of(s).at("pair.loop_work_over_energy"), 1e-5);
   s.material.law = "overlap_area";
   EXPECT_GT(figures_of(s).at("pair.loop_work_over_energy"), 0.02);
+}
+
+// Of bodies of unequal sizes none is swallowed all the way, and none stays apart.
+TEST(Pair, RandomLoopsCrossTheOutlineOfLargerAndSmallerBodies) {
+  for (const double other : {0.0, 0.03, 0.002}) {
+    PairSetup s;
+    s.kind = "path";
+    s.path = "random";
+    s.shape = "rand1";
+    s.radius_second = other;
+    s.loops = 30;
+    s.steps = 500;
+    s.material.law = "energy";
+    const auto crossings = column(finish(*make_pair_run(s, 3, 1)), "loop_crossings");
+    EXPECT_EQ(crossings.size(), 30U);
+    for (const double n : crossings) EXPECT_GE(n, 2) << other;
+  }
+}
+
+TEST(Pair, ProfileEndsWhereTheBodiesHaveParted) {
+  for (const int records : {2, 50, 200, 1000}) {
+    PairSetup s = linear("disk");
+    s.records = records;
+    const RunResult r = finish(*make_pair_run(s, 3, 1));
+    const auto depth = column(r, "depth"), time = column(r, "time");
+    EXPECT_EQ(depth.back(), 0) << records;
+    EXPECT_EQ(column(r, "normal_force").back(), 0) << records;
+    EXPECT_GE(time.back(), r.figures.at("pair.duration")) << records;
+    EXPECT_LT(time.back(), r.figures.at("pair.duration") + 2 * r.figures.at("dem.time_step"));
+    EXPECT_TRUE(std::is_sorted(time.begin(), time.end()));
+    EXPECT_GT(depth.size(), static_cast<std::size_t>(records));
+    EXPECT_LE(depth.size(), static_cast<std::size_t>(2 * records));
+    EXPECT_NEAR(r.snapshots.back().second.time, time.back(), 1e-8 * time.back());  // as written
+  }
+}
+
+// The softer the contact, the longer it takes: of this law without end as the speed goes to 0.
+TEST(Pair, SlowImpactsPart) {
+  PairSetup s;
+  s.material.law = "energy";
+  s.material.friction = 0;
+  for (const double speed : {1e-3, 1e-9}) {
+    s.speed = speed;
+    const auto figures = figures_of(s);
+    EXPECT_EQ(figures.at("pair.parted"), 1) << speed;
+    EXPECT_NEAR(figures.at("pair.restitution_normal"), 0.383, 1e-3) << speed;
+  }
+}
+
+TEST(Pair, RefusesBodiesThatMoveApartWithTheKeyAndWhatIsAllowed) {
+  PairSetup s = linear("disk");
+  s.offset = 1;  // the normal is 30 degrees below the x axis
+  EXPECT_EQ(refusal_of(s), "");
+  s.angles = {-80, 80};
+  EXPECT_THAT(refusal_of(s),
+              testing::StartsWith("pair.angles: found 80: the bodies move apart at "));
+  EXPECT_THAT(refusal_of(s), testing::HasSubstr("allowed: above -120 and below 60"));
+  s.angles = {59.9, -89};
+  EXPECT_EQ(refusal_of(s), "");
+  s.angles = {};
+  s.angle = 60.1;
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.angle: found 60.1: "));
+  s.speeds = {0.2};
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.angle: found 60.1: "));
+  // A square whose foremost corner, 10 degrees above the x axis, turns away from the wall.
+  s = {};
+  s.shape = "regular";
+  s.corners = 4;
+  s.partner = "wall";
+  s.turned_first = 10;
+  s.spin_first = {1000};
+  const double away = 1000 * s.radius * std::sin(10 * std::numbers::pi / 180);
+  s.speed = 1.001 * away;
+  EXPECT_EQ(refusal_of(s), "");
+  s.speeds = {2 * away, 1};
+  EXPECT_THAT(refusal_of(s), testing::HasSubstr(fmt::format("allowed: above {:.6g}", away)));
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.speeds: found 1: "));
+  s.speeds = {};
+  s.speed = 1;
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.speed: found 1: "));
+}
+
+TEST(Pair, RefusesSpeedsThatLeapOverABody) {
+  PairSetup s = linear("sphere");
+  const double step = make_pair_run(s, 1, 1)->result().figures.at("dem.time_step");
+  const double most = 0.5 * s.radius / step;
+  s.speed = 0.999 * most;
+  EXPECT_EQ(refusal_of(s), "");
+  s.speed = 1.001 * most;
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.speed: found "));
+  EXPECT_THAT(refusal_of(s), testing::HasSubstr("allowed: at most "));
+  s.speed = 0.1;
+  s.speeds = {0.2, 1.001 * most};
+  EXPECT_THAT(refusal_of(s), testing::StartsWith("pair.speeds: found "));
+}
+
+TEST(Pair, PathsKnowNoTimeStep) {
+  PairSetup s = linear("disk");
+  s.kind = "path";
+  s.path = "slide";
+  s.steps = 100;
+  const RunResult usual = finish(*make_pair_run(s, 3, 1));
+  s.motion.time_step = 1;
+  s.motion.integrator = "gear";
+  const RunResult other = finish(*make_pair_run(s, 3, 1));
+  EXPECT_EQ(usual.figures, other.figures);
+  EXPECT_EQ(column(usual, "tangential_force"), column(other, "tangential_force"));
+  EXPECT_EQ(foresee_pair(s, {1}, 1000).time_step, 0);
+  s.kind = "collision";
+  EXPECT_NE(refusal_of(s), "");
 }
 
 TEST(Pair, GoesOnAfterItWasSaved) {
