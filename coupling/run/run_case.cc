@@ -14,9 +14,11 @@
 
 #include "continuum/fe/elastic.h"
 #include "continuum/model.h"
+#include "coupling/case/keys.h"
+#include "coupling/case/study.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
-#include "coupling/run/studies.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
 #include "coupling/system/signals.h"
@@ -60,7 +62,7 @@ class Workplace {
   void open(const Case& value, const RunOptions& options) {
     results_ = std::make_unique<OutputFolder>(
         folder_.string(), value.command.empty() ? "grainfield run" : value.command);
-    results_->require_other_than(value.grains.files);
+    results_->require_other_than(value.get<GrainFiles>().files);
     std::error_code unknown;
     if (fs::equivalent(folder_ / "case.toml", options.case_file, unknown)) {
       throw std::invalid_argument(fmt::format(
@@ -381,12 +383,12 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
         // A study of models alone that was stopped has nothing to go on from, but is not finished.
         if (finished && !place.was_stopped()) {
           const std::string again = fmt::format(
-              ", or analyse its piles again in another folder: --set "
+              ", or analyse its grains again in another folder: --set "
               "'grains.files=[\"{}/snapshots.h5\"]'",
               options.folder);
           throw std::invalid_argument(fmt::format(
               "--resume: the run in {} is finished; leave --resume out to run anew in its place{}",
-              options.folder, value.study.starts_with("pile") ? again : ""));
+              options.folder, section_applies(kGrainFilesKeys.name, value.study) ? again : ""));
         }
         if (!place.was_begun()) {
           throw std::invalid_argument(fmt::format(

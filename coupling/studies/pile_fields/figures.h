@@ -1,0 +1,12 @@
+// Figures of fields of piles.
+#pragma once
+#include <vector>
+
+#include "coupling/output/summary_key.h"
+
+namespace grainfield::coupling {
+
+/// Their keys in summary.json.
+std::vector<SummaryKey> pile_fields_figures();
+
+}  // namespace grainfield::coupling
