@@ -11,7 +11,7 @@
 #include "coupling/case/case.h"
 #include "coupling/case/cost.h"
 #include "coupling/case/keys.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/system/printable.h"
 

@@ -12,9 +12,9 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/files/average_files.h"
+#include "coupling/files/compare_field.h"
 #include "coupling/output/other_file.h"
-#include "coupling/run/average_files.h"
-#include "coupling/run/compare_field.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
 

@@ -9,7 +9,7 @@
 #include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
-#include "coupling/fit/fit_files.h"
+#include "coupling/files/fit_files.h"
 #include "coupling/system/printable.h"
 
 namespace grainfield::coupling {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "coupling/run/average_files.h"
+#include "coupling/files/average_files.h"
 
 namespace grainfield::coupling {
 

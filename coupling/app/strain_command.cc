@@ -9,9 +9,9 @@
 #include "coupling/app/points_options.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
+#include "coupling/files/strain_files.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/other_file.h"
-#include "coupling/run/strain_files.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
-#include "coupling/averaging/nearest.h"
 #include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
 #include "coupling/statistics/parallel.h"
+#include "coupling/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "coupling/averaging/kernels.h"
-#include "coupling/averaging/nearest.h"
+#include "coupling/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -19,8 +19,8 @@ void check_range(const Key& key, const Assignment& a, double value) {
 }
 
 // Shapes of three dimensions, given to a study of grains in the plane; empty: the word is none.
-std::string of_three_dimensions(const std::string& path, const std::string& word) {
-  if (path != "packing.shape" && path != "shape.kind") return "";
+std::string of_three_dimensions(const Key& key, const std::string& word) {
+  if (!key.plane_shapes) return "";
   const auto words = dem::words_where<dem::AnyShape>([]<class Kind>() { return Kind::dim == 3; });
   if (std::find(words.begin(), words.end(), word) == words.end()) return "";
   return fmt::format("\"{}\" is a shape of 3D; the grains of this study are in 2D", word);
@@ -31,7 +31,7 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
       std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
     return;
   }
-  if (const std::string why = of_three_dimensions(key.path(), value); !why.empty()) {
+  if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
     reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, allowed(key), why));
   }
   reject(a, key.path(),

@@ -31,8 +31,8 @@ void apply(Draft& draft, const Assignment& assignment);
 /// limits between keys, the stable time step. Fills Case::models.
 void finish(Draft& draft);
 
-/// Those of finish() that concern [fit] alone: its lists.
-void check_fit(const Draft& draft);
+/// Those of finish() that concern the lists of one section alone.
+void check_section(const Draft& draft, const std::string& section);
 
 /// Where compare.models of the case's study lives.
 std::vector<std::string>& model_names(Case& value);

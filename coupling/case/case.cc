@@ -11,7 +11,7 @@
 #include "continuum/settings.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/members.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -52,7 +52,8 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
   }
   if (base.empty() && fast.empty() && overrides.empty()) {
     throw std::invalid_argument(
-        file + ": holds no key; a case names at least its study, e.g. study = \"point-load\"");
+        fmt::format("{}: holds no key; a case names at least its study, e.g. study = \"{}\"", file,
+                    default_study()));
   }
   for (const auto& text : overrides) set.push_back(parse_override(text));
 
@@ -151,8 +152,10 @@ std::string write_case(const Case& value) {
 }
 
 std::string grain_keys_text(const Case& value) {
-  static const std::vector<std::string> others{"average", "heap",  "fields",  "fit",   "verdict",
-                                               "elastic", "wedge", "compare", "output"};
+  std::vector<std::string> others{"compare", "output"};
+  for (const KeySection& section : study_sections()) {
+    if (section.role == KeyRole::analysis) others.emplace_back(section.name);
+  }
   std::string out;
   for (const Key& key : keys()) {
     if (!key_applies(key, value.study) || key.path() == "title" ||

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 #include "coupling/system/memory.h"
 
 namespace grainfield::coupling {
@@ -66,14 +66,15 @@ void check_points(const Draft& draft) {
   const Case& value = draft.value;
   Case usual;
   usual.study = value.study;
+  const Study& study = study_of(value);
+  if (study.averaged == nullptr) return;
   // A key with its number: here, and as it is where nobody gives it.
   struct Factor {
-    const char* path;
+    std::string path;
     double now, before;
     double excess() const { return now / before; }
   };
   const auto check = [&](std::vector<Factor> factors, double times) {
-    if (!key_applies(*find_key(factors.front().path), value.study)) return;
     factors.push_back({"ensemble.realizations", static_cast<double>(value.ensemble.realizations),
                        static_cast<double>(usual.ensemble.realizations)});
     double values = times;
@@ -90,18 +91,15 @@ void check_points(const Draft& draft) {
            fmt::format("found {:g}, with {}: {:.3g} averaged values, allowed: up to {:g}",
                        factors.front().now, fmt::join(others, " and "), values, kMostAveraged));
   };
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
-  const AverageSetup &a = value.average, &b = usual.average;
-  const auto methods = static_cast<double>(a.methods.size());
-  check({{"average.map_columns", number(a.map_columns), number(b.map_columns)},
-         {"average.map_rows", number(a.map_rows), number(b.map_rows)}},
-        methods);
-  check({{"average.points", number(a.points), number(b.points)}},
-        methods * static_cast<double>(std::max(a.depths.size(), value.heap.heights.size()) + 1));
-  const FieldsSetup &f = value.fields, &g = usual.fields;
-  check({{"fields.columns", number(f.columns), number(g.columns)},
-         {"fields.rows", number(f.rows), number(g.rows)}},
-        1);
+  const std::vector<AveragedValues> now = study.averaged(value), before = study.averaged(usual);
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    std::vector<Factor> factors;
+    for (std::size_t f = 0; f < now[k].keys.size(); ++f) {
+      const auto& [path, number] = now[k].keys[f];
+      factors.push_back({path, number, before[k].keys[f].second});
+    }
+    check(std::move(factors), now[k].times);
+  }
 }
 
 std::string outlook_text(const Case& value) {
@@ -125,14 +123,13 @@ std::string outlook_text(const Case& value) {
   }
   if (o.time == 0 || o.time_step == 0) return out;
   const double steps = o.time / o.time_step, seconds = grain_steps(o) / kRate;
-  if (o.time_key == "source.interval") {
+  LongestPart part;
+  if (study.longest_part != nullptr) part = study.longest_part(value, o);
+  if (!part.name.empty()) {
     out += fmt::format(
-        "  pouring takes {:.1f} s, {:.1f} million steps: with every grain awake about {} a "
+        "  {} takes {:.1f} s, {:.1f} million steps: with every grain awake about {} a "
         "realization on one core{}\n",
-        o.time, 1e-6 * steps, duration(seconds),
-        value.pile.sleep.on ? "; sleeping makes it less, several times when a pile is large and "
-                              "poured slowly"
-                            : "");
+        part.name, o.time, 1e-6 * steps, duration(seconds), part.remark);
   } else if (seconds > kLong) {
     out += fmt::format(
         "  {:.1f} s and more are simulated, {:.1f} million steps: about {} a "

@@ -1,10 +1,11 @@
-// How sections declare their keys; used by the *_keys.cc files only.
+// How sections declare their keys; used by the files of keys only.
 #pragma once
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "coupling/case/keys.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 
@@ -27,9 +28,9 @@ inline constexpr Range kAcceleration{1e-6, 1e6};  ///< m/s2
 inline constexpr Range kRatioOfForces{1e-14, 0.1};
 
 /// Collects the keys of one section.
-class Section {
+class SectionKeys {
  public:
-  Section(std::vector<Key>& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
+  SectionKeys(std::vector<Key>& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
 
   void number(const std::string& name, const std::string& unit, Binding where, Range range,
               const std::string& meaning, const std::string& source = "") {
@@ -51,6 +52,9 @@ class Section {
   void only(const std::string& key, std::vector<std::string> values) {
     keys_.back().needs.push_back({key, std::move(values)});
   }
+  /// The last key's words are shapes of grains in the plane: one of three dimensions is refused as
+  /// such.
+  void plane_shapes() { keys_.back().plane_shapes = true; }
   /// The last key means something in three dimensions only.
   void space() { keys_.back().space = true; }
   /// Of the last key's words, those that hold in two or in three dimensions only.
@@ -78,17 +82,5 @@ class Section {
   std::vector<Key>& keys_;
   std::string name_;
 };
-
-void declare_grain_keys(std::vector<Key>& keys);
-void declare_pile_keys(std::vector<Key>& keys);
-void declare_lattice_keys(std::vector<Key>& keys);
-void declare_sample_keys(std::vector<Key>& keys);
-void declare_pair_keys(std::vector<Key>& keys);
-void declare_heap_keys(std::vector<Key>& keys);
-void declare_grain_files_keys(std::vector<Key>& keys);
-void declare_fields_keys(std::vector<Key>& keys);
-void declare_fit_keys(std::vector<Key>& keys);
-void declare_verdict_keys(std::vector<Key>& keys);
-void declare_analysis_keys(std::vector<Key>& keys);
 
 }  // namespace grainfield::coupling

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -17,7 +17,7 @@ bool contains(const std::vector<std::string>& all, const std::string& word) {
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
-// "the grains of study = "sample" are in 2D with sample.dim = 2".
+// "the grains of study = "NAME" are in 2D with NAME.dim = 2".
 std::string whose(const Case& value) {
   const Study& study = study_of(value);
   std::string out =

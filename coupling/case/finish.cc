@@ -14,8 +14,8 @@
 #include "coupling/case/cost.h"
 #include "coupling/case/dimensions.h"
 #include "coupling/case/members.h"
-#include "coupling/run/models.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
+#include "coupling/models/models.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -91,7 +91,7 @@ std::map<std::string, ModelChoice> read_models(const Draft& draft) {
       }
     }
     // A study that varies the model's settings looks at every combination itself.
-    if (draft.value.study != "wedge") {
+    if (!study_of(draft.value).varies_models) {
       if (const auto idle = continuum::find_idle(*info, choice.settings)) {
         const Assignment& a = table.at(idle->parameter);
         reject(a, a.path, idle->refusal);
@@ -136,47 +136,6 @@ void choose_models(Draft& draft) {
   }
   if (value.models.empty() && !study_of(value).models_optional)
     reject(where, "compare.models", "found no model, expected one or more");
-}
-
-void check_elastic(const Draft& draft) {
-  const Case& value = draft.value;
-  if (!section_applies("elastic", value.study) || value.study == "elastic-half-space") return;
-  const auto& depths = value.elastic.depths;
-  const double deepest = *std::max_element(depths.begin(), depths.end());
-  if (deepest > value.elastic.height) {
-    reject(written(draft, "elastic.depths"), "elastic.depths",
-           fmt::format("found {:g}, allowed: up to elastic.height = {:g}", deepest,
-                       value.elastic.height));
-  }
-}
-
-void check_sizes(const Draft& draft) {
-  const auto& p = draft.value.layer.packing;
-  if (p.radius_min > p.radius_max) {
-    reject(written(draft, "packing.radius_min"), "packing.radius_min",
-           fmt::format("found {:g}, allowed: up to packing.radius_max = {:g}", p.radius_min,
-                       p.radius_max));
-  }
-  if (p.sizes == "bidisperse" && p.radius_small > p.radius) {
-    reject(
-        written(draft, "packing.radius_small"), "packing.radius_small",
-        fmt::format("found {:g}, allowed: up to packing.radius = {:g}", p.radius_small, p.radius));
-  }
-}
-
-void check_heap(const Draft& draft) {
-  if (!section_applies("heap", draft.value.study)) return;
-  const HeapSetup& h = draft.value.heap;
-  if (h.shoulder_from >= h.shoulder_to) {
-    reject(written(draft, "heap.shoulder_from"), "heap.shoulder_from",
-           fmt::format("found {:g}, allowed: below heap.shoulder_to = {:g}", h.shoulder_from,
-                       h.shoulder_to));
-  }
-  if (h.centre > h.shoulder_from) {
-    reject(written(draft, "heap.centre"), "heap.centre",
-           fmt::format("found {:g}, allowed: up to heap.shoulder_from = {:g}", h.centre,
-                       h.shoulder_from));
-  }
 }
 
 template <class T>
@@ -228,17 +187,6 @@ void check_lists(const Draft& draft, const std::string& section = "") {
   }
 }
 
-void check_verdict(const Draft& draft) {
-  if (!section_applies("verdict", draft.value.study)) return;
-  for (const std::string& name : draft.value.verdict.finite_elements) {
-    try {
-      continuum::find_model(name);
-    } catch (const continuum::BadParameter& e) {
-      reject(written(draft, "verdict.finite_elements"), "verdict.finite_elements", e.what());
-    }
-  }
-}
-
 // Does it, and blames what it throws, "KEY: ...", on the line where the key was written.
 template <class Judge>
 void blame(const Draft& draft, const Judge& judge) {
@@ -251,11 +199,17 @@ void blame(const Draft& draft, const Judge& judge) {
   }
 }
 
+// Every setup that the study's keys reach: from here on a case is only read.
+void make_setups(Case& value) {
+  for (const Key& key : keys()) {
+    if (key_applies(key, value.study)) std::visit([&](auto where) { where(value); }, key.where);
+  }
+}
+
 // What only the discrete elements know, such as the stable time step.
 void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
   if (!study.has_grains()) return;
-  if (section_applies("packing", study.name)) check_sizes(draft);
   check_points(draft);
   blame(draft, [&] { require_models(draft.value.models); });
   // Of a sweep's many members each has a part of the draws.
@@ -278,15 +232,16 @@ Assignment written(const Draft& draft, const std::string& path) {
   return none;
 }
 
-void check_fit(const Draft& draft) { check_lists(draft, "fit"); }
+void check_section(const Draft& draft, const std::string& section) { check_lists(draft, section); }
 
 std::vector<std::string>& model_names(Case& value) {
   const Study* study = find_study(value.study);
-  return study != nullptr && study->models_optional ? value.compare.of_heaps : value.compare.models;
+  return study != nullptr && study->models_optional ? value.compare.optional : value.compare.models;
 }
 
 void finish(Draft& draft) {
   draft.value.idle.clear();
+  make_setups(draft.value);
   if (draft.value.variants.size() > kMostEntries) {
     reject(written(draft, "sweep.key"), "variant",
            fmt::format("found {} tables [variant.NAME], allowed: up to {}",
@@ -296,9 +251,6 @@ void finish(Draft& draft) {
   check_dimensions(draft);
   choose_models(draft);
   check_lists(draft);
-  check_elastic(draft);
-  check_heap(draft);
-  check_verdict(draft);
   if (const Study& study = study_of(draft.value); study.check != nullptr) {
     blame(draft, [&] { study.check(draft.value); });
   }

@@ -12,8 +12,9 @@
 #include <unordered_map>
 
 #include "continuum/model.h"
+#include "coupling/case/common_keys.h"
 #include "coupling/case/declare.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -134,6 +135,18 @@ bool is_unmet(const Need& need, const Case& value) {
       other.where);
 }
 
+// Those of a study come before the key's own.
+void add_needs(const Study& study, std::vector<Key>& list) {
+  for (const OwnNeed& own : study.needs) {
+    const auto key =
+        std::find_if(list.begin(), list.end(), [&](const Key& k) { return k.path() == own.path; });
+    if (key == list.end()) {
+      throw std::logic_error(fmt::format("study {}: no key {}", study.name, own.path));
+    }
+    key->needs.insert(key->needs.begin(), Need{own.key, own.values});
+  }
+}
+
 // What stands before a key's meaning: for which studies and with which choices it has an effect.
 std::string limits(const Key& key) {
   const std::string with = condition(key);
@@ -163,26 +176,12 @@ bool plain_name(const std::string& text) {
 
 const std::vector<Key>& keys() {
   static const std::vector<Key> all = [] {
-    std::vector<Key> list, grains;
-    declare_analysis_keys(list);
-    declare_grain_files_keys(grains);
-    declare_grain_keys(grains);
-    declare_pile_keys(grains);
-    declare_lattice_keys(grains);
-    declare_sample_keys(grains);
-    declare_pair_keys(grains);
     // Files read best in the order study, ensemble, grains, averaging, models, output.
-    const auto after = std::find_if(list.begin(), list.end(),
-                                    [](const Key& key) { return key.section == "average"; });
-    list.insert(after, grains.begin(), grains.end());
-    std::vector<Key> heap;
-    declare_heap_keys(heap);
-    declare_fields_keys(heap);
-    declare_fit_keys(heap);
-    declare_verdict_keys(heap);
-    list.insert(std::find_if(list.begin(), list.end(),
-                             [](const Key& key) { return key.section == "elastic"; }),
-                heap.begin(), heap.end());
+    std::vector<Key> list;
+    declare_first_keys(list);
+    for (const KeySection& section : study_sections()) section.declare({list, section.name});
+    declare_last_keys(list);
+    for (const Study& study : studies()) add_needs(study, list);
     return list;
   }();
   return all;
@@ -213,8 +212,9 @@ bool section_applies(const std::string& section, const std::string& study) {
   if (std::find(always.begin(), always.end(), section) != always.end()) return true;
   const Study* known = find_study(study);
   if (known == nullptr) return false;
-  return std::find(known->sections.begin(), known->sections.end(), section) !=
-         known->sections.end();
+  if (section == "ensemble") return known->has_grains();
+  return std::any_of(known->sections.begin(), known->sections.end(),
+                     [&](const KeySection& s) { return s.name == section; });
 }
 
 bool key_applies(const Key& key, const std::string& study) {

@@ -38,6 +38,8 @@ struct Key {
   bool may_repeat = false;           ///< lists: a value more than once
   std::vector<Need> needs;           ///< all of them, of the keys that the study has
 
+  bool plane_shapes = false;  ///< its words are shapes of grains in the plane
+
   bool space = false;                    ///< only in three dimensions
   std::vector<std::string> plane_words;  ///< of the choices, those of two dimensions only
   std::vector<std::string> space_words;  ///< ... and of three
@@ -49,7 +51,7 @@ const std::vector<Key>& keys();
 const Key* find_key(const std::string& path);
 /// Sections in order, without the top level.
 std::vector<std::string> sections();
-/// Whether a section, or a key of it, means something to a study (coupling/run/studies.h).
+/// Whether a section, or a key of it, means something to a study (coupling/case/study.h).
 bool section_applies(const std::string& section, const std::string& study);
 bool key_applies(const Key& key, const std::string& study);
 /// Whether what the case chooses elsewhere leaves a key without effect (source.height of a line
@@ -63,7 +65,7 @@ std::string condition(const Key& key);
 /// What is said of a key that is idle: "has no effect, only with source.kind = point (now "line")".
 std::string idle_text(const Key& key, const Case& value);
 
-/// The number of dimensions of the case's grains (coupling/run/studies.h).
+/// The number of dimensions of the case's grains (coupling/case/study.h).
 int dimension_of(const Case& value);
 /// Whether that can be three for some case of the study.
 bool may_be_in_space(const std::string& study);

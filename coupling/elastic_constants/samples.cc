@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "coupling/averaging/nearest.h"
+#include "coupling/unknown_name.h"
 
 namespace grainfield::coupling {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "coupling/case/case.h"
 #include "coupling/fit/fit.h"
+#include "coupling/models/choice.h"
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {
@@ -32,7 +32,7 @@ void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance
 
 const std::vector<std::string>& elements_header();
 std::vector<std::vector<std::string>> element_rows(const std::vector<FiniteElementFit>& elements);
-/// fe.NAME.*: see summary_keys.cc.
+/// fe.NAME.*: see figures.cc.
 void add_elements(Summary& summary, const std::vector<FiniteElementFit>& elements);
 
 }  // namespace grainfield::coupling

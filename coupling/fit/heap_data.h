@@ -12,8 +12,9 @@
 #include "coupling/field.h"
 #include "coupling/fit/data.h"
 #include "coupling/fit/models.h"
+#include "coupling/fit/setup.h"
 #include "coupling/fit/stress_maps.h"
-#include "coupling/run/pile_frame.h"
+#include "coupling/heap/pile_frame.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -1,5 +1,5 @@
 // Data for fits from a field in the heaps' frame.
-#include "coupling/run/heap_field.h"
+#include "coupling/heap/heap_field.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,7 +13,7 @@
 #include "coupling/fit/heap_data.h"
 #include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
-#include "coupling/run/field_rows.h"
+#include "coupling/heap/field_rows.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace grainfield::coupling {
 
-/// fit.MODEL.*, fit.* and verdict.*: see summary_keys.cc.
+/// fit.MODEL.*, fit.* and verdict.*: see figures.cc.
 void add_fits(Summary& summary, const HeapFits& fits);
 
 /// The branch of Cantelaube's theory whose core angle is nearest: "minus", "zero" or "plus".

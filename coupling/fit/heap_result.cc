@@ -8,6 +8,7 @@
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_elements.h"
 #include "coupling/fit/heap_report.h"
+#include "coupling/fit/setup.h"
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
@@ -48,7 +49,7 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   StudyResult out;
   out.value = value;
   const auto fits =
-      std::make_shared<const HeapFits>(fit_heaps(value.fit, std::move(heaps), threads));
+      std::make_shared<const HeapFits>(fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
   out.comparison = profiles_of(*fits);
   add_fits(out.summary, *fits);
   out.comparison.verdict.best_model = fits->selection.ranking.front().name;
@@ -65,7 +66,7 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
     return page_of(result, first, *fits, drawn);
   };
-  add_heap_elements(out, heap_elements(*fits, value.fit.finite_elements));
+  add_heap_elements(out, heap_elements(*fits, value.get<FitSetup>().finite_elements));
   return out;
 }
 

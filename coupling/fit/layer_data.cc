@@ -9,6 +9,7 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/fit/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 
@@ -36,7 +37,7 @@ void measure(const std::vector<std::string>& files, LayerData& out) {
 LayerData layer_data(const Case& value, const std::vector<std::string>& files, int threads) {
   LayerData out;
   measure(files, out);
-  const AverageSetup& setup = value.average;
+  const AverageSetup& setup = value.get<AverageSetup>();
   AverageOptions options = average_options(setup, setup.methods.front(), out.diameter, threads);
   const auto kernel = seeing_kernel(options);
   options.width /= out.depth;
@@ -56,12 +57,12 @@ LayerData layer_data(const Case& value, const std::vector<std::string>& files, i
 
   // Rows: component after component of a level, level after level.
   FitData& data = out.data;
-  data.components = value.verdict.components;
+  data.components = value.get<VerdictSetup>().components;
   std::vector<Eigen::RowVector2d> places;
   std::vector<std::string> columns;
   for (std::size_t l = 0; l <= setup.depths.size(); ++l) {
     const bool base = l == setup.depths.size();
-    if (base && !value.verdict.base) break;
+    if (base && !value.get<VerdictSetup>().base) break;
     data.levels.push_back(base ? "base" : fmt::format("{:g}", setup.depths[l]));
     for (std::size_t c = 0; c < data.components.size(); ++c) {
       if (base && data.components[c] == "sigma_xx") continue;

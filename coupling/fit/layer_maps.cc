@@ -23,12 +23,12 @@ const char* const kColumns[] = {"sigma_xx", "sigma_yy", "sigma_xy"};
 StressMaps layer_maps(const Case& value, const std::vector<std::string>& files,
                       const LayerData& data, int threads) {
   StressMaps out;
-  out.columns = static_cast<int>(value.average.map_columns);
-  out.rows = static_cast<int>(value.average.map_rows);
+  out.columns = static_cast<int>(value.get<AverageSetup>().map_columns);
+  out.rows = static_cast<int>(value.get<AverageSetup>().map_rows);
   const double half = data.data.points.col(0).cwiseAbs().maxCoeff();
   out.points = grid_points(-half, half, out.columns, kBottom, kTop, out.rows);
-  const AverageOptions options =
-      average_options(value.average, value.average.methods.front(), data.diameter, threads);
+  const AverageOptions options = average_options(
+      value.get<AverageSetup>(), value.get<AverageSetup>().methods.front(), data.diameter, threads);
   const auto n = static_cast<double>(files.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(out.points.rows(), 3), squares = sum;
   for (const std::string& file : files) {

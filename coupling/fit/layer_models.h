@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "coupling/case/case.h"
 #include "coupling/fit/fit.h"
 #include "coupling/fit/layer_sight.h"
 #include "coupling/fit/model.h"
+#include "coupling/models/choice.h"
 
 namespace grainfield::coupling {
 

@@ -24,7 +24,7 @@ struct LayerFits {
   StressMaps maps;
 };
 
-/// fit.*, fe.* and verdict.*: see summary_keys.cc.
+/// fit.*, fe.* and verdict.*: see figures.cc.
 void add_layer_fits(Summary& summary, const LayerFits& fits);
 
 /// Parameters and ranking, as a Markdown document and as LaTeX tables.

@@ -11,9 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "coupling/averaging/nearest.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/xdmf.h"
+#include "coupling/unknown_name.h"
 #include "coupling/version.h"
 #include "dem/snapshot/hdf5_file.h"
 

@@ -22,6 +22,15 @@ AverageOptions average_options(const AverageSetup& setup, const std::string& met
   return out;
 }
 
+std::vector<AveragedValues> averaged_values(const AverageSetup& setup, std::size_t profiles) {
+  const auto number = [](auto n) { return static_cast<double>(n); };
+  const double methods = number(setup.methods.size());
+  return {{{{"average.map_columns", number(setup.map_columns)},
+            {"average.map_rows", number(setup.map_rows)}},
+           methods},
+          {{{"average.points", number(setup.points)}}, methods * number(profiles)}};
+}
+
 std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options) {
   if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width);
   const double side = options.kernel == "square" ? 2 / std::sqrt(std::numbers::pi) : 1;

@@ -12,7 +12,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "coupling/run/ensemble.h"
 #include "dem/cannot_read_now.h"
 #include "dem/snapshot/hdf5_probe.h"
 #include "dem/snapshot/snapshot.h"
@@ -78,7 +77,7 @@ std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
                                                   const std::string& study,
                                                   const std::function<bool()>& go_on) {
   std::vector<FinishedRun> there;
-  for (const std::string& file : value.grains.files) {
+  for (const std::string& file : value.get<GrainFiles>().files) {
     if (!go_on()) return std::nullopt;
     const std::size_t before = there.size();
     const std::vector<std::string>& groups = groups_of(file);
@@ -128,7 +127,7 @@ void try_finished_runs(const Case& value, const std::vector<std::string>& snapsh
     {
       const dem::hdf5::StructureOnly alone;
       runs = find_runs(value, snapshots, study, go_on);
-      for (const std::string& file : value.grains.files) {
+      for (const std::string& file : value.get<GrainFiles>().files) {
         if (!runs || !go_on() || bytes > kReadBytes) break;
         bytes += dem::hdf5::content_bytes(file);
       }
@@ -146,25 +145,6 @@ void try_finished_runs(const Case& value, const std::vector<std::string>& snapsh
     throw;
   }
   patience().end();
-}
-
-std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
-                                    std::int64_t number, int threads) {
-  if (value.grains.files.empty()) {
-    return dem::make_pile_run(setup, realization_seed(value, number), threads);
-  }
-  const FinishedRun pile = finished_run(value, number, {"pile"}, "pile");
-  return dem::make_pile_change_run(setup, pile.file, pile.group, threads);
-}
-
-dem::Outlook foresee_pile(const Case& value, const dem::PileSetup& setup, std::int64_t draws) {
-  if (value.grains.files.empty()) {
-    return dem::foresee_pile(setup, realization_seeds(value), draws);
-  }
-  try_finished_runs(value, {"pile"}, "pile", [&](const FinishedRun& pile) {
-    dem::make_pile_change_run(setup, pile.file, pile.group, 1);
-  });
-  return dem::foresee_changes(setup.change);
 }
 
 }  // namespace grainfield::coupling

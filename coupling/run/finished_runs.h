@@ -2,15 +2,21 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "coupling/case/case.h"
-#include "dem/study/outlook.h"
-#include "dem/study/run.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
+
+/// Finished piles to start from instead of pouring.
+struct GrainFiles {
+  std::vector<std::string> files;  ///< empty: the piles are poured
+};
+
+/// Its key.
+void declare_grain_files_keys(SectionKeys s);
+inline constexpr KeySection kGrainFilesKeys{"grains", KeyRole::grains, declare_grain_files_keys};
 
 /// The snapshots of one realization: a group of a file.
 struct FinishedRun {
@@ -31,14 +37,5 @@ FinishedRun finished_run(const Case& value, std::int64_t number,
 void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
                        const std::string& study,
                        const std::function<void(const FinishedRun&)>& make);
-
-/// The pile of that number: poured as `setup` says, or, where the case names grains.files, the one
-/// found there ("pile") under the changes of `setup`. Throws as finished_run and dem's runs of
-/// piles.
-std::unique_ptr<dem::Run> make_pile(const Case& value, const dem::PileSetup& setup,
-                                    std::int64_t number, int threads);
-
-/// What that takes (Study::foresee). Throws as make_pile.
-dem::Outlook foresee_pile(const Case& value, const dem::PileSetup& setup, std::int64_t draws);
 
 }  // namespace grainfield::coupling

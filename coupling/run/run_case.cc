@@ -14,9 +14,11 @@
 
 #include "continuum/fe/elastic.h"
 #include "continuum/model.h"
+#include "coupling/case/keys.h"
+#include "coupling/case/study.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
-#include "coupling/run/studies.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
 #include "coupling/system/signals.h"
@@ -60,7 +62,7 @@ class Workplace {
   void open(const Case& value, const RunOptions& options) {
     results_ = std::make_unique<OutputFolder>(
         folder_.string(), value.command.empty() ? "grainfield run" : value.command);
-    results_->require_other_than(value.grains.files);
+    results_->require_other_than(value.get<GrainFiles>().files);
     std::error_code unknown;
     if (fs::equivalent(folder_ / "case.toml", options.case_file, unknown)) {
       throw std::invalid_argument(fmt::format(
@@ -275,7 +277,11 @@ std::vector<std::string> realization_files(const SweepCase& member, const Workpl
 }
 
 StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
-  return study_of(member.value).analyse(member.value, realization_files(member, place), threads);
+  const Study& study = study_of(member.value);
+  const auto start = Clock::now();
+  StudyResult out = study.analyse(member.value, realization_files(member, place), threads);
+  if (study.has_grains()) out.summary["time.analysis_s"] = seconds_since(start);
+  return out;
 }
 
 // Averages, models and outputs of all members. `times` adds what only the run knows.
@@ -381,12 +387,12 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
         // A study of models alone that was stopped has nothing to go on from, but is not finished.
         if (finished && !place.was_stopped()) {
           const std::string again = fmt::format(
-              ", or analyse its piles again in another folder: --set "
+              ", or analyse its grains again in another folder: --set "
               "'grains.files=[\"{}/snapshots.h5\"]'",
               options.folder);
           throw std::invalid_argument(fmt::format(
               "--resume: the run in {} is finished; leave --resume out to run anew in its place{}",
-              options.folder, value.study.starts_with("pile") ? again : ""));
+              options.folder, section_applies(kGrainFilesKeys.name, value.study) ? again : ""));
         }
         if (!place.was_begun()) {
           throw std::invalid_argument(fmt::format(

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "coupling/case/study.h"
 #include "coupling/compare/significance.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/vtu.h"
 #include "coupling/run/realization_file.h"
-#include "coupling/run/studies.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/version.h"
 
@@ -48,34 +48,32 @@ void write_grains(const std::string& folder, const StudyResult& result) {
   }
 }
 
-Report layer_page(const StudyResult& result, const Realization* first) {
-  PointLoadReport page;
-  page.title = result.value.title.empty() ? result.value.name : result.value.title;
-  if (first != nullptr) {
-    page.unloaded = &(*first)["unloaded"];
-    page.loaded = &(*first)["loaded"];
+// Of a study without a page of its own: its sentence and its figures.
+Report plain_page(const StudyResult& result, const Realization*) {
+  Report out;
+  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  if (!result.comparison.verdict.sentence.empty()) {
+    out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
   }
-  page.comparison = result.comparison;
-  page.base_unloaded = result.base_unloaded;
-  page.map = result.map;
-  page.models = result.model_maps;
-  page.figures = figure_rows(
-      result.summary,
-      {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
-       "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
-       "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
-       "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
-       "response.peaks", "average.coarse_graining.balance_rms",
-       "average.particle_centre.balance_rms"});
-  add_energy_rows(result.summary, page.figures);
-  page.made = origin_rows(result);
-  return point_load_report(page);
+  std::vector<std::string> keys;
+  for (const auto& [key, unused] : result.summary) {
+    const bool aside = key.starts_with("case.") || key.starts_with("time.") ||
+                       key.starts_with("memory.") || key == "verdict.sentence";
+    if (!aside) keys.push_back(key);
+  }
+  for (const auto& [title, rows] : {std::pair{"Figures", figure_rows(result.summary, keys)},
+                                    {"How it was made", origin_rows(result)}}) {
+    Table table{title, "", {}, {}};
+    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
+    out.sections.emplace_back(std::move(table));
+  }
+  return out;
 }
 
 std::string write_page(const std::string& folder, const StudyResult& result) {
   Realization first;
   if (!result.realizations.empty()) first = read_realization(result.realizations.front());
-  const auto page = result.page ? result.page : layer_page;
+  const auto page = result.page ? result.page : plain_page;
   return write_report(folder + "/report.html",
                       page(result, result.realizations.empty() ? nullptr : &first))
       .complaint();
@@ -131,6 +129,14 @@ std::string hash_text(const std::string& text) {
     hash *= 0x100000001b3ULL;
   }
   return fmt::format("{:016x}", hash);
+}
+
+StudyResult begin_result(const Case& value, const std::vector<std::string>& realizations) {
+  StudyResult out;
+  out.value = value;
+  out.realizations = realizations;
+  add_identity(out.summary, value);
+  return out;
 }
 
 void add_identity(Summary& summary, const Case& value) {

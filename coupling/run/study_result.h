@@ -9,7 +9,7 @@
 #include "coupling/compare/compare.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
-#include "coupling/report/point_load.h"
+#include "coupling/report/report.h"
 #include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {
@@ -28,6 +28,12 @@ struct MemberCurve {
   Series series;               ///< without a label
 };
 
+/// A model's stress on the map's points.
+struct ModelMap {
+  std::string label;
+  Eigen::VectorXd sigma_yy;  ///< N/m, tension positive, on map's points
+};
+
 struct StudyResult {
   Case value;
   Comparison comparison;
@@ -38,9 +44,9 @@ struct StudyResult {
   std::vector<ModelMap> model_maps;                        ///< on map's points
   std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty
   /// Builds report.html from this result and its first realization (null without grains). Empty:
-  /// the page of a loaded layer.
+  /// a page with the sentence and the figures.
   std::function<Report(const StudyResult&, const Realization*)> page;
-  std::vector<OverviewColumn> overview;  ///< of a sweep's table; empty: those of a loaded layer
+  std::vector<OverviewColumn> overview;  ///< of a sweep's table; may be empty
   /// Frames of this member in a sweep's report, grains and models. Empty: one curve in the frames
   /// that all members share.
   std::vector<Frame> sweep_frames;
@@ -65,6 +71,8 @@ ReportRows origin_rows(const StudyResult& result);
 
 /// FNV-1a of a text, 16 hexadecimal digits.
 std::string hash_text(const std::string& text);
+/// What every study begins with: the case, its realizations, the keys of add_identity.
+StudyResult begin_result(const Case& value, const std::vector<std::string>& realizations);
 /// Keys that every study has: case, version, ensemble.
 void add_identity(Summary& summary, const Case& value);
 /// Keys that follow from the comparison, and the models' figures.

@@ -1,17 +1,13 @@
-// Every key that summary.json may hold, declared once; docs/summary-keys.md comes from it.
+// Every key that summary.json may hold: those of all runs, of models and of each study;
+// docs/summary-keys.md comes from it.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "coupling/output/summary_key.h"
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {
-
-struct SummaryKey {
-  std::string pattern;  ///< '*' stands for one name without dots of its own meaning
-  std::string unit;     ///< "-" for pure numbers, "text" for words
-  std::string meaning;
-};
 
 /// Pattern of a model's figure that has no entry of its own.
 inline constexpr char kOtherModelFigure[] = "model.*.*";

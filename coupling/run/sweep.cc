@@ -30,28 +30,17 @@ std::string with_error(const Summary& summary, const OverviewColumn& column) {
   return error == "-" ? value : value + " ± " + error;
 }
 
-const std::vector<OverviewColumn>& columns_of(const std::vector<StudyResult>& results) {
-  static const std::vector<OverviewColumn> of_layers{
-      {"peaks", "response.peaks", ""},
-      {"peak (N/m)", "response.peak", ""},
-      {"peak / (F/h)", "response.peak_over_F_per_h", ""},
-      {"width (m)", "response.width", ""},
-      {"integral / F", "response.total_over_load", ""},
-      {"best model", "verdict.best_model", ""}};
-  const auto& own = results.front().overview;
-  return own.empty() ? of_layers : own;
-}
-
 Table overview(const Case& value, const std::vector<SweepCase>& members,
                const std::vector<StudyResult>& results) {
   Table table;
   table.title = "Side by side";
   table.caption = "Each folder holds the member's own report.html.";
   table.header = {value.sweep.key, "folder"};
-  for (const OverviewColumn& column : columns_of(results)) table.header.push_back(column.heading);
+  for (const OverviewColumn& column : results.front().overview)
+    table.header.push_back(column.heading);
   for (std::size_t m = 0; m < members.size(); ++m) {
     std::vector<std::string> row{value.sweep.values[m], members[m].suffix};
-    for (const OverviewColumn& column : columns_of(results)) {
+    for (const OverviewColumn& column : results.front().overview) {
       row.push_back(with_error(results[m].summary, column));
     }
     table.rows.push_back(std::move(row));
@@ -204,10 +193,10 @@ std::string write_sweep(const std::string& folder, const Case& value,
                         ? value.sweep.values[m]
                         : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]));
   }
-  const auto differences = sweep_differences(columns_of(results), summaries);
+  const auto differences = sweep_differences(results.front().overview, summaries);
   std::string sentence = differences_sentence(differences, names);
   if (!sentence.empty()) {
-    sentence += left_out(columns_of(results), differences, summaries.front());
+    sentence += left_out(results.front().overview, differences, summaries.front());
     add_differences(all, differences, members);
     all["sweep.sentence"] = sentence;
     report.sections.emplace_back(Text{"Between the members", sentence, true});

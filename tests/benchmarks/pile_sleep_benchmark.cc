@@ -19,6 +19,7 @@
 #include "coupling/case/case.h"
 #include "coupling/run/ensemble.h"
 #include "dem/study/pile_run.h"
+#include "dem/study/setup.h"
 
 namespace {
 
@@ -31,7 +32,8 @@ constexpr double kShares[] = {0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
 constexpr int kAsleepWindow = 30, kAwakeWindow = 3;
 
 PileRun run_of(const Case& value, int realization, const std::string& state) {
-  PileRun run(value.pile, grainfield::coupling::realization_seed(value, realization), 1);
+  PileRun run(value.get<grainfield::dem::PileSetup>(),
+              grainfield::coupling::realization_seed(value, realization), 1);
   if (!state.empty()) run.restore(state);
   return run;
 }
@@ -39,7 +41,8 @@ PileRun run_of(const Case& value, int realization, const std::string& state) {
 void pour_states(const Case& value, int realization, const std::filesystem::path& folder) {
   PileRun run = run_of(value, realization, "");
   for (const double share : kShares) {
-    const int grains = static_cast<int>(share * static_cast<double>(value.pile.source.grains));
+    const int grains = static_cast<int>(
+        share * static_cast<double>(value.get<grainfield::dem::PileSetup>().source.grains));
     while (run.progress().grains < grains) run.advance(10000);
     run.save(folder / fmt::format("{:06d}.state", grains));
     fmt::print("poured {}\n", grains);
@@ -51,7 +54,7 @@ double seconds_per_grain(const Case& value, int realization, const std::string& 
                          bool awake) {
   PileRun run = run_of(value, realization, state);
   if (awake) run.keep_awake();
-  const double steps = value.pile.source.interval / run.time_step();
+  const double steps = value.get<grainfield::dem::PileSetup>().source.interval / run.time_step();
   run.advance(static_cast<long>(steps));  // until the neighbour list has its margin
   const std::clock_t start = std::clock();
   run.advance(static_cast<long>(window * steps));
@@ -61,7 +64,8 @@ double seconds_per_grain(const Case& value, int realization, const std::string& 
 void measure(const std::string& case_file, const std::filesystem::path& folder, int rounds,
              int realization) {
   const Case value = grainfield::coupling::read_case(case_file, false, {});
-  if (value.study != "pile" || value.pile.source.kind != "point" || !value.pile.sleep.on) {
+  if (value.study != "pile" || value.get<grainfield::dem::PileSetup>().source.kind != "point" ||
+      !value.get<grainfield::dem::PileSetup>().sleep.on) {
     throw std::invalid_argument(case_file + ": a pile from a point source with sleep.on is needed");
   }
   std::filesystem::create_directories(folder);
@@ -72,7 +76,7 @@ void measure(const std::string& case_file, const std::filesystem::path& folder, 
     std::string file;
   };
   std::vector<State> states;
-  const auto all = static_cast<int>(value.pile.source.grains);
+  const auto all = static_cast<int>(value.get<grainfield::dem::PileSetup>().source.grains);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path();
     const auto progress = run_of(value, realization, file).progress();

@@ -7,7 +7,7 @@
 
 #include "continuum/model.h"
 #include "coupling/case/keys.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
 #include "tests/paths.h"

@@ -6,6 +6,8 @@
 
 #include "check_scene.h"
 #include "coupling/case/keys.h"
+#include "coupling/run/averaging_setup.h"
+#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -45,11 +47,11 @@ vtu = false
 )");
   EXPECT_EQ(value.name, "x");
   EXPECT_EQ(value.title, "t");
-  EXPECT_EQ(value.layer.packing.radius_max, 0.006);
-  EXPECT_EQ(value.layer.packing.radius_min, dem::PackingSetup().radius_min);
-  EXPECT_EQ(value.layer.material.friction, 1.0);
+  EXPECT_EQ(value.get<dem::PointLoadSetup>().packing.radius_max, 0.006);
+  EXPECT_EQ(value.get<dem::PointLoadSetup>().packing.radius_min, dem::PackingSetup().radius_min);
+  EXPECT_EQ(value.get<dem::PointLoadSetup>().material.friction, 1.0);
   EXPECT_EQ(value.ensemble.realizations, 7);
-  EXPECT_EQ(value.average.depths, (std::vector<double>{0.1, 0.9}));
+  EXPECT_EQ(value.get<AverageSetup>().depths, (std::vector<double>{0.1, 0.9}));
   EXPECT_FALSE(value.output.vtu);
   ASSERT_EQ(value.models.size(), 3U);
   EXPECT_EQ(value.models[0].name, "flamant");
@@ -57,19 +59,22 @@ vtu = false
 
 TEST(ReadCase, OverridesComeLast) {
   const std::string text = "[material]\nfriction = 0.1\n[quick.material]\nfriction = 0.2\n";
-  EXPECT_EQ(accepted(text).layer.material.friction, 0.1);
-  EXPECT_EQ(accepted(text, {}, true).layer.material.friction, 0.2);
-  EXPECT_EQ(accepted(text, {"material.friction=0.3"}, true).layer.material.friction, 0.3);
-  EXPECT_EQ(accepted(text, {"material.friction=0.3"}).layer.material.friction, 0.3);
+  EXPECT_EQ(accepted(text).get<dem::PointLoadSetup>().material.friction, 0.1);
+  EXPECT_EQ(accepted(text, {}, true).get<dem::PointLoadSetup>().material.friction, 0.2);
+  EXPECT_EQ(
+      accepted(text, {"material.friction=0.3"}, true).get<dem::PointLoadSetup>().material.friction,
+      0.3);
+  EXPECT_EQ(accepted(text, {"material.friction=0.3"}).get<dem::PointLoadSetup>().material.friction,
+            0.3);
 }
 
 TEST(ReadCase, OverridesTakeBareWordsListsAndTitles) {
   const Case value =
       accepted("", {"packing.floor=rough", "compare.models=flamant", "average.depths=[0.2, 0.4]",
                     "title=5 grains", "motion.time_step = 0"});
-  EXPECT_EQ(value.layer.packing.floor, "rough");
+  EXPECT_EQ(value.get<dem::PointLoadSetup>().packing.floor, "rough");
   EXPECT_EQ(value.compare.models, std::vector<std::string>{"flamant"});
-  EXPECT_EQ(value.average.depths.size(), 2U);
+  EXPECT_EQ(value.get<AverageSetup>().depths.size(), 2U);
   EXPECT_EQ(value.title, "5 grains");
 }
 
@@ -94,7 +99,8 @@ TEST(ReadCase, TheWrittenCaseReadsBackToItself) {
   const std::string once = write_case(value);
   const Case again = read_case(folder.write("x.toml", once), false, {});
   EXPECT_EQ(write_case(again), once);
-  EXPECT_EQ(again.layer.packing.jitter, value.layer.packing.jitter);
+  EXPECT_EQ(again.get<dem::PointLoadSetup>().packing.jitter,
+            value.get<dem::PointLoadSetup>().packing.jitter);
   // Every key of the study is spelled out; those without effect as remarks.
   for (const Key& key : keys()) {
     if (!key_applies(key, "point-load") || key.section == "sweep") continue;
@@ -108,7 +114,7 @@ TEST(ReadCase, SweepMembers) {
   const auto members = sweep_cases(value);
   ASSERT_EQ(members.size(), 2U);
   EXPECT_EQ(members[1].suffix, "friction_0.6");
-  EXPECT_EQ(members[1].value.layer.material.friction, 0.6);
+  EXPECT_EQ(members[1].value.get<dem::PointLoadSetup>().material.friction, 0.6);
   EXPECT_TRUE(members[1].value.sweep.key.empty());
   EXPECT_EQ(members[1].value.models.size(), value.models.size());
   // The written-out case has the sweep.
@@ -123,8 +129,8 @@ TEST(ReadCase, AnEmptyVariantIsTheCaseAsItIs) {
       "[variant.base]\n[variant.rough]\nmaterial.friction = 0.9\n");
   const auto members = sweep_cases(value);
   ASSERT_EQ(members.size(), 2U);
-  EXPECT_EQ(members[0].value.layer.material.friction, 0.4);
-  EXPECT_EQ(members[1].value.layer.material.friction, 0.9);
+  EXPECT_EQ(members[0].value.get<dem::PointLoadSetup>().material.friction, 0.4);
+  EXPECT_EQ(members[1].value.get<dem::PointLoadSetup>().material.friction, 0.9);
   const Folder folder;
   EXPECT_EQ(sweep_cases(read_case(folder.write("x.toml", write_case(value)), false, {})).size(),
             2U);
@@ -259,22 +265,23 @@ TEST(CaseErrors, Piles) {
 TEST(ReadCase, SharedKeysFillTheSetupOfTheStudy) {
   const std::string text = "study = \"pile\"\n[material]\nfriction = 0.7\n[change]\ngravity = []\n";
   const Case pile = accepted(text);
-  EXPECT_EQ(pile.pile.material.friction, 0.7);
-  EXPECT_EQ(pile.pile.material.floor_friction, 0.54);
-  EXPECT_EQ(pile.layer.material.friction, 0.5);
+  EXPECT_EQ(pile.get<dem::PileSetup>().material.friction, 0.7);
+  EXPECT_EQ(pile.get<dem::PileSetup>().material.floor_friction, 0.54);
+  EXPECT_EQ(pile.get<dem::PointLoadSetup>().material.friction, 0.5);
   EXPECT_TRUE(pile.models.empty());
   EXPECT_EQ(accepted("study = \"pile\"\n[compare]\nmodels = [\"hydrostatic\"]\n").models.size(),
             1U);
   // The study may be chosen from the command line: the keys follow it.
   const Case chosen = accepted("[material]\nfriction = 0.7\n", {"study=pile"});
-  EXPECT_EQ(chosen.pile.material.friction, 0.7);
-  EXPECT_EQ(chosen.layer.material.friction, 0.5);
-  EXPECT_EQ(accepted("", {"study=pile", "change.gravity=[5, 20]"}).pile.change.gravity,
-            (std::vector<double>{5, 20}));
+  EXPECT_EQ(chosen.get<dem::PileSetup>().material.friction, 0.7);
+  EXPECT_EQ(chosen.get<dem::PointLoadSetup>().material.friction, 0.5);
+  EXPECT_EQ(
+      accepted("", {"study=pile", "change.gravity=[5, 20]"}).get<dem::PileSetup>().change.gravity,
+      (std::vector<double>{5, 20}));
   const Case lattice = accepted("study = \"lattice-pile\"\n[material]\nfloor_friction = 0.9\n");
-  EXPECT_EQ(lattice.lattice_pile.material.floor_friction, 0.9);
-  EXPECT_EQ(lattice.lattice_pile.material.friction, 0);
-  EXPECT_EQ(lattice.pile.material.floor_friction, 0.54);
+  EXPECT_EQ(lattice.get<dem::LatticePileSetup>().material.floor_friction, 0.9);
+  EXPECT_EQ(lattice.get<dem::LatticePileSetup>().material.friction, 0);
+  EXPECT_EQ(lattice.get<dem::PileSetup>().material.floor_friction, 0.54);
 }
 
 TEST(ReadCase, GrainKeysLeaveTheAnalysisOut) {

@@ -8,7 +8,7 @@
 
 #include "check_scene.h"
 #include "coupling/case/keys.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {

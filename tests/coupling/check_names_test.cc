@@ -1,7 +1,7 @@
 // Lists, labels and members of sweeps that a run could not use.
 #include "check_scene.h"
 #include "coupling/case/keys.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {

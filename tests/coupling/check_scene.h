@@ -7,7 +7,7 @@
 
 #include "coupling/case/case.h"
 #include "coupling/case/keys.h"
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 #include "program.h"
 
 namespace grainfield::coupling::testing {

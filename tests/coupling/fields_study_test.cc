@@ -5,12 +5,14 @@
 #include <cmath>
 #include <sstream>
 
+#include "coupling/case/study.h"
 #include "coupling/elastic_constants/elastic_map.h"
-#include "coupling/fields/robust.h"
-#include "coupling/fields/topic.h"
-#include "coupling/run/studies.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/pile_fields/robust.h"
+#include "coupling/studies/pile_fields/setup.h"
+#include "coupling/studies/pile_fields/topic.h"
+#include "dem/study/setup.h"
 #include "heap_scene.h"
 #include "program.h"
 
@@ -24,14 +26,14 @@ Case fields_case() {
   Case value;
   value.name = "heaps";
   value.study = "pile-fields";
-  value.pile.material.friction = 1;
-  value.pile.change.gravity = {8.829};
-  value.fields.rve_diameters = 3;
-  value.fields.sizes = {1, 2, 3, 4};
-  value.fields.columns = 25;
-  value.fields.rows = 15;
-  value.fields.heights = {0.3, 0.4};
-  value.fields.resamples = 20;
+  value.get<dem::PileSetup>().material.friction = 1;
+  value.get<dem::PileSetup>().change.gravity = {8.829};
+  value.get<FieldsSetup>().rve_diameters = 3;
+  value.get<FieldsSetup>().sizes = {1, 2, 3, 4};
+  value.get<FieldsSetup>().columns = 25;
+  value.get<FieldsSetup>().rows = 15;
+  value.get<FieldsSetup>().heights = {0.3, 0.4};
+  value.get<FieldsSetup>().resamples = 20;
   return value;
 }
 
@@ -172,7 +174,7 @@ TEST(Fields, EveryTopicStandsAlone) {
   const auto files = heaps(folder, {1, 2}, 26);
   for (const Topic& topic : topics()) {
     Case value = fields_case();
-    value.fields.topics = {topic.name};
+    value.get<FieldsSetup>().topics = {topic.name};
     const StudyResult result = look(value, files);
     EXPECT_NO_THROW(require_documented(result.summary)) << topic.name;
     EXPECT_FALSE(result.fields.empty()) << topic.name;
@@ -185,8 +187,8 @@ TEST(Fields, EveryTopicStandsAlone) {
 TEST(Fields, PointsWithoutEnoughGrainsAreNamed) {
   const Folder folder;
   Case value = fields_case();
-  value.fields.rve_diameters = 1.3;
-  value.fields.topics = {"fabric"};
+  value.get<FieldsSetup>().rve_diameters = 1.3;
+  value.get<FieldsSetup>().topics = {"fabric"};
   const StudyResult result = look(value, heaps(folder, {1}));
   std::string text;
   for (const Section& section : result.page(result, nullptr).sections) {
@@ -198,7 +200,7 @@ TEST(Fields, PointsWithoutEnoughGrainsAreNamed) {
 TEST(Fields, BadInputIsNamed) {
   const Folder folder;
   Case value = fields_case();
-  value.fields.rve_diameters = 30;
+  value.get<FieldsSetup>().rve_diameters = 30;
   EXPECT_THAT(refusal(value, heaps(folder, {1})),
               HasSubstr("fields.rve_diameters: found 30 (an RVE of radius 0.15 m), which fits into "
                         "heaps 0.139 m high at 0 of the 375 points"));

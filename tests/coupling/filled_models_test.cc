@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "coupling/run/models.h"
+#include "coupling/models/models.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -10,6 +10,7 @@
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_fits.h"
 #include "coupling/fit/heap_report.h"
+#include "coupling/fit/setup.h"
 #include "stressed_heap.h"
 
 namespace grainfield::coupling {

@@ -8,8 +8,8 @@
 
 #include "check_scene.h"
 #include "coupling/output/tables.h"
-#include "coupling/run/pair_closed_forms.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/pair/closed_forms.h"
 #include "program.h"
 
 namespace grainfield::coupling {

@@ -6,12 +6,15 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/compare/significance.h"
-#include "coupling/run/pile.h"
-#include "coupling/run/pile_dip.h"
-#include "coupling/run/pile_ensemble.h"
-#include "coupling/run/pile_frame.h"
+#include "coupling/heap/dip.h"
+#include "coupling/heap/pile_frame.h"
+#include "coupling/heap/setup.h"
+#include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/pile/pile_ensemble.h"
+#include "coupling/studies/pile/study.h"
+#include "dem/study/setup.h"
 #include "heap_scene.h"
 #include "program.h"
 
@@ -38,10 +41,10 @@ Case pile_case() {
   Case value;
   value.name = "heap";
   value.study = "pile";
-  value.average.points = 81;
-  value.average.map_columns = 21;
-  value.average.map_rows = 11;
-  value.average.width_diameters = 1.5;
+  value.get<AverageSetup>().points = 81;
+  value.get<AverageSetup>().map_columns = 21;
+  value.get<AverageSetup>().map_rows = 11;
+  value.get<AverageSetup>().width_diameters = 1.5;
   value.ensemble.realizations = 1;
   return value;
 }
@@ -107,7 +110,7 @@ TEST(PileFrame, AHeapOfAFewGrainsStillHasOne) {
 TEST(PileAnalysis, PressureOfALatticeHeapIsHalfOfRhoGDepth) {
   const Folder folder;
   Case value = pile_case();
-  value.heap.heights = {0.25, 0.5};
+  value.get<HeapSetup>().heights = {0.25, 0.5};
   const auto files = files_of(folder, {test::lattice_heap(45)});
   const StudyResult result = analyse_pile(value, files, 1);
   EXPECT_NO_THROW(require_documented(result.summary));
@@ -145,8 +148,8 @@ TEST(PileAnalysis, TheBaseProfileIntegratesToTheWeight) {
   const Folder folder;
   for (const double width : {0.8, 2.0}) {
     Case value = pile_case();
-    value.average.width_diameters = width;
-    value.average.points = 2001;
+    value.get<AverageSetup>().width_diameters = width;
+    value.get<AverageSetup>().points = 2001;
     dem::Snapshot heap = test::lattice_heap(30);
     test::plant_dip(heap, 0.4, 0.02, 0.3, 5);
     const StudyResult result = analyse_pile(value, files_of(folder, {heap}), 1);
@@ -166,7 +169,7 @@ TEST(PileAnalysis, PilesOfOtherHeightsFallOnOneScaledProfile) {
   for (const int rows : {32, 40, 48, 56})
     heaps.push_back(test::lattice_heap(rows, 0.004 + 0.0001 * rows));
   Case value = pile_case();
-  value.average.width_diameters = 2;
+  value.get<AverageSetup>().width_diameters = 2;
   const StudyResult result = analyse_pile(value, files_of(folder, heaps), 1);
   const Profile& p = profile(result, "base");
   const double unit = result.comparison.unit();
@@ -189,7 +192,7 @@ StudyResult planted(double depth, int realizations, std::uint64_t seed) {
     test::plant_dip(heaps.back(), depth, 0.015, 0.25, seed + static_cast<std::uint64_t>(r));
   }
   Case value = pile_case();
-  value.average.methods = {"coarse_graining"};
+  value.get<AverageSetup>().methods = {"coarse_graining"};
   return analyse_pile(value, files_of(folder, heaps), 1);
 }
 
@@ -294,7 +297,7 @@ TEST(PileAnalysis, RefusesARealizationWithoutItsPile) {
 TEST(PileAnalysis, RefusesAKernelWithoutGrains) {
   const Folder folder;
   Case value = pile_case();
-  value.average.width = 1e-6;
+  value.get<AverageSetup>().width = 1e-6;
   const auto files = files_of(folder, {test::lattice_heap(12)});
   try {
     analyse_pile(value, files, 1);

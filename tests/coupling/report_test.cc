@@ -20,8 +20,8 @@
 #include "averaging_scene.h"
 #include "coupling/averaging/average.h"
 #include "coupling/report/gnuplot.h"
-#include "coupling/report/pile.h"
-#include "coupling/report/point_load.h"
+#include "coupling/studies/pile/page.h"
+#include "coupling/studies/point_load/page.h"
 #include "heap_scene.h"
 
 namespace grainfield::coupling {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "coupling/run/studies.h"
+#include "coupling/case/study.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
 #include "tests/paths.h"

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "continuum/model.h"
+#include "coupling/heap/base_shape.h"
+#include "coupling/heap/slip_lines.h"
 #include "coupling/output/triangles_vtu.h"
-#include "coupling/run/slip_lines.h"
-#include "coupling/run/wedge.h"
 #include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;

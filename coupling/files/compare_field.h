@@ -1,0 +1,34 @@
+// Averaged fields from a file against continuum models.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/files/field_lines.h"
+#include "coupling/models/choice.h"
+
+namespace grainfield::coupling {
+
+struct CompareRequest {
+  std::string file;                 ///< of write_fields
+  std::vector<std::string> fields;  ///< empty: see compare_field
+  std::vector<ModelChoice> models;
+  LineOptions lines;
+  std::string folder;  ///< of the outputs; made where missing
+};
+
+struct CompareOutcome {
+  std::string verdict;
+  std::string note;   ///< fields seen through different kernels; empty: all through one
+  std::string lacks;  ///< of the report (ReportResult::complaint)
+};
+
+/// Compares any models of the registry with any field whose origin is known: responses to a load
+/// (facts F, h), heaps (rho_g, phi_deg, left_deg, right_deg, h) and layers (h). Without `fields`:
+/// the lines of the file's responses, or a map's rows; in a file without responses the lines of the
+/// first heap average, or its map; else the first field. Models are seen through each field's own
+/// kernel: lines whose name starts with "base" along x, others in the plane. Writes profiles.*,
+/// summary.json and report.html. Throws std::invalid_argument for fields of different scenes, loads
+/// or sizes together, missing attributes, and what models throw.
+CompareOutcome compare_field(const CompareRequest& request);
+
+}  // namespace grainfield::coupling

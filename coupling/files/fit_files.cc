@@ -1,0 +1,205 @@
+#include "coupling/files/fit_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+#include "continuum/model.h"
+#include "coupling/case/apply.h"
+#include "coupling/files/average_files.h"
+#include "coupling/fit/heap_data.h"
+#include "coupling/fit/heap_report.h"
+#include "coupling/fit/heap_result.h"
+#include "coupling/fit/setup.h"
+#include "coupling/output/atomic_file.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/output_folder.h"
+#include "coupling/run/summary_keys.h"
+#include "coupling/version.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file or a file with the name of something in it.
+struct Input {
+  std::string file, name;
+};
+
+Input parse_input(const std::string& text) {
+  const std::size_t at = text.rfind(':');
+  if (at == std::string::npos || fs::exists(text)) return {text, ""};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::string last_name(const std::string& group) { return group.substr(group.rfind('/') + 1); }
+
+// The heaps of a file that names none of them.
+std::vector<SnapshotName> heaps_of(const std::string& file) {
+  std::vector<SnapshotName> all, piles;
+  bool steps = true, layers = false;
+  for (const std::string& group : dem::list_snapshots(file)) {
+    all.push_back({file, group});
+    if (last_name(group) == "pile") piles.push_back(all.back());
+    steps = steps && last_name(group).compare(0, 5, "step_") == 0;
+    layers = layers || last_name(group) == "loaded";
+  }
+  if (!piles.empty()) return piles;
+  if (layers) {
+    throw std::invalid_argument(
+        fmt::format("{}: holds loaded layers; fit takes heaps (for layers: `grainfield average "
+                    "--response` and `grainfield compare`)",
+                    file));
+  }
+  if (all.size() > 1 && steps) {
+    throw std::invalid_argument(fmt::format(
+        "{}: holds {} time steps of one packing, which are no independent realizations; name one: "
+        "{}:{}",
+        file, all.size(), file, all.back().group));
+  }
+  return all;
+}
+
+// Fields of heaps in a file of fields: those that hold stresses in the heap's frame.
+std::vector<std::string> heap_fields(const std::string& file) {
+  std::vector<std::string> out;
+  for (const std::string& name : list_fields(file)) {
+    const Field field = read_field(file, name);
+    const auto frame = field.attributes.find("frame");
+    if (frame == field.attributes.end() || frame->second.compare(0, 4, "heap") != 0) continue;
+    if (field.find("sigma_xx") == nullptr || field.attributes.count("method") == 0) continue;
+    if (field.nx > 0) out.push_back(name);
+  }
+  return out.empty() ? list_fields(file) : out;
+}
+
+struct Chosen {
+  std::vector<SnapshotName> heaps;
+  std::string field_file, field;  // or one field
+};
+
+Chosen choose(const std::vector<std::string>& inputs) {
+  Chosen out;
+  for (const std::string& text : inputs) {
+    const Input input = parse_input(text);
+    const std::vector<std::string> groups = dem::list_snapshots(input.file);
+    const std::vector<std::string> fields = list_fields(input.file);
+    if (groups.empty() && fields.empty()) {
+      throw std::invalid_argument(input.file + ": holds neither snapshots nor fields");
+    }
+    if (!fields.empty()) {
+      if (inputs.size() > 1) {
+        throw std::invalid_argument(
+            fmt::format("{}: a field is fitted alone; average all packings into one (`grainfield "
+                        "average --frame heap`)",
+                        input.file));
+      }
+      out.field_file = input.file;
+      const auto candidates =
+          input.name.empty() ? heap_fields(input.file) : std::vector<std::string>{input.name};
+      out.field = candidates.front();
+      continue;
+    }
+    if (input.name.empty()) {
+      for (SnapshotName& one : heaps_of(input.file)) out.heaps.push_back(std::move(one));
+    } else {
+      out.heaps.push_back({input.file, input.name});
+    }
+  }
+  return out;
+}
+
+HeapReader reader_of(std::vector<SnapshotName> heaps) {
+  const std::size_t count = heaps.size();
+  const auto name = [heaps](std::size_t k) { return heaps[k].file + ":" + heaps[k].group; };
+  return {count,
+          [heaps](std::size_t k) { return dem::read_snapshot(heaps[k].file, heaps[k].group); },
+          name};
+}
+
+// The settings as TOML that --case reads back.
+std::string fit_text(const Case& value, const std::vector<std::string>& packings) {
+  std::string out = "# grainfield fit of\n";
+  for (const std::string& name : packings) out += fmt::format("#   {}\n", name);
+  out += "\n[fit]\n";
+  for (const Key& key : keys()) {
+    if (key.section != "fit") continue;
+    out += fmt::format("# {}{}\n{} = {}\n", key.unit == "-" ? "" : key.unit + "; ", key.meaning,
+                       key.name, value_text(key, value));
+  }
+  return out;
+}
+
+}  // namespace
+
+FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
+  Draft draft;
+  draft.file = case_file;
+  draft.value.study = "pile-fit";
+  if (!case_file.empty()) {
+    for (const Assignment& a : read_document(case_file)) {
+      if (a.path == "fit" || a.path.compare(0, 4, "fit.") == 0) apply(draft, a);
+    }
+  }
+  for (const std::string& text : overrides) {
+    const Assignment a = parse_override(text);
+    if (a.path.compare(0, 4, "fit.") != 0) reject(a, a.path, "found another section, allowed: fit");
+    apply(draft, a);
+  }
+  check_section(draft, "fit");
+  return draft.value.get<FitSetup>();
+}
+
+FitOutcome fit_files(const FitRequest& request) {
+  Case value;
+  value.study = "pile-fit";
+  value.get<FitSetup>() = read_fit_setup(request.case_file, request.overrides);
+  const Chosen chosen = choose(request.inputs);
+  OutputFolder results(request.folder, "grainfield fit " + request.inputs.front());
+  std::vector<std::string> inputs{chosen.field_file};
+  for (const SnapshotName& heap : chosen.heaps) inputs.push_back(heap.file);
+  results.require_other_than(inputs);
+  FitOutcome out;
+  HeapData data;
+  std::function<dem::Snapshot()> drawn;
+  if (!chosen.field.empty()) {
+    out.packings = {chosen.field_file + ":" + chosen.field};
+    data = heap_data(value.get<FitSetup>(), read_field(chosen.field_file, chosen.field),
+                     out.packings.front());
+  } else {
+    const HeapReader heaps = reader_of(chosen.heaps);
+    for (std::size_t k = 0; k < heaps.count; ++k) out.packings.push_back(heaps.name(k));
+    data = heap_data(value.get<FitSetup>(), heaps, request.threads);
+    drawn = [heaps] { return heaps.read(0); };
+  }
+  value.name = fs::path(request.inputs.front()).stem().string();
+  value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
+  out.warnings = data.warnings;
+  StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
+  out.verdict = result.comparison.verdict.sentence;
+  out.note = std::get<std::string>(result.summary.at("fit.weights"));
+  result.summary["version"] = version_and_commit();
+  result.summary["ensemble.realizations"] =
+      static_cast<std::int64_t>(result.comparison.realizations);
+  require_documented(result.summary);
+  const std::string settings = fit_text(value, out.packings);
+  result.summary["case.hash"] = hash_text(settings);
+
+  write_profiles(results.staging(), result.comparison);
+  for (const auto& [name, text] : result.texts) write_text_file(results.staging(name), text);
+  write_text_file(results.staging("fit.toml"), settings);
+  const std::string lacks =
+      write_report(results.staging("report.html"), result.page(result, nullptr)).complaint();
+  if (!lacks.empty()) out.warnings.push_back(lacks);
+  write_summary(results.staging("summary.json"), result.summary);
+  results.publish();
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,38 @@
+// `grainfield fit`: snapshots or averaged fields from files, fitted and written.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/case/case.h"
+#include "coupling/fit/setup.h"
+
+namespace grainfield::coupling {
+
+struct FitRequest {
+  std::vector<std::string> inputs;  ///< FILE.h5, FILE.h5:GROUP (snapshots) or FILE.h5:FIELD
+  std::string case_file;            ///< its [fit] counts; empty: the defaults
+  Overrides overrides;              ///< "fit.heights=[0.2]"
+  std::string folder;
+  int threads = 1;
+};
+
+/// What was fitted, for people.
+struct FitOutcome {
+  std::vector<std::string> packings;  ///< names of the heaps, or of the field
+  std::string note;                   ///< weights and what is missing for better ones
+  std::vector<std::string> warnings;  ///< what makes the constants doubtful
+  std::string verdict;
+};
+
+/// Key [fit] of a case file (other sections are not looked at) with overrides. Throws
+/// std::invalid_argument "FILE:LINE: fit.KEY: ...".
+FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides);
+
+/// Fits the models to the heaps and writes fits.csv/.md/.tex, profiles.csv/.md/.tex, fit.toml (the
+/// settings, every default spelled out), report.html and summary.json. Of a file without a group:
+/// its snapshots named "pile" where there are such, else all; or its one field of a heap. Throws
+/// std::invalid_argument for inputs that are neither or of both kinds, several time steps of one
+/// packing, and what reading, averaging and fitting throw.
+FitOutcome fit_files(const FitRequest& request);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,43 @@
+// Where a packing lies in the frame in which fields are given.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "coupling/heap/pile_frame.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// From a frame to the packing's axes, and the packing's extents in that frame.
+struct Placement {
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> to_packing;
+  double left = 0, right = 0;  ///< m; in frame "heap" over its height
+  double depth = 0;            ///< height of the layer or heap, m
+  PileFrame heap = {};         ///< frame "heap" only
+};
+
+/// Throws std::invalid_argument with the nearest name unless it is layer, heap or packing.
+void require_frame(const std::string& frame);
+/// For people and for compare: what the coordinates of a field in this frame are.
+std::string frame_text(const std::string& frame);
+
+/// `loaded_grain`: id of the grain below which x = 0 lies in frame "layer"; -1: the snapshot's own,
+/// or without one the middle. Throws std::invalid_argument where the packing has no layer or heap
+/// to be measured.
+Placement place(const dem::Snapshot& snapshot, const std::string& frame,
+                std::int64_t loaded_grain = -1);
+
+/// A rectangle over a packing, in the frame.
+struct Span {
+  double left = 0, right = 0, bottom = 0, top = 0;
+
+  Eigen::MatrixXd grid(int columns, int rows) const;
+};
+
+/// Throws std::invalid_argument in 3D.
+Span span_of(const dem::Snapshot& snapshot, const std::string& frame, double left, double right,
+             double depth);
+
+}  // namespace grainfield::coupling

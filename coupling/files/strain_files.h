@@ -1,0 +1,29 @@
+// Strain between two states of one packing, from their files.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "coupling/field.h"
+#include "coupling/files/average_files.h"
+#include "coupling/strain/strain.h"
+
+namespace grainfield::coupling {
+
+struct StrainRequest {
+  SnapshotName before, after;
+  StrainOptions options;        ///< width 0: three mean diameters
+  std::string frame = "layer";  ///< as AverageRequest::frame; heights and apex are those before,
+                                ///< the load that of either state
+  Eigen::MatrixXd points;       ///< in the frame; or empty
+  int nx = 81, ny = 31;         ///< grid over the packing, where points are empty
+};
+
+struct StrainOutcome {
+  Field field;         ///< StrainResult::field on the frame's points, with measure, width and frame
+  std::string report;  ///< StrainResult::report()
+};
+
+/// Throws std::invalid_argument as strain() and place().
+StrainOutcome strain_files(const StrainRequest& request);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,12 @@
+// Figures of fits of models, to heaps and layers alike.
+#pragma once
+#include <vector>
+
+#include "coupling/output/summary_key.h"
+
+namespace grainfield::coupling {
+
+/// Their keys in summary.json.
+std::vector<SummaryKey> figures_of_fits();
+
+}  // namespace grainfield::coupling

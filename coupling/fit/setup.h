@@ -1,0 +1,49 @@
+// What is fitted to heaps and to layers: [fit] and [verdict] of a case.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// What is fitted to piles (coupling/fit).
+struct FitSetup {
+  std::vector<std::string> models = {"hydrostatic",
+                                     "cantelaube_minus",
+                                     "cantelaube_zero",
+                                     "cantelaube_plus",
+                                     "cantelaube_continuous",
+                                     "cantelaube",
+                                     "osl_yield",
+                                     "osl",
+                                     "fpa",
+                                     "bcc"};
+  std::vector<std::string> finite_elements;  ///< solved with the constants, beside the fits
+  std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
+  std::vector<double> heights = {0.1, 0.25, 0.4};
+  double width_diameters = 2;
+  std::string covariance = "auto";
+  double left_deg = 0, right_deg = 0;  ///< slopes of the flanks; 0: measured
+  double friction_deg = 0;             ///< of the two-sided models; 0: the steeper slope
+  double huber = 0;
+  std::int64_t bootstrap = 200;
+};
+
+/// What is fitted to loaded layers (coupling/fit/layer_*).
+struct VerdictSetup {
+  std::vector<std::string> models = {"flamant",
+                                     "layer_smooth",
+                                     "layer_rough",
+                                     "orthotropic_half_plane",
+                                     "orthotropic_layer_smooth",
+                                     "orthotropic_layer_rough",
+                                     "osl_layer_absorbing",
+                                     "osl_layer_reflecting"};
+  std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
+  std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
+  bool base = true;
+  std::string covariance = "auto";
+  std::int64_t bootstrap = 100;
+};
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,122 @@
+#include "coupling/heap/pile_frame.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "continuum/constants.h"
+#include "coupling/averaging/layer.h"
+#include "dem/heap/surface.h"
+#include "dem/heap/volume_fraction.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The highest part of a small heap, in the middle of which its apex is taken to lie.
+constexpr double kHighest = 0.9;
+
+// Apex and feet from the columns themselves.
+void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
+  double sum = 0, left = kNan, right = kNan;
+  int count = 0;
+  for (std::size_t k = 0; k < surface.top.size(); ++k) {
+    const double x = surface.middle(k);
+    if (surface.top[k] > 0) {
+      if (std::isnan(left)) left = x - surface.column / 2;
+      right = x + surface.column / 2;
+    }
+    if (surface.top[k] >= kHighest * frame.height) {
+      sum += x;
+      ++count;
+    }
+  }
+  frame.apex_x = sum / count;
+  frame.half_left = frame.apex_x - left;
+  frame.half_right = right - frame.apex_x;
+}
+
+// A rough floor lies at the tops of the fixed grains that carry: there a pile's own floor is zero,
+// and its plane is out of reach below.
+double floor_of(const dem::Snapshot& pile) {
+  double tops = 0;
+  int contacts = 0;
+  for (const dem::Contact& contact : pile.contacts) {
+    if (contact.j < 0) continue;
+    const dem::Grain& a = pile.grains[static_cast<std::size_t>(contact.i)];
+    const dem::Grain& b = pile.grains[static_cast<std::size_t>(contact.j)];
+    if (a.fixed == b.fixed) continue;
+    const dem::Grain& carries = a.fixed ? a : b;
+    tops += carries.position.y() + carries.radius;
+    ++contacts;
+  }
+  if (contacts > 0) return tops / contacts;
+  for (const dem::Wall& wall : pile.walls) {
+    if (wall.name == "floor") return wall.point.y();
+  }
+  return layer_frame(pile).floor;
+}
+
+// Positions of grains only: what the measures of a heap look at.
+dem::Snapshot on_floor_zero(dem::Snapshot pile, double floor) {
+  for (dem::Grain& grain : pile.grains) grain.position.y() -= floor;
+  return pile;
+}
+
+double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
+  return window.empty() ? kNan : dem::volume_fraction(pile, window);
+}
+
+}  // namespace
+
+Eigen::MatrixXd PileFrame::to_packing(const Eigen::MatrixXd& scaled) const {
+  Eigen::MatrixXd out = height * scaled;
+  out.col(0).array() += apex_x;
+  out.col(1).array() += floor + height;
+  return out;
+}
+
+double PileFrame::in_half_bases(double x) const {
+  return (x - apex_x) / (x < apex_x ? half_left : half_right);
+}
+
+PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
+  if (heap_as_it_is.dim != 2) {
+    throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
+  }
+  const double floor = floor_of(heap_as_it_is);
+  dem::Snapshot moved;
+  if (floor != 0) moved = on_floor_zero(heap_as_it_is, floor);
+  const dem::Snapshot& pile = floor != 0 ? moved : heap_as_it_is;
+  PileFrame frame;
+  frame.floor = floor;
+  frame.diameter = mean_diameter(pile);
+  frame.gravity = pile.gravity.norm();
+  double mass = 0, area = 0;
+  for (const dem::Grain& grain : pile.grains) {
+    if (grain.fixed) continue;
+    mass += grain.mass;
+    area += grain.volume;
+  }
+  frame.grain_density = mass / area;
+  const dem::Surface surface = dem::free_surface(pile, frame.diameter);
+  const dem::HeapShape heap = dem::measure_heap(surface);
+  frame.height = heap.height;
+  frame.repose_left_deg = heap.repose_left_deg;
+  frame.repose_right_deg = heap.repose_right_deg;
+  frame.apex_x = heap.apex_x;
+  frame.half_left = heap.half_base_left();
+  frame.half_right = heap.half_base_right();
+  if (!(frame.half_left > 0 && frame.half_right > 0)) measure_small_heap(surface, frame);
+  const dem::HeapWindows windows = dem::windows_of(heap, frame.diameter);
+  frame.volume_fraction = fraction_in(pile, windows.whole);
+  if (std::isnan(frame.volume_fraction)) {
+    double below = 0;
+    for (const double top : surface.top) below += top * surface.column;
+    frame.volume_fraction = area / below;
+  }
+  frame.centre_fraction = fraction_in(pile, windows.centre);
+  frame.surface_fraction =
+      (fraction_in(pile, windows.surface_left) + fraction_in(pile, windows.surface_right)) / 2;
+  return frame;
+}
+
+}  // namespace grainfield::coupling

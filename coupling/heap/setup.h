@@ -1,0 +1,15 @@
+// Where one looks at heaps: [heap] of a case.
+#pragma once
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// What is looked at in a heap. Heights are shares of its height, abscissas shares of its half
+/// base.
+struct HeapSetup {
+  std::vector<double> heights = {0.1, 0.25, 0.5};  ///< horizontal cuts above the base
+  double centre = 0.1;                             ///< dip: |x| of the window under the apex
+  double shoulder_from = 0.15, shoulder_to = 0.4;  ///< dip: |x| of the windows beside it
+};
+
+}  // namespace grainfield::coupling

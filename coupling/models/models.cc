@@ -1,0 +1,166 @@
+#include "coupling/models/models.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+
+#include "continuum/constants.h"
+#include "continuum/idle.h"
+#include "continuum/settings.h"
+#include "continuum/size.h"
+#include "coupling/compare/compare.h"
+#include "coupling/compare/smooth.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The smoothing asks for stresses at nodes of its own choice. A first pass notes the nodes, the
+// model is called once, and a second pass hands out what it gave.
+Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, double depth) {
+  if (set.seen == Seen::exactly) return stress(set.points);
+  const StressFunction nodes = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+    if (!set.empty_outside) return stress(points);
+    return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
+  };
+  Eigen::MatrixXd out = set.seen == Seen::in_plane
+                            ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
+                            : smooth_along_x(nodes, set.points, *set.kernel);
+  if (set.empty_outside) {
+    const Eigen::MatrixXd here = stress(set.points);
+    for (Eigen::Index p = 0; p < here.rows(); ++p) {
+      if (here.row(p).hasNaN()) out.row(p).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts) {
+  continuum::Settings out = choice.settings;
+  bool friction_filled = false;
+  for (const auto& parameter : continuum::find_model(choice.name).parameters) {
+    if (parameter.name == "F") out.emplace("F", fmt::format("{}", facts.force));
+    if (parameter.name == "h") out.emplace("h", fmt::format("{}", facts.height));
+    if (parameter.name == "depth") out.emplace("depth", fmt::format("{}", facts.depth));
+    const auto& words = parameter.choices;
+    if (parameter.name == "base" &&
+        std::find(words.begin(), words.end(), facts.base) != words.end()) {
+      out.emplace("base", facts.base);
+    }
+    if (parameter.name == "dim") out.emplace("dim", std::to_string(facts.dim));
+    const auto number = facts.numbers.find(parameter.name);
+    if (number == facts.numbers.end() || out.count(parameter.name) != 0) continue;
+    // What the case sets may leave it without effect, as a map does r and t.
+    if (!continuum::idle_because(choice.name, parameter.name,
+                                 continuum::complete(continuum::find_model(choice.name), out))
+             .empty())
+      continue;
+    if (std::isnan(number->second)) {
+      throw continuum::BadParameter(fmt::format(
+          "model {}: {} cannot be measured on this heap (too few grains on its flanks); "
+          "set it in [model.{}]",
+          choice.name, parameter.name, choice.label));
+    }
+    out.emplace(parameter.name, fmt::format("{}", number->second));
+    if (parameter.name == "phi_deg") friction_filled = true;
+  }
+  // A heap with two slopes is at least as frictional as the steeper of them.
+  for (const char* slope : {"left_deg", "right_deg"}) {
+    const auto at = out.find(slope);
+    if (friction_filled && at != out.end() &&
+        continuum::number_of(out, slope) > continuum::number_of(out, "phi_deg"))
+      out["phi_deg"] = at->second;
+  }
+  return out;
+}
+
+void require_models(const std::vector<ModelChoice>& choices, const RunFacts& facts) {
+  for (const ModelChoice& choice : choices) {
+    const auto& info = continuum::find_model(choice.name);
+    const continuum::Settings settings = filled_settings(choice, facts);
+    if (const auto idle = continuum::find_idle(info, settings)) {
+      throw continuum::BadParameter(idle->refusal);
+    }
+    const continuum::Settings full = continuum::complete(info, settings);
+    continuum::require_possible(info, full);
+    if (!choice.name.starts_with("fe_")) info.make(full);
+  }
+}
+
+void require_models(const std::vector<ModelChoice>& choices) {
+  constexpr double kHeights[] = {1e-3, 0.1, 10}, kSlopes[] = {20, 27, 35};
+  for (const ModelChoice& choice : choices) {
+    std::set<std::string> said;
+    for (std::size_t k = 0; k < std::size(kHeights); ++k) {
+      const double h = kHeights[k], slope = kSlopes[k];
+      RunFacts facts{1, h, 2, 0.1 * h, "", {}};
+      facts.numbers = {{"rho_g", 1 / h},      {"phi_deg", slope},
+                       {"left_deg", slope},   {"right_deg", slope},
+                       {"chi_g", 1},          {"alpha_deg", slope},
+                       {"spacing", 0.01 * h}, {"width", 2 * h / std::tan(slope * kDegree)}};
+      try {
+        require_models({choice}, facts);
+        said.emplace();
+      } catch (const continuum::BadParameter& e) {
+        said.emplace(e.what());
+      }
+    }
+    if (said.size() == 1 && !said.begin()->empty()) throw continuum::BadParameter(*said.begin());
+  }
+}
+
+std::string model_label(const ModelChoice& choice) {
+  std::vector<std::string> items;
+  for (const auto& [name, value] : choice.settings) items.push_back(name + "=" + value);
+  return items.empty() ? choice.name : fmt::format("{} ({})", choice.name, fmt::join(items, ", "));
+}
+
+Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
+                          const std::vector<PointSet>& sets) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
+  // A half plane knows no base: below it the stresses go on.
+  const double depth = family_of(choice.name) == "half plane" ? 0 : facts.height;
+  std::vector<Eigen::MatrixXd> nodes;
+  Eigen::Index total = 0;
+  for (const auto& set : sets) {
+    seen_through(
+        set,
+        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+          nodes.push_back(points);
+          total += points.rows();
+          return Eigen::MatrixXd::Zero(points.rows(), facts.dim == 3 ? 6 : 3);
+        },
+        depth);
+  }
+  Eigen::MatrixXd all(total, facts.dim);
+  Eigen::Index row = 0;
+  for (const auto& points : nodes) {
+    all.middleRows(row, points.rows()) = points;
+    row += points.rows();
+  }
+  const Eigen::MatrixXd stresses = model->stress(all);
+  Evaluation out;
+  row = 0;
+  for (const auto& set : sets) {
+    out.stresses.push_back(seen_through(
+        set,
+        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+          row += points.rows();
+          return stresses.middleRows(row - points.rows(), points.rows());
+        },
+        depth));
+  }
+  out.figures = model->figures();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace grainfield::coupling

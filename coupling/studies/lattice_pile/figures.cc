@@ -1,0 +1,24 @@
+#include "coupling/studies/lattice_pile/keys.h"
+
+namespace grainfield::coupling {
+
+std::vector<SummaryKey> lattice_pile_figures() {
+  return {
+      {"liffman.rows", "-", "rows of a lattice pile"},
+      {"liffman.base_grains", "-", "disks in its lowest row"},
+      {"liffman.grain_weight", "N", "m g of a disk"},
+      {"liffman.softness", "-", "m g/(K d), linear law; m g/(E d), overlap-area law (Liffman 46)"},
+      {"liffman.row_contacts", "-", "contacts between neighbours of a row that carry force"},
+      {"liffman.normal_max_error", "-",
+       "largest difference of a base disk's N from the closed form of hard close-packed disks "
+       "(Liffman 42 at 60 degrees) over the largest N"},
+      {"liffman.horizontal_max_error", "-", "the same of H (Liffman 44 at 60 degrees)"},
+      {"liffman.line_normal_max_difference", "-",
+       "largest difference of N from the line model (Liffman 52-59) over its largest N"},
+      {"liffman.line_horizontal_max_difference", "-", "the same of H"},
+      {"liffman.normal_largest", "N", "largest N of the base disks"},
+      {"liffman.horizontal_largest", "N", "largest H of the base disks"},
+  };
+}
+
+}  // namespace grainfield::coupling

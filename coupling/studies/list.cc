@@ -1,0 +1,36 @@
+// The studies that ship, a line each in the order of the documentation: NAME stands for the
+// function `Study NAME_study()` of a folder beside this file.
+#include "coupling/case/study.h"
+
+// clang-format off
+#define GRAINFIELD_STUDIES(STUDY) \
+  STUDY(point_load) \
+  STUDY(point_load_verdict) \
+  STUDY(pile) \
+  STUDY(pile_fields) \
+  STUDY(pile_fit) \
+  STUDY(lattice_pile) \
+  STUDY(sample) \
+  STUDY(pair) \
+  STUDY(elastic_layer) \
+  STUDY(elastic_half_space) \
+  STUDY(osl_wedge) \
+  STUDY(osl_layer) \
+  STUDY(orthotropic_layer) \
+  STUDY(wedge_core) \
+  STUDY(wedge)
+// clang-format on
+
+namespace grainfield::coupling {
+
+#define DECLARED(NAME) Study NAME##_study();
+GRAINFIELD_STUDIES(DECLARED)
+#undef DECLARED
+
+std::vector<Study> shipped_studies() {
+#define MADE(NAME) NAME##_study(),
+  return {GRAINFIELD_STUDIES(MADE)};
+#undef MADE
+}
+
+}  // namespace grainfield::coupling

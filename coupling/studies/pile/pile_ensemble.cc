@@ -1,0 +1,181 @@
+#include "coupling/studies/pile/pile_ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/averaging/base.h"
+#include "coupling/heap/setup.h"
+#include "coupling/run/averaging_setup.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// Profiles and maps reach beyond the feet by this factor.
+constexpr double kReach = 1.08;
+// Mean diameters: narrower kernels see single contacts.
+constexpr double kLeastWidth = 0.25;
+
+// The columns that are kept, stresses in units of `pressure`, on scaled points.
+Field scaled(const Field& field, const Eigen::MatrixXd& points, int nx, int ny, double pressure) {
+  Field out;
+  out.points = points;
+  out.nx = nx;
+  out.ny = ny;
+  for (const Column& column : field.columns) {
+    const bool stress = column.name.compare(0, 6, "sigma_") == 0;
+    if (!stress && column.name != "volume_fraction") continue;
+    out.add(column.name, "1").value =
+        stress ? Eigen::VectorXd(column.value / pressure) : column.value;
+  }
+  return out;
+}
+
+// Scaled points well inside a heap, where the balance of forces is looked at.
+Eigen::MatrixXd inner_points(const PileFrame& frame) {
+  const double left = -0.5 * frame.half_left / frame.height;
+  const double right = 0.5 * frame.half_right / frame.height;
+  Eigen::MatrixXd out = grid_points(left, right, 13, -0.85, -0.6, 4);
+  return frame.to_packing(out);
+}
+
+}  // namespace
+
+double coordination(const dem::Snapshot& snapshot) {
+  double ends = 0, grains = 0;
+  const auto free = [&](std::int64_t g) {
+    return g >= 0 && !snapshot.grains[static_cast<std::size_t>(g)].fixed;
+  };
+  for (const dem::Contact& contact : snapshot.contacts) ends += free(contact.i) + free(contact.j);
+  for (const dem::Grain& grain : snapshot.grains) grains += grain.fixed ? 0 : 1;
+  return ends / grains;
+}
+
+PileEnsemble::PileEnsemble(const Case& value, const std::vector<std::string>& files, int threads)
+    : value_(value), files_(files) {
+  double reach = 0;
+  for (const std::string& file : files) {
+    const Realization realization = read_realization(file);
+    frames_.push_back(pile_frame(realization["pile"]));
+    const PileFrame& f = frames_.back();
+    const auto n = static_cast<double>(files.size());
+    height_ += f.height / n;
+    pressure_ += f.pressure() / n;
+    reach = std::max(reach, kReach * std::max(f.half_left, f.half_right) / f.height);
+  }
+  // An odd number of points, so that one is under the apex.
+  const AverageSetup& setup = value.get<AverageSetup>();
+  x_ = Eigen::VectorXd::LinSpaced(2 * (setup.points / 2) + 1, -reach, reach);
+  x_[setup.points / 2] = 0;
+  columns_ = static_cast<int>(setup.map_columns);
+  rows_ = static_cast<int>(setup.map_rows);
+  grid_ = grid_points(-reach, reach, columns_, -1, 0, rows_);
+  const double diameter = mean(&PileFrame::diameter);
+  for (const std::string& method : setup.methods) {
+    PileAverages a;
+    a.method = method;
+    a.options = average_options(setup, method, diameter, threads);
+    if (a.options.width < kLeastWidth * diameter) {
+      throw std::invalid_argument(fmt::format(
+          "average: {} with a width of {:g} m, below {:g} mean grain diameters of {:.4g} m: no "
+          "point has enough grains around it; raise the width",
+          method, a.options.width, kLeastWidth, diameter));
+    }
+    a.cuts.resize(value.get<HeapSetup>().heights.size());
+    methods_.push_back(std::move(a));
+  }
+  kernel_ = seeing_kernel(methods_.front().options);
+}
+
+double PileEnsemble::mean(double PileFrame::*member) const {
+  double sum = 0;
+  for (const PileFrame& f : frames_) sum += f.*member;
+  return sum / static_cast<double>(frames_.size());
+}
+
+Eigen::MatrixXd PileEnsemble::line(double height_share) const {
+  Eigen::MatrixXd out(x_.size(), 2);
+  out << x_, Eigen::VectorXd::Constant(x_.size(), height_share - 1);
+  return out;
+}
+
+void PileEnsemble::collect() {
+  for (std::size_t r = 0; r < files_.size(); ++r) add(read_realization(files_[r]), frames_[r]);
+}
+
+void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
+  const dem::Snapshot& pile = realization["pile"];
+  const double unit = frame.pressure();
+  for (PileAverages& a : methods_) {
+    const auto on = [&](const Eigen::MatrixXd& points, int nx, int ny) {
+      return scaled(average(pile, frame.to_packing(points), a.options), points, nx, ny, unit);
+    };
+    a.base.add(on(line(0), 0, 0));
+    for (std::size_t k = 0; k < a.cuts.size(); ++k) {
+      a.cuts[k].add(on(line(value_.get<HeapSetup>().heights[k]), 0, 0));
+    }
+    Field map = on(grid_, columns_, rows_);
+    if (a.method == "coarse_graining") {
+      // The stress stays smeared over the surface, where it obeys the balance of forces; the volume
+      // fraction is that of the part of the kernel inside the heap.
+      AverageOptions inside = a.options;
+      inside.free_surface = "normalised";
+      inside.quantities = {"volume_fraction"};
+      const Field fraction = average(pile, frame.to_packing(grid_), inside);
+      for (Column& column : map.columns) {
+        if (column.name == "volume_fraction") {
+          column.value = fraction.find("volume_fraction")->value;
+        }
+      }
+    }
+    a.map.add(map);
+    const BalanceResidual balance = balance_residual(pile, inner_points(frame), a.options);
+    a.balance_rms += balance.rms / static_cast<double>(files_.size());
+    a.balance_largest = std::max(a.balance_largest, balance.largest);
+  }
+  const Eigen::VectorXd x = frame.height * x_.array() + frame.apex_x;
+  base_.add(scaled(base_profile(pile, x, *kernel_), line(0), 0, 0, unit));
+  windows_.push_back(base_windows(pile, frame, value_.get<HeapSetup>()));
+
+  for (const auto& [key, figure] : realization.figures) figures_[key].push_back(figure);
+  const auto own = [&](const std::string& key, double figure) {
+    if (realization.figures.find(key) == realization.figures.end()) figures_[key].push_back(figure);
+  };
+  double weight = 0;
+  for (const dem::Grain& grain : pile.grains) {
+    if (!grain.fixed) weight += grain.mass * frame.gravity;
+  }
+  own("base.weight_ratio", base_force(pile).y() / weight);
+  own("dem.repose_angle_left_deg", frame.repose_left_deg);
+  own("dem.repose_angle_right_deg", frame.repose_right_deg);
+  own("dem.volume_fraction", frame.volume_fraction);
+  own("pile.height", frame.height);
+  own("pile.mean_diameter", frame.diameter);
+  own("pile.half_base_left", frame.half_left);
+  own("pile.half_base_right", frame.half_right);
+  own("heap.rho_g_h", unit);
+  own("heap.coordination", coordination(pile));
+  own("pile.volume_fraction_centre", frame.centre_fraction);
+  own("pile.volume_fraction_surface", frame.surface_fraction);
+  for (const auto& [name, state] : realization.snapshots) {
+    if (&state != &pile) add_change(name, pile, state, frame);
+  }
+}
+
+void PileEnsemble::add_change(const std::string& name, const dem::Snapshot& pile,
+                              const dem::Snapshot& changed, const PileFrame& frame) {
+  require_same_grains(pile, changed);
+  const double now = coordination(changed);
+  figures_["change." + name + ".coordination"].push_back(now);
+  figures_["change." + name + ".coordination_ratio"].push_back(now / coordination(pile));
+  const BaseWindows before = base_windows(pile, frame, value_.get<HeapSetup>());
+  const BaseWindows after = base_windows(changed, frame, value_.get<HeapSetup>());
+  // Pressures in units of the pile's rho g h: the gravity's own factor is taken out.
+  const double factor = changed.gravity.norm() / frame.gravity;
+  figures_["change." + name + ".dip_difference_change"].push_back(
+      (after.shoulder - after.centre) / factor - (before.shoulder - before.centre));
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,419 @@
+#include "coupling/studies/pile/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "coupling/compare/significance.h"
+#include "coupling/heap/setup.h"
+#include "coupling/models/model_record.h"
+#include "coupling/models/models.h"
+#include "coupling/run/averaging_setup.h"
+#include "coupling/run/finished_runs.h"
+#include "coupling/run/summary_keys.h"
+#include "coupling/studies/pile/keys.h"
+#include "coupling/studies/pile/page.h"
+#include "coupling/studies/pile/pile_ensemble.h"
+#include "coupling/studies/pile/pile_run.h"
+#include "dem/snapshot/number.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::coupling {
+namespace {
+
+class PileAnalysis {
+ public:
+  PileAnalysis(const Case& value, const std::vector<std::string>& files, int threads)
+      : value_(value), files_(files), piles_(value, files, threads) {}
+
+  StudyResult run() {
+    piles_.collect();
+    StudyResult out = begin_result(value_, files_);
+    add_figures(out.summary, piles_.figures());
+    add_fields(out);
+    add_comparison_of_models(out);
+    add_own_figures(out.summary);
+    const Dip dip = judge_dip(piles_.windows());
+    add_dip(out, dip);
+    const std::string averaged = describe(piles_.methods().front().options);
+    out.page = [averaged](const StudyResult& result, const Realization* first) {
+      return page(result, first, averaged);
+    };
+    out.overview = {{"dip ratio", "dip.ratio", ""},
+                    {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
+                    {"p of a dip", "dip.p_value", ""},
+                    {"repose (deg)", "repose.mean_deg", ""},
+                    {"left - right (deg)", "repose.left_minus_right_deg", ""},
+                    {"volume fraction", "heap.volume_fraction", ""},
+                    {"contacts per grain", "heap.coordination", ""}};
+    return out;
+  }
+
+ private:
+  // Values of a scaled field in N/m on points in m, in the heap's frame.
+  Field in_metres(const Ensemble& ensemble, const AverageOptions* options) const {
+    Field field = ensemble.mean();
+    field.points *= piles_.height();
+    for (Column& column : field.columns) {
+      if (column.name.compare(0, 6, "sigma_") != 0) continue;
+      if (ensemble.realizations() > 1) {
+        column.samples = piles_.pressure() * ensemble.samples(column.name);
+      }
+      column.unit = "N/m";
+      column.value *= piles_.pressure();
+      column.error *= piles_.pressure();
+    }
+    if (options != nullptr) {
+      field.attributes["method"] = options->method;
+      field.attributes["kernel"] = options->kernel;
+      field.attributes["width"] = fmt::format("{}", options->width);
+    }
+    field.attributes["h"] = fmt::format("{}", piles_.height());
+    field.attributes["rho_g_h"] = fmt::format("{}", piles_.pressure());
+    field.attributes["left_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_left_deg));
+    field.attributes["right_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_right_deg));
+    field.attributes["frame"] =
+        "heap: apex at (0, 0), floor y = -h; every pile scaled by its own height and rho g h";
+    return field;
+  }
+
+  Profile profile(const Ensemble& ensemble, const std::string& name, const std::string& key,
+                  double height_share) const {
+    const Field mean = ensemble.mean();
+    const Column& column = *mean.find("sigma_yy");
+    Profile out;
+    out.name = name;
+    out.key = key;
+    out.depth = (1 - height_share) * piles_.height();
+    out.x = piles_.height() * piles_.x();
+    out.mean = -piles_.pressure() * column.value;
+    out.error = piles_.pressure() * column.error;
+    out.samples = -piles_.pressure() * ensemble.samples("sigma_yy");
+    out.independent_length = piles_.kernel().independent_length();
+    return out;
+  }
+
+  std::vector<Profile> cuts(const PileAverages& a, bool named) const {
+    std::vector<Profile> out;
+    for (std::size_t k = 0; k < a.cuts.size(); ++k) {
+      const double share = value_.get<HeapSetup>().heights[k];
+      const std::string suffix = named ? " " + a.method : "";
+      Profile p = profile(a.cuts[k], fmt::format("height {:g} h{}", share, suffix),
+                          fmt::format("height_{:g}", share), share);
+      // High cuts of small heaps may have no value at all.
+      if (p.mean.array().isFinite().count() >= 3) out.push_back(std::move(p));
+    }
+    return out;
+  }
+
+  void add_fields(StudyResult& out) const {
+    for (const PileAverages& a : piles_.methods()) {
+      Field map = in_metres(a.map, &a.options);
+      if (&a == &piles_.methods().front()) out.map = map;
+      out.fields.emplace_back(a.method + "_map", std::move(map));
+      out.fields.emplace_back(a.method + "_base", in_metres(a.base, &a.options));
+      for (std::size_t k = 0; k < a.cuts.size(); ++k) {
+        out.fields.emplace_back(
+            fmt::format("{}_height_{:g}", a.method, value_.get<HeapSetup>().heights[k]),
+            in_metres(a.cuts[k], &a.options));
+      }
+      const std::string prefix = "average." + a.method + ".";
+      out.summary[prefix + "balance_rms"] = a.balance_rms;
+      out.summary[prefix + "balance_largest"] = a.balance_largest;
+      out.summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
+          a.options.width;
+    }
+    out.fields.emplace_back("base", in_metres(piles_.base(), &piles_.methods().front().options));
+  }
+
+  RunFacts facts() const {
+    RunFacts out;
+    out.height = piles_.height();
+    out.depth = piles_.height();
+    const double left = piles_.mean(&PileFrame::repose_left_deg);
+    const double right = piles_.mean(&PileFrame::repose_right_deg);
+    out.numbers = {{"rho_g", piles_.pressure() / piles_.height()},
+                   {"phi_deg", (left + right) / 2},
+                   {"left_deg", left},
+                   {"right_deg", right}};
+    return out;
+  }
+
+  std::vector<ModelProfiles> models(StudyResult& out, const std::vector<Profile>& profiles) const {
+    std::vector<PointSet> sets;
+    for (const Profile& p : profiles) {
+      Eigen::MatrixXd points(p.x.size(), 2);
+      points << p.x, Eigen::VectorXd::Constant(p.x.size(), -p.depth);
+      sets.push_back(
+          {points, p.key == "base" ? Seen::along_x : Seen::in_plane, &piles_.kernel(), true});
+    }
+    const Eigen::MatrixXd grid = piles_.height() * piles_.grid();
+    sets.push_back({grid, Seen::exactly, nullptr, true});
+    const RunFacts known = facts();
+    std::vector<ModelProfiles> all;
+    double seconds = 0;
+    for (const ModelChoice& choice : value_.models) {
+      const Evaluation e = evaluate_model(choice, known, sets);
+      seconds += e.seconds;
+      ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
+      for (std::size_t s = 0; s + 1 < sets.size(); ++s)
+        m.values.emplace_back(-e.stresses[s].col(1));
+      all.push_back(std::move(m));
+      const Eigen::MatrixXd& map = e.stresses.back();
+      out.model_maps.push_back({model_label(choice), map.col(1)});
+      out.fields.emplace_back(
+          "model_" + choice.label,
+          model_field(choice, known, grid, map, piles_.columns(), piles_.rows()));
+      add_model(out.summary, choice, e.figures, e.seconds);
+    }
+    out.summary["time.continuum_s"] = seconds;
+    return all;
+  }
+
+  void add_comparison_of_models(StudyResult& out) const {
+    const double h = piles_.height(), unit = piles_.pressure();
+    std::vector<Profile> profiles{profile(piles_.base(), "base", "base", 0)};
+    for (Profile& p : cuts(piles_.methods().front(), false)) profiles.push_back(std::move(p));
+    const int n = static_cast<int>(files_.size());
+    if (value_.models.empty()) {
+      out.comparison = without_models(std::move(profiles), unit * h, h, n);
+    } else {
+      std::vector<ModelProfiles> all = models(out, profiles);
+      out.comparison = compare(std::move(profiles), std::move(all), unit * h, h, n);
+      for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
+        // The response.* keys speak of a load.
+        if (key.compare(0, 9, "response.") != 0) out.summary[key] = figure;
+      }
+      out.summary["verdict.best_model"] = out.comparison.verdict.best_model;
+    }
+    for (const PileAverages& a : piles_.methods()) {
+      out.comparison.beside.push_back(profile(a.base, "base " + a.method, "base_" + a.method, 0));
+      if (&a == &piles_.methods().front()) continue;
+      for (Profile& p : cuts(a, true)) out.comparison.beside.push_back(std::move(p));
+    }
+    const double density = piles_.mean(&PileFrame::grain_density);
+    const double fraction = piles_.mean(&PileFrame::volume_fraction);
+    out.comparison.scale = {
+        "h", "rho g h", "apex",
+        fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m (rho = {:.6g} kg/m2 times mean volume "
+                    "fraction {:.4g}); every pile scaled by its own; realizations: {}",
+                    h, unit, density, fraction, n)};
+  }
+
+  void add_own_figures(Summary& summary) const {
+    std::map<std::string, std::vector<double>> figures;
+    std::vector<double> ratios;
+    for (const PileFrame& f : piles_.frames()) {
+      figures["heap.volume_fraction"].push_back(f.volume_fraction);
+      ratios.push_back(f.centre_fraction / f.surface_fraction);
+    }
+    figures["density.ratio"] = ratios;
+    const auto &left = piles_.figures().at("dem.repose_angle_left_deg"),
+               &right = piles_.figures().at("dem.repose_angle_right_deg");
+    for (std::size_t r = 0; r < left.size(); ++r) {
+      figures["repose.mean_deg"].push_back((left[r] + right[r]) / 2);
+      figures["repose.left_minus_right_deg"].push_back(left[r] - right[r]);
+    }
+    add_figures(summary, figures);
+    for (double& r : ratios) r -= 1;
+    summary["density.p_value"] = spread_of(ratios).p_value;
+    summary["source.kind"] = value_.get<dem::PileSetup>().source.kind;
+    if (value_.get<dem::PileSetup>().source.kind == "point") {
+      summary["source.interval"] = value_.get<dem::PileSetup>().source.interval;
+    }
+    if (value_.get<dem::PileSetup>().sleep.on && value_.get<GrainFiles>().files.empty()) {
+      summary["sleep.wake_reach"] = value_.get<dem::PileSetup>().sleep.wake_reach;
+    }
+    add_grain_steps(summary);
+    const Field base = piles_.base().mean();
+    const Eigen::VectorXd pressure = -base.find("sigma_yy")->value;
+    Eigen::Index at = 0;
+    const double largest = pressure.maxCoeff(&at);
+    const double centre = pressure[pressure.size() / 2];
+    summary["base.centre_pressure"] = centre;
+    summary["base.largest_pressure"] = largest;
+    summary["base.largest_at"] = std::fabs(piles_.x()[at]);
+    summary["base.smearing_width"] = piles_.methods().front().options.width;
+    summary["dip.ratio"] = centre / largest;
+  }
+
+  void add_grain_steps(Summary& summary) const {
+    const auto grains = piles_.figures().find("dem.grains");
+    const auto steps = piles_.figures().find("dem.steps");
+    if (grains == piles_.figures().end() || steps == piles_.figures().end()) return;
+    double sum = 0;
+    for (std::size_t r = 0; r < files_.size(); ++r) sum += grains->second[r] * steps->second[r];
+    summary["dem.grain_steps"] = sum;
+  }
+
+  /// Of piles on which no line fits a flank; empty when there are none.
+  std::string flat_piles() const {
+    const auto &left = piles_.figures().at("dem.repose_angle_left_deg"),
+               &right = piles_.figures().at("dem.repose_angle_right_deg");
+    int flat = 0;
+    for (std::size_t r = 0; r < left.size(); ++r) flat += std::isnan(left[r] + right[r]) ? 1 : 0;
+    if (flat == 0) return "";
+    return fmt::format(
+        "{} of {} piles {} a flank on which no line fits (too flat, or too few grains): apex and "
+        "shoulders mean little. ",
+        flat, left.size(), flat == 1 ? "has" : "have");
+  }
+
+  void add_dip(StudyResult& out, const Dip& dip) const {
+    out.summary["dip.centre"] = dip.centre;
+    out.summary["dip.shoulder"] = dip.shoulder;
+    out.summary["dip.window_ratio"] = dip.window_ratio;
+    out.summary["dip.difference"] = dip.difference.mean;
+    out.summary["dip.standard_error"] = dip.difference.standard_error;
+    out.summary["dip.p_value"] = dip.difference.p_value;
+    out.summary["dip.verdict"] = dip.verdict;
+    std::string sentence = flat_piles() + dip_sentence(dip);
+    if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
+    out.comparison.verdict.sentence = sentence;
+    out.summary["verdict.sentence"] = sentence;
+  }
+
+  // A row for every changed gravity, from the least one.
+  static Table changes_of(const Summary& summary) {
+    Table table{
+        "Changed gravity",
+        "Means over the piles with standard errors; against each pile under its own gravity.",
+        {"gravity", "contacts per grain, ratio", "contacts opened", "closed", "brought to sliding",
+         "largest displacement / r", "dip's change (rho g h)"},
+        {}};
+    const std::string first = "change.gravity_", last = ".coordination_ratio";
+    std::map<double, std::string> changes;
+    for (const auto& [key, unused] : summary) {
+      if (!key.starts_with(first) || !key.ends_with(last)) continue;
+      const std::string name = key.substr(0, key.size() - last.size());
+      if (const auto gravity = dem::parse_number(name.substr(first.size()))) {
+        changes[*gravity] = name;
+      }
+    }
+    for (const auto& [gravity, name] : changes) {
+      std::vector<std::string> row{fmt::format("{:g} m/s2", gravity)};
+      for (const char* what :
+           {".coordination_ratio", ".contacts_lost", ".contacts_gained", ".newly_sliding",
+            ".max_displacement_over_radius", ".dip_difference_change"}) {
+        row.push_back(shown_with_error(summary, name + what));
+      }
+      table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+
+  static Report page(const StudyResult& result, const Realization* first,
+                     const std::string& averaged) {
+    PileReport in;
+    in.title = result.value.title.empty() ? result.value.name : result.value.title;
+    // What stands, which is not what the case says where piles are taken from files.
+    double grains = result.value.get<dem::PileSetup>().source.grains;
+    if (const auto standing = result.summary.find("dem.grains"); standing != result.summary.end()) {
+      if (const auto* mean = std::get_if<double>(&standing->second)) grains = *mean;
+    }
+    in.subtitle = fmt::format("{} pile{}, {:.0f} grains each", result.realizations.size(),
+                              result.realizations.size() == 1 ? "" : "s", grains);
+    in.sentence = result.comparison.verdict.sentence;
+    if (first != nullptr) {
+      in.pile = first->find("pile");
+      for (const auto& [name, state] : first->snapshots) {
+        if (&state == in.pile) continue;
+        in.changed.emplace_back(fmt::format("g = {:g} m/s2", state.gravity.norm()), &state);
+      }
+    }
+    in.comparison = result.comparison;
+    in.map = result.map;
+    in.averaged = averaged;
+    in.figures = figure_rows(result.summary, {"dem.grains",
+                                              "dem.contacts",
+                                              "repose.mean_deg",
+                                              "dem.repose_angle_left_deg",
+                                              "dem.repose_angle_right_deg",
+                                              "pile.height",
+                                              "heap.volume_fraction",
+                                              "heap.rho_g_h",
+                                              "heap.coordination",
+                                              "pile.volume_fraction_centre",
+                                              "pile.volume_fraction_surface",
+                                              "density.ratio",
+                                              "density.p_value",
+                                              "base.weight_ratio",
+                                              "relaxation.base_weight_ratio_before",
+                                              "relaxation.level_error_before",
+                                              "relaxation.force_change",
+                                              "relaxation.mean_displacement",
+                                              "dip.window_ratio",
+                                              "dip.difference",
+                                              "dip.standard_error",
+                                              "dip.p_value",
+                                              "source.interval",
+                                              "dem.time_step",
+                                              "time.dem_cpu_s",
+                                              "dem.max_overlap_ratio",
+                                              "dem.unbalanced_force_ratio",
+                                              "average.coarse_graining.balance_rms",
+                                              "average.particle_centre.balance_rms"});
+    add_energy_rows(result.summary, in.figures);
+    in.changes = changes_of(result.summary);
+    in.made = origin_rows(result);
+    return pile_report(in);
+  }
+
+  const Case& value_;
+  const std::vector<std::string>& files_;
+  PileEnsemble piles_;
+};
+
+}  // namespace
+
+namespace {
+
+void check(const Case& value) {
+  const auto& h = value.get<HeapSetup>();
+  if (h.shoulder_from >= h.shoulder_to) {
+    throw std::invalid_argument(
+        fmt::format("heap.shoulder_from: found {:g}, allowed: below heap.shoulder_to = {:g}",
+                    h.shoulder_from, h.shoulder_to));
+  }
+  if (h.centre > h.shoulder_from) {
+    throw std::invalid_argument(
+        fmt::format("heap.centre: found {:g}, allowed: up to heap.shoulder_from = {:g}", h.centre,
+                    h.shoulder_from));
+  }
+}
+
+}  // namespace
+
+StudyResult analyse_pile(const Case& value, const std::vector<std::string>& realizations,
+                         int threads) {
+  StudyResult out = PileAnalysis(value, realizations, threads).run();
+  return out;
+}
+
+Study pile_study() {
+  Study out;
+  out.name = "pile";
+  out.meaning = "grains poured into a pile: base pressure and dip, repose, stress and density";
+  describe_piles(out);
+  out.sections.push_back(kChangeKeys);
+  out.sections.push_back(kAverageKeys);
+  out.sections.push_back(kHeapKeys);
+  out.check = check;
+  out.averaged = [](const Case& value) {
+    return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);
+  };
+  out.without = {"average.depths", "average.half_width"};
+  out.fills = {"rho_g", "phi_deg", "left_deg", "right_deg", "h", "dim", "depth"};
+  out.make_run = [](const Case& value, std::int64_t number, int threads) {
+    return make_pile(value, value.get<dem::PileSetup>(), number, threads);
+  };
+  out.foresee = [](const Case& value, std::int64_t draws) {
+    return foresee_pile(value, value.get<dem::PileSetup>(), draws);
+  };
+  out.analyse = analyse_pile;
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,64 @@
+// Keys of fits of stress models to piles.
+#include "coupling/studies/pile_fit/keys.h"
+
+#include "coupling/case/declare.h"
+#include "coupling/fit/models.h"
+#include "coupling/fit/setup.h"
+
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<FitSetup>().MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+using Integer = std::int64_t;
+using Numbers = std::vector<double>;
+using Words = std::vector<string>;
+
+}  // namespace
+
+void declare_fit_keys(SectionKeys s) {
+  std::vector<string> names;
+  string meaning = "models that are fitted and ranked";
+  for (const FitModel& model : heap_models({})) {
+    names.push_back(model.name);
+    meaning += (names.size() == 1 ? ": " : "; ") + model.name;
+    if (!model.parameters.empty()) {
+      meaning += " (";
+      for (const FitParameter& p : model.parameters) {
+        meaning += (&p == &model.parameters.front() ? "" : ", ") + p.name;
+      }
+      meaning += ")";
+    }
+  }
+  s.word("models", +IN(Words, models), names, meaning, "Roul 4.3, 4.4");
+  s.word(
+      "finite_elements", +IN(Words, finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
+      "finite-element models that are solved with the measured slope and the fitted constants and "
+      "join the tables");
+  s.or_none();
+  s.word("components", +IN(Words, components), {"sigma_xx", "sigma_yy", "sigma_xy"},
+         "stresses that are fitted, all together");
+  s.number("heights", "-", +IN(Numbers, heights), {1e-6, 1},
+           "horizontal lines, shares of the pile's height above the base; all together");
+  s.number(
+      "width_diameters", "-", +IN(double, width_diameters), {0.01, 100},
+      "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
+      "keeps points further from the flanks");
+  s.number("left_deg", "deg", +IN(double, left_deg), {0, 89},
+           "slope of the left flank; 0: measured on every heap");
+  s.number("right_deg", "deg", +IN(double, right_deg), {0, 89}, "the same on the right");
+  s.number("friction_deg", "deg", +IN(double, friction_deg), {0, 89},
+           "friction angle of the models that take the flanks apart; 0: the steeper slope");
+  s.word("covariance", +IN(string, covariance), {"auto", "parametric", "sample", "diagonal"},
+         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 piles");
+  s.number("huber", "-", +IN(double, huber), {0, 1e6},
+           "0: least squares; above: values further off than this many errors pull no more than "
+           "that (points in the wrong region)");
+  s.number("bootstrap", "-", +IN(Integer, bootstrap), {0, 10000},
+           "draws of the piles for the bootstrap errors; below 10: none");
+}
+
+}  // namespace grainfield::coupling
+
+#undef IN

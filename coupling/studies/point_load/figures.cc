@@ -1,0 +1,29 @@
+#include "coupling/studies/point_load/keys.h"
+
+namespace grainfield::coupling {
+
+std::vector<SummaryKey> point_load_figures() {
+  return {
+      {"dem.layer_height", "m", "height of the layer from its columns' highest grains"},
+      {"dem.layer_width", "m", "distance of the side walls"},
+      {"base.response_over_load", "-", "vertical base force, loaded - unloaded, over the load"},
+      {"load.force", "N", "applied force F"},
+      {"load.x", "m", "abscissa of the loaded grain, packing's axes"},
+      {"load.y", "m", "height of the loaded grain, packing's axes"},
+      {"load.contacts_gained", "-", "contacts that the load closed"},
+      {"load.contacts_lost", "-", "contacts that the load opened"},
+      {"load.newly_sliding", "-", "contacts that the load brought to the Coulomb limit"},
+      {"load.max_displacement_over_radius", "-",
+       "largest displacement by the load over the radius"},
+      {"load.unbalanced_force_ratio", "-",
+       "mean resultant over mean contact force under the load, where Newton's method applied it"},
+      {"load.load_steps", "-", "load steps of Newton's method"},
+      {"load.iterations", "-", "its iterations in all of them"},
+      {"load.no_rearrangement", "-", "share of realizations without a gained or lost contact"},
+      {"layer.depth", "m", "h of the models: mean over realizations"},
+      {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
+      {"layer.mean_diameter", "m", "of the moving grains"},
+  };
+}
+
+}  // namespace grainfield::coupling

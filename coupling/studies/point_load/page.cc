@@ -1,0 +1,188 @@
+#include "coupling/studies/point_load/page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "continuum/constants.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::string shown(double value, int digits = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+// Profile k and the models there, lengths in h and stresses in F/h.
+Frame frame(const Comparison& c, std::size_t k) {
+  const Profile& p = c.profiles[k];
+  const double unit = c.load / c.depth;
+  Frame result;
+  result.title = k < c.profiles.size() && p.depth < c.depth && p.key != "base"
+                     ? fmt::format("{} ({:.2g} h)", p.name, p.depth / c.depth)
+                     : p.name;
+  Series simulation;
+  simulation.label =
+      c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
+  simulation.simulation = true;
+  simulation.x = p.x / c.depth;
+  simulation.y = p.mean / unit;
+  if (p.error.size()) simulation.error = p.error / unit;
+  result.series.push_back(simulation);
+  for (const ModelProfiles& m : c.models)
+    result.series.push_back({m.label, p.x / c.depth, m.values[k] / unit, {}, false});
+  return result;
+}
+
+void add_profiles(Report& report, const Comparison& c) {
+  std::vector<Frame> depths, base;
+  for (std::size_t k = 0; k < c.profiles.size(); ++k)
+    (c.profiles[k].key == "base" ? base : depths).push_back(frame(c, k));
+  const std::string caption = fmt::format(
+      "Vertical pressure added by the load, in units of F/h = {:.4g} N/m (F = {:.4g} N, h = {:.4g} "
+      "m). The models are smoothed with the kernel of the averaging. The grey band is one standard "
+      "error on either side.",
+      c.load / c.depth, c.load, c.depth);
+  const auto add = [&](const std::string& title, const std::vector<Frame>& frames) {
+    if (frames.empty()) return;
+    Picture picture = curves(title, "x / h", "response of -σ_{yy}  (F/h)", frames);
+    picture.caption = caption;
+    report.sections.emplace_back(std::move(picture));
+  };
+  add("Response at depth, against the models", depths);
+  add("Response on the base", base);
+}
+
+void add_maps(Report& report, const PointLoadReport& in) {
+  const Column* column = in.map.find("sigma_yy");
+  if (!column || in.map.nx < 2 || in.map.ny < 2) return;
+  const double unit = in.comparison.load / in.comparison.depth, h = in.comparison.depth;
+  const Eigen::VectorXd simulation = -column->value / unit;
+  const auto map = [&](const std::string& title, const Eigen::VectorXd& value) {
+    return Map{title, in.map.nx, in.map.ny, in.map.points / h, value};
+  };
+  std::vector<Map> all{map("grains", simulation)};
+  if (!in.models.empty()) {
+    const Eigen::VectorXd model = -in.models.front().sigma_yy / unit;
+    all.push_back(map(in.models.front().label, model));
+    all.push_back(map("grains - " + in.models.front().label, simulation - model));
+  }
+  Picture picture = maps("Maps of the response", "x / h", "y / h", "-σ_{yy}  (F/h)", all);
+  picture.caption =
+      "One colour scale for all; it ends at the 99 % quantile. Points without enough grains around "
+      "them are left white.";
+  report.sections.emplace_back(std::move(picture));
+}
+
+void add_base_before(Report& report, const PointLoadReport& in) {
+  const Column* column = in.base_unloaded.find("sigma_yy");
+  if (!column || column->value.size() < 3) return;
+  Series series{"grains before loading", in.base_unloaded.points.col(0), -column->value,
+                column->error.size() ? column->error : Eigen::VectorXd(), true};
+  Picture picture = curves("Pressure on the base before loading", "x (m)", "-σ_{yy}  (N/m)",
+                           {{"", {std::move(series)}}});
+  report.sections.emplace_back(std::move(picture));
+}
+
+void add_tables(Report& report, const PointLoadReport& in) {
+  const Comparison& c = in.comparison;
+  Table distances{"Distance of the models from the grains",
+                  "Relative L2: root of the sum of squared differences over that of the grains. "
+                  "chi2/dof: squared differences over squared standard errors, corrected for the "
+                  "number of realizations; about 1 for a model within the spread.",
+                  {"model", "relative L2", "largest difference (F/h)", "at x/h", "in", "chi2/dof"},
+                  {}};
+  for (const ModelComparison& r : c.results)
+    distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
+                              shown(r.overall.largest * c.depth / c.load),
+                              shown(r.overall.largest_at / c.depth, 2), r.overall.largest_in,
+                              shown(r.overall.chi2_per_dof)});
+  report.sections.emplace_back(std::move(distances));
+
+  Table shapes{"Shape of the profiles",
+               "Peak in F/h, widths and places in h, integral over x in F; standard errors of the "
+               "grains by leaving one realization out at a time.",
+               {"profile", "of", "peak", "at", "full width at half maximum", "rms width", "peaks",
+                "integral"},
+               {}};
+  const auto with_error = [](double value, double error) {
+    return std::isfinite(error) ? shown(value) + " ± " + shown(error, 1) : shown(value);
+  };
+  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
+                       const ProfileShape& error) {
+    shapes.rows.push_back(
+        {profile, of, with_error(s.peak / c.unit(), error.peak / c.unit()),
+         shown(s.peak_at / c.depth, 2), with_error(s.fwhm / c.depth, error.fwhm / c.depth),
+         with_error(s.rms_width / c.depth, error.rms_width / c.depth), fmt::format("{}", s.peaks),
+         with_error(s.integral / c.load, error.integral / c.load)});
+  };
+  const ProfileShape exact{kNan, kNan, kNan, kNan, 0, kNan};
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k]);
+    for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k], exact);
+  }
+  report.sections.emplace_back(std::move(shapes));
+  for (const auto& [title, rows] :
+       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
+    if (rows.empty()) continue;
+    Table table{title, "", {}, {}};
+    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
+    report.sections.emplace_back(std::move(table));
+  }
+}
+
+}  // namespace
+
+Report point_load_report(const PointLoadReport& in) {
+  const Comparison& c = in.comparison;
+  Report report;
+  report.title = in.title;
+  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
+                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  if (in.loaded) report.sections.emplace_back(packing("The loaded packing", *in.loaded));
+  if (in.loaded && in.unloaded)
+    report.sections.emplace_back(packing("What the load changes", *in.loaded, in.unloaded));
+  add_profiles(report, c);
+  add_maps(report, in);
+  add_base_before(report, in);
+  if (in.loaded)
+    report.sections.emplace_back(contact_angles("Directions of the contacts", *in.loaded));
+  add_tables(report, in);
+  return report;
+}
+
+Report layer_page(const StudyResult& result, const Realization* first) {
+  PointLoadReport page;
+  page.title = result.value.title.empty() ? result.value.name : result.value.title;
+  if (first != nullptr) {
+    page.unloaded = &(*first)["unloaded"];
+    page.loaded = &(*first)["loaded"];
+  }
+  page.comparison = result.comparison;
+  page.base_unloaded = result.base_unloaded;
+  page.map = result.map;
+  page.models = result.model_maps;
+  page.figures = figure_rows(
+      result.summary,
+      {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+       "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
+       "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
+       "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
+       "response.peaks", "average.coarse_graining.balance_rms",
+       "average.particle_centre.balance_rms"});
+  add_energy_rows(result.summary, page.figures);
+  page.made = origin_rows(result);
+  return point_load_report(page);
+}
+
+std::vector<OverviewColumn> layer_overview() {
+  return {{"peaks", "response.peaks", ""},
+          {"peak (N/m)", "response.peak", ""},
+          {"peak / (F/h)", "response.peak_over_F_per_h", ""},
+          {"width (m)", "response.width", ""},
+          {"integral / F", "response.total_over_load", ""},
+          {"best model", "verdict.best_model", ""}};
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,34 @@
+// The report of a point load on a layer.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupling/compare/compare.h"
+#include "coupling/field.h"
+#include "coupling/report/report.h"
+#include "coupling/run/study_result.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+struct PointLoadReport {
+  std::string title;                        ///< of the case
+  const dem::Snapshot* unloaded = nullptr;  ///< of the realization that is drawn; may be null
+  const dem::Snapshot* loaded = nullptr;
+  Comparison comparison;         ///< profiles at depths; the one with key "base" is drawn apart
+  Field base_unloaded;           ///< mean base_profile before loading; may be empty
+  Field map;                     ///< mean response on a grid in the models' frame; may be empty
+  std::vector<ModelMap> models;  ///< on map.points; the first one's residual is drawn
+  std::vector<std::pair<std::string, std::string>> figures;  ///< results worth a table
+  std::vector<std::pair<std::string, std::string>> made;     ///< case, seed, version, times
+};
+
+Report point_load_report(const PointLoadReport& input);
+
+/// That page of a result with snapshots "unloaded" and "loaded", or of models alone (`first` null).
+Report layer_page(const StudyResult& result, const Realization* first);
+/// What a sweep over loaded layers shows of each.
+std::vector<OverviewColumn> layer_overview();
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,39 @@
+// Keys of fits of stress models to layers under a point load.
+#include "coupling/studies/point_load_verdict/keys.h"
+
+#include "coupling/case/declare.h"
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/setup.h"
+
+#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<VerdictSetup>().MEMBER; }
+
+namespace grainfield::coupling {
+namespace {
+
+using std::string;
+using Words = std::vector<string>;
+
+}  // namespace
+
+void declare_verdict_keys(SectionKeys s) {
+  s.word("models", +IN(Words, models), layer_model_names(),
+         "models that are fitted to the response and ranked; free: layer_rough nu; "
+         "orthotropic_half_plane, orthotropic_layer_smooth rho, t; orthotropic_layer_rough shear, "
+         "t, nu_ratio; osl_layer_* eta, mu, width",
+         "Otto et al. 2003; Roul 5.6");
+  s.word("finite_elements", +IN(Words, finite_elements),
+         {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
+         "finite-element models that are solved with the fitted constants and join the tables");
+  s.or_none();
+  s.word("components", +IN(Words, components), {"sigma_xx", "sigma_yy", "sigma_xy"},
+         "stresses that are fitted, all together");
+  s.flag("base", +IN(bool, base), "the forces on the base are fitted as well");
+  s.word("covariance", +IN(string, covariance), {"auto", "parametric", "sample", "diagonal"},
+         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 packings");
+  s.number("bootstrap", "-", +IN(std::int64_t, bootstrap), {0, 10000},
+           "draws of the packings for the bootstrap errors; below 10: none");
+}
+
+}  // namespace grainfield::coupling
+
+#undef IN

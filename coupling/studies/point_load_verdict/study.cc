@@ -1,0 +1,247 @@
+#include "coupling/studies/point_load_verdict/study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "coupling/fit/figures.h"
+#include "coupling/fit/fit_tables.h"
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/models.h"
+#include "coupling/fit/setup.h"
+#include "coupling/models/models.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
+#include "coupling/run/study_result.h"
+#include "coupling/studies/point_load/study.h"
+#include "coupling/studies/point_load_verdict/finished_layers.h"
+#include "coupling/studies/point_load_verdict/keys.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::coupling {
+namespace {
+
+std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
+  if (!value.get<GrainFiles>().files.empty()) return make_finished_layer_run(value, number);
+  return dem::make_point_load_run(value.get<dem::PointLoadSetup>(), realization_seed(value, number),
+                                  threads);
+}
+
+dem::Outlook foresee(const Case& value, std::int64_t draws) {
+  if (value.get<GrainFiles>().files.empty()) {
+    return dem::foresee_point_load(value.get<dem::PointLoadSetup>(), realization_seeds(value),
+                                   draws);
+  }
+  try_finished_layers(value);
+  return {};
+}
+
+void check(const Case& value) {
+  check_point_load(value);
+  for (const std::string& name : value.get<VerdictSetup>().finite_elements) {
+    try {
+      continuum::find_model(name);
+    } catch (const continuum::BadParameter& e) {
+      throw std::invalid_argument(std::string("verdict.finite_elements: ") + e.what());
+    }
+  }
+}
+
+// The registry's model with F = 1, h = 1 at the fit's points, through the same kernel.
+FiniteElementFit solve(const std::string& name, const LayerFits& fits, const LayerSight& sight) {
+  FiniteElementFit out;
+  out.name = name;
+  const auto choice = finite_element_choice(name, fits.fits, 1, out.of, out.why);
+  if (choice == nullptr) return out;
+  out.constants = constants_text(choice->settings);
+  RunFacts facts;
+  facts.force = facts.height = 1;
+  // The half plane's finite elements need the least depth one looks at.
+  facts.depth = 0.1;
+  const auto model = continuum::make_model(choice->name, filled_settings(*choice, facts));
+  const bool half_plane = family_of(name) == "half plane";
+  const Eigen::MatrixXd seen =
+      sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
+  const FitData& data = fits.layers.data;
+  judge_elements(out, data, fits.covariance, fit_named(fits.fits, out.of),
+                 sight.pick(seen, data.points));
+  return out;
+}
+
+// The models with their constants, for the tables and maps of every loaded layer.
+std::vector<ModelChoice> choices(const LayerFits& fits) {
+  std::vector<ModelChoice> out;
+  const double h = fits.layers.depth;
+  for (const Fit& f : fits.fits) out.push_back(fitted_choice(f, h));
+  for (const FiniteElementFit& e : fits.elements) {
+    std::string of, why;
+    if (const auto c = finite_element_choice(e.name, fits.fits, h, of, why)) out.push_back(*c);
+  }
+  return out;
+}
+
+// Fitted models through a sight of all profiles (a layer node by node takes minutes), others and
+// the map as the registry gives them.
+ModelEvaluator evaluator_of(const std::shared_ptr<const LayerFits>& fits) {
+  const auto known = std::make_shared<std::vector<FitModel>>();
+  const auto places = std::make_shared<Eigen::MatrixXd>();
+  return [=](const ModelChoice& choice, const RunFacts& facts,
+             const std::vector<PointSet>& sets) -> Evaluation {
+    const auto fitted = std::find_if(fits->fits.begin(), fits->fits.end(),
+                                     [&](const Fit& f) { return f.name == choice.label; });
+    if (fitted == fits->fits.end()) return evaluate_model(choice, facts, sets);
+    const auto start = std::chrono::steady_clock::now();
+    if (known->empty()) {
+      Eigen::Index rows = 0;
+      for (const PointSet& s : sets) rows += s.seen == Seen::exactly ? 0 : s.points.rows();
+      places->resize(rows, 2);
+      rows = 0;
+      for (const PointSet& s : sets) {
+        if (s.seen == Seen::exactly) continue;
+        places->middleRows(rows, s.points.rows()) = s.points / facts.height;
+        rows += s.points.rows();
+      }
+      *known = layer_models(std::make_shared<const LayerSight>(*places, *fits->layers.kernel));
+    }
+    const Eigen::MatrixXd all =
+        find_fit_model(*known, choice.label).stress(*places, parameters_of(*fitted)) *
+        (facts.force / facts.height);
+    const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
+    Evaluation out;
+    Eigen::Index row = 0;
+    for (const PointSet& s : sets) {
+      if (s.seen == Seen::exactly) {
+        out.stresses.push_back(model->stress(s.points));
+        continue;
+      }
+      out.stresses.emplace_back(all.middleRows(row, s.points.rows()));
+      row += s.points.rows();
+    }
+    out.figures = model->figures();
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return out;
+  };
+}
+
+Report page_of(const StudyResult& result, const Realization* first, const LayerFits& fits) {
+  Report out;
+  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}",
+                             fits.layers.force, fits.layers.depth, fits.layers.data.realizations(),
+                             fits.layers.data.realizations() == 1 ? "" : "s");
+  out.sections.emplace_back(Text{"", fits.verdict.sentence, true});
+  for (Section& s : layer_pictures(fits)) out.sections.push_back(std::move(s));
+  if (first != nullptr) {
+    const dem::Snapshot &unloaded = (*first)["unloaded"], &loaded = (*first)["loaded"];
+    out.sections.emplace_back(packing("The loaded packing", loaded));
+    out.sections.emplace_back(packing("What the load changes", loaded, &unloaded));
+    out.sections.emplace_back(contact_angles("Directions of the contacts", loaded));
+  }
+  for (Section& s : layer_tables(fits)) out.sections.push_back(std::move(s));
+  Table figures{"Figures", "", {}, {}};
+  for (const auto& [key, value] : figure_rows(
+           result.summary,
+           {"dem.grains", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+            "load.contacts_gained", "load.contacts_lost", "load.newly_sliding",
+            "load.no_rearrangement", "response.total_over_load", "response.peak_over_F_per_h",
+            "response.width", "response.peaks", "average.coarse_graining.balance_rms"})) {
+    figures.rows.push_back({key, value});
+  }
+  out.sections.emplace_back(std::move(figures));
+  Table made{"How it was made", "", {}, {}};
+  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
+  out.sections.emplace_back(std::move(made));
+  return out;
+}
+
+StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto fits = std::make_shared<LayerFits>(fit_layers(value, files, threads));
+  Case with_constants = value;
+  with_constants.models = choices(*fits);
+  StudyResult out = analyse_point_load(with_constants, files, threads, evaluator_of(fits));
+  add_layer_fits(out.summary, *fits);
+  out.comparison.verdict.best_model = fits->verdict.model;
+  out.comparison.verdict.sentence = fits->verdict.sentence;
+  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
+               {"fits.md", layer_fits_markdown(*fits)},
+               {"fits.tex", layer_fits_tex(*fits)}};
+  out.overview = {{"best model", "verdict.best_model", ""},
+                  {"alone", "verdict.distinguishable", ""},
+                  {"equations", "verdict.equations", ""},
+                  {"within the errors", "verdict.agrees", ""},
+                  {"peaks on the base", "response.peaks", ""},
+                  {"peak / (F/h)", "response.peak_over_F_per_h", ""},
+                  {"contacts lost", "load.contacts_lost", ""}};
+  for (Frame& frame : layer_frames(*fits, "sigma_yy", {"0.5", "base"})) {
+    out.sweep_frames.push_back(std::move(frame));
+  }
+  out.sweep_x = "x / h (load at 0)";
+  out.sweep_y = "response of -σ_{yy}  (F/h)";
+  out.sweep_sections = [fits](const std::string& name) {
+    return layer_map_sections(*fits, fits->verdict.model, name);
+  };
+  out.sweep_tables = [fits](const std::string& name) { return layer_tables(*fits, name + ": "); };
+  out.page = [fits](const StudyResult& result, const Realization* first) {
+    return page_of(result, first, *fits);
+  };
+  out.summary["time.analysis_s"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace
+
+LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, int threads) {
+  LayerFits out;
+  out.layers = layer_data(value, files, threads);
+  const FitData& data = out.layers.data;
+  out.covariance = covariance_of(data, value.get<VerdictSetup>().covariance);
+  // Components share their points: the sight needs each once.
+  std::vector<int> once;
+  std::map<std::pair<double, double>, int> seen;
+  for (int k = 0; k < data.values(); ++k) {
+    if (seen.emplace(std::pair(data.points(k, 0), data.points(k, 1)), k).second) once.push_back(k);
+  }
+  const auto sight =
+      std::make_shared<const LayerSight>(rows_of(data, once).points, *out.layers.kernel);
+  const std::vector<FitModel> known = layer_models(sight);
+  FitOptions options;
+  options.bootstrap = static_cast<int>(value.get<VerdictSetup>().bootstrap);
+  options.threads = threads;
+  for (const std::string& name : value.get<VerdictSetup>().models) {
+    out.models.push_back(find_fit_model(known, name));
+    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+  }
+  out.selection = select(data, out.covariance, out.models, out.fits);
+  out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
+  for (const std::string& name : value.get<VerdictSetup>().finite_elements) {
+    out.elements.push_back(solve(name, out, *sight));
+  }
+  out.maps = layer_maps(value, files, out.layers, threads);
+  return out;
+}
+
+Study point_load_verdict_study() {
+  Study out = point_load_study();
+  out.name = "point-load-verdict";
+  out.meaning =
+      "stress models fitted to layers under a point load and ranked: half plane, layer, "
+      "orthotropic, OSL";
+  out.sections.insert(out.sections.begin(), kGrainFilesKeys);
+  out.sections.push_back(kVerdictKeys);
+  out.figures.push_back(figures_of_fits);
+  out.check = check;
+  out.without = {"compare.models"};
+  out.models_optional = true;
+  out.make_run = make_run;
+  out.foresee = foresee;
+  out.analyse = analyse;
+  return out;
+}
+
+}  // namespace grainfield::coupling

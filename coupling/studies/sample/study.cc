@@ -1,0 +1,269 @@
+// Samples of grains under compression and shear: their recorded states as tables and curves.
+#include "coupling/case/study.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "coupling/run/ensemble.h"
+#include "coupling/run/grain_keys.h"
+#include "coupling/run/study_result.h"
+#include "coupling/studies/sample/keys.h"
+#include "coupling/studies/sample/page.h"
+#include "coupling/studies/sample/state_figures.h"
+#include "coupling/studies/sample/state_table.h"
+#include "dem/study/sample.h"
+#include "dem/study/sample_setup.h"
+#include "dem/study/setup.h"
+
+namespace grainfield::coupling {
+namespace {
+
+const char* strain_name(const std::string& deformation) {
+  return deformation == "simple_shear" ? "shear strain"
+         : deformation == "isotropic"  ? "strain of the edges"
+                                       : "axial strain";
+}
+
+SampleCurve curve(const StateTable& table, const std::string& column, const std::string& title) {
+  return {title, table.mean(column), table.error(column)};
+}
+
+// Less its value in the first state.
+SampleCurve risen(const StateTable& table, const std::string& column, const std::string& title) {
+  SampleCurve out = curve(table, column, title);
+  out.mean.array() -= out.mean[0];
+  return out;
+}
+
+std::string label_of(const StateTable& table) {
+  return table.realizations() > 1 ? fmt::format("grains, mean of {}", table.realizations())
+                                  : "grains";
+}
+
+SampleReport curves_of(const Case& value, const StateTable& table) {
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  SampleReport out;
+  out.title = value.title.empty() ? value.name : value.title;
+  out.subtitle =
+      fmt::format("{} {}s in {}, {} law, {}", plan.grains,
+                  plan.dim == 3          ? "sphere"
+                  : plan.shape == "disk" ? "disk"
+                                         : "polygon",
+                  plan.boundary == "periodic" ? "a periodic cell" : "a box of walls",
+                  value.get<dem::SampleSetup>().material.law,
+                  plan.deformation == "simple_shear" ? "simple shear at constant " + plan.constant
+                                                     : plan.deformation + " deformation");
+  out.strain_name = strain_name(plan.deformation);
+  out.label = label_of(table);
+  out.strain = table.mean("strain");
+  out.main = {curve(table, "q_over_p", "q/p"),
+              curve(table, "volumetric_strain", "volumetric strain"),
+              curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"),
+              curve(table, "coordination", "contacts of a grain")};
+  const Driving driving = driving_of(plan.deformation, plan.dim);
+  out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
+  out.stresses = {curve(table, "p", "p"), curve(table, "q", "q")};
+  if (driving.stress.starts_with("sigma")) {
+    SampleCurve own = curve(table, driving.stress, driving.meaning);
+    if (driving.compression) own.mean = -own.mean;
+    out.stresses.push_back(std::move(own));
+  }
+  out.structure = {curve(table, "coordination_bearing", "contacts of a grain that bears"),
+                   curve(table, "fabric_anisotropy", "anisotropy of the fabric"),
+                   curve(table, "solid_fraction", "solid fraction"),
+                   curve(table, "rattlers", "share of rattlers")};
+  out.energies = {curve(table, "work", "work"), risen(table, "elastic_energy", "elastic"),
+                  risen(table, "kinetic_energy", "kinetic")};
+  if (value.get<dem::SampleSetup>().motion.energy_balance) {
+    out.energies.push_back(curve(table, "dissipated", "lost"));
+    out.energies.push_back(curve(table, "lost_to_friction", "of it to friction"));
+    out.energies.push_back(curve(table, "work_of_law", "work of the law"));
+  }
+  return out;
+}
+
+const std::vector<std::string>& shown_figures() {
+  static const std::vector<std::string> keys{"dem.grains",
+                                             "sample.initial_pressure",
+                                             "sample.initial_solid_fraction",
+                                             "sample.initial_coordination",
+                                             "sample.final_pressure",
+                                             "sample.lost_strength",
+                                             "sample.strain_at_loss",
+                                             "sample.lateral_stress_ratio",
+                                             "sample.peak_stress_ratio",
+                                             "sample.strain_at_peak",
+                                             "sample.peak_friction_angle_deg",
+                                             "sample.critical_stress_ratio",
+                                             "sample.critical_friction_angle_deg",
+                                             "sample.critical_drift",
+                                             "sample.critical_solid_fraction",
+                                             "sample.critical_coordination",
+                                             "sample.secant_modulus",
+                                             "sample.secant_strain",
+                                             "sample.volumetric_strain",
+                                             "sample.inertial_number",
+                                             "sample.stress_error",
+                                             "sample.stress_rms_error",
+                                             "sample.energy_balance_error",
+                                             "dem.max_overlap_ratio",
+                                             "dem.time_step"};
+  return keys;
+}
+
+// "0.61 ± 0.02", or "0.61" of one realization.
+std::string told(const Summary& summary, const std::string& key) {
+  const auto found = summary.find(key);
+  if (found == summary.end()) return "-";
+  const double value = std::get<double>(found->second);
+  const auto error = summary.find(key + ".standard_error");
+  return error == summary.end()
+             ? fmt::format("{:.3g}", value)
+             : fmt::format("{:.3g} ± {:.1g}", value, std::get<double>(error->second));
+}
+
+std::string sentence(const Case& value, const StateTable& table, const Summary& summary) {
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  const auto has = [&](const char* key) { return summary.count(key) != 0; };
+  const auto number = [&](const char* key) { return std::get<double>(summary.at(key)); };
+  const char* unit = plan.dim == 2 ? "N/m" : "Pa";
+  std::string out = fmt::format(
+      "From p = {} {} and the solid fraction {}: ", told(summary, "sample.initial_pressure"), unit,
+      told(summary, "sample.initial_solid_fraction"));
+  if (plan.deformation == "uniaxial" || plan.deformation == "isotropic") {
+    out += fmt::format("p is {} {} at the end, the secant modulus {}",
+                       told(summary, "sample.final_pressure"), unit,
+                       told(summary, "sample.secant_modulus"));
+    if (has("sample.lateral_stress_ratio")) {
+      out += fmt::format(", lateral over axial stress {}",
+                         told(summary, "sample.lateral_stress_ratio"));
+    }
+  } else if (has("sample.peak_stress_ratio") && number("sample.strain_at_peak") > 0) {
+    out +=
+        fmt::format("q/p rises to {} at a strain of {}", told(summary, "sample.peak_stress_ratio"),
+                    told(summary, "sample.strain_at_peak"));
+  } else {
+    out +=
+        fmt::format("q/p is largest at the start, {}", told(summary, "sample.peak_stress_ratio"));
+  }
+  if (has("sample.critical_stress_ratio")) {
+    out += fmt::format("; beyond {:.0f} % of the strain it is {} at the solid fraction {}",
+                       100 * kCriticalFrom, told(summary, "sample.critical_stress_ratio"),
+                       told(summary, "sample.critical_solid_fraction"));
+  }
+  if (has("sample.strain_at_loss")) {
+    out += fmt::format(
+        "; strength is lost (p below {:.0f} % of the first, or an inertial number above {:g}) at a "
+        "strain of {} in {:.0f} of",
+        100 * kLeastPressure, kMostInertia, told(summary, "sample.strain_at_loss"),
+        number("sample.lost_strength") * static_cast<double>(table.realizations()));
+  }
+  out += fmt::format("{} {} realization{}.", has("sample.strain_at_loss") ? "" : ";",
+                     table.realizations(), table.realizations() == 1 ? "" : "s");
+  return out;
+}
+
+// For ParaView: the states in order, with the strain as time.
+std::string series_of(const StateTable& table, const char* kind) {
+  std::string out =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  for (Eigen::Index k = 0; k < table.states(); ++k) {
+    out += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}_state_{:03}.vtu\"/>\n",
+                       table.of("strain")(k, 0), kind, k);
+  }
+  return out + "</Collection>\n</VTKFile>\n";
+}
+
+std::vector<MemberCurve> member_curves(const SampleReport& report) {
+  std::vector<MemberCurve> out;
+  for (const SampleCurve& shown : report.main) {
+    out.push_back({shown.title, report.strain_name, sample_series(report, shown, "", false)});
+  }
+  return out;
+}
+
+Report page_of(SampleReport report, const StudyResult& result, const Realization* grains) {
+  report.sentence = result.comparison.verdict.sentence;
+  if (grains != nullptr) {
+    report.first = &grains->snapshots.front().second;
+    report.last = &grains->snapshots.back().second;
+  }
+  report.figures = figure_rows(result.summary, shown_figures());
+  add_energy_rows(result.summary, report.figures);
+  report.made = origin_rows(result);
+  return sample_report(report);
+}
+
+std::map<std::string, std::vector<double>> engine_figures(const std::vector<std::string>& files) {
+  std::map<std::string, std::vector<double>> out;
+  for (const std::string& file : files) {
+    for (const auto& [key, figure] : read_realization(file).figures) out[key].push_back(figure);
+  }
+  return out;
+}
+
+// states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
+// spread, the report. Throws what StateTable throws.
+StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
+  const StateTable table(files);
+  StudyResult out = begin_result(value, files);
+  add_figures(out.summary, engine_figures(files));
+  add_figures(out.summary, state_figures(table, value.get<dem::SampleSetup>().plan.deformation));
+  out.comparison.realizations = static_cast<int>(files.size());
+  out.comparison.verdict.sentence = sentence(value, table, out.summary);
+  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  out.texts = {{"states.csv", table.csv()},
+               {"states_of_realizations.csv", table.csv_of_realizations()}};
+  if (value.output.vtu) {
+    for (const char* kind : {"grains", "contacts", "chains"}) {
+      out.texts.emplace_back(fmt::format("{}.pvd", kind), series_of(table, kind));
+    }
+  }
+  const SampleReport report = curves_of(value, table);
+  out.member_curves = member_curves(report);
+  out.page = [report](const StudyResult& result, const Realization* first) {
+    return page_of(report, result, first);
+  };
+  out.overview = {{"peak q/p", "sample.peak_stress_ratio", ""},
+                  {"at strain", "sample.strain_at_peak", ""},
+                  {"critical q/p", "sample.critical_stress_ratio", ""},
+                  {"critical solid fraction", "sample.critical_solid_fraction", ""},
+                  {"secant modulus", "sample.secant_modulus", ""},
+                  {"first solid fraction", "sample.initial_solid_fraction", ""},
+                  {"volumetric strain", "sample.volumetric_strain", ""},
+                  {"inertial number", "sample.inertial_number", ""}};
+  return out;
+}
+
+}  // namespace
+
+Study sample_study() {
+  Study out;
+  out.name = "sample";
+  out.meaning = "grains in a cell or a box, compressed and sheared: stress, volume and fabric";
+  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys};
+  out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
+  out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
+  out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
+  out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
+  out.figures = {sample_figures};
+  out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
+  out.models_optional = true;
+  out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
+  out.dimension_key = "sample.dim";
+  out.make_run = [](const Case& value, std::int64_t number, int threads) {
+    return dem::make_sample_run(value.get<dem::SampleSetup>(), realization_seed(value, number),
+                                threads);
+  };
+  out.foresee = [](const Case& value, std::int64_t draws) {
+    return dem::foresee_sample(value.get<dem::SampleSetup>(), realization_seeds(value), draws);
+  };
+  out.analyse = [](const Case& value, const std::vector<std::string>& files, int) {
+    return analyse_sample(value, files);
+  };
+  return out;
+}
+
+}  // namespace grainfield::coupling
