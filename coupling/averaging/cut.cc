@@ -18,6 +18,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 
+// Share of a sphere above z: a cap, 2 (1 - c)^2 (2 + c) / 8 with c = height over the radius.
+double share_of_sphere_above(const dem::Grain& grain, double z) {
+  const double c = std::clamp((z - grain.position.z()) / grain.radius, -1.0, 1.0);
+  return (1 - c) * (1 - c) * (2 + c) / 4;
+}
+
 // Share of the grain's area above y.
 double share_above(const dem::Grain& grain, double y) {
   if (bottom_of(grain) >= y) return 1;
@@ -36,16 +42,17 @@ double share_above(const dem::Grain& grain, double y) {
 template <class OfGrain, class Share>
 double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& of_grain,
               Share&& share) {
+  const int up = up_axis(snapshot.dim);
   double sum = 0;
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;
-    sum -= grain.mass * snapshot.gravity.y() * of_grain(grain);
+    sum -= grain.mass * snapshot.gravity[up] * of_grain(grain);
     if (grain.id == snapshot.loaded_grain)
-      sum -= snapshot.applied_force.y() * share(grain.position.y());
+      sum -= snapshot.applied_force[up] * share(grain.position[up]);
   }
   for_each_branch(
       snapshot, ends, [](const dem::Vec3&, const dem::Vec3&, const dem::Vec3&) {},
-      [&](const dem::Vec3& at, const dem::Vec3& force) { sum -= force.y() * share(at.y()); });
+      [&](const dem::Vec3& at, const dem::Vec3& force) { sum -= force[up] * share(at[up]); });
   return sum;
 }
 
@@ -123,63 +130,117 @@ double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, d
   return total;
 }
 
+// In space: weight_above averaged over the heights of the RVE inside the packing, by its section.
+double weight_through_ball(const dem::Snapshot& snapshot, const Region& region, double z,
+                           const AverageOptions& options) {
+  const Support& support = *find_support(options.kernel);
+  const double w = options.width, low = std::max(region.floor() - z, -w),
+               high = std::min(region.highest() - z, w);
+  if (!(low < high)) return 0;
+  const auto section = [&](double s) {
+    return support.half_y(w, 0) == support.half_y(w, w) ? 1 : std::max(0.0, w * w - s * s);
+  };
+  double carried = 0, all = 0;
+  constexpr int slices = 40;
+  for (int k = 0; k < slices; ++k) {
+    const double s = low + (high - low) * (k + 0.5) / slices;
+    carried += section(s) * weight_above(snapshot, z + s);
+    all += section(s);
+  }
+  return carried / all;
+}
+
+// What an averaging counts as inside its RVEs, over what is inside, along a cut.
+double counted_share(const dem::Snapshot& snapshot, const MatrixXd& cut, AverageOptions options) {
+  if (options.method == "area_exact") return 1;
+  options.quantities = {"volume_fraction"};
+  const auto solid = [&](const char* method) {
+    options.method = method;
+    const Eigen::VectorXd share = average(snapshot, cut, options).find("volume_fraction")->value;
+    return share.array().isNaN().select(0, share).sum();
+  };
+  const double inside = solid("area_exact");
+  return inside > 0 ? solid("particle_centre") / inside : 1;
+}
+
+// Midpoints of cells of the horizontal cut, as far out as branches into walls go.
+struct Cut {
+  MatrixXd points;
+  double cell = 0;  // m, in space m2
+};
+
+Cut cut_through(const Region& region, double height, double range, double step) {
+  struct Side {
+    double first, last;
+    int n;
+    double size;
+  };
+  const auto side = [&](double low, double high) {
+    const double from = low - 4 * range, to = high + 4 * range;
+    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
+    const double size = (to - from) / n;
+    return Side{from + size / 2, to - size / 2, n, size};
+  };
+  if (region.dim() == 2) {
+    const Side x = side(region.left(), region.right());
+    return {line_points(x.first, x.last, x.n, height), x.size};
+  }
+  constexpr double most = 4e5;
+  const double area =
+      (region.right() - region.left() + 8 * range) * (region.back() - region.front() + 8 * range);
+  step = std::max(step, std::sqrt(area / most));
+  const Side x = side(region.left(), region.right()), y = side(region.front(), region.back());
+  return {cut_points({x.first, y.first}, {x.last, y.last}, x.n, y.n, {height}), x.size * y.size};
+}
+
 }  // namespace
 
 double weight_above(const dem::Snapshot& snapshot, double y) {
   // Fixed grains carry their force down to the floor's mean height.
   return weight(
       snapshot, {true, Region(snapshot).floor(), 0},
-      [&](const dem::Grain& grain) { return share_above(grain, y); },
+      [&](const dem::Grain& grain) {
+        return snapshot.dim == 2 ? share_above(grain, y) : share_of_sphere_above(grain, y);
+      },
       [&](double height) { return height > y ? 1.0 : 0.0; });
 }
 
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& given,
                    double step) {
-  layer_frame(snapshot);  // refuses 3D
+  const int dim = snapshot.dim, up = up_axis(dim);
   AverageOptions options = given;
   options.quantities = {"sigma", "kinetic"};
   options.least_grains = 0;
-  if (step <= 0) step = options.width / 40;
+  if (step <= 0) step = options.width / (dim == 2 ? 40 : 6);
   const Region region(snapshot);
   const bool kernels = options.method == "coarse_graining";
   // Inclined walls carry their branches on beyond the packing: the line goes as far.
-  const double range = kernels ? make_kernel(options.kernel, options.width)->range() : 0;
-  const double from = region.left() - 4 * range, to = region.right() + 4 * range;
-  const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
-  const double dx = (to - from) / n;
-  const MatrixXd line = line_points(from + dx / 2, to - dx / 2, n, y);
+  const double range = kernels ? make_kernel(options.kernel, options.width, dim)->range() : 0;
+  const Cut places = cut_through(region, y, range, step);
+  const MatrixXd& line = places.points;
   const Field field = average(snapshot, line, options);
-  const Eigen::VectorXd stress = field.find("sigma_yy")->value + field.find("kinetic_yy")->value;
+  const std::string vertical = dim == 2 ? "_yy" : "_zz";
+  const Eigen::VectorXd stress =
+      field.find("sigma" + vertical)->value + field.find("kinetic" + vertical)->value;
   CutForce cut;
   cut.height = y;
   cut.sharp = weight_above(snapshot, y);
   std::vector<bool> known;
-  for (Index p = 0; p < n; ++p) {
+  for (Index p = 0; p < line.rows(); ++p) {
     known.push_back(!std::isnan(stress[p]));
-    if (known.back()) cut.force -= stress[p] * dx;
+    if (known.back()) cut.force -= stress[p] * places.cell;
   }
   if (kernels) {
-    const auto kernel = make_kernel(options.kernel, options.width);
+    const auto kernel = make_kernel(options.kernel, options.width, dim);
     const auto share = [&](double height) { return kernel->beyond(y - height); };
     cut.weight = weight(
         snapshot, {options.extend_into_walls, region.floor(), 2 * range},
-        [&](const dem::Grain& grain) { return share(grain.position.y()); }, share);
+        [&](const dem::Grain& grain) { return share(grain.position[up]); }, share);
   } else {
-    // What the averaging counts as inside its RVEs, over what is inside.
-    options.quantities = {"volume_fraction"};
-    const auto solid = [&](const char* method) {
-      options.method = method;
-      const Field field_of = average(snapshot, line, options);
-      return (field_of.find("volume_fraction")->value.array().isNaN())
-          .select(0, field_of.find("volume_fraction")->value)
-          .sum();
-    };
-    double counted = 1;
-    if (given.method != "area_exact") {
-      const double inside = solid("area_exact");
-      if (inside > 0) counted = solid("particle_centre") / inside;
-    }
-    cut.weight = counted * weight_through_rve(snapshot, region, y, options, line, dx, known);
+    const double counted = counted_share(snapshot, line, options);
+    cut.weight = counted * (dim == 2 ? weight_through_rve(snapshot, region, y, options, line,
+                                                          places.cell, known)
+                                     : weight_through_ball(snapshot, region, y, options));
   }
   return cut;
 }
