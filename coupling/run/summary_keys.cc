@@ -376,6 +376,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"load.no_rearrangement", "-", "share of realizations without a gained or lost contact"},
       {"layer.depth", "m", "h of the models: mean over realizations"},
       {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
+      {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions"},
       {"layer.mean_diameter", "m", "of the moving grains"},
       {"average.width", "m", "w of the coarse-graining kernel"},
       {"average.rve_radius", "m", "of the particle-centre averaging"},
