@@ -87,7 +87,7 @@ void add_average(CLI::App& app, Action& action) {
     std::vector<std::string> snapshots;
     std::string output;
     PointsOptions where;
-    bool balance = false;
+    bool balance = false, end_at_walls = false;
     AverageRequest request;
   };
   auto given = std::make_shared<Given>();
@@ -118,6 +118,9 @@ void add_average(CLI::App& app, Action& action) {
       ->delimiter(',');
   command->add_option("--free-surface", options.free_surface,
                       "coarse_graining: open | normalised (docs/averaging.md)");
+  command->add_flag("--end-at-walls", given->end_at_walls,
+                    "coarse_graining: branches end at walls, whose forces are in traction_*, "
+                    "instead of going on into them");
   command->add_option("--least-grains", options.least_grains,
                       "fewer grains in the averaging volume: nan; default 3");
   command->add_flag("--balance", given->balance,
@@ -134,6 +137,7 @@ void add_average(CLI::App& app, Action& action) {
         throw std::invalid_argument(
             fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
       }
+      request.options.extend_into_walls = !given->end_at_walls;
       if (given->output.empty() && !given->balance) {
         throw std::invalid_argument("average: give -o FIELD.h5, or --balance, or both");
       }

@@ -36,7 +36,8 @@ struct CutForce {
 };
 
 /// Integrates the averaged field itself along the cut at height y with a midpoint rule of spacing
-/// `step` (0: width / 40, in space width / 6 and not more than 400,000 places). coarse_graining:
+/// `step` (0: width / 40, in space a ninth of a kernel's range or a sixth
+/// of an element's width, and not more than 400,000 places). coarse_graining:
 /// along the whole line, and `weight` is the weight smeared with the kernel, exact for packings in
 /// equilibrium. The RVE methods: between the packing's ends, over the points with a value, and
 /// `weight` is weight_above, where the contacts carry it through each height, averaged over the

@@ -211,11 +211,11 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
   AverageOptions options = given;
   options.quantities = {"sigma", "kinetic"};
   options.least_grains = 0;
-  if (step <= 0) step = options.width / (dim == 2 ? 40 : 6);
   const Region region(snapshot);
   const bool kernels = options.method == "coarse_graining";
   // Inclined walls carry their branches on beyond the packing: the line goes as far.
   const double range = kernels ? make_kernel(options.kernel, options.width, dim)->range() : 0;
+  if (step <= 0) step = dim == 2 ? options.width / 40 : kernels ? range / 9 : options.width / 6;
   const Cut places = cut_through(region, y, range, step);
   const MatrixXd& line = places.points;
   const Field field = average(snapshot, line, options);

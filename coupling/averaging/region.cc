@@ -28,8 +28,35 @@ bool touched(const dem::Snapshot& snapshot, std::size_t wall) {
                      [j](const dem::Contact& contact) { return contact.j == j; });
 }
 
+// Part of a ball beyond a plane at x from its centre.
+double cap_beyond(double w, double x) {
+  const double h = w - std::clamp(x, -w, w);
+  return pi * h * h * (3 * w - h) / 3;
+}
+
+// The ball in the box where its sides cut no more than caps that do not meet; nan otherwise.
+double ball_less_caps(double w, const Vector3d& low, const Vector3d& high) {
+  const double sides[6] = {-low.x(), high.x(), -low.y(), high.y(), -low.z(), high.z()};
+  double left = 4 * pi / 3 * w * w * w;
+  int cutting = 0;
+  bool centre_inside = true;
+  for (int a = 0; a < 6; ++a) {
+    if (sides[a] <= -w) return 0;
+    if (sides[a] >= w) continue;
+    ++cutting;
+    centre_inside = centre_inside && sides[a] >= 0;
+    left -= cap_beyond(w, sides[a]);
+    for (int b = 0; b < a / 2 * 2; ++b)
+      if (sides[b] < w && sides[a] * sides[a] + sides[b] * sides[b] < w * w)
+        return std::numeric_limits<double>::quiet_NaN();
+  }
+  return cutting <= 1 || centre_inside ? left : std::numeric_limits<double>::quiet_NaN();
+}
+
 double circle_in_box(double w, const Vector3d& low, const Vector3d& high, int dim) {
   if (dim == 2) return disk_in_box(w, low.head<2>(), high.head<2>());
+  const double simple = ball_less_caps(w, low, high);
+  if (!std::isnan(simple)) return simple;
   // Slices of the sphere, z = w sin(t): the area of a slice ends with the square of the distance
   // from the pole, and kinks where a side of the box first cuts a slice.
   std::vector<double> ends{std::max(-w, low.z()), std::min(w, high.z())};

@@ -62,6 +62,23 @@ TEST(AverageSpace, GridsCutsAndTables) {
     EXPECT_LT(f.find("sigma_zz")->value[12], -300);
     EXPECT_THAT(program("info " + (folder / "f.h5")).out, HasSubstr("3D (grid 5 x 4 x 6)"));
   }
+  // Walls: into them by default, or as a force density at the floor.
+  const std::string floor = folder.write("p.csv", "x,y,z\n0.03,0.03,0\n");
+  double into = 0;
+  for (const std::string walls : {"", " --end-at-walls"}) {
+    const Output out = program("average " + (folder / "s.h5") + " --frame packing --points " +
+                               floor + " -o " + (folder / "w.h5") + walls);
+    ASSERT_EQ(out.code, 0) << out.err;
+    const Field f = read_field(folder / "w.h5", "average");
+    if (walls.empty()) {
+      EXPECT_EQ(f.find("traction_z")->value[0], 0);
+      into = f.find("sigma_zz")->value[0];
+      EXPECT_LT(into, -200);
+    } else {
+      EXPECT_GT(f.find("traction_z")->value[0], 1e4);
+      EXPECT_GT(f.find("sigma_zz")->value[0], 0.9 * into);
+    }
+  }
   const Output usual = program(start + "-o " + (folder / "g.h5"));
   EXPECT_THAT(usual.out, HasSubstr("average: 20181 points"));
   const Output cuts = program(start + "--cuts 0,0.5 --grid 3x4 -o " + (folder / "c.csv"));
