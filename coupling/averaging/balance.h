@@ -41,8 +41,7 @@ struct CutForce {
 /// along the whole line, and `weight` is the weight smeared with the kernel, exact for packings in
 /// equilibrium. The RVE methods: between the packing's ends, over the points with a value, and
 /// `weight` is weight_above, where the contacts carry it through each height, averaged over the
-/// part of the RVE inside the packing; in space where along the cut it is carried does not count.
-/// Throws as average().
+/// part of the RVE inside the packing. Throws as average().
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& options,
                    double step = 0);
 

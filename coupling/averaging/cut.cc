@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "coupling/averaging/average.h"
@@ -130,26 +131,6 @@ double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, d
   return total;
 }
 
-// In space: weight_above averaged over the heights of the RVE inside the packing, by its section.
-double weight_through_ball(const dem::Snapshot& snapshot, const Region& region, double z,
-                           const AverageOptions& options) {
-  const Support& support = *find_support(options.kernel);
-  const double w = options.width, low = std::max(region.floor() - z, -w),
-               high = std::min(region.highest() - z, w);
-  if (!(low < high)) return 0;
-  const auto section = [&](double s) {
-    return support.half_y(w, 0) == support.half_y(w, w) ? 1 : std::max(0.0, w * w - s * s);
-  };
-  double carried = 0, all = 0;
-  constexpr int slices = 40;
-  for (int k = 0; k < slices; ++k) {
-    const double s = low + (high - low) * (k + 0.5) / slices;
-    carried += section(s) * weight_above(snapshot, z + s);
-    all += section(s);
-  }
-  return carried / all;
-}
-
 // What an averaging counts as inside its RVEs, over what is inside, along a cut.
 double counted_share(const dem::Snapshot& snapshot, const MatrixXd& cut, AverageOptions options) {
   if (options.method == "area_exact") return 1;
@@ -166,7 +147,9 @@ double counted_share(const dem::Snapshot& snapshot, const MatrixXd& cut, Average
 // Midpoints of cells of the horizontal cut, as far out as branches into walls go.
 struct Cut {
   MatrixXd points;
-  double cell = 0;  // m, in space m2
+  double cell = 0;                       // m, in space m2
+  Index columns = 0, rows = 0;           // in space: x fastest
+  double column_size = 0, row_size = 0;  // m
 };
 
 Cut cut_through(const Region& region, double height, double range, double step) {
@@ -190,8 +173,92 @@ Cut cut_through(const Region& region, double height, double range, double step) 
       (region.right() - region.left() + 8 * range) * (region.back() - region.front() + 8 * range);
   step = std::max(step, std::sqrt(area / most));
   const Side x = side(region.left(), region.right()), y = side(region.front(), region.back());
-  return {cut_points({x.first, y.first}, {x.last, y.last}, x.n, y.n, {height}), x.size * y.size};
+  return {cut_points({x.first, y.first}, {x.last, y.last}, x.n, y.n, {height}),
+          x.size * y.size,
+          x.n,
+          y.n,
+          x.size,
+          y.size};
 }
+
+// In space, as weight_through_rve: of the vertical force at every height within reach what the
+// elements of the cut see, each over its part inside the packing. A contact's force is where its
+// branch crosses the height; what weight_above has beyond them is spread as the packing above.
+class ElementsOfCut {
+ public:
+  ElementsOfCut(const Region& region, const AverageOptions& options, const Cut& cut,
+                const std::vector<bool>& known)
+      : support_(*find_support(options.kernel)),
+        width_(options.width),
+        cut_(cut),
+        inverse_(Eigen::VectorXd::Zero(cut.points.rows())) {
+    for (Index p = 0; p < cut.points.rows(); ++p)
+      if (known[static_cast<std::size_t>(p)])
+        inverse_[p] = cut.cell / region.measure(support_, width_, cut.points.row(p).transpose());
+  }
+
+  // Integral over the elements' middles of 1 / V, of those that hold this place.
+  double seen(const Eigen::Vector3d& at) const {
+    const auto range = [&](int axis, double size, Index n) {
+      const double middle = (at[axis] - cut_.points(0, axis)) / size, half = width_ / size;
+      const auto most = static_cast<double>(n - 1);
+      return std::pair{static_cast<Index>(std::clamp(std::ceil(middle - half), 0.0, most)),
+                       static_cast<Index>(std::clamp(std::floor(middle + half), 0.0, most))};
+    };
+    const auto [x0, x1] = range(0, cut_.column_size, cut_.columns);
+    const auto [y0, y1] = range(1, cut_.row_size, cut_.rows);
+    double sum = 0;
+    for (Index y = y0; y <= y1; ++y)
+      for (Index x = x0; x <= x1; ++x) {
+        const Index p = x + cut_.columns * y;
+        if (support_.distance(at - cut_.points.row(p).transpose()) < width_) sum += inverse_[p];
+      }
+    return sum;
+  }
+
+  double weight(const dem::Snapshot& snapshot, const Region& region, double z) const {
+    const double bottom = std::max(region.floor(), z - width_),
+                 top = std::min(region.highest(), z + width_);
+    if (!(top > bottom)) return 0;
+    constexpr Index slices = 24;
+    const double dz = (top - bottom) / slices, first = bottom + dz / 2;
+    Eigen::VectorXd crossing = Eigen::VectorXd::Zero(slices);
+    double total = 0;
+    const auto cross = [&](const dem::Vec3& a, const dem::Vec3& b, const dem::Vec3& f) {
+      const auto from = [&](double height) {
+        return static_cast<Index>(
+            std::clamp(std::ceil((height - first) / dz), 0.0, static_cast<double>(slices)));
+      };
+      const double down = a.z() > b.z() ? f.z() : -f.z();
+      for (Index k = from(std::min(a.z(), b.z())); k < from(std::max(a.z(), b.z())); ++k) {
+        const double height = first + static_cast<double>(k) * dz;
+        crossing[k] += down;
+        total += dz * down * seen(a + (height - a.z()) / (b.z() - a.z()) * (b - a));
+      }
+    };
+    for_each_branch(snapshot, {true, region.floor(), 0}, cross,
+                    [](const dem::Vec3&, const dem::Vec3&) {});
+    for (Index k = 0; k < slices; ++k) {
+      const double height = first + static_cast<double>(k) * dz;
+      double above = 0, seen_above = 0;
+      for (Index p = 0; p < cut_.points.rows(); ++p) {
+        const double x = cut_.points(p, 0), y = cut_.points(p, 1);
+        const double rest = std::max(0.0, region.surface(x, y) - height);
+        above += rest;
+        if (rest > 0) seen_above += rest * seen({x, y, height});
+      }
+      if (above > 0)
+        total += dz * (weight_above(snapshot, height) - crossing[k]) * seen_above / above;
+    }
+    return total;
+  }
+
+ private:
+  const Support& support_;
+  double width_;
+  const Cut& cut_;
+  Eigen::VectorXd inverse_;
+};
 
 }  // namespace
 
@@ -238,9 +305,10 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
         [&](const dem::Grain& grain) { return share(grain.position[up]); }, share);
   } else {
     const double counted = counted_share(snapshot, line, options);
-    cut.weight = counted * (dim == 2 ? weight_through_rve(snapshot, region, y, options, line,
-                                                          places.cell, known)
-                                     : weight_through_ball(snapshot, region, y, options));
+    cut.weight =
+        counted * (dim == 2
+                       ? weight_through_rve(snapshot, region, y, options, line, places.cell, known)
+                       : ElementsOfCut(region, options, places, known).weight(snapshot, region, y));
   }
   return cut;
 }

@@ -248,6 +248,15 @@ TEST(CompareSpace, ModelsAreSeenAtTheSamePlaces) {
     EXPECT_NEAR(summary.at("compare.boussinesq.rel_l2").get<double>(), 0.1 / 1.1, 1e-3);
     EXPECT_NEAR(summary.at("layer.F_over_h2").get<double>(), 300, 1e-9);
     EXPECT_THAT(testing::read_text((folder / "c") + "/profiles.csv"), HasSubstr("F/h^2"));
+    // A layer takes the dimension from the field; a deep one is the half space.
+    if (rings) {
+      const Output deep = program("compare " + (folder / "f.h5") +
+                                  " --model boussinesq --model layer:h=100 -o " + (folder / "b"));
+      ASSERT_EQ(deep.code, 0) << deep.err << deep.out;
+      const auto two = nlohmann::json::parse(testing::read_text((folder / "b") + "/summary.json"));
+      EXPECT_NEAR(two.at("compare.layer.rel_l2").get<double>(),
+                  two.at("compare.boussinesq.rel_l2").get<double>(), 1e-4);
+    }
     expect_refusal(
         program("compare " + (folder / "f.h5") + " --model flamant -o " + (folder / "d")),
         "model flamant: is 2D, the field in");
