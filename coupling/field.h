@@ -18,11 +18,15 @@ struct Column {
 
 /// The components of stress in the plane, in the order of tables.
 inline const std::vector<std::string> kPlaneStress{"sigma_xx", "sigma_yy", "sigma_xy"};
+/// The same in space, in the order of the models.
+inline const std::vector<std::string> kSpaceStress{"sigma_xx", "sigma_yy", "sigma_zz",
+                                                   "sigma_yz", "sigma_xz", "sigma_xy"};
 
 /// Points with columns. A regular grid also knows its shape, so that it can be drawn as a map.
 struct Field {
   Eigen::MatrixXd points;  ///< n x dim, m
-  int nx = 0, ny = 0;      ///< grid: points[ix + nx * iy]; 0 = scattered points
+  /// Grid: points[ix + nx * (iy + ny * iz)]; 0 = scattered points. nz: 0 in the plane.
+  int nx = 0, ny = 0, nz = 0;
   int realizations = 1;
   std::vector<Column> columns;
   std::map<std::string, std::string> attributes;  ///< what, kernel, width, units, versions

@@ -11,6 +11,13 @@
 // derivative at s = 0:
 //   g_r = a (sinh s - s cosh s) + b s sinh s,
 // with a, b of order u exp(-2u): the integrand decays like exp(-k (2h - d)), also under the load.
+//
+// Point load in space: the same plane waves from all directions of the plane, with the stress
+// nu (g'' - g) along their crests. Averaged over the directions, J0 and J1 at k r,
+//   sigma_zz = -(F/2 pi) Int k g J0 dk,   sigma_rd = (F/2 pi) Int k g' J1 dk,
+//   sigma_rr = (F/2 pi) Int k [g'' (J0 - J1/kr) + nu (g'' - g) J1/kr] dk,
+//   sigma_tt = (F/2 pi) Int k [g'' J1/kr + nu (g'' - g) (J0 - J1/kr)] dk.
+// There (1+s) exp(-s) is Boussinesq's half space.
 #include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -52,15 +59,20 @@ struct Basis {
 
 class Layer : public Model {
  public:
-  Layer(double load, double depth, double poisson, bool rough)
-      : load_(load), h_(depth), nu_(poisson), rough_(rough) {}
+  Layer(double load, double depth, double poisson, bool rough, int dim)
+      : load_(load), h_(depth), nu_(poisson), rough_(rough), dim_(dim) {}
 
   Stresses stress(const Points& points) override {
-    Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    Stresses out = Stresses::Constant(points.rows(), dim_ == 2 ? 3 : 6,
+                                      std::numeric_limits<double>::quiet_NaN());
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
-      const double x = points(i, 0), y = points(i, 1);
-      if (!(y < 0) || !(y >= -h_ * (1 + kOnBase)) || !std::isfinite(x)) continue;
-      out.row(i) = at(x, std::max(y, -h_)).transpose();
+      const double up = points(i, dim_ - 1);
+      if (!(up < 0) || !(up >= -h_ * (1 + kOnBase)) || !points.row(i).allFinite()) continue;
+      const double inside = std::max(up, -h_);
+      if (dim_ == 2)
+        out.row(i) = at(points(i, 0), inside).transpose();
+      else
+        out.row(i) = in_space(points(i, 0), points(i, 1), inside).transpose();
     }
     return out;
   }
@@ -84,20 +96,19 @@ class Layer : public Model {
     return m.inverse() * rhs;
   }
 
-  Eigen::Vector3d at(double x, double y) const {
-    const double t = -y / h_, phase = x / h_;
+  // Calls wave(u, weight, g'', g, g') of g_r at the nodes of a quadrature over u: at the depth t
+  // (of h), where phases up to u * `phase` are resolved.
+  template <class Wave>
+  void over_waves(double t, double phase, Wave&& wave) const {
     const double end = kDecay / (2 - t);
     const double width = std::min(kPanelWidth, kPanelPhase / std::max(std::abs(phase), 1e-3));
     const int panels = static_cast<int>(std::ceil(end / width));
     const double half = 0.5 * end / panels;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // g'' cos, g cos, g' sin
     const auto add = [&](double u, double weight) {
       const Eigen::Vector2d ab = coefficients(u);
       const Basis f(u * t);
-      const double scale = weight * std::exp(-u * (2 - t));
-      const double c = scale * std::cos(u * phase), s = scale * std::sin(u * phase);
-      sum += Eigen::Vector3d(c * (ab(0) * f.p2 + ab(1) * f.q2), c * (ab(0) * f.p0 + ab(1) * f.q0),
-                             s * (ab(0) * f.p1 + ab(1) * f.q1));
+      wave(u, weight * std::exp(-u * (2 - t)), ab(0) * f.p2 + ab(1) * f.q2,
+           ab(0) * f.p0 + ab(1) * f.q0, ab(0) * f.p1 + ab(1) * f.q1);
     };
     for (int panel = 0; panel < panels; ++panel) {
       const double middle = (2 * panel + 1) * half;
@@ -106,6 +117,36 @@ class Layer : public Model {
         add(middle - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
       }
     }
+  }
+
+  Eigen::Matrix<double, 6, 1> in_space(double x, double y, double z) const {
+    const double r = std::hypot(x, y), phase = r / h_;
+    double rr = 0, tt = 0, zz = 0, rz = 0;
+    over_waves(-z / h_, phase, [&](double u, double weight, double g2, double g0, double g1) {
+      const double at = u * phase, j0 = ::j0(at), j1 = ::j1(at);
+      const double beside = at > 1e-4 ? j1 / at : 0.5 - at * at / 16, ahead = j0 - beside;
+      const double crest = nu_ * (g2 - g0), k = weight * u;
+      rr += k * (g2 * ahead + crest * beside);
+      tt += k * (g2 * beside + crest * ahead);
+      zz -= k * g0 * j0;
+      rz -= k * g1 * j1;  // changes sign with the axis that points up
+    });
+    const double scale = load_ / (2 * M_PI * h_ * h_);
+    const double c = r > 0 ? x / r : 1, s = r > 0 ? y / r : 0;
+    Eigen::Matrix<double, 6, 1> out;
+    out << rr * c * c + tt * s * s, rr * s * s + tt * c * c, zz, rz * s, rz * c, (rr - tt) * c * s;
+    const auto half_space = boussinesq_stress(load_, nu_, x, y, z);
+    for (int k = 0; k < 6; ++k) out(k) = scale * out(k) + half_space[static_cast<std::size_t>(k)];
+    return out;
+  }
+
+  Eigen::Vector3d at(double x, double y) const {
+    const double phase = x / h_;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // g'' cos, g cos, g' sin
+    over_waves(-y / h_, phase, [&](double u, double weight, double g2, double g0, double g1) {
+      const double c = weight * std::cos(u * phase), s = weight * std::sin(u * phase);
+      sum += Eigen::Vector3d(c * g2, c * g0, s * g1);
+    });
     sum *= load_ / (M_PI * h_);
     const auto half_plane = flamant_stress(load_, x, y);
     // sigma_xd changes sign with the axis that points up.
@@ -114,6 +155,7 @@ class Layer : public Model {
 
   double load_, h_, nu_;
   bool rough_;
+  int dim_;
 };
 
 }  // namespace
@@ -121,16 +163,17 @@ class Layer : public Model {
 ModelInfo layer_info() {
   return {
       "layer",
-      "elastic layer on a rigid base under a line load",
-      2,
+      "elastic layer on a rigid base under a line load, in space a point load",
+      0,
       {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
        number("nu", "-", "Poisson's ratio; sigma_yy over a smooth base does not depend on it",
               "elasticity, plane strain", 0.3, 0, 0.5),
-       choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
+       choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"}),
+       choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"})},
       [](const Settings& s) -> std::unique_ptr<Model> {
         return std::make_unique<Layer>(number_of(s, "F"), number_of(s, "h"), number_of(s, "nu"),
-                                       s.at("base") == "rough");
+                                       s.at("base") == "rough", s.at("dim") == "3" ? 3 : 2);
       }};
 }
 

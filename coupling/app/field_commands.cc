@@ -14,6 +14,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/compare_field.h"
+#include "coupling/output/field_csv.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
@@ -63,6 +64,8 @@ void print_gaps(const Gaps& gaps, const Field& field) {
   if (!text.empty()) note("{}", text);
 }
 
+bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }
+
 // Every averaging on each snapshot, side by side.
 void print_balance(const std::vector<SnapshotName>& names, AverageOptions options, double width) {
   for (const auto& name : names) {
@@ -84,7 +87,7 @@ void add_average(CLI::App& app, Action& action) {
     std::vector<std::string> snapshots;
     std::string output;
     PointsOptions where;
-    bool balance = false;
+    bool balance = false, end_at_walls = false;
     AverageRequest request;
   };
   auto given = std::make_shared<Given>();
@@ -92,7 +95,8 @@ void add_average(CLI::App& app, Action& action) {
   AverageOptions& options = wanted.options;
   command->add_option("snapshots", given->snapshots, "FILE.h5 (all in it) or FILE.h5:group")
       ->required();
-  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it");
+  add_output(*command, given->output,
+             "FIELD.h5; FIELD.xdmf comes beside it; or FIELD.csv, a table");
   command->add_flag("--response", wanted.response, "loaded - unloaded of the snapshots so named");
   command->add_option("--method", options.method, "coarse_graining | particle_centre | area_exact");
   auto* kernel = command->add_option(
@@ -101,6 +105,11 @@ void add_average(CLI::App& app, Action& action) {
   auto* width = command->add_option(
       "--width", options.width, "m; default one mean diameter (particle_centre, area_exact: 2.5)");
   given->where.add_to(*command);
+  command->add_flag("--rings", given->where.rings,
+                    "3D: averages over rings about the frame's vertical axis; points are r,z");
+  command->add_option("--axis", wanted.axis, "X,Y of the rings' axis in frame packing, m")
+      ->delimiter(',')
+      ->expected(2);
   command
       ->add_option("--cuts", wanted.cuts,
                    "horizontal cuts instead of a grid: shares of the height, 0 floor, 1 surface")
@@ -109,6 +118,9 @@ void add_average(CLI::App& app, Action& action) {
       ->delimiter(',');
   command->add_option("--free-surface", options.free_surface,
                       "coarse_graining: open | normalised (docs/averaging.md)");
+  command->add_flag("--end-at-walls", given->end_at_walls,
+                    "coarse_graining: branches end at walls, whose forces are in traction_*, "
+                    "instead of going on into them");
   command->add_option("--least-grains", options.least_grains,
                       "fewer grains in the averaging volume: nan; default 3");
   command->add_flag("--balance", given->balance,
@@ -125,6 +137,7 @@ void add_average(CLI::App& app, Action& action) {
         throw std::invalid_argument(
             fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
       }
+      request.options.extend_into_walls = !given->end_at_walls;
       if (given->output.empty() && !given->balance) {
         throw std::invalid_argument("average: give -o FIELD.h5, or --balance, or both");
       }
@@ -141,6 +154,8 @@ void add_average(CLI::App& app, Action& action) {
       request.frame = given->where.frame;
       request.nx = given->where.columns;
       request.ny = given->where.rows;
+      request.nz = given->where.layers;
+      request.rings = given->where.rings;
       if (given->balance) {
         print_balance(request.snapshots, request.options, request.options.width);
       }
@@ -149,7 +164,10 @@ void add_average(CLI::App& app, Action& action) {
       std::vector<std::string> warnings;
       const NamedFields fields = average_files(request, &gaps, &warnings);
       for (const std::string& warning : warnings) note("warning: {}", warning);
-      write_fields(given->output, fields);
+      if (is_csv(given->output))
+        write_field_csv(given->output, fields.front().second);
+      else
+        write_fields(given->output, fields);
       for (const auto& [name, field] : fields) {
         say("{}: {} points, {} realization{}\n", name, field.points.rows(), field.realizations,
             field.realizations == 1 ? "" : "s");
@@ -174,9 +192,11 @@ void add_compare(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command
       ->add_option("--components", request->lines.components,
-                   "of sigma_xx, sigma_yy, sigma_xy; default sigma_yy")
+                   "of sigma_xx, sigma_yy, sigma_xy; default sigma_yy; 3D also sigma_zz (default), "
+                   "sigma_yz, sigma_xz; of rings sigma_rr, sigma_tt, sigma_zz, sigma_rz")
       ->delimiter(',')
-      ->check(CLI::IsMember({"sigma_xx", "sigma_yy", "sigma_xy"}));
+      ->check(CLI::IsMember({"sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "sigma_yz", "sigma_xz",
+                             "sigma_rr", "sigma_tt", "sigma_rz"}));
   command
       ->add_option("--heights", request->lines.heights,
                    "rows of a map: shares of the height; default 0.1,0.25,0.4 (layers "
@@ -184,9 +204,9 @@ void add_compare(CLI::App& app, Action& action) {
       ->delimiter(',');
   command
       ->add_option("--origin", request->lines.origin,
-                   "X,Y of the models' origin in a field of frame packing, m")
+                   "X,Y (3D: X,Y,Z) of the models' origin in a field of frame packing, m")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2, 3);
   add_output(*command, request->folder, "folder; default results/compare-FIELD");
   command->callback([=, &action] {
     action = [=] {

@@ -42,8 +42,10 @@ void show_snapshot(const std::string& file, const std::string& group) {
 void show_field(const std::string& file, const std::string& name) {
   const Field f = read_field(file, name);
   say("field {}: {} points in {}D{}, {} realization{}\n", name, f.points.rows(), f.points.cols(),
-      f.nx > 0 ? fmt::format(" (grid {} x {})", f.nx, f.ny) : "", f.realizations,
-      f.realizations == 1 ? "" : "s");
+      f.nx == 0  ? ""
+      : f.nz > 0 ? fmt::format(" (grid {} x {} x {})", f.nx, f.ny, f.nz)
+                 : fmt::format(" (grid {} x {})", f.nx, f.ny),
+      f.realizations, f.realizations == 1 ? "" : "s");
   for (const auto& column : f.columns) say("  {} ({})\n", column.name, column.unit);
   for (const auto& [key, value] : f.attributes) say("  {}: {}\n", key, value);
 }

@@ -2,10 +2,13 @@
 #include "coupling/app/points_csv.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
 // The optimizer warns of the package's deliberate cutting of long file names in its own messages.
@@ -35,37 +38,29 @@ double number(const char* text, const char* column, const std::string& file, uns
   return *value;
 }
 
+// The named columns.
 template <unsigned dim>
-Eigen::MatrixXd read(const std::string& file) {
-  const std::string content = read_input(file, "a CSV file");
+Eigen::MatrixXd read(const std::string& file, const std::array<const char*, dim>& names) {
+  const std::string content = read_input(file, "a CSV file"),
+                    header = fmt::format("{}", fmt::join(names, ","));
   std::vector<double> values;
   unsigned line = 0;
   try {
     Reader<dim> in(file, content.data(), content.data() + content.size());
-    const char *x = nullptr, *y = nullptr, *z = nullptr;
-    const auto take = [&](const char* text, const char* column) {
-      values.push_back(number(text, column, file, in.get_file_line()));
+    std::array<const char*, dim> texts{};
+    std::apply([&](auto... name) { in.read_header(io::ignore_extra_column, name...); }, names);
+    const auto next = [&] {
+      line = in.get_file_line() + 1;
+      return std::apply([&](auto&... text) { return in.read_row(text...); }, texts);
     };
-    if constexpr (dim == 2) {
-      in.read_header(io::ignore_extra_column, "x", "y");
-      while (line = in.get_file_line() + 1, in.read_row(x, y)) {
-        take(x, "x");
-        take(y, "y");
-      }
-    } else {
-      in.read_header(io::ignore_extra_column, "x", "y", "z");
-      while (line = in.get_file_line() + 1, in.read_row(x, y, z)) {
-        take(x, "x");
-        take(y, "y");
-        take(z, "z");
-      }
-    }
+    while (next())
+      for (unsigned k = 0; k < dim; ++k)
+        values.push_back(number(texts[k], names[k], file, in.get_file_line()));
   } catch (const io::error::missing_column_in_header& e) {
-    throw std::invalid_argument(fmt::format("{}:1: no column \"{}\", expected the header {}", file,
-                                            e.column_name, dim == 2 ? "x,y" : "x,y,z"));
-  } catch (const io::error::header_missing&) {
     throw std::invalid_argument(
-        fmt::format("{}: is empty, expected the header {}", file, dim == 2 ? "x,y" : "x,y,z"));
+        fmt::format("{}:1: no column \"{}\", expected the header {}", file, e.column_name, header));
+  } catch (const io::error::header_missing&) {
+    throw std::invalid_argument(fmt::format("{}: is empty, expected the header {}", file, header));
   } catch (const io::error::too_few_columns&) {
     throw std::invalid_argument(fmt::format("{}:{}: too few columns", file, line));
   } catch (const io::error::too_many_columns&) {
@@ -81,8 +76,10 @@ Eigen::MatrixXd read(const std::string& file) {
 }  // namespace
 
 Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
-  return dim == 2 ? read<2>(file) : read<3>(file);
+  return dim == 2 ? read<2>(file, {"x", "y"}) : read<3>(file, {"x", "y", "z"});
 }
+
+Eigen::MatrixXd read_rings_csv(const std::string& file) { return read<2>(file, {"r", "z"}); }
 
 std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
                          const std::vector<continuum::Quantity>& quantities) {

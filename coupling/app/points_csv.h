@@ -14,6 +14,9 @@ namespace grainfield::coupling {
 /// too long, a value that is no finite number, or no points at all.
 Eigen::MatrixXd read_points_csv(const std::string& file, int dim);
 
+/// The same of rings: columns r,z, radius and height; n x 2. Throws likewise.
+Eigen::MatrixXd read_rings_csv(const std::string& file);
+
 /// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components), then the quantities' names, with all
 /// digits; nan outside the model.
 std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,

@@ -17,8 +17,9 @@ namespace {
 // Points of a grid; and on how many points and snapshots a field may be averaged, each value some
 // hundred bytes.
 constexpr double kMostPoints = 1e6, kMostNumbers = 1e7;
+constexpr double kUsualPoints = 81 * 31;  // where neither points nor a grid are given
 
-void parse_grid(const std::string& text, int& columns, int& rows) {
+void parse_grid(const std::string& text, int& columns, int& rows, int& layers) {
   const auto whole = [](std::string_view part, int& number) {
     // Too many for an int are many.
     const bool digits = part.find_first_not_of("0123456789") == std::string_view::npos;
@@ -28,16 +29,20 @@ void parse_grid(const std::string& text, int& columns, int& rows) {
                  : 0;
     return number >= 2;
   };
-  const std::size_t x = text.find('x');
-  if (x == std::string::npos || !whole(std::string_view(text).substr(0, x), columns) ||
-      !whole(std::string_view(text).substr(x + 1), rows)) {
+  const std::string_view all = text;
+  const std::size_t x = all.find('x'), second = x == all.npos ? x : all.find('x', x + 1);
+  const bool three = second != all.npos;
+  if (x == all.npos || !whole(all.substr(0, x), columns) ||
+      !whole(all.substr(x + 1, three ? second - x - 1 : all.npos), rows) ||
+      (three && !whole(all.substr(second + 1), layers))) {
     throw std::invalid_argument(
-        fmt::format("--grid: found \"{}\", expected COLUMNSxROWS, both 2 or more", text));
+        fmt::format("--grid: found \"{}\", expected COLUMNSxROWS, both 2 or more{}", text,
+                    three ? ", or COLUMNSxROWSxLAYERS" : ""));
   }
-  if (static_cast<double>(columns) * rows > kMostPoints) {
+  const double points = static_cast<double>(columns) * rows * std::max(layers, 1);
+  if (points > kMostPoints) {
     throw std::invalid_argument(fmt::format("--grid: found {}, {:.3g} points, allowed: up to {:g}",
-                                            text, static_cast<double>(columns) * rows,
-                                            kMostPoints));
+                                            text, points, kMostPoints));
   }
 }
 
@@ -46,20 +51,23 @@ void parse_grid(const std::string& text, int& columns, int& rows) {
 void PointsOptions::add_to(CLI::App& command) {
   command.add_option("--frame", frame,
                      "layer: load at 0,0, surface y = 0; heap: apex at 0,0, lengths over its "
-                     "height; packing: as it is");
+                     "height; packing: as it is; in 3D z is up");
   command.add_option("--points", points, "CSV with columns x,y (3D: x,y,z) in the frame");
-  command.add_option("--grid", grid, "COLUMNSxROWS over the packing; default 81x31");
+  command.add_option("--grid", grid,
+                     "COLUMNSxROWS over the packing; default 81x31; 3D: COLUMNSxROWSxLAYERS");
 }
 
 Eigen::MatrixXd PointsOptions::read(const std::vector<SnapshotName>& snapshots) {
-  if (!grid.empty()) parse_grid(grid, columns, rows);
+  if (!grid.empty()) parse_grid(grid, columns, rows, layers);
   Eigen::MatrixXd out;
   if (!points.empty()) {
     const SnapshotName& first = snapshots.front();
-    out = read_points_csv(points, dem::read_snapshot(first.file, first.group).dim);
+    out = rings ? read_rings_csv(points)
+                : read_points_csv(points, dem::read_snapshot(first.file, first.group).dim);
   }
-  const double places =
-      points.empty() ? static_cast<double>(columns) * rows : static_cast<double>(out.rows());
+  const double places = !points.empty() ? static_cast<double>(out.rows())
+                        : grid.empty()  ? kUsualPoints
+                                        : static_cast<double>(columns) * rows * std::max(layers, 1);
   const auto many = static_cast<double>(snapshots.size());
   if (places * many > kMostNumbers) {
     throw std::invalid_argument(

@@ -10,7 +10,8 @@ namespace grainfield::coupling {
 
 struct PointsOptions {
   std::string frame = "layer", points, grid;
-  int columns = 81, rows = 31;
+  int columns = 0, rows = 0, layers = 0;  ///< 0 where --grid does not say
+  bool rings = false;                     ///< points are radius and height
 
   void add_to(CLI::App& command);
   /// Reads --grid, and the file of --points if one is given (else no rows), with the axes of the

@@ -69,6 +69,7 @@ void add_strain(CLI::App& app, Action& action) {
       request.frame = given->where.frame;
       request.nx = given->where.columns;
       request.ny = given->where.rows;
+      request.nz = given->where.layers;
       const StrainOutcome outcome = strain_files(request);
       write_fields(given->output, {{"strain", outcome.field}});
       say("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),

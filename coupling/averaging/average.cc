@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -34,10 +35,6 @@ void check(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
         fmt::format("points have {} coordinates; averaging needs {}", points.cols(), snapshot.dim));
   if (!points.allFinite()) refuse("points hold a value that is not finite");
   find_method(options);
-  if (snapshot.dim == 3 && options.method == "area_exact")
-    refuse("the snapshot is 3D; area_exact clips areas and needs a 2D one");
-  if (snapshot.dim == 3 && options.free_surface == "normalised")
-    refuse("the snapshot is 3D; a normalised free surface needs a 2D one");
 }
 
 /// Grains with their facts, and where they are.
@@ -54,43 +51,56 @@ double reach_of(const AverageOptions& options, int dim) {
   return make_kernel(options.kernel, options.width, dim)->range();
 }
 
-Field average_in(const Packing& packing, const Region& region, const Eigen::MatrixXd& points,
-                 const AverageOptions& options, Gaps* gaps) {
-  const dem::Snapshot& snapshot = packing.snapshot;
+// Points whose sums are held at once: some 30 MB.
+constexpr Eigen::Index kBlock = 1 << 16;
+
+// The values at the points of one block, which begins at `start` of the field.
+void average_block(const Packing& packing, const Region& region, const Eigen::MatrixXd& points,
+                   const AverageOptions& options, const Layout& layout, Eigen::Index start,
+                   Field& field, Gaps& found) {
   const Method& method = find_method(options);
-  const Layout layout(snapshot.dim, options.quantities);
-  const RowMatrix carried = layout.carried_by(packing.facts);
-  const Job job{snapshot, region, points, options, layout, carried};
+  const Job job{packing.snapshot, region, points, options, layout, packing.facts};
   const Eigen::Index n = points.rows();
   Sums sums{RowMatrix::Zero(n, layout.size()), std::vector<char>(static_cast<std::size_t>(n), 0)};
   // Every point belongs to one thread.
   in_parts(n, options.threads,
            [&](Eigen::Index first, Eigen::Index last) { method.add(job, first, last, sums); });
-
   std::vector<char> empty = sums.outside;
-  Gaps found;
-  found.points = n;
-  found.least_grains = options.least_grains;
   for (Eigen::Index p = 0; p < n; ++p) {
     const double grains = sums.rows(p, layout.count());
     if (empty[static_cast<std::size_t>(p)]) {
-      found.outside.emplace(p, 1);
+      found.outside.emplace(start + p, 1);
     } else if (grains < options.least_grains) {
       empty[static_cast<std::size_t>(p)] = 1;
-      found.few_grains.emplace(p, grains);
+      found.few_grains.emplace(start + p, grains);
     }
   }
-  if (gaps) gaps->add(found);
-
-  Field field;
-  field.points = points;
-  for (const Layout::Component& component : layout.components()) {
-    Eigen::VectorXd& value = field.add(component.column, component.unit).value;
+  for (std::size_t c = 0; c < layout.components().size(); ++c) {
+    const Layout::Component& component = layout.components()[c];
+    Eigen::VectorXd& value = field.columns[c].value;
     const bool count = component.column == "grains";
     for (Eigen::Index p = 0; p < n; ++p)
       if (count || !empty[static_cast<std::size_t>(p)])
-        value[p] = layout.value(component, sums.rows.row(p).data());
+        value[start + p] = layout.value(component, sums.rows.row(p).data());
   }
+}
+
+Field average_in(const Packing& packing, const Region& region, const Eigen::MatrixXd& points,
+                 const AverageOptions& options, Gaps* gaps) {
+  const Layout layout(packing.snapshot.dim, options.quantities);
+  Field field;
+  field.points = points;
+  for (const Layout::Component& component : layout.components())
+    field.add(component.column, component.unit);
+  Gaps found;
+  found.points = points.rows();
+  found.least_grains = options.least_grains;
+  for (Eigen::Index start = 0; start < points.rows(); start += kBlock) {
+    const Eigen::Index n = std::min(kBlock, points.rows() - start);
+    average_block(packing, region, points.middleRows(start, n), options, layout, start, field,
+                  found);
+  }
+  if (gaps) gaps->add(found);
   field.attributes = {{"method", options.method},
                       {"kernel", options.kernel},
                       {"width", fmt::format("{} m", options.width)},

@@ -1,11 +1,13 @@
 #include "coupling/averaging/balance.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <stdexcept>
 
 #include "coupling/averaging/average.h"
+#include "coupling/averaging/extent.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/region.h"
 #include "coupling/averaging/weights.h"
@@ -38,6 +40,48 @@ std::string component(const char* name, int a) { return fmt::format("{}_{}", nam
 // Keeps the larger of two errors; an undefined one is the worst.
 void worse(double& worst, double error) {
   if (std::isnan(error) || std::abs(error) > std::abs(worst)) worst = error;
+}
+
+// Places over a packing where an averaging is asked.
+struct Places {
+  MatrixXd base, inside, surface;
+};
+
+// Per column over the plane that is at least four diameters high: half a diameter above the floor
+// and below the surface, and nine heights between.
+Places places_over(const MatrixXd& columns, const Region& region, double diameter) {
+  const Index dim = columns.cols() + 1, n = columns.rows();
+  Places out{MatrixXd(n, dim), MatrixXd(9 * n, dim), MatrixXd(n, dim)};
+  Index high = 0, rows = 0;
+  for (Index k = 0; k < n; ++k) {
+    const double top =
+        dim == 2 ? region.surface(columns(k, 0)) : region.surface(columns(k, 0), columns(k, 1));
+    const double height = top - region.floor();
+    if (height < 4 * diameter) continue;
+    out.base.row(high) << columns.row(k), region.floor() + diameter / 2;
+    out.surface.row(high++) << columns.row(k), top - diameter / 2;
+    for (int j = 0; j < 9; ++j)
+      out.inside.row(rows++) << columns.row(k),
+          region.floor() + diameter + (height - 2 * diameter) * (j + 0.5) / 9;
+  }
+  out.base.conservativeResize(high, dim);
+  out.surface.conservativeResize(high, dim);
+  out.inside.conservativeResize(rows, dim);
+  return out;
+}
+
+// In the plane 41 columns a diameter off the sides; in space 9 x 9 from side to side.
+Places places_over(const Region& region, double diameter) {
+  if (region.dim() == 2) {
+    const MatrixXd line =
+        line_points(region.left() + diameter, region.right() - diameter, 41, 0).leftCols(1);
+    return places_over(line, region, diameter);
+  }
+  const double half_x = (region.right() - region.left()) / 18,
+               half_y = (region.back() - region.front()) / 18;
+  return places_over(grid_points(region.left() + half_x, region.right() - half_x, 9,
+                                 region.front() + half_y, region.back() - half_y, 9),
+                     region, diameter);
 }
 
 }  // namespace
@@ -96,28 +140,17 @@ BalanceResidual balance_residual(const dem::Snapshot& snapshot, const MatrixXd& 
 
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options) {
   const double diameter = mean_diameter(snapshot), width = options.width;
-  if (!(snapshot.gravity.y() < 0))
+  const int up = up_axis(snapshot.dim);
+  if (!(snapshot.gravity[up] < 0))
     throw std::invalid_argument(fmt::format(
-        "the packing's gravity is {:g} {:g} m/s2; what the averagings carry is compared with its "
-        "weight along -y",
-        snapshot.gravity.x(), snapshot.gravity.y()));
+        "the packing's gravity is {:g} m/s2; what the averagings carry is compared with its "
+        "weight along -{}",
+        fmt::join(snapshot.gravity.data(), snapshot.gravity.data() + snapshot.dim, " "),
+        "xyz"[up]));
   const Region region(snapshot);
   const LayerFrame frame = layer_frame(snapshot);
-  // Points over the packing, a third of a diameter apart near its edges' heights.
-  constexpr int columns = 41;
-  const double low = region.left() + diameter, high = region.right() - diameter;
-  MatrixXd base = line_points(low, high, columns, 0), surface = base;
-  MatrixXd inside(columns * 9, 2);
-  Index rows = 0, tops = 0, bottoms = 0;
-  for (Index k = 0; k < columns; ++k) {
-    const double x = base(k, 0), height = region.surface(x) - region.floor();
-    if (height < 4 * diameter) continue;
-    base.row(bottoms++) << x, region.floor() + diameter / 2;
-    surface.row(tops++) << x, region.surface(x) - diameter / 2;
-    for (int j = 0; j < 9; ++j)
-      inside.row(rows++) << x, region.floor() + diameter + (height - 2 * diameter) * (j + 0.5) / 9;
-  }
-  if (rows == 0)
+  const Places places = places_over(region, diameter);
+  if (places.inside.rows() == 0)
     throw std::invalid_argument(
         "the packing is nowhere four mean diameters high; too low to "
         "compare averagings on");
@@ -136,9 +169,9 @@ std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOpti
       const bool kernels = method.name == "coarse_graining";
       const double step = kernels ? 0 : options.width / 4;
       const int order = kernels ? 4 : 2;
-      row.base = balance_residual(snapshot, base.topRows(bottoms), options, step, order);
-      row.inside = balance_residual(snapshot, inside.topRows(rows), options, step, order);
-      row.surface = balance_residual(snapshot, surface.topRows(tops), options, step, order);
+      row.base = balance_residual(snapshot, places.base, options, step, order);
+      row.inside = balance_residual(snapshot, places.inside, options, step, order);
+      row.surface = balance_residual(snapshot, places.surface, options, step, order);
       for (int k = 0; k < 9; ++k) {
         const double share = 0.1 * k;
         const CutForce cut =

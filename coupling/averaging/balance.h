@@ -25,10 +25,10 @@ struct BalanceResidual {
 BalanceResidual balance_residual(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
                                  const AverageOptions& options, double step = 0, int order = 4);
 
-/// Vertical force through one horizontal cut, N, pushing down.
+/// Vertical force through one horizontal cut, N, pushing down. Vertical is y, in space z.
 struct CutForce {
   double height = 0;  ///< of the cut, m
-  double force = 0;   ///< - integral of (sigma_yy + kinetic_yy) along the cut
+  double force = 0;   ///< - integral of (sigma_yy + kinetic_yy) along (over) the cut
   double weight = 0;  ///< the weight above, and what walls and load take or add above, as the
                       ///< averaging sees it: smeared with the same weight over the height
   double sharp = 0;   ///< weight_above(height)
@@ -36,17 +36,18 @@ struct CutForce {
 };
 
 /// Integrates the averaged field itself along the cut at height y with a midpoint rule of spacing
-/// `step` (0: width / 40). coarse_graining: along the whole line, and `weight` is the weight
-/// smeared with the kernel, exact for packings in equilibrium. The RVE methods: between the
-/// packing's ends, over the points with a value, and `weight` is weight_above, where the contacts
-/// carry it through each height, averaged over the part of the RVE inside the packing. 2D. Throws
-/// as average().
+/// `step` (0: width / 40, in space a ninth of a kernel's range or a sixth
+/// of an element's width, and not more than 400,000 places). coarse_graining:
+/// along the whole line, and `weight` is the weight smeared with the kernel, exact for packings in
+/// equilibrium. The RVE methods: between the packing's ends, over the points with a value, and
+/// `weight` is weight_above, where the contacts carry it through each height, averaged over the
+/// part of the RVE inside the packing. Throws as average().
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& options,
                    double step = 0);
 
 /// Weight of the (parts of) free grains above y, less the vertical force that walls give them above
-/// y, plus the applied force if its grain's centre is above; N (2D). Fixed grains act at the
-/// floor's mean height.
+/// y, plus the applied force if its grain's centre is above; N. Fixed grains act at the floor's
+/// mean height.
 double weight_above(const dem::Snapshot& snapshot, double y);
 
 /// One line of the table that puts the averagings side by side.
@@ -63,7 +64,8 @@ struct BalanceRow {
 /// walls would differ only in where the traction is: `options` decides). Widths: `options.width`
 /// mean diameters for the kernels' w, and RVEs of 2.5 times as much. Cuts at 0,
 /// 0.1, ..., 0.8 of the height. Throws as average(), and std::invalid_argument for a packing less
-/// than four mean diameters high or without gravity along -y.
+/// than four mean diameters high or without gravity along -y (-z). In space the points reach from
+/// side to side.
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options);
 /// The table as Markdown.
 std::string balance_markdown(const std::vector<BalanceRow>& rows);

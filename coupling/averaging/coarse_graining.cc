@@ -16,11 +16,12 @@ namespace {
 
 // Divides by the share of the kernel inside the packing: what grains carry by the share inside the
 // whole region, the stress by that below the free surface where its branches go on into the walls.
+template <int D>
 void normalise(const Job& job, const Kernel& kernel, Eigen::Index first, Eigen::Index last,
                Sums& sums) {
   const int tensor = job.layout.dim() * job.layout.dim(), carried = job.layout.carried();
   for (Eigen::Index p = first; p < last; ++p) {
-    const Eigen::Vector2d at = job.points.row(p).transpose();
+    const Eigen::Matrix<double, D, 1> at = job.points.row(p).transpose();
     const double inside = job.region.share(kernel, at, false);
     const double below =
         job.options.extend_into_walls ? job.region.share(kernel, at, true) : inside;
@@ -46,12 +47,13 @@ void add(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
   };
   const int count = job.layout.count(), carried = job.layout.carried();
   const Eigen::Index tail = job.layout.size() - carried;
+  GrainLoad load(job);
   for (std::size_t g = 0; g < snapshot.grains.size(); ++g) {
     if (snapshot.grains[g].fixed) continue;
+    load.take(g);
     near_point(snapshot.grains[g].position.head<D>(), [&](Eigen::Index p, double weight) {
       sums.rows(p, count) += 1;
-      sums.rows.row(p).tail(tail) +=
-          weight * job.carried.row(static_cast<Eigen::Index>(g)).tail(tail);
+      sums.rows.row(p).tail(tail) += weight * load.row().tail(tail);
     });
   }
   // Far enough that the end of an extended branch is out of reach of every point of the packing.
@@ -74,7 +76,7 @@ void add(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
           for (int a = 0; a < D; ++a) sums.rows(p, D * D + a) += weight * force[a];
         });
       });
-  if (job.options.free_surface == "normalised") normalise(job, *kernel, first, last, sums);
+  if (job.options.free_surface == "normalised") normalise<D>(job, *kernel, first, last, sums);
 }
 
 }  // namespace

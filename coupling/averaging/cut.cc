@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "coupling/averaging/average.h"
@@ -17,6 +18,12 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
+
+// Share of a sphere above z: a cap, 2 (1 - c)^2 (2 + c) / 8 with c = height over the radius.
+double share_of_sphere_above(const dem::Grain& grain, double z) {
+  const double c = std::clamp((z - grain.position.z()) / grain.radius, -1.0, 1.0);
+  return (1 - c) * (1 - c) * (2 + c) / 4;
+}
 
 // Share of the grain's area above y.
 double share_above(const dem::Grain& grain, double y) {
@@ -36,16 +43,17 @@ double share_above(const dem::Grain& grain, double y) {
 template <class OfGrain, class Share>
 double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& of_grain,
               Share&& share) {
+  const int up = up_axis(snapshot.dim);
   double sum = 0;
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;
-    sum -= grain.mass * snapshot.gravity.y() * of_grain(grain);
+    sum -= grain.mass * snapshot.gravity[up] * of_grain(grain);
     if (grain.id == snapshot.loaded_grain)
-      sum -= snapshot.applied_force.y() * share(grain.position.y());
+      sum -= snapshot.applied_force[up] * share(grain.position[up]);
   }
   for_each_branch(
       snapshot, ends, [](const dem::Vec3&, const dem::Vec3&, const dem::Vec3&) {},
-      [&](const dem::Vec3& at, const dem::Vec3& force) { sum -= force.y() * share(at.y()); });
+      [&](const dem::Vec3& at, const dem::Vec3& force) { sum -= force[up] * share(at[up]); });
   return sum;
 }
 
@@ -123,63 +131,184 @@ double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, d
   return total;
 }
 
+// What an averaging counts as inside its RVEs, over what is inside, along a cut.
+double counted_share(const dem::Snapshot& snapshot, const MatrixXd& cut, AverageOptions options) {
+  if (options.method == "area_exact") return 1;
+  options.quantities = {"volume_fraction"};
+  const auto solid = [&](const char* method) {
+    options.method = method;
+    const Eigen::VectorXd share = average(snapshot, cut, options).find("volume_fraction")->value;
+    return share.array().isNaN().select(0, share).sum();
+  };
+  const double inside = solid("area_exact");
+  return inside > 0 ? solid("particle_centre") / inside : 1;
+}
+
+// Midpoints of cells of the horizontal cut, as far out as branches into walls go.
+struct Cut {
+  MatrixXd points;
+  double cell = 0;                       // m, in space m2
+  Index columns = 0, rows = 0;           // in space: x fastest
+  double column_size = 0, row_size = 0;  // m
+};
+
+Cut cut_through(const Region& region, double height, double range, double step) {
+  struct Side {
+    double first, last;
+    int n;
+    double size;
+  };
+  const auto side = [&](double low, double high) {
+    const double from = low - 4 * range, to = high + 4 * range;
+    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
+    const double size = (to - from) / n;
+    return Side{from + size / 2, to - size / 2, n, size};
+  };
+  if (region.dim() == 2) {
+    const Side x = side(region.left(), region.right());
+    return {line_points(x.first, x.last, x.n, height), x.size};
+  }
+  constexpr double most = 4e5;
+  const double area =
+      (region.right() - region.left() + 8 * range) * (region.back() - region.front() + 8 * range);
+  step = std::max(step, std::sqrt(area / most));
+  const Side x = side(region.left(), region.right()), y = side(region.front(), region.back());
+  return {cut_points({x.first, y.first}, {x.last, y.last}, x.n, y.n, {height}),
+          x.size * y.size,
+          x.n,
+          y.n,
+          x.size,
+          y.size};
+}
+
+// In space, as weight_through_rve: of the vertical force at every height within reach what the
+// elements of the cut see, each over its part inside the packing. A contact's force is where its
+// branch crosses the height; what weight_above has beyond them is spread as the packing above.
+class ElementsOfCut {
+ public:
+  ElementsOfCut(const Region& region, const AverageOptions& options, const Cut& cut,
+                const std::vector<bool>& known)
+      : support_(*find_support(options.kernel)),
+        width_(options.width),
+        cut_(cut),
+        inverse_(Eigen::VectorXd::Zero(cut.points.rows())) {
+    for (Index p = 0; p < cut.points.rows(); ++p)
+      if (known[static_cast<std::size_t>(p)])
+        inverse_[p] = cut.cell / region.measure(support_, width_, cut.points.row(p).transpose());
+  }
+
+  // Integral over the elements' middles of 1 / V, of those that hold this place.
+  double seen(const Eigen::Vector3d& at) const {
+    const auto range = [&](int axis, double size, Index n) {
+      const double middle = (at[axis] - cut_.points(0, axis)) / size, half = width_ / size;
+      const auto most = static_cast<double>(n - 1);
+      return std::pair{static_cast<Index>(std::clamp(std::ceil(middle - half), 0.0, most)),
+                       static_cast<Index>(std::clamp(std::floor(middle + half), 0.0, most))};
+    };
+    const auto [x0, x1] = range(0, cut_.column_size, cut_.columns);
+    const auto [y0, y1] = range(1, cut_.row_size, cut_.rows);
+    double sum = 0;
+    for (Index y = y0; y <= y1; ++y)
+      for (Index x = x0; x <= x1; ++x) {
+        const Index p = x + cut_.columns * y;
+        if (support_.distance(at - cut_.points.row(p).transpose()) < width_) sum += inverse_[p];
+      }
+    return sum;
+  }
+
+  double weight(const dem::Snapshot& snapshot, const Region& region, double z) const {
+    const double bottom = std::max(region.floor(), z - width_),
+                 top = std::min(region.highest(), z + width_);
+    if (!(top > bottom)) return 0;
+    constexpr Index slices = 24;
+    const double dz = (top - bottom) / slices, first = bottom + dz / 2;
+    Eigen::VectorXd crossing = Eigen::VectorXd::Zero(slices);
+    double total = 0;
+    const auto cross = [&](const dem::Vec3& a, const dem::Vec3& b, const dem::Vec3& f) {
+      const auto from = [&](double height) {
+        return static_cast<Index>(
+            std::clamp(std::ceil((height - first) / dz), 0.0, static_cast<double>(slices)));
+      };
+      const double down = a.z() > b.z() ? f.z() : -f.z();
+      for (Index k = from(std::min(a.z(), b.z())); k < from(std::max(a.z(), b.z())); ++k) {
+        const double height = first + static_cast<double>(k) * dz;
+        crossing[k] += down;
+        total += dz * down * seen(a + (height - a.z()) / (b.z() - a.z()) * (b - a));
+      }
+    };
+    for_each_branch(snapshot, {true, region.floor(), 0}, cross,
+                    [](const dem::Vec3&, const dem::Vec3&) {});
+    for (Index k = 0; k < slices; ++k) {
+      const double height = first + static_cast<double>(k) * dz;
+      double above = 0, seen_above = 0;
+      for (Index p = 0; p < cut_.points.rows(); ++p) {
+        const double x = cut_.points(p, 0), y = cut_.points(p, 1);
+        const double rest = std::max(0.0, region.surface(x, y) - height);
+        above += rest;
+        if (rest > 0) seen_above += rest * seen({x, y, height});
+      }
+      if (above > 0)
+        total += dz * (weight_above(snapshot, height) - crossing[k]) * seen_above / above;
+    }
+    return total;
+  }
+
+ private:
+  const Support& support_;
+  double width_;
+  const Cut& cut_;
+  Eigen::VectorXd inverse_;
+};
+
 }  // namespace
 
 double weight_above(const dem::Snapshot& snapshot, double y) {
   // Fixed grains carry their force down to the floor's mean height.
   return weight(
       snapshot, {true, Region(snapshot).floor(), 0},
-      [&](const dem::Grain& grain) { return share_above(grain, y); },
+      [&](const dem::Grain& grain) {
+        return snapshot.dim == 2 ? share_above(grain, y) : share_of_sphere_above(grain, y);
+      },
       [&](double height) { return height > y ? 1.0 : 0.0; });
 }
 
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& given,
                    double step) {
-  layer_frame(snapshot);  // refuses 3D
+  const int dim = snapshot.dim, up = up_axis(dim);
   AverageOptions options = given;
   options.quantities = {"sigma", "kinetic"};
   options.least_grains = 0;
-  if (step <= 0) step = options.width / 40;
   const Region region(snapshot);
   const bool kernels = options.method == "coarse_graining";
   // Inclined walls carry their branches on beyond the packing: the line goes as far.
-  const double range = kernels ? make_kernel(options.kernel, options.width)->range() : 0;
-  const double from = region.left() - 4 * range, to = region.right() + 4 * range;
-  const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
-  const double dx = (to - from) / n;
-  const MatrixXd line = line_points(from + dx / 2, to - dx / 2, n, y);
+  const double range = kernels ? make_kernel(options.kernel, options.width, dim)->range() : 0;
+  if (step <= 0) step = dim == 2 ? options.width / 40 : kernels ? range / 9 : options.width / 6;
+  const Cut places = cut_through(region, y, range, step);
+  const MatrixXd& line = places.points;
   const Field field = average(snapshot, line, options);
-  const Eigen::VectorXd stress = field.find("sigma_yy")->value + field.find("kinetic_yy")->value;
+  const std::string vertical = dim == 2 ? "_yy" : "_zz";
+  const Eigen::VectorXd stress =
+      field.find("sigma" + vertical)->value + field.find("kinetic" + vertical)->value;
   CutForce cut;
   cut.height = y;
   cut.sharp = weight_above(snapshot, y);
   std::vector<bool> known;
-  for (Index p = 0; p < n; ++p) {
+  for (Index p = 0; p < line.rows(); ++p) {
     known.push_back(!std::isnan(stress[p]));
-    if (known.back()) cut.force -= stress[p] * dx;
+    if (known.back()) cut.force -= stress[p] * places.cell;
   }
   if (kernels) {
-    const auto kernel = make_kernel(options.kernel, options.width);
+    const auto kernel = make_kernel(options.kernel, options.width, dim);
     const auto share = [&](double height) { return kernel->beyond(y - height); };
     cut.weight = weight(
         snapshot, {options.extend_into_walls, region.floor(), 2 * range},
-        [&](const dem::Grain& grain) { return share(grain.position.y()); }, share);
+        [&](const dem::Grain& grain) { return share(grain.position[up]); }, share);
   } else {
-    // What the averaging counts as inside its RVEs, over what is inside.
-    options.quantities = {"volume_fraction"};
-    const auto solid = [&](const char* method) {
-      options.method = method;
-      const Field field_of = average(snapshot, line, options);
-      return (field_of.find("volume_fraction")->value.array().isNaN())
-          .select(0, field_of.find("volume_fraction")->value)
-          .sum();
-    };
-    double counted = 1;
-    if (given.method != "area_exact") {
-      const double inside = solid("area_exact");
-      if (inside > 0) counted = solid("particle_centre") / inside;
-    }
-    cut.weight = counted * weight_through_rve(snapshot, region, y, options, line, dx, known);
+    const double counted = counted_share(snapshot, line, options);
+    cut.weight =
+        counted * (dim == 2
+                       ? weight_through_rve(snapshot, region, y, options, line, places.cell, known)
+                       : ElementsOfCut(region, options, places, known).weight(snapshot, region, y));
   }
   return cut;
 }

@@ -26,6 +26,15 @@ inline double top_of(const dem::Grain& grain) {
 inline double bottom_of(const dem::Grain& grain) {
   return grain.position.y() - reach_along(grain, 0, -1);
 }
+/// The same in space, where grains are spheres and up is z.
+inline double top_of(const dem::Grain& grain, int dim) {
+  return dim == 2 ? top_of(grain) : grain.position.z() + grain.radius;
+}
+inline double bottom_of(const dem::Grain& grain, int dim) {
+  return dim == 2 ? bottom_of(grain) : grain.position.z() - grain.radius;
+}
+/// The axis along which height is measured: y in the plane, z in space.
+inline int up_axis(int dim) { return dim - 1; }
 inline double left_of(const dem::Grain& grain) {
   return grain.position.x() - reach_along(grain, -1, 0);
 }

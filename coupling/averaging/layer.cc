@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "coupling/averaging/extent.h"
+#include "coupling/averaging/roof.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -35,14 +36,66 @@ double mean_surface(const dem::Snapshot& snapshot, double left, double right, do
   return sum / count;
 }
 
+Eigen::RowVectorXd origin_of(const LayerFrame& frame, Eigen::Index dim) {
+  if (dim == 2) return Eigen::RowVector2d(frame.load_x, frame.surface);
+  return Eigen::RowVector3d(frame.load_x, frame.load_y, frame.surface);
+}
+
+// Mean height of the contacts between free and fixed grains; `otherwise` without such.
+double rough_floor(const dem::Snapshot& snapshot, double otherwise) {
+  double height = 0;
+  int contacts = 0;
+  for (const dem::Contact& contact : snapshot.contacts) {
+    if (contact.j < 0) continue;
+    const bool fixed_i = snapshot.grains[static_cast<std::size_t>(contact.i)].fixed;
+    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
+    if (fixed_i == fixed_j) continue;
+    height += contact.point[up_axis(snapshot.dim)];
+    ++contacts;
+  }
+  return contacts > 0 ? height / contacts : otherwise;
+}
+
+const dem::Grain* grain_of(const dem::Snapshot& snapshot, std::int64_t id) {
+  for (const dem::Grain& grain : snapshot.grains)
+    if (id >= 0 && grain.id == id) return &grain;
+  return nullptr;
+}
+
+LayerFrame box_frame(const dem::Snapshot& snapshot, const dem::Grain* loaded) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
+  for (const dem::Grain& grain : snapshot.grains) {
+    if (grain.fixed) continue;
+    low = low.cwiseMin((grain.position.array() - grain.radius).matrix());
+    high = high.cwiseMax((grain.position.array() + grain.radius).matrix());
+  }
+  for (const dem::Wall& wall : snapshot.walls)
+    for (int a = 0; a < 3; ++a) {
+      if (wall.shape != "plane") continue;
+      if (wall.normal[a] > 1 - 1e-9) low[a] = wall.point[a];
+      if (wall.normal[a] < -1 + 1e-9 && a < 2) high[a] = wall.point[a];
+    }
+  if (!(low.x() < high.x() && low.y() < high.y()))
+    throw std::invalid_argument(
+        fmt::format("no space between the packing's sides at x = {:g} and {:g} m, y = {:g} and "
+                    "{:g} m: do the walls' normals point into the grains?",
+                    low.x(), high.x(), low.y(), high.y()));
+  low.z() = rough_floor(snapshot, low.z());
+  LayerFrame frame{low.x(), high.x(), low.z(), 0, 0, low.y(), high.y(), 0};
+  frame.surface = Roof(snapshot, low, high, 2 * mean_diameter(snapshot)).mean();
+  frame.load_x = loaded ? loaded->position.x() : (low.x() + high.x()) / 2;
+  frame.load_y = loaded ? loaded->position.y() : (low.y() + high.y()) / 2;
+  return frame;
+}
+
 }  // namespace
 
 Eigen::MatrixXd LayerFrame::to_packing(const Eigen::MatrixXd& model_points) const {
-  return model_points.rowwise() + Eigen::RowVector2d(load_x, surface);
+  return model_points.rowwise() + origin_of(*this, model_points.cols());
 }
 
 Eigen::MatrixXd LayerFrame::to_model(const Eigen::MatrixXd& packing_points) const {
-  return packing_points.rowwise() - Eigen::RowVector2d(load_x, surface);
+  return packing_points.rowwise() - origin_of(*this, packing_points.cols());
 }
 
 double mean_diameter(const dem::Snapshot& snapshot) {
@@ -58,8 +111,10 @@ double mean_diameter(const dem::Snapshot& snapshot) {
 }
 
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain) {
-  if (snapshot.dim != 2) throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
   const double diameter = mean_diameter(snapshot);
+  const dem::Grain* loaded =
+      grain_of(snapshot, loaded_grain >= 0 ? loaded_grain : snapshot.loaded_grain);
+  if (snapshot.dim == 3) return box_frame(snapshot, loaded);
   LayerFrame frame{infinity, -infinity, infinity, -infinity, 0};
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;
@@ -80,22 +135,9 @@ LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain)
         "no free grain lies between the packing's sides at x = {:g} and {:g} m: are the "
         "walls \"left\" and \"right\" where they say?",
         frame.left, frame.right));
-  double height = 0;
-  int contacts = 0;
-  for (const dem::Contact& contact : snapshot.contacts) {
-    if (contact.j < 0) continue;
-    const bool fixed_i = snapshot.grains[static_cast<std::size_t>(contact.i)].fixed;
-    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
-    if (fixed_i == fixed_j) continue;
-    height += contact.point.y();
-    ++contacts;
-  }
-  if (contacts > 0) frame.floor = height / contacts;
+  frame.floor = rough_floor(snapshot, frame.floor);
   frame.surface = mean_surface(snapshot, frame.left, frame.right, 2 * diameter);
-  frame.load_x = (frame.left + frame.right) / 2;
-  const std::int64_t id = loaded_grain >= 0 ? loaded_grain : snapshot.loaded_grain;
-  for (const dem::Grain& grain : snapshot.grains)
-    if (id >= 0 && grain.id == id) frame.load_x = grain.position.x();
+  frame.load_x = loaded ? loaded->position.x() : (frame.left + frame.right) / 2;
   return frame;
 }
 

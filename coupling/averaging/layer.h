@@ -1,5 +1,5 @@
-// The layer as a rectangle, and the frame in which continuum models see it: load at (0, 0), inside
-// is y < 0 down to y = -depth.
+// The layer as a rectangle (a box in space), and the frame in which continuum models see it: load
+// at the origin, inside is y < 0 down to y = -depth (in space z for y).
 #pragma once
 #include <Eigen/Core>
 
@@ -15,17 +15,21 @@ struct LayerFrame {
   double surface = 0;          ///< mean height of the highest grain edge over columns two mean
                                ///< diameters wide
   double load_x = 0;           ///< abscissa of the loaded grain, or the middle of the layer
+  double front = 0, back = 0;  ///< in space: the same as left and right, along y
+  double load_y = 0;           ///< in space: y of the loaded grain, or the middle
 
   double depth() const { return surface - floor; }
   double width() const { return right - left; }
-  /// From the models' frame to the packing's axes; n x 2, m.
+  /// From the models' frame to the packing's axes; n x 2, in space n x 3, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& model_points) const;
-  /// From the packing's axes to the models' frame; n x 2, m.
+  /// From the packing's axes to the models' frame; likewise.
   Eigen::MatrixXd to_model(const Eigen::MatrixXd& packing_points) const;
 };
 
-/// Measures the layer. `loaded_grain`: id of the grain that is or will be loaded (for load_x), -1:
-/// the snapshot's own. Throws std::invalid_argument in 3D or if no free grain is between the sides.
+/// Measures the layer. Walls: in the plane those named "left", "right", "floor"; in space planes
+/// across an axis, whatever their names. `loaded_grain`: id of the grain that is or will be loaded
+/// (for load_x, load_y), -1: the snapshot's own. Throws std::invalid_argument if no free grain is
+/// between the sides.
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
 
 /// Mean diameter of the free grains, m; the unit in which kernel widths are usually chosen.

@@ -8,7 +8,7 @@ namespace grainfield::coupling {
 struct AverageOptions {
   std::string method = "coarse_graining";  ///< coarse_graining | particle_centre | area_exact
   /// coarse_graining: lucy | gaussian | heaviside; particle_centre and area_exact: circle | square
-  /// (in 3D the sphere and the cube)
+  /// (in 3D the sphere and the cube; area_exact then counts volumes)
   std::string kernel = "lucy";
   /// m. coarse_graining: w of the kernel (lucy ends at 2 w, gaussian at 3 w, heaviside at w);
   /// particle_centre and area_exact: radius of the circle or half the side of the square.

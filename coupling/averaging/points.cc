@@ -77,6 +77,29 @@ MatrixXd cut_points(double x0, double x1, int n, const std::vector<double>& heig
   return points;
 }
 
+MatrixXd box_points(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int nx, int ny,
+                    int nz) {
+  if (nx < 1 || ny < 1 || nz < 1)
+    throw std::invalid_argument(
+        fmt::format("a grid of {} x {} x {} points; at least 1 x 1 x 1", nx, ny, nz));
+  std::vector<double> heights;
+  for (int iz = 0; iz < nz; ++iz) heights.push_back(between(low.z(), high.z(), iz, nz));
+  return cut_points(low.head<2>(), high.head<2>(), nx, ny, heights);
+}
+
+MatrixXd cut_points(const Vector2d& low, const Vector2d& high, int nx, int ny,
+                    const std::vector<double>& heights) {
+  if (heights.empty()) throw std::invalid_argument("horizontal cuts without heights");
+  const MatrixXd plane = grid_points(low.x(), high.x(), nx, low.y(), high.y(), ny);
+  MatrixXd points(static_cast<Index>(heights.size()) * plane.rows(), 3);
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    auto rows = points.middleRows(static_cast<Index>(k) * plane.rows(), plane.rows());
+    rows.leftCols(2) = plane;
+    rows.col(2).setConstant(heights[k]);
+  }
+  return points;
+}
+
 MatrixXd HeapFrame::to_packing(const MatrixXd& scaled) const {
   return (height * scaled).rowwise() + Eigen::RowVector2d(apex_x, floor + height);
 }
@@ -86,7 +109,7 @@ MatrixXd HeapFrame::to_scaled(const MatrixXd& packing_points) const {
 }
 
 HeapFrame heap_frame(const dem::Snapshot& snapshot) {
-  layer_frame(snapshot);  // refuses 3D
+  if (snapshot.dim != 2) throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
   const Region region(snapshot);
   HeapFrame frame;
   frame.floor = region.floor();

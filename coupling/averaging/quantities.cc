@@ -39,13 +39,6 @@ std::vector<std::pair<int, int>> pairs_of(Rank rank, int dim) {
   return out;
 }
 
-std::string suffix(Rank rank, int dim, int a, int b) {
-  const char axes[] = "xyz";
-  if (rank == Rank::scalar || (rank == Rank::antisymmetric && dim == 2)) return "";
-  if (rank == Rank::vector) return fmt::format("_{}", axes[a]);
-  return fmt::format("_{}{}", axes[a], axes[b]);
-}
-
 }  // namespace
 
 const std::vector<Quantity>& quantities() {
@@ -86,6 +79,13 @@ const std::vector<Quantity>& quantities() {
   return all;
 }
 
+std::string column_name(const Quantity& quantity, int dim, int a, int b, const char* axes) {
+  const Rank rank = quantity.rank;
+  if (rank == Rank::scalar || (rank == Rank::antisymmetric && dim == 2)) return quantity.name;
+  if (rank == Rank::vector) return fmt::format("{}_{}", quantity.name, axes[a]);
+  return fmt::format("{}_{}{}", quantity.name, axes[a], axes[b]);
+}
+
 Layout::Layout(int dim, const std::vector<std::string>& names) : dim_(dim) {
   std::vector<std::string> known;
   for (const Quantity& quantity : quantities()) known.push_back(quantity.name);
@@ -99,33 +99,24 @@ Layout::Layout(int dim, const std::vector<std::string>& names) : dim_(dim) {
     const auto pairs = pairs_of(quantity.rank, dim);
     int k = 0;
     for (const auto& [a, b] : pairs)
-      components_.push_back({quantity.name + suffix(quantity.rank, dim, a, b),
+      components_.push_back({column_name(quantity, dim, a, b),
                              dim == 2 ? quantity.unit_2d : quantity.unit_3d, &quantity, a, b, k++,
                              size_});
     if (quantity.of_grain) size_ += static_cast<int>(pairs.size());
   }
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> Layout::carried_by(
-    const std::vector<GrainFacts>& facts) const {
-  const int tensor = dim_ * dim_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> out(
-      static_cast<Eigen::Index>(facts.size()), tensor + size_ - carried());
-  for (std::size_t g = 0; g < facts.size(); ++g) {
-    const GrainFacts& f = facts[g];
-    double* row = out.row(static_cast<Eigen::Index>(g)).data();
-    for (int a = 0; a < dim_; ++a)
-      for (int b = 0; b < dim_; ++b) row[a * dim_ + b] = f.virial(a, b);
-    double* at = row + tensor;
-    at[0] = 1;
-    at[1] = f.grain->mass;
-    at[2] = f.grain->volume;
-    at[3] = f.bearing ? 1 : 0;
-    for (int a = 0; a < dim_; ++a) at[4 + a] = f.grain->mass * f.grain->velocity[a];
-    for (const Component& c : components_)
-      if (c.quantity->of_grain) at[c.own - carried() + c.k] = c.quantity->of_grain(f, c.a, c.b);
-  }
-  return out;
+void Layout::load(const GrainFacts& f, double* row) const {
+  for (int a = 0; a < dim_; ++a)
+    for (int b = 0; b < dim_; ++b) row[a * dim_ + b] = f.virial(a, b);
+  double* at = row + dim_ * dim_;
+  at[0] = 1;
+  at[1] = f.grain->mass;
+  at[2] = f.grain->volume;
+  at[3] = f.bearing ? 1 : 0;
+  for (int a = 0; a < dim_; ++a) at[4 + a] = f.grain->mass * f.grain->velocity[a];
+  for (const Component& c : components_)
+    if (c.quantity->of_grain) at[c.own - carried() + c.k] = c.quantity->of_grain(f, c.a, c.b);
 }
 
 double Layout::value(const Component& c, const double* row) const {

@@ -44,6 +44,9 @@ struct Quantity {
 /// All of them, in the order of the columns.
 const std::vector<Quantity>& quantities();
 
+/// Name of a component's column: sigma_xy of sigma, 0 and 1. `axes`: the letters.
+std::string column_name(const Quantity& quantity, int dim, int a, int b, const char* axes = "xyz");
+
 /// Where the sums of the chosen quantities stand in a row.
 class Layout {
  public:
@@ -63,10 +66,10 @@ class Layout {
   int size() const { return size_; }
   const std::vector<Component>& components() const { return components_; }
 
-  /// Row g: what grain g carries. First its virial (dim * dim, as PointSums::stress), then the sums
-  /// from carried() on.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> carried_by(
-      const std::vector<GrainFacts>& facts) const;
+  /// What a grain carries, into load_size() places: first its virial (dim * dim, as
+  /// PointSums::stress), then the sums from carried() on.
+  void load(const GrainFacts& fact, double* row) const;
+  int load_size() const { return dim_ * dim_ + size_ - carried(); }
   /// Value of one component from a row of sums.
   double value(const Component& component, const double* row) const;
 

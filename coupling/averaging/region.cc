@@ -28,8 +28,35 @@ bool touched(const dem::Snapshot& snapshot, std::size_t wall) {
                      [j](const dem::Contact& contact) { return contact.j == j; });
 }
 
+// Part of a ball beyond a plane at x from its centre.
+double cap_beyond(double w, double x) {
+  const double h = w - std::clamp(x, -w, w);
+  return pi * h * h * (3 * w - h) / 3;
+}
+
+// The ball in the box where its sides cut no more than caps that do not meet; nan otherwise.
+double ball_less_caps(double w, const Vector3d& low, const Vector3d& high) {
+  const double sides[6] = {-low.x(), high.x(), -low.y(), high.y(), -low.z(), high.z()};
+  double left = 4 * pi / 3 * w * w * w;
+  int cutting = 0;
+  bool centre_inside = true;
+  for (int a = 0; a < 6; ++a) {
+    if (sides[a] <= -w) return 0;
+    if (sides[a] >= w) continue;
+    ++cutting;
+    centre_inside = centre_inside && sides[a] >= 0;
+    left -= cap_beyond(w, sides[a]);
+    for (int b = 0; b < a / 2 * 2; ++b)
+      if (sides[b] < w && sides[a] * sides[a] + sides[b] * sides[b] < w * w)
+        return std::numeric_limits<double>::quiet_NaN();
+  }
+  return cutting <= 1 || centre_inside ? left : std::numeric_limits<double>::quiet_NaN();
+}
+
 double circle_in_box(double w, const Vector3d& low, const Vector3d& high, int dim) {
   if (dim == 2) return disk_in_box(w, low.head<2>(), high.head<2>());
+  const double simple = ball_less_caps(w, low, high);
+  if (!std::isnan(simple)) return simple;
   // Slices of the sphere, z = w sin(t): the area of a slice ends with the square of the distance
   // from the pole, and kinks where a side of the box first cuts a slice.
   std::vector<double> ends{std::max(-w, low.z()), std::min(w, high.z())};
@@ -66,11 +93,24 @@ double square_in_box(double w, const Vector3d& low, const Vector3d& high, int di
   return product;
 }
 
+// Of two spheres whose centres are `distance` apart: two caps on either side of their common plane.
+double ball_in_ball(double distance, double r1, double r2) {
+  const double small = std::min(r1, r2);
+  if (distance >= r1 + r2) return 0;
+  if (distance <= std::abs(r1 - r2)) return 4 * pi / 3 * small * small * small;
+  const double x = (distance * distance + r1 * r1 - r2 * r2) / (2 * distance);
+  const auto cap = [](double r, double h) { return pi * h * h * (3 * r - h) / 3; };
+  return cap(r1, r1 - x) + cap(r2, r2 - (distance - x));
+}
+
 const Support supports[]{
     {"circle", [](const Vector3d& d) { return d.norm(); },
      [](double w, int dim) { return dim == 2 ? pi * w * w : 4 * pi / 3 * w * w * w; },
      circle_in_box, [](double w, const Corners& corners) { return area_in_circle(corners, w); },
-     [](double w, const Vector2d& c, double r) { return disk_in_disk(c.norm(), w, r); }},
+     [](double w, const Vector2d& c, double r) { return disk_in_disk(c.norm(), w, r); },
+     [](double w, const Vector3d& c, double r) { return ball_in_ball(c.norm(), w, r); },
+     [](double w, double x) { return std::sqrt(std::max(0.0, w * w - x * x)); },
+     [](double w, double x, double y) { return std::sqrt(std::max(0.0, w * w - x * x - y * y)); }},
     {"square", [](const Vector3d& d) { return d.cwiseAbs().maxCoeff(); },
      [](double w, int dim) { return std::pow(2 * w, dim); }, square_in_box,
      [](double w, const Corners& corners) {
@@ -78,7 +118,12 @@ const Support supports[]{
      },
      [](double w, const Vector2d& c, double r) {
        return disk_in_box(r, Vector2d::Constant(-w) - c, Vector2d::Constant(w) - c);
-     }},
+     },
+     [](double w, const Vector3d& c, double r) {
+       return circle_in_box(r, Vector3d::Constant(-w) - c, Vector3d::Constant(w) - c, 3);
+     },
+     [](double w, double /*x*/) { return w; },
+     [](double w, double /*x*/, double /*y*/) { return w; }},
 };
 
 }  // namespace
@@ -98,19 +143,20 @@ Region::Region(const dem::Snapshot& snapshot)
     find_surface(snapshot);
     return;
   }
-  mean_diameter(snapshot);
-  for (const dem::Grain& grain : snapshot.grains) {
-    if (grain.fixed) continue;
-    low_ = low_.cwiseMin((grain.position.array() - grain.radius).matrix());
-    high_ = high_.cwiseMax((grain.position.array() + grain.radius).matrix());
+  find_roof(snapshot);
+}
+
+void Region::find_roof(const dem::Snapshot& snapshot) {
+  const LayerFrame frame = layer_frame(snapshot);
+  low_ << frame.left, frame.front, frame.floor;
+  high_ << frame.right, frame.back, 0;
+  roof_ = Roof(snapshot, low_, high_, 2 * mean_diameter(snapshot));
+  for (std::size_t w = 0; w < snapshot.walls.size(); ++w) {
+    const dem::Wall& wall = snapshot.walls[w];
+    if (wall.shape == "plane" && wall.normal.z() < -1 + 1e-9 && touched(snapshot, w))
+      roof_ = Roof(wall.point.z());
   }
-  for (std::size_t w = 0; w < snapshot.walls.size(); ++w)
-    for (int a = 0; a < 3; ++a) {
-      const dem::Wall& wall = snapshot.walls[w];
-      if (wall.shape != "plane") continue;
-      if (wall.normal[a] > 1 - 1e-9) low_[a] = wall.point[a];
-      if (wall.normal[a] < -1 + 1e-9 && (a < 2 || touched(snapshot, w))) high_[a] = wall.point[a];
-    }
+  high_.z() = roof_.highest();
 }
 
 void Region::find_surface(const dem::Snapshot& snapshot) {
@@ -169,8 +215,8 @@ double Region::surface(double x) const {
 double Region::measure(const Support& support, double width, const Eigen::VectorXd& at) const {
   Vector3d centre = Vector3d::Zero();
   centre.head(dim_) = at;
-  const Vector3d low = low_ - centre, high = high_ - centre;
-  if (dim_ == 3) return support.in_box(width, low, high, 3);
+  if (dim_ == 3) return below_roof(support, width, centre);
+  const Vector3d low = low_ - centre;
   double area = 0;
   for (std::size_t k = 0; k + 1 < surface_.size(); ++k) {
     const Vector2d a = surface_[k] - at, b = surface_[k + 1] - at;
@@ -182,6 +228,63 @@ double Region::measure(const Support& support, double width, const Eigen::Vector
       area += support.in_polygon(width, {{a.x(), low.y()}, {b.x(), low.y()}, b, a});
   }
   return area;
+}
+
+double Region::below_roof(const Support& support, double width, const Vector3d& at) const {
+  const Vector3d low = low_ - at;
+  Vector3d high = high_ - at;
+  const double least =
+      roof_.lowest(at.x() - width, at.x() + width, at.y() - width, at.y() + width) - at.z();
+  if (least >= width || roof_.heights().size() == 1) {  // a box
+    high.z() = std::min(width, least);
+    return support.in_box(width, low, high, 3);
+  }
+  const double x0 = std::max(-width, low.x()), x1 = std::min(width, high.x());
+  if (!(x0 < x1)) return 0;
+  return gauss<double, 20>::integrate(
+      [&](double x) {
+        const double half = support.half_y(width, x), y0 = std::max(-half, low.y()),
+                     y1 = std::min(half, high.y());
+        if (!(y0 < y1)) return 0.0;
+        return gauss<double, 20>::integrate(
+            [&](double y) {
+              const double reach = support.half_z(width, x, y);
+              const double top = std::min(reach, roof_.height(at.x() + x, at.y() + y) - at.z());
+              return std::max(0.0, top - std::max(-reach, low.z()));
+            },
+            y0, y1);
+      },
+      x0, x1);
+}
+
+double Region::share(const Kernel& kernel, const Vector3d& at, bool above_only) const {
+  const double range = kernel.range();
+  const Vector3d low = low_ - at, high = high_ - at;
+  const double least =
+      roof_.lowest(at.x() - range, at.x() + range, at.y() - range, at.y() + range) - at.z();
+  const bool walls_far = low.maxCoeff() <= -range && high.head<2>().minCoeff() >= range;
+  if (least >= range && (above_only || walls_far)) return 1;
+  const double x0 = above_only ? -range : std::max(-range, low.x()),
+               x1 = above_only ? range : std::min(range, high.x());
+  const double bottom = above_only ? -range : low.z();
+  if (!(x0 < x1)) return 0;
+  return gauss<double, 20>::integrate(
+      [&](double x) {
+        const double half = std::sqrt(std::max(0.0, range * range - x * x));
+        const double y0 = above_only ? -half : std::max(-half, low.y()),
+                     y1 = above_only ? half : std::min(half, high.y());
+        if (!(y0 < y1)) return 0.0;
+        return gauss<double, 20>::integrate(
+            [&](double y) {
+              const double d2 = x * x + y * y;
+              const double reach = std::sqrt(std::max(0.0, range * range - d2));
+              const double s0 = std::max(-reach, bottom),
+                           s1 = std::min(reach, roof_.height(at.x() + x, at.y() + y) - at.z());
+              return s1 > s0 ? kernel.along_line(std::sqrt(d2), s0, s1) : 0.0;
+            },
+            y0, y1);
+      },
+      x0, x1);
 }
 
 double Region::share(const Kernel& kernel, const Vector2d& at, bool above_only) const {

@@ -2,7 +2,7 @@
 //   <q> = (1/V) sum w q_p,  stress: q_p = sum over its contacts of F (outer) x,
 // x from centroid to contact. V is the part of the RVE inside the packing (region.h).
 //   particle_centre: w = 1 for grains with centroid in the RVE
-//   area_exact:      w = share of the grain's area inside the RVE
+//   area_exact:      w = share of the grain's area (in 3D of the sphere's volume) inside the RVE
 #include <limits>
 
 #include "coupling/averaging/clip.h"
@@ -28,10 +28,10 @@ Rve measure(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
   return rve;
 }
 
-void add_grain(const Job& job, std::size_t grain, double share, double volume, Eigen::Index p,
+void add_grain(const Job& job, GrainLoad& load, double share, double volume, Eigen::Index p,
                Sums& sums) {
   const int dim = job.layout.dim(), count = job.layout.count(), carried = job.layout.carried();
-  const auto& row = job.carried.row(static_cast<Eigen::Index>(grain));
+  const Eigen::RowVectorXd& row = load.row();
   const double weight = share / volume;
   sums.rows(p, count) += share;
   sums.rows.row(p).head(dim * dim) += weight * row.head(dim * dim);
@@ -45,15 +45,17 @@ void add(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
   const Rve rve = measure(job, first, last, sums);
   const double width = job.options.width;
   const PointCells<D> cells(job.points, first, last, width);
+  GrainLoad load(job);
   for (std::size_t g = 0; g < job.snapshot.grains.size(); ++g) {
     const dem::Grain& grain = job.snapshot.grains[g];
     if (grain.fixed) continue;
+    load.take(g);
     const Vector at = grain.position.head<D>(), reach = Vector::Constant(width);
     cells.near(at - reach, at + reach, [&](Eigen::Index p) {
       Eigen::Vector3d d = Eigen::Vector3d::Zero();
       d.head<D>() = at - job.points.row(p).transpose();
       if (rve.volume[p] > 0 && rve.support.distance(d) < width)
-        add_grain(job, g, 1, rve.volume[p], p, sums);
+        add_grain(job, load, 1, rve.volume[p], p, sums);
     });
   }
 }
@@ -72,15 +74,45 @@ void add_particle_centre(const Job& job, Eigen::Index first, Eigen::Index last, 
     add<3>(job, first, last, sums);
 }
 
+namespace {
+
+void add_volume_exact(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
+  using Eigen::Vector3d;
+  const Rve rve = measure(job, first, last, sums);
+  const double width = job.options.width;
+  const PointCells<3> cells(job.points, first, last, width);
+  GrainLoad load(job);
+  for (std::size_t g = 0; g < job.snapshot.grains.size(); ++g) {
+    const dem::Grain& grain = job.snapshot.grains[g];
+    if (grain.fixed) continue;
+    load.take(g);
+    const Vector3d at = grain.position, reach = Vector3d::Constant(width + grain.radius);
+    const double whole = rve.support.of_ball(2 * grain.radius, Vector3d::Zero(), grain.radius);
+    cells.near(at - reach, at + reach, [&](Eigen::Index p) {
+      const Vector3d d = at - job.points.row(p).transpose();
+      const double inner = rve.support.distance(d);
+      if (rve.volume[p] <= 0 || inner - grain.radius >= width) return;
+      const double share =
+          inner + grain.radius > width ? rve.support.of_ball(width, d, grain.radius) / whole : 1;
+      if (share > 0) add_grain(job, load, share, rve.volume[p], p, sums);
+    });
+  }
+}
+
+}  // namespace
+
 void add_area_exact(const Job& job, Eigen::Index first, Eigen::Index last, Sums& sums) {
   using Eigen::Vector2d;
+  if (job.layout.dim() == 3) return add_volume_exact(job, first, last, sums);
   const Rve rve = measure(job, first, last, sums);
   const double width = job.options.width;
   const PointCells<2> cells(job.points, first, last, width);
   Corners placed, shifted;
+  GrainLoad load(job);
   for (std::size_t g = 0; g < job.snapshot.grains.size(); ++g) {
     const dem::Grain& grain = job.snapshot.grains[g];
     if (grain.fixed) continue;
+    load.take(g);
     placed = placed_outline(grain);
     const double area =
         placed.empty() ? disk_in_disk(0, grain.radius, grain.radius) : area_of(placed);
@@ -102,7 +134,7 @@ void add_area_exact(const Job& job, Eigen::Index first, Eigen::Index last, Sums&
           share = rve.support.in_polygon(width, shifted) / area;
         }
       }
-      if (share > 0) add_grain(job, g, share, rve.volume[p], p, sums);
+      if (share > 0) add_grain(job, load, share, rve.volume[p], p, sums);
     });
   }
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/averaging/grain_facts.h"
 #include "coupling/averaging/options.h"
 #include "coupling/averaging/point_cells.h"
 #include "coupling/averaging/quantities.h"
@@ -13,14 +14,35 @@ namespace grainfield::coupling {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// What is averaged. `carried`: Layout::carried_by, one row per grain.
+/// What is averaged. `facts`: one per grain.
 struct Job {
   const dem::Snapshot& snapshot;
   const Region& region;
   const Eigen::MatrixXd& points;
   const AverageOptions& options;
   const Layout& layout;
-  const RowMatrix& carried;
+  const std::vector<GrainFacts>& facts;
+};
+
+/// What one grain carries, made when a point first asks for it.
+class GrainLoad {
+ public:
+  explicit GrainLoad(const Job& job) : job_(job), row_(job.layout.load_size()) {}
+  void take(std::size_t grain) {
+    grain_ = grain;
+    fresh_ = false;
+  }
+  const Eigen::RowVectorXd& row() {
+    if (!fresh_) job_.layout.load(job_.facts[grain_], row_.data());
+    fresh_ = true;
+    return row_;
+  }
+
+ private:
+  const Job& job_;
+  Eigen::RowVectorXd row_;
+  std::size_t grain_ = 0;
+  bool fresh_ = false;
 };
 
 /// One row per point, as Layout says. `outside`: where the weight has no meaning.

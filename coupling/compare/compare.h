@@ -33,7 +33,8 @@ struct ModelProfiles {
 };
 
 /// What the verdict calls a registry model: flamant, orthotropic_half_plane, fe_elastic_half_space:
-/// "half plane"; layer, fe_elastic_layer: "finite layer"; others: their own name.
+/// "half plane"; boussinesq: "half space"; layer, fe_elastic_layer: "finite layer"; others: their
+/// own name.
 std::string family_of(const std::string& model_name);
 
 /// Distance of a model from the simulation.

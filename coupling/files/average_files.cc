@@ -12,8 +12,10 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/ensemble.h"
+#include "coupling/averaging/extent.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/averaging/rings.h"
 #include "coupling/files/placement.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/import/doubts.h"
@@ -21,6 +23,9 @@
 
 namespace grainfield::coupling {
 namespace {
+
+// Of a grid where none is asked for, in the plane and in space.
+constexpr int kColumns = 81, kRows = 31, kSide = 31, kLayers = 21;
 
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
@@ -63,6 +68,8 @@ dem::Snapshot read(const SnapshotName& name) { return dem::read_snapshot(name.fi
 struct Extents {
   double depth = 0, left = -std::numeric_limits<double>::infinity(),
          right = std::numeric_limits<double>::infinity(), diameter = 0, load = 0;
+  double front = -std::numeric_limits<double>::infinity(),
+         back = std::numeric_limits<double>::infinity();  // in space
   int dim = 2;
   std::vector<PileFrame> heaps;                                      // frame "heap" only
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
@@ -117,6 +124,9 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
   const auto n = static_cast<double>(items.size());
   for (const auto& item : items) {
     const dem::Snapshot s = read(item.state);
+    if (&item != &items.front() && s.dim != out.dim)
+      throw std::invalid_argument(fmt::format("{}:{} is {}D, the snapshot before it {}D",
+                                              item.state.file, item.state.group, s.dim, out.dim));
     out.dim = s.dim;
     const Placement placed = place(s, request.frame);
     doubts.look_at(item.state, s);
@@ -127,8 +137,10 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     out.diameter += mean_diameter(s) / n;
     out.left = std::max(out.left, placed.left);
     out.right = std::min(out.right, placed.right);
+    out.front = std::max(out.front, placed.front);
+    out.back = std::min(out.back, placed.back);
     if (request.frame == "heap") out.heaps.push_back(placed.heap);
-    const double force = -s.applied_force.y();
+    const double force = -s.applied_force[up_axis(s.dim)];
     if (request.response && &item != &items.front() && force != out.load) {
       throw std::invalid_argument(
           fmt::format("{}:{}: its load is {:g} N, that of the others {:g} N", item.state.file,
@@ -149,16 +161,107 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
   return out;
 }
 
-// Points in the request's frame.
-Eigen::MatrixXd points_of(const AverageRequest& request, const Extents& all,
-                          const dem::Snapshot& first) {
-  if (request.points.size() != 0) return request.points;
-  const Span span = span_of(first, request.frame, all.left, all.right, all.depth);
-  if (request.cuts.empty()) return span.grid(request.nx, request.ny);
+// Where the rings' axis is, in the frame.
+Eigen::Vector2d axis_of(const AverageRequest& request, const Extents& all) {
+  if (!request.axis.empty()) return {request.axis[0], request.axis[1]};
+  if (request.frame != "packing") return {0, 0};
+  return {(all.left + all.right) / 2, (all.front + all.back) / 2};
+}
+
+// Points in the request's frame, with the shape of their grid where they have one.
+Field points_of(const AverageRequest& request, const Extents& all, const dem::Snapshot& first) {
+  Field out;
+  out.points = request.points;
+  if (request.points.size() != 0) return out;
+  const Span span =
+      span_of(first, request.frame, {all.left, all.right, 0, 0, all.front, all.back}, all.depth);
   std::vector<double> heights;
   for (const double share : request.cuts)
     heights.push_back(span.bottom + share * (span.top - span.bottom));
-  return cut_points(all.left, all.right, request.nx, heights);
+  if (request.rings) {
+    const Eigen::Vector2d axis = axis_of(request, all);
+    const double radius = std::min(
+        {axis.x() - all.left, all.right - axis.x(), axis.y() - all.front, all.back - axis.y()});
+    if (!(radius > 0))
+      throw std::invalid_argument(
+          fmt::format("--axis: ({:g}, {:g}) is outside the packing, {:g} to {:g} by {:g} to {:g}",
+                      axis.x(), axis.y(), all.left, all.right, all.front, all.back));
+    out.points = heights.empty()
+                     ? grid_points(0, radius, request.nx, span.bottom, span.top, request.ny)
+                     : cut_points(0, radius, request.nx, heights);
+  } else if (all.dim == 3) {
+    out.points = heights.empty() ? span.grid(request.nx, request.ny, request.nz)
+                                 : cut_points({all.left, all.front}, {all.right, all.back},
+                                              request.nx, request.ny, heights);
+    out.nz = heights.empty() ? request.nz : static_cast<int>(heights.size());
+  } else {
+    out.points = heights.empty() ? span.grid(request.nx, request.ny)
+                                 : cut_points(all.left, all.right, request.nx, heights);
+  }
+  if (heights.empty() || out.nz > 0) {
+    out.nx = request.nx;
+    out.ny = request.ny;
+  }
+  return out;
+}
+
+// Rings of the frame as rings of the packing.
+Eigen::MatrixXd rings_in_packing(const Eigen::MatrixXd& rings, const Eigen::Vector2d& axis,
+                                 const Placement& placed) {
+  const auto places = [&](double share) {
+    Eigen::MatrixXd at(rings.rows(), 3);
+    at.col(0) = axis.x() + share * rings.col(0).array();
+    at.col(1).setConstant(axis.y());
+    at.col(2) = rings.col(1);
+    return placed.to_packing(at);
+  };
+  const Eigen::MatrixXd on_ring = places(1);
+  Eigen::MatrixXd out(rings.rows(), 2);
+  out.col(0) = on_ring.col(0) - places(0).col(0);
+  out.col(1) = on_ring.col(2);
+  return out;
+}
+
+// The field of one item on the frame's points.
+Field field_of(const Item& item, const AverageRequest& request, const Eigen::MatrixXd& points,
+               const Eigen::Vector2d& axis, Gaps* gaps) {
+  const dem::Snapshot state = read(item.state);
+  const Placement placed = place(state, request.frame);
+  const dem::Snapshot unloaded = request.response ? read(item.unloaded) : dem::Snapshot{};
+  if (!request.rings) {
+    const Eigen::MatrixXd there = placed.to_packing(points);
+    return request.response ? response(unloaded, state, there, request.options, gaps)
+                            : average(state, there, request.options, gaps);
+  }
+  const Eigen::MatrixXd centre =
+      placed.to_packing(Eigen::MatrixXd(Eigen::RowVector3d(axis.x(), axis.y(), 0)));
+  return average_on_rings(
+      [&](const Eigen::MatrixXd& places, const AverageOptions& options) {
+        return request.response ? response(unloaded, state, places, options)
+                                : average(state, places, options);
+      },
+      {centre(0, 0), centre(0, 1)}, rings_in_packing(points, axis, placed), request.options, gaps);
+}
+
+// What the request asks for is there in this dimension.
+void require_dimension(const AverageRequest& request, int dim) {
+  if (request.rings && dim == 2)
+    throw std::invalid_argument("the snapshot is 2D; averages over rings need a 3D one");
+  if (!request.axis.empty() && request.frame != "packing")
+    throw std::invalid_argument(
+        fmt::format("--axis: frame {} has its own axis; it is for frame packing", request.frame));
+  if (!request.axis.empty() && !request.rings)
+    throw std::invalid_argument("--axis: it is that of --rings; give both");
+  if (request.points.size() != 0) return;
+  const bool flat = dim == 2 || request.rings || !request.cuts.empty();
+  if (request.nx > 0 && flat != (request.nz == 0))
+    throw std::invalid_argument(
+        fmt::format("--grid: found {} x {}{}, allowed: {}", request.nx, request.ny,
+                    request.nz > 0 ? fmt::format(" x {}", request.nz) : "",
+                    dim == 2                ? "COLUMNSxROWS, the snapshot is 2D"
+                    : request.rings         ? "RADIIxHEIGHTS of rings"
+                    : !request.cuts.empty() ? "COLUMNSxROWS of horizontal cuts"
+                                            : "COLUMNSxROWSxLAYERS, the snapshot is 3D"));
 }
 
 // The single values of the stresses, for covariances.
@@ -209,9 +312,17 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
   if (options.width == 0) {
     options.width = (options.method == "coarse_graining" ? 1.0 : 2.5) * all.diameter;
   }
-  const bool grid = request.points.size() == 0 && request.cuts.empty();
-  const Eigen::MatrixXd points = points_of(request, all, read(items.front().state));
-  const bool base = request.response && options.method == "coarse_graining" &&
+  require_dimension(request, all.dim);
+  if (request.nx == 0) {
+    const bool box = all.dim == 3 && !request.rings;
+    request.nx = box ? kSide : kColumns;
+    request.ny = box ? kSide : kRows;
+    request.nz = box && request.cuts.empty() ? kLayers : 0;
+  }
+  const Field where = points_of(request, all, read(items.front().state));
+  const Eigen::MatrixXd& points = where.points;
+  const Eigen::Vector2d axis = request.rings ? axis_of(request, all) : Eigen::Vector2d(0, 0);
+  const bool base = request.response && options.method == "coarse_graining" && all.dim == 2 &&
                     request.frame == "layer" && has_base(read(items.front().state));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
@@ -228,21 +339,20 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
           each(all.heaps, [](const auto& f) { return f.repose_right_deg; });
     }
     if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
-    field.attributes["frame"] = frame_text(request.frame);
+    field.attributes["frame"] = frame_text(request.frame, all.dim, request.rings);
     return field;
   };
 
   Ensemble fields, base_fields;
   for (const auto& item : items) {
-    const dem::Snapshot state = read(item.state);
-    const Eigen::MatrixXd there = place(state, request.frame).to_packing(points);
-    Field field = request.response ? response(read(item.unloaded), state, there, options, gaps)
-                                   : average(state, there, options, gaps);
+    Field field = field_of(item, request, points, axis, gaps);
     field.points = points;
-    field.nx = grid ? request.nx : 0;
-    field.ny = grid ? request.ny : 0;
+    field.nx = where.nx;
+    field.ny = where.ny;
+    field.nz = where.nz;
     fields.add(field);
     if (base) {
+      const dem::Snapshot state = read(item.state);
       Field line = base_response(read(item.unloaded), state, x.array() + layer_frame(state).load_x,
                                  *make_kernel(options.kernel, options.width));
       line.points.resize(x.size(), 2);

@@ -34,10 +34,10 @@ bool starts_with(const std::string& text, const std::string& start) {
 
 // Fields that hold the packing's stress as it is looked at first: no model, no other averaging.
 bool is_candidate(const std::string& name, const Field& field) {
-  return field.find("sigma_yy") != nullptr && field.attributes.count("method") > 0 &&
-         name != "base_unloaded" && !starts_with(name, "model_") &&
-         name.find("_unloaded") == std::string::npos && !starts_with(name, "particle_centre") &&
-         !starts_with(name, "area_exact");
+  return (field.find("sigma_yy") != nullptr || field.find("sigma_zz") != nullptr) &&
+         field.attributes.count("method") > 0 && name != "base_unloaded" &&
+         !starts_with(name, "model_") && name.find("_unloaded") == std::string::npos &&
+         !starts_with(name, "particle_centre") && !starts_with(name, "area_exact");
 }
 
 std::vector<std::string> chosen(const CompareRequest& request) {
@@ -108,6 +108,13 @@ void require_known(const ModelChoice& choice, const RunFacts& facts, const std::
         "(`grainfield average --response`), or set it: --model {}:F=...",
         choice.label, file, choice.name));
   }
+  const auto& info = continuum::find_model(choice.name);
+  const int dim = info.dim != 0 || choice.settings.count("dim") > 0
+                      ? continuum::dimension(info, choice.settings)
+                      : facts.dim;
+  if (dim != facts.dim)
+    throw std::invalid_argument(fmt::format("model {}: is {}D, the field in {} is {}D",
+                                            choice.label, dim, file, facts.dim));
   const bool weighed = facts.numbers.count("rho_g") > 0 || choice.settings.count("map") > 0;
   if (missing("rho_g", weighed)) {
     throw std::invalid_argument(fmt::format(
@@ -145,7 +152,15 @@ Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
   const double h = scene.facts.height;
   const int n = scene.field.realizations;
   if (scene.scene == Scene::response) {
-    return compare(std::move(profiles), std::move(models), scene.facts.force, h, n);
+    // In space the unit is F/h^2.
+    const bool space = scene.facts.dim == 3;
+    Comparison out = compare(std::move(profiles), std::move(models),
+                             space ? scene.unit * h : scene.facts.force, h, n);
+    if (space)
+      out.scale = {"h", "F/h^2", "load",
+                   fmt::format("F = {:.6g} N, h = {:.6g} m, F/h^2 = {:.6g} Pa; realizations: {}",
+                               scene.facts.force, h, scene.unit, n)};
+    return out;
   }
   Comparison out = compare(std::move(profiles), std::move(models), scene.unit * h, h, n);
   if (scene.scene == Scene::heap) {
@@ -164,7 +179,7 @@ void add_figures_of(const SceneField& scene, const Comparison& comparison, std::
   const double h = scene.facts.height;
   if (scene.scene == Scene::response) {
     summary["layer.depth"] = h;
-    summary["layer.F_over_h"] = scene.unit;
+    summary[scene.facts.dim == 3 ? "layer.F_over_h2" : "layer.F_over_h"] = scene.unit;
     add_comparison(summary, comparison, main);
     return;
   }
@@ -220,7 +235,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     SceneField scene = scene_field(read_field(request.file, name), name, request.lines, where);
     if (!scenes.empty()) require_same(scenes.front(), scene, request.file);
     for (auto& line : lines_of(scene, request.lines, where)) lines.push_back(std::move(line));
-    if (scene.field.nx > 0) map = scene.field;
+    if (scene.field.nx > 0 && scene.facts.dim == 2) map = scene.field;
     kernels.insert(scene.seen);
     seen.push_back(fmt::format("{}: {}", name, scene.seen));
     scenes.push_back(std::move(scene));
@@ -254,8 +269,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     const Evaluation e = evaluate_model(choice, facts_for(choice, facts, flanks_apart), sets);
     ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
     for (std::size_t l = 0; l < lines.size(); ++l) {
-      const double sign = lines[l].component == 2 ? 1 : -1;
-      m.values.emplace_back(sign * e.stresses[l].col(lines[l].component));
+      m.values.emplace_back(lines[l].sign * e.stresses[l].col(lines[l].component));
     }
     models.push_back(std::move(m));
     if (map.nx > 0) model_maps.push_back({model_label(choice), e.stresses.back().col(1)});

@@ -23,13 +23,30 @@ Eigen::VectorXd picked(const Eigen::VectorXd& all, const std::vector<Eigen::Inde
   return out;
 }
 
+// Place of a component among the models' stresses; of rings r and t stand for x and y.
+int component_of(std::string component, bool space) {
+  for (std::size_t k = component.size() - 2; k < component.size(); ++k) {
+    if (component[k] == 'r') component[k] = 'x';
+    if (component[k] == 't') component[k] = 'y';
+  }
+  if (component == "sigma_zx") component = "sigma_xz";
+  const auto& names = space ? kSpaceStress : kPlaneStress;
+  return static_cast<int>(std::find(names.begin(), names.end(), component) - names.begin());
+}
+
 bool is_base(const std::string& name) { return name.compare(0, 4, "base") == 0; }
+
+bool in_space(const SceneField& scene) { return scene.field.points.cols() == 3; }
+
+// The stress one looks at first.
+std::string vertical(const SceneField& scene) { return in_space(scene) ? "sigma_zz" : "sigma_yy"; }
 
 // Names and keys of a line: fields that are one line have their own.
 void name_line(const SceneField& scene, const std::string& component, bool whole, double share,
                Profile& profile) {
-  const std::string prefix = component == "sigma_yy" ? "" : component + " ";
-  const std::string key = component == "sigma_yy" ? "" : component + "_";
+  const bool usual = component == vertical(scene);
+  const std::string prefix = usual ? "" : component + " ";
+  const std::string key = usual ? "" : component + "_";
   if (whole) {
     profile.name = prefix + scene.name;
     profile.key = key + scene.name;
@@ -45,14 +62,15 @@ void name_line(const SceneField& scene, const std::string& component, bool whole
 FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::string& component,
                   bool whole, double share) {
   const Column& column = *scene.field.find(component);
-  const double sign = component == "sigma_xy" ? 1 : -1;
+  const std::string axes = component.substr(component.size() - 2);
+  const double sign = axes[0] == axes[1] ? -1 : 1;
   FieldLine out;
-  out.component = static_cast<int>(std::find(kPlaneStress.begin(), kPlaneStress.end(), component) -
-                                   kPlaneStress.begin());
+  out.sign = sign;
+  out.component = component_of(component, in_space(scene));
   out.kernel = scene.kernel;
   out.base = whole && is_base(scene.name);
   const auto n = static_cast<Eigen::Index>(row.at.size());
-  out.points.resize(n, 2);
+  out.points.resize(n, scene.field.points.cols());
   for (Eigen::Index k = 0; k < n; ++k) {
     out.points.row(k) = scene.field.points.row(row.at[static_cast<std::size_t>(k)]);
   }
@@ -60,6 +78,7 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
   name_line(scene, component, whole, share, p);
   p.depth = -row.y;
   p.quantity = (sign < 0 ? "-" : "") + component;
+  if (in_space(scene)) p.unit = "Pa";
   p.x = out.points.col(0);
   p.mean = sign * picked(column.value, row.at);
   if (column.error.size() == column.value.size()) p.error = picked(column.error, row.at);
@@ -73,17 +92,52 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
   return out;
 }
 
+// Rings as points of the half plane y = 0: their fields are those there.
+void lay_out_rings(Field& field) {
+  Eigen::MatrixXd points(field.points.rows(), 3);
+  points.col(0) = field.points.col(0);
+  points.col(1).setZero();
+  points.col(2) = field.points.col(1);
+  field.points = points;
+}
+
+// Rows along x by height: in space those points of each height that are nearest to y = 0.
+std::vector<FieldRow> rows_of(const SceneField& scene, double same) {
+  const Eigen::MatrixXd& points = scene.field.points;
+  if (points.cols() == 2) return horizontal_rows(points, same);
+  Eigen::MatrixXd flat(points.rows(), 2);
+  flat << points.col(0), points.col(2);
+  std::vector<FieldRow> rows = horizontal_rows(flat, same);
+  for (FieldRow& row : rows) {
+    double nearest = std::fabs(points(row.at.front(), 1));
+    for (const Eigen::Index k : row.at) nearest = std::min(nearest, std::fabs(points(k, 1)));
+    double side = 0;  // of two rows as near as each other, that of the first point
+    std::erase_if(row.at, [&](Eigen::Index k) {
+      const double y = points(k, 1);
+      if (std::fabs(y) > nearest + same) return true;
+      if (side == 0 && std::fabs(y) > same) side = y;
+      return side * y < 0;
+    });
+  }
+  return rows;
+}
+
 }  // namespace
 
 SceneField scene_field(Field field, const std::string& name, const LineOptions& options,
                        const std::string& where) {
-  if (field.points.cols() != 2) refuse_field(where, "is 3D; a field in two dimensions is needed");
   SceneField out;
+  const auto frame_of_field = field.attributes.find("frame");
+  out.rings = frame_of_field != field.attributes.end() &&
+              frame_of_field->second.find("rings") != std::string::npos;
+  if (out.rings) lay_out_rings(field);
+  const int dim = static_cast<int>(field.points.cols());
+  out.facts.dim = dim;
   out.name = name;
   const bool coarse = field_attribute(field, "method", where) == "coarse_graining";
   const std::string kernel = coarse ? field_attribute(field, "kernel", where) : "heaviside";
   const double width = field_number(field, "width", where);
-  out.kernel = make_kernel(kernel, width);
+  out.kernel = make_kernel(kernel, width, dim);
   out.seen = fmt::format("{}, {}, {:g} m", field_attribute(field, "method", where),
                          field_attribute(field, "kernel", where), width);
   if (is_heap_field(field)) {
@@ -108,9 +162,10 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
     const bool loaded = field.attributes.count("F") > 0;
     out.scene = loaded ? Scene::response : Scene::layer;
     out.facts.force = loaded ? field_number(field, "F", where) : std::nan("");
-    out.unit = loaded ? out.facts.force / out.facts.height : 1;
+    out.unit = loaded ? out.facts.force / std::pow(out.facts.height, dim - 1) : 1;
     const auto frame = field.attributes.find("frame");
-    if (frame != field.attributes.end() && frame->second == "packing" && options.origin.empty()) {
+    if (frame != field.attributes.end() && frame->second.compare(0, 7, "packing") == 0 &&
+        options.origin.empty()) {
       refuse_field(
           where,
           "is in the packing's own axes, where models do not know their origin; give --origin "
@@ -118,7 +173,10 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
     }
   }
   if (!options.origin.empty()) {
-    field.points.rowwise() -= Eigen::RowVector2d(options.origin[0], options.origin[1]);
+    if (static_cast<int>(options.origin.size()) != dim)
+      refuse_field(where, fmt::format("--origin: found {} numbers, the field has {} coordinates",
+                                      options.origin.size(), dim));
+    field.points.rowwise() -= Eigen::Map<const Eigen::RowVectorXd>(options.origin.data(), dim);
   }
   out.field = std::move(field);
   return out;
@@ -127,8 +185,10 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
 std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& options,
                                 const std::string& where) {
   const double h = scene.facts.height;
-  const std::vector<FieldRow> rows = horizontal_rows(scene.field.points, kSameRow * h);
-  for (const std::string& component : options.components) {
+  const std::vector<FieldRow> rows = rows_of(scene, kSameRow * h);
+  const std::vector<std::string> components =
+      options.components.empty() ? std::vector<std::string>{vertical(scene)} : options.components;
+  for (const std::string& component : components) {
     if (scene.field.find(component) == nullptr) {
       refuse_field(where, fmt::format("has no column \"{}\"", component));
     }
@@ -158,7 +218,7 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
   }
   std::vector<FieldLine> out;
   const bool whole = scene.field.nx == 0 && rows.size() == 1;
-  for (const std::string& component : options.components) {
+  for (const std::string& component : components) {
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       // Rows of the three default heights of layers keep those heights as names.
       double share = 1 + chosen[k]->y / h;

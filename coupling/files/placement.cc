@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupling/averaging/average.h"
+#include "coupling/averaging/cone.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/region.h"
 #include "coupling/unknown_name.h"
@@ -14,6 +15,49 @@ namespace {
 
 const std::vector<std::string> kFrames{"layer", "heap", "packing"};
 
+Placement place_in_space(const dem::Snapshot& s, const std::string& frame,
+                         std::int64_t loaded_grain) {
+  if (frame == "heap") {
+    const ConeFrame cone = cone_frame(s);
+    PileFrame heap;
+    heap.apex_x = cone.apex_x;
+    heap.floor = cone.floor;
+    heap.height = cone.height;
+    heap.half_left = heap.half_right = cone.foot;
+    heap.repose_left_deg = heap.repose_right_deg = cone.repose_deg;
+    heap.volume_fraction = cone.volume_fraction;
+    heap.grain_density = cone.grain_density;
+    heap.gravity = cone.gravity;
+    heap.diameter = cone.diameter;
+    const double foot = cone.foot / cone.height;
+    return {[cone](const auto& points) { return cone.to_packing(points); },
+            -foot,
+            foot,
+            cone.height,
+            heap,
+            -foot,
+            foot};
+  }
+  const LayerFrame layer = layer_frame(s, loaded_grain);
+  if (frame == "packing")
+    return {[](const auto& points) { return points; },
+            layer.left,
+            layer.right,
+            layer.depth(),
+            {},
+            layer.front,
+            layer.back};
+  const double half_x = std::min(layer.load_x - layer.left, layer.right - layer.load_x),
+               half_y = std::min(layer.load_y - layer.front, layer.back - layer.load_y);
+  return {[layer](const auto& points) { return layer.to_packing(points); },
+          -half_x,
+          half_x,
+          layer.depth(),
+          {},
+          -half_y,
+          half_y};
+}
+
 }  // namespace
 
 void require_frame(const std::string& frame) {
@@ -21,14 +65,20 @@ void require_frame(const std::string& frame) {
     throw std::invalid_argument(unknown_name("frame", frame, kFrames));
 }
 
-std::string frame_text(const std::string& frame) {
+std::string frame_text(const std::string& frame, int dim, bool rings) {
+  if (dim == 3) {
+    const std::string of_rings = rings ? ", rings: radius, height" : "";
+    if (frame == "layer") return "models: load at (0, 0, 0), surface z = 0" + of_rings;
+    if (frame == "heap") return "heap: apex at (0, 0, 0), lengths over its height h" + of_rings;
+    return "packing" + of_rings;
+  }
   if (frame == "layer") return "models: load at (0, 0), surface y = 0";
   if (frame == "heap") return "heap: apex at (0, 0), lengths over its height h";
   return "packing";
 }
 
 Placement place(const dem::Snapshot& s, const std::string& frame, std::int64_t loaded_grain) {
-  if (frame == "packing" && s.dim == 3) return {[](const auto& points) { return points; }, 0, 0, 0};
+  if (s.dim == 3) return place_in_space(s, frame, loaded_grain);
   const LayerFrame layer = layer_frame(s, loaded_grain);
   if (frame == "heap") {
     const PileFrame heap = pile_frame(s);
@@ -48,14 +98,21 @@ Eigen::MatrixXd Span::grid(int columns, int rows) const {
   return grid_points(left, right, columns, bottom, top, rows);
 }
 
-Span span_of(const dem::Snapshot& snapshot, const std::string& frame, double left, double right,
+Eigen::MatrixXd Span::grid(int columns, int rows, int layers) const {
+  return box_points({left, front, bottom}, {right, back, top}, columns, rows, layers);
+}
+
+Span span_of(const dem::Snapshot& snapshot, const std::string& frame, const Span& sides,
              double depth) {
-  if (snapshot.dim == 3)
-    throw std::invalid_argument("the snapshot is 3D; give --points with x,y,z and --frame packing");
-  if (frame == "heap") return {left, right, -1, 0};
-  if (frame != "packing") return {left, right, -depth, 0};
-  const double floor = layer_frame(snapshot).floor;
-  return {left, right, floor, floor + depth};
+  Span out = sides;
+  if (frame == "packing") {
+    out.bottom = layer_frame(snapshot).floor;
+    out.top = out.bottom + depth;
+  } else {
+    out.bottom = frame == "heap" ? -1 : -depth;
+    out.top = 0;
+  }
+  return out;
 }
 
 }  // namespace grainfield::coupling

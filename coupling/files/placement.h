@@ -15,29 +15,33 @@ struct Placement {
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> to_packing;
   double left = 0, right = 0;  ///< m; in frame "heap" over its height
   double depth = 0;            ///< height of the layer or heap, m
-  PileFrame heap = {};         ///< frame "heap" only
+  PileFrame heap = {};         ///< frame "heap" only; of a cone both flanks alike
+  double front = 0, back = 0;  ///< in space: as left and right, along y
 };
 
 /// Throws std::invalid_argument with the nearest name unless it is layer, heap or packing.
 void require_frame(const std::string& frame);
 /// For people and for compare: what the coordinates of a field in this frame are.
-std::string frame_text(const std::string& frame);
+std::string frame_text(const std::string& frame, int dim = 2, bool rings = false);
 
-/// `loaded_grain`: id of the grain below which x = 0 lies in frame "layer"; -1: the snapshot's own,
-/// or without one the middle. Throws std::invalid_argument where the packing has no layer or heap
-/// to be measured.
+/// `loaded_grain`: id of the grain below which x = 0 (in space also y = 0) lies in frame "layer";
+/// -1: the snapshot's own, or without one the middle. Of spheres: layer.h and cone.h. Throws
+/// std::invalid_argument where the packing has no layer or heap to be measured.
 Placement place(const dem::Snapshot& snapshot, const std::string& frame,
                 std::int64_t loaded_grain = -1);
 
-/// A rectangle over a packing, in the frame.
+/// A rectangle (in space a box) over a packing, in the frame.
 struct Span {
   double left = 0, right = 0, bottom = 0, top = 0;
+  double front = 0, back = 0;  ///< in space
 
   Eigen::MatrixXd grid(int columns, int rows) const;
+  /// In space, x fastest, then y.
+  Eigen::MatrixXd grid(int columns, int rows, int layers) const;
 };
 
-/// Throws std::invalid_argument in 3D.
-Span span_of(const dem::Snapshot& snapshot, const std::string& frame, double left, double right,
+/// `sides`: left, right, front and back, which it keeps.
+Span span_of(const dem::Snapshot& snapshot, const std::string& frame, const Span& sides,
              double depth);
 
 }  // namespace grainfield::coupling

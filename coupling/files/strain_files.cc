@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <utility>
 
 #include "coupling/averaging/layer.h"
@@ -12,6 +13,8 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr double kWidth = 3;  // mean diameters: a circle of some thirty grains
+// Of a grid where none is asked for, in the plane and in space.
+constexpr int kStrainColumns = 81, kStrainRows = 31, kStrainSide = 21;
 
 }  // namespace
 
@@ -24,22 +27,36 @@ StrainOutcome strain_files(const StrainRequest& request) {
   const std::int64_t loaded = before.loaded_grain >= 0 ? before.loaded_grain : after.loaded_grain;
   const Placement placed = place(before, request.frame, loaded);
   const bool grid = request.points.size() == 0;
-  const Eigen::MatrixXd points =
-      grid ? span_of(before, request.frame, placed.left, placed.right, placed.depth)
-                 .grid(request.nx, request.ny)
-           : request.points;
+  int nx = request.nx, ny = request.ny, nz = request.nz;
+  if (grid && nx > 0 && (before.dim == 3) != (nz > 0))
+    throw std::invalid_argument(fmt::format(
+        "--grid: found {} x {}{}, allowed: COLUMNSxROWS{}, the snapshot is {}D", nx, ny,
+        nz > 0 ? fmt::format(" x {}", nz) : "", before.dim == 3 ? "xLAYERS" : "", before.dim));
+  if (nx == 0) {
+    nx = before.dim == 2 ? kStrainColumns : kStrainSide;
+    ny = before.dim == 2 ? kStrainRows : kStrainSide;
+    nz = before.dim == 2 ? 0 : kStrainSide;
+  }
+  const auto on_grid = [&] {
+    const Span span =
+        span_of(before, request.frame, {placed.left, placed.right, 0, 0, placed.front, placed.back},
+                placed.depth);
+    return before.dim == 2 ? span.grid(nx, ny) : span.grid(nx, ny, nz);
+  };
+  const Eigen::MatrixXd points = grid ? on_grid() : request.points;
   StrainResult found = strain(before, after, placed.to_packing(points), options);
   StrainOutcome out;
   out.report = found.report();  // names places in the packing
   out.field = std::move(found.field);
   out.field.points = points;
-  out.field.nx = grid ? request.nx : 0;
-  out.field.ny = grid ? request.ny : 0;
+  out.field.nx = grid ? nx : 0;
+  out.field.ny = grid ? ny : 0;
+  out.field.nz = grid ? nz : 0;
   out.field.attributes["measure"] = options.measure;
   out.field.attributes["support"] = options.support;
   out.field.attributes["width"] = fmt::format("{}", options.width);
   out.field.attributes["h"] = fmt::format("{}", placed.depth);
-  out.field.attributes["frame"] = frame_text(request.frame);
+  out.field.attributes["frame"] = frame_text(request.frame, before.dim);
   return out;
 }
 

@@ -15,7 +15,8 @@ struct StrainRequest {
   std::string frame = "layer";  ///< as AverageRequest::frame; heights and apex are those before,
                                 ///< the load that of either state
   Eigen::MatrixXd points;       ///< in the frame; or empty
-  int nx = 81, ny = 31;         ///< grid over the packing, where points are empty
+  /// Grid over the packing, where points are empty; nz in space. 0: 81 x 31, in space 21 x 21 x 21.
+  int nx = 0, ny = 0, nz = 0;
 };
 
 struct StrainOutcome {

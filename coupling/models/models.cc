@@ -16,6 +16,7 @@
 #include "continuum/size.h"
 #include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
+#include "coupling/compare/smooth_space.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -28,9 +29,10 @@ Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, 
     if (!set.empty_outside) return stress(points);
     return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
   };
-  Eigen::MatrixXd out = set.seen == Seen::in_plane
-                            ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
-                            : smooth_along_x(nodes, set.points, *set.kernel);
+  Eigen::MatrixXd out =
+      set.points.cols() == 3       ? smooth_in_space(nodes, set.points, *set.kernel, depth)
+      : set.seen == Seen::in_plane ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
+                                   : smooth_along_x(nodes, set.points, *set.kernel);
   if (set.empty_outside) {
     const Eigen::MatrixXd here = stress(set.points);
     for (Eigen::Index p = 0; p < here.rows(); ++p) {
@@ -126,8 +128,9 @@ Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets) {
   const auto start = std::chrono::steady_clock::now();
   const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
-  // A half plane knows no base: below it the stresses go on.
-  const double depth = family_of(choice.name) == "half plane" ? 0 : facts.height;
+  // A half plane or space knows no base: below it the stresses go on.
+  const std::string family = family_of(choice.name);
+  const double depth = family == "half plane" || family == "half space" ? 0 : facts.height;
   std::vector<Eigen::MatrixXd> nodes;
   Eigen::Index total = 0;
   for (const auto& set : sets) {

@@ -34,7 +34,7 @@ void require_models(const std::vector<ModelChoice>& choices);
 std::string model_label(const ModelChoice& choice);
 
 /// How a model is seen at some points (models' frame).
-enum class Seen { exactly, in_plane, along_x };
+enum class Seen { exactly, in_plane, along_x };  // in_plane: of points in space, over space
 
 struct PointSet {
   Eigen::MatrixXd points;

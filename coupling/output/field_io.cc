@@ -41,9 +41,11 @@ void check(const NamedFields& fields) {
   for (const auto& [name, field] : fields) {
     check_name(name);
     const auto n = field.points.rows();
-    if ((field.nx || field.ny) && static_cast<Eigen::Index>(field.nx) * field.ny != n)
-      throw std::invalid_argument(fmt::format("field \"{}\": a grid of {} x {} with {} points",
-                                              name, field.nx, field.ny, n));
+    if ((field.nx || field.ny || field.nz) &&
+        static_cast<Eigen::Index>(field.nx) * field.ny * std::max(field.nz, 1) != n)
+      throw std::invalid_argument(
+          fmt::format("field \"{}\": a grid of {} x {}{} with {} points", name, field.nx, field.ny,
+                      field.nz > 0 ? fmt::format(" x {}", field.nz) : "", n));
     for (const Column& column : field.columns) {
       check_name(column.name);
       if (column.samples.size() != 0 &&
@@ -78,6 +80,7 @@ void write_one(hid_t root, const std::string& name, const Field& field) {
   h5::write_attribute(group, "dim", dim);
   h5::write_attribute(group, "nx", field.nx);
   h5::write_attribute(group, "ny", field.ny);
+  if (field.nz > 0) h5::write_attribute(group, "nz", field.nz);
   h5::write_attribute(group, "realizations", field.realizations);
   for (const auto& [key, value] : field.attributes)
     h5::write_attribute(group, user_attribute + key, value);
@@ -172,6 +175,7 @@ Field read_field(const std::string& file, const std::string& name) {
       points.data(), static_cast<Eigen::Index>(points.size()) / dim, dim);
   field.nx = number_of(group, "nx", 0, where);
   field.ny = number_of(group, "ny", 0, where);
+  if (h5::has_attribute(group, "nz")) field.nz = number_of(group, "nz", 0, where);
   field.realizations = number_of(group, "realizations", 1, where);
   for (const std::string& key : h5::text_attributes(group))
     if (key.rfind(user_attribute, 0) == 0)

@@ -42,24 +42,26 @@ std::string xdmf(const std::string& h5_name, const NamedFields& fields) {
   for (const auto& [name, field] : fields) {
     const std::string base = h5_name + ":/" + name + "/";
     const std::string count = std::to_string(field.points.rows());
-    const bool structured = field.nx > 1 && field.ny > 1 && field.points.cols() == 2;
+    const bool space = field.points.cols() == 3;
+    const bool structured = field.nx > 1 && field.ny > 1 && (space ? field.nz > 0 : field.nz == 0);
+    std::string shape = std::to_string(field.ny) + " " + std::to_string(field.nx);
+    if (space) shape = std::to_string(field.nz) + " " + shape;
     pugi::xml_node grid = all.append_child("Grid");
     put(grid, "Name", name);
     put(grid, "GridType", "Uniform");
     pugi::xml_node topology = grid.append_child("Topology");
     if (structured) {
-      put(topology, "TopologyType", "2DSMesh");
-      put(topology, "Dimensions", std::to_string(field.ny) + " " + std::to_string(field.nx));
+      put(topology, "TopologyType", space ? "3DSMesh" : "2DSMesh");
+      put(topology, "Dimensions", shape);
     } else {
       put(topology, "TopologyType", "Polyvertex");
       put(topology, "NumberOfElements", count);
       put(topology, "NodesPerElement", "1");
     }
     pugi::xml_node geometry = grid.append_child("Geometry");
-    put(geometry, "GeometryType", field.points.cols() == 3 ? "XYZ" : "XY");
+    put(geometry, "GeometryType", space ? "XYZ" : "XY");
     add_data(geometry, count + " " + std::to_string(field.points.cols()), base + "points");
-    const std::string dimensions =
-        structured ? std::to_string(field.ny) + " " + std::to_string(field.nx) : count;
+    const std::string& dimensions = structured ? shape : count;
     for (const Column& column : field.columns) {
       add_column(grid, column.name, dimensions, base + "value/" + column.name);
       if (column.error.size())

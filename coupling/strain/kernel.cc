@@ -21,7 +21,7 @@ class KernelGradient : public StrainMeasure {
   KernelGradient(const GrainMotion& motion, const StrainOptions& options)
       : motion_(motion),
         options_(options),
-        kernel_(make_kernel(options.support, options.width)),
+        kernel_(make_kernel(options.support, options.width, motion.dim)),
         grains_(motion.position, "circle", kernel_->range()) {}
 
   GradientFit at(const Eigen::VectorXd& point) const override {

@@ -10,10 +10,10 @@
 namespace grainfield::coupling {
 
 std::unique_ptr<StrainMeasure> make_liao(const GrainMotion& motion, const StrainOptions& options) {
-  if (motion.dim != 2)
+  if (!motion.turns)
     throw std::invalid_argument(
-        "strain measure liao needs the grains' rotations, which 3D snapshots do not hold; use "
-        "cambou");
+        "strain measure liao needs the grains' rotations, and neither snapshot tells an "
+        "orientation; use cambou");
   return std::make_unique<BranchFit>(motion, motion.slip, options);
 }
 

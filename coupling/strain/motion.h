@@ -17,11 +17,13 @@ struct GrainMotion {
   Eigen::MatrixXd branch;         ///< l = r_pc - r_qc, from the centroid of p to that of q, m
   Eigen::MatrixXd relative;       ///< du_q - du_p (Roul 2.52), m
   Eigen::MatrixXd slip;           ///< the same of the two bodies' points at the contact: with spins
-                                  ///< (Roul 2.69), m; empty in 3D
+                                  ///< (Roul 2.69), m
+  bool turns = true;              ///< false: spheres of which no state tells an orientation
 };
 
-/// Turns of the grains are taken modulo a full turn, nearest to zero. Throws std::invalid_argument
-/// as require_same_grains().
+/// Turns of the grains are taken modulo a full turn, nearest to zero; of spheres as the vector
+/// along the axis of the turn from one orientation to the other. Throws std::invalid_argument as
+/// require_same_grains().
 GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after);
 
 }  // namespace grainfield::coupling

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "coupling/statistics/least_squares.h"
 
@@ -12,12 +13,16 @@ Neighbourhood::Neighbourhood(const Eigen::MatrixXd& places, const std::string& s
     : places_(places),
       square_(support == "square"),
       reach_(reach),
-      cells_(places.leftCols(2), 0, places.rows(), reach) {}
+      cells_(PointCells<2>({}, 0, 0, reach)) {
+  if (places.cols() == 3)
+    cells_ = PointCells<3>(places, 0, places.rows(), reach);
+  else
+    cells_ = PointCells<2>(places, 0, places.rows(), reach);
+}
 
 std::vector<Eigen::Index> Neighbourhood::around(const Eigen::VectorXd& point) const {
   std::vector<Eigen::Index> inside;
-  const Eigen::Vector2d at = point.head<2>(), reach = Eigen::Vector2d::Constant(reach_);
-  cells_.near(at - reach, at + reach, [&](Eigen::Index k) {
+  const auto look_at = [&](Eigen::Index k) {
     double squares = 0, largest = 0;
     for (Eigen::Index axis = 0; axis < point.size(); ++axis) {
       const double d = std::abs(places_(k, axis) - point[axis]);
@@ -25,7 +30,14 @@ std::vector<Eigen::Index> Neighbourhood::around(const Eigen::VectorXd& point) co
       largest = std::max(largest, d);
     }
     if (square_ ? largest < reach_ : squares < reach_ * reach_) inside.push_back(k);
-  });
+  };
+  std::visit(
+      [&](const auto& cells) {
+        using Vector = typename std::decay_t<decltype(cells)>::Vector;
+        const Vector at = point, reach = Vector::Constant(reach_);
+        cells.near(at - reach, at + reach, look_at);
+      },
+      cells_);
   return inside;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "coupling/averaging/point_cells.h"
@@ -22,7 +23,7 @@ class Neighbourhood {
   const Eigen::MatrixXd& places_;
   bool square_;
   double reach_;
-  PointCells<2> cells_;  // by the first two axes
+  std::variant<PointCells<2>, PointCells<3>> cells_;
 };
 
 /// The chosen rows of a matrix.

@@ -55,7 +55,7 @@ struct StrainResult {
 /// those of `before`. Fixed grains and walls belong to the apparatus and give nothing. `points`: n
 /// x 2 (3D: n x 3), m. Throws std::invalid_argument "snapshots do not belong together: ..." unless
 /// both hold the same grains (id, radius, outline, fixedness), for bad options, and for measure
-/// liao in 3D (snapshots carry no rotations there).
+/// liao where no 3D snapshot tells an orientation.
 StrainResult strain(const dem::Snapshot& before, const dem::Snapshot& after,
                     const Eigen::MatrixXd& points, const StrainOptions& options);
 

@@ -129,9 +129,6 @@ TEST(Average, ThreeDimensions) {
   }
   const std::string start = "average " + written(folder, s, "s.h5") + " -o " + (folder / "f.h5");
   const std::string points = folder.write("p.csv", "x,y,z\n1,1,1\n");
-  expect_refusal(program(start), "3D");
-  expect_refusal(program(start + " --frame packing"),
-                 "the snapshot is 3D; give --points with x,y,z and --frame packing");
   const Output out = program(start +
                              " --frame packing --method particle_centre --kernel square "
                              "--width 1.5 --points " +

@@ -30,7 +30,8 @@ TEST(Region, KernelShareIsItsAreaInside) {
     // Chords of a disk end with square roots, which Gauss points see to a part in a thousand.
     EXPECT_NEAR(region.share(*kernel, at, false), area, 2e-3);
   }
-  EXPECT_NEAR(region.share(*make_kernel("lucy", 0.005), {0.06, 0.03}, false), 1, 1e-5);
+  EXPECT_NEAR(region.share(*make_kernel("lucy", 0.005), Eigen::Vector2d(0.06, 0.03), false), 1,
+              1e-5);
 }
 
 TEST(Region, HeapEndsAtItsSlopes) {

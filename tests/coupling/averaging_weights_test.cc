@@ -286,15 +286,6 @@ TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
   EXPECT_EQ(refusal([&] { balance_residual(s, p, o, 0.1, 3); }),
             "differences of order 3 for the balance; known: 2, 4");
   s.dim = 3;
-  const Eigen::MatrixXd q = Eigen::MatrixXd::Zero(1, 3);
-  EXPECT_EQ(refusal([&] { average(s, q, o); }),
-            "the snapshot is 3D; area_exact clips areas and needs a 2D one");
-  o = options("coarse_graining", "lucy", 1);
-  o.free_surface = "normalised";
-  EXPECT_EQ(refusal([&] { average(s, q, o); }),
-            "the snapshot is 3D; a normalised free surface needs a 2D one");
-  EXPECT_EQ(refusal([&] { cut_force(s, 0, options("coarse_graining", "lucy", 1)); }),
-            "the snapshot is 3D; a 2D one is needed");
   EXPECT_EQ(refusal([&] { heap_frame(s); }), "the snapshot is 3D; a 2D one is needed");
   EXPECT_EQ(refusal([&] { cut_points(0, 1, 3, {}); }), "horizontal cuts without heights");
   EXPECT_EQ(refusal([&] { segment_points(Eigen::Vector2d(0, 0), Eigen::Vector3d(0, 0, 0), 3); }),

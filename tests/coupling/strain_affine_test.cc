@@ -1,6 +1,7 @@
 // An affine displacement imposed on random packings comes back to round-off from every measure.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "coupling/strain/strain.h"
@@ -99,6 +100,36 @@ TEST(StrainAffine, InThreeDimensions) {
       EXPECT_NEAR(r.field.find("rotation_x")->value[0], (g(2, 1) - g(1, 2)) / 2, round_off);
       EXPECT_NEAR(r.field.find("rotation_y")->value[0], (g(0, 2) - g(2, 0)) / 2, round_off);
       EXPECT_NEAR(r.field.find("rotation_z")->value[0], (g(1, 0) - g(0, 1)) / 2, round_off);
+    }
+  }
+}
+
+// Spheres that turn by the rotation of an affine motion: Liao sees the strain alone; that turn by
+// more, minus the rest. Full turns do not count.
+TEST(StrainAffine, LiaoInThreeDimensions) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    dem::Random random(seed);
+    dem::Snapshot before = random_packing(seed, 6, 6, 3);
+    const auto orient = [](dem::Grain& g, const Eigen::Quaterniond& q) {
+      g.orientation = {q.w(), q.x(), q.y(), q.z()};
+    };
+    for (dem::Grain& g : before.grains)
+      orient(g, Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
+                                   random.uniform(-1, 1), random.uniform(0.1, 1))
+                    .normalized());
+    const Matrix3d g = random_gradient(random, 3), spin = (g - g.transpose()) / 2;
+    for (const double more : {0.0, 1.0}) {
+      dem::Snapshot after = moved(before, [&](const dem::Vec3& x) { return dem::Vec3(g * x); });
+      const dem::Vec3 turn = (1 + more) * dem::Vec3(spin(2, 1), spin(0, 2), spin(1, 0));
+      for (dem::Grain& grain : after.grains) {
+        const auto& o = grain.orientation;
+        orient(grain, Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())) *
+                          Eigen::Quaterniond(-o[0], -o[1], -o[2], -o[3]));
+      }
+      const Eigen::MatrixXd points = Eigen::MatrixXd::Constant(1, 3, 3 * d);
+      const Matrix3d seen =
+          gradient_of(strain(before, after, points, options_for("liao")).field, 0, 3);
+      EXPECT_LT((seen - ((g + g.transpose()) / 2 - more * spin)).norm(), 1e-12) << seed;
     }
   }
 }

@@ -299,7 +299,8 @@ TEST(StrainErrors, Options) {
   const dem::Snapshot ball = random_packing(1, 4, 4, 3);
   good.measure = "liao";
   EXPECT_EQ(text_of([&] { strain(ball, ball, Eigen::MatrixXd::Zero(1, 3), good); }),
-            "strain measure liao needs the grains' rotations, which 3D snapshots do not hold; use "
+            "strain measure liao needs the grains' rotations, and neither snapshot tells an "
+            "orientation; use "
             "cambou");
 }
 

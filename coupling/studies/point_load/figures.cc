@@ -22,6 +22,7 @@ std::vector<SummaryKey> point_load_figures() {
       {"load.no_rearrangement", "-", "share of realizations without a gained or lost contact"},
       {"layer.depth", "m", "h of the models: mean over realizations"},
       {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
+      {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions"},
       {"layer.mean_diameter", "m", "of the moving grains"},
   };
 }

@@ -1,0 +1,115 @@
+#include "coupling/averaging/cone.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "continuum/constants.h"
+#include "coupling/averaging/layer.h"
+#include "coupling/averaging/roof.h"
+#include "coupling/statistics/least_squares.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kLeastShare = 0.15, kMostShare = 0.85;  // of the height: where the flank is a line
+constexpr int kLeastColumns = 6;
+
+// The free grains that touch something; all of them where nothing does.
+dem::Snapshot touching(const dem::Snapshot& s) {
+  std::vector<bool> touches(s.grains.size(), s.contacts.empty());
+  for (const dem::Contact& c : s.contacts) {
+    touches[static_cast<std::size_t>(c.i)] = true;
+    if (c.j >= 0) touches[static_cast<std::size_t>(c.j)] = true;
+  }
+  dem::Snapshot out;
+  out.dim = 3;
+  for (std::size_t g = 0; g < s.grains.size(); ++g)
+    if (touches[g] && !s.grains[g].fixed) out.grains.push_back(s.grains[g]);
+  return out;
+}
+
+struct Flank {
+  double top = kNan, slope = kNan;  // height above the floor on the axis, fall per length
+};
+
+Flank flank_of(const Roof& roof, const ConeFrame& frame) {
+  std::vector<Eigen::Vector2d> surface;
+  for (Eigen::Index i = 0; i < roof.heights().rows(); ++i)
+    for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
+      const double height = roof.heights()(i, j) - frame.floor, share = height / frame.height;
+      if (share > kLeastShare && share < kMostShare)
+        surface.emplace_back(
+            std::hypot(roof.middle(i, j).x() - frame.apex_x, roof.middle(i, j).y() - frame.apex_y),
+            height);
+    }
+  if (surface.size() < kLeastColumns) return {};
+  const auto n = static_cast<Eigen::Index>(surface.size());
+  Eigen::MatrixXd line(n, 2), heights(n, 1);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    line.row(k) << 1, -surface[static_cast<std::size_t>(k)].x();
+    heights(k, 0) = surface[static_cast<std::size_t>(k)].y();
+  }
+  const Eigen::MatrixXd solved = least_squares(line, heights).solution;
+  if (!(solved(1, 0) > 0)) return {};
+  return {solved(0, 0), solved(1, 0)};
+}
+
+double fraction_inside(const dem::Snapshot& grains, const ConeFrame& frame, const Flank& flank,
+                       const Roof& roof) {
+  const double d = frame.diameter, bottom = d;
+  const double top = flank.top - 2 * d * std::hypot(1.0, flank.slope), height = top - bottom;
+  double volume = 0;
+  if (height > 4 * d) {
+    for (const dem::Grain& g : grains.grains) {
+      const double z = g.position.z() - frame.floor;
+      const double r = std::hypot(g.position.x() - frame.apex_x, g.position.y() - frame.apex_y);
+      if (z > bottom && z < top - flank.slope * r) volume += g.volume;
+    }
+    const double radius = height / flank.slope;
+    return volume / (std::numbers::pi / 3 * radius * radius * height);
+  }
+  for (const dem::Grain& g : grains.grains) volume += g.volume;
+  const Eigen::Vector2d column = roof.middle(1, 1) - roof.middle(0, 0);
+  return volume / ((roof.heights().array() - frame.floor).sum() * column.prod());
+}
+
+}  // namespace
+
+Eigen::MatrixXd ConeFrame::to_packing(const Eigen::MatrixXd& scaled) const {
+  return (height * scaled).rowwise() + Eigen::RowVector3d(apex_x, apex_y, floor + height);
+}
+
+ConeFrame cone_frame(const dem::Snapshot& heap) {
+  if (heap.dim != 3) throw std::invalid_argument("the snapshot is 2D; a cone needs a 3D one");
+  const LayerFrame layer = layer_frame(heap);
+  const dem::Snapshot grains = touching(heap);
+  ConeFrame frame;
+  frame.floor = layer.floor;
+  frame.diameter = mean_diameter(grains);
+  frame.gravity = heap.gravity.norm();
+  double mass = 0, volume = 0, reach = 0;
+  Eigen::Vector2d centroid(0, 0);
+  for (const dem::Grain& g : grains.grains) {
+    mass += g.mass;
+    volume += g.volume;
+    centroid += g.volume * g.position.head<2>();
+  }
+  centroid /= volume;
+  frame.apex_x = centroid.x();
+  frame.apex_y = centroid.y();
+  frame.grain_density = mass / volume;
+  for (const dem::Grain& g : grains.grains)
+    reach = std::max(reach, (g.position.head<2>() - centroid).norm() + g.radius);
+  const Roof roof(grains, {centroid.x() - reach, centroid.y() - reach, frame.floor},
+                  {centroid.x() + reach, centroid.y() + reach, 0}, 2 * frame.diameter);
+  frame.height = roof.highest() - frame.floor;
+  const Flank flank = flank_of(roof, frame);
+  frame.foot = std::isfinite(flank.slope) ? flank.top / flank.slope : reach;
+  frame.repose_deg = std::atan(flank.slope) / kDegree;
+  frame.volume_fraction = fraction_inside(grains, frame, flank, roof);
+  return frame;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,15 @@
+// A field as a table of text.
+#pragma once
+#include <string>
+
+#include "coupling/field.h"
+
+namespace grainfield::coupling {
+
+/// One row per point: x,y (in space x,y,z; of rings r,z), then every column, and COLUMN_error where
+/// there are several realizations; with all digits, nan where there is no value.
+std::string field_csv(const Field& field);
+/// Writes it, complete or not at all. Throws as write_fields (field_io.h).
+void write_field_csv(const std::string& file, const Field& field);
+
+}  // namespace grainfield::coupling
