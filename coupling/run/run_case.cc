@@ -277,7 +277,11 @@ std::vector<std::string> realization_files(const SweepCase& member, const Workpl
 }
 
 StudyResult analyse(const SweepCase& member, const Workplace& place, int threads) {
-  return study_of(member.value).analyse(member.value, realization_files(member, place), threads);
+  const Study& study = study_of(member.value);
+  const auto start = Clock::now();
+  StudyResult out = study.analyse(member.value, realization_files(member, place), threads);
+  if (study.has_grains()) out.summary["time.analysis_s"] = seconds_since(start);
+  return out;
 }
 
 // Averages, models and outputs of all members. `times` adds what only the run knows.

@@ -57,7 +57,9 @@ Report plain_page(const StudyResult& result, const Realization*) {
   }
   std::vector<std::string> keys;
   for (const auto& [key, unused] : result.summary) {
-    if (!key.starts_with("case.") && key != "verdict.sentence") keys.push_back(key);
+    const bool aside = key.starts_with("case.") || key.starts_with("time.") ||
+                       key.starts_with("memory.") || key == "verdict.sentence";
+    if (!aside) keys.push_back(key);
   }
   for (const auto& [title, rows] : {std::pair{"Figures", figure_rows(result.summary, keys)},
                                     {"How it was made", origin_rows(result)}}) {
@@ -127,6 +129,14 @@ std::string hash_text(const std::string& text) {
     hash *= 0x100000001b3ULL;
   }
   return fmt::format("{:016x}", hash);
+}
+
+StudyResult begin_result(const Case& value, const std::vector<std::string>& realizations) {
+  StudyResult out;
+  out.value = value;
+  out.realizations = realizations;
+  add_identity(out.summary, value);
+  return out;
 }
 
 void add_identity(Summary& summary, const Case& value) {

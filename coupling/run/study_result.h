@@ -71,6 +71,8 @@ ReportRows origin_rows(const StudyResult& result);
 
 /// FNV-1a of a text, 16 hexadecimal digits.
 std::string hash_text(const std::string& text);
+/// What every study begins with: the case, its realizations, the keys of add_identity.
+StudyResult begin_result(const Case& value, const std::vector<std::string>& realizations);
 /// Keys that every study has: case, version, ensemble.
 void add_identity(Summary& summary, const Case& value);
 /// Keys that follow from the comparison, and the models' figures.

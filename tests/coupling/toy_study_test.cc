@@ -50,10 +50,7 @@ double base_force_over_weight(const dem::Snapshot& pile) {
 }
 
 StudyResult analyse_stack(const Case& value, const std::vector<std::string>& files, int) {
-  StudyResult out;
-  out.value = value;
-  out.realizations = files;
-  add_identity(out.summary, value);
+  StudyResult out = begin_result(value, files);
   std::map<std::string, std::vector<double>> figures;
   for (const std::string& file : files) {
     figures["stack.base_force_over_weight"].push_back(

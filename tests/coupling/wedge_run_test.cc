@@ -10,7 +10,6 @@
 #include "coupling/heap/base_shape.h"
 #include "coupling/heap/slip_lines.h"
 #include "coupling/output/triangles_vtu.h"
-#include "coupling/studies/wedge/study.h"
 #include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;

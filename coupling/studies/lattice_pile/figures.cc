@@ -1,4 +1,4 @@
-#include "coupling/studies/lattice_pile/figures.h"
+#include "coupling/studies/lattice_pile/keys.h"
 
 namespace grainfield::coupling {
 

@@ -1,9 +1,9 @@
-#include "coupling/studies/lattice_pile/study.h"
+// Lattice piles: the forces of every base disk beside Liffman's closed forms.
+#include "coupling/case/study.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -12,7 +12,7 @@
 #include "coupling/models/models.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
-#include "coupling/studies/lattice_pile/figures.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
 #include "dem/packing/lattice_pile.h"
@@ -47,10 +47,7 @@ class LatticePileAnalysis {
   StudyResult run() {
     measure();
     close();
-    StudyResult out;
-    out.value = value_;
-    out.realizations = files_;
-    add_identity(out.summary, value_);
+    StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, figures_);
     add_own_figures(out.summary);
     add_comparison_of_models(out);
@@ -269,16 +266,15 @@ class LatticePileAnalysis {
   std::map<std::string, std::vector<double>> figures_;
 };
 
-}  // namespace
-
+// N and H of the base disks (means over realizations) against the closed form of hard close-packed
+// disks, the line model, and the case's models. Throws what models throw.
 StudyResult analyse_lattice_pile(const Case& value, const std::vector<std::string>& realizations,
                                  int) {
-  const auto start = std::chrono::steady_clock::now();
   StudyResult out = LatticePileAnalysis(value, realizations).run();
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
+
+}  // namespace
 
 Study lattice_pile_study() {
   Study out;

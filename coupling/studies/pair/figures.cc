@@ -1,4 +1,4 @@
-#include "coupling/studies/pair/figures.h"
+#include "coupling/studies/pair/keys.h"
 
 namespace grainfield::coupling {
 

@@ -1,15 +1,15 @@
-#include "coupling/studies/pair/study.h"
+// The study "pair": two bodies that collide, or one led against the other, to see what a contact
+// law does with its parameters.
+#include "coupling/case/study.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/study_result.h"
-#include "coupling/studies/pair/figures.h"
 #include "coupling/studies/pair/keys.h"
 #include "coupling/studies/pair/page.h"
 #include "coupling/studies/pair/tables.h"
@@ -173,7 +173,6 @@ std::vector<OverviewColumn> overview_of(const dem::PairSetup& setup) {
 
 StudyResult analyse_pair(const Case& value, const std::vector<std::string>& files,
                          int /*threads*/) {
-  const auto start = std::chrono::steady_clock::now();
   const Collected all = collect(files);
   PairResults pair;
   pair.setup = value.get<dem::PairSetup>();
@@ -181,10 +180,7 @@ StudyResult analyse_pair(const Case& value, const std::vector<std::string>& file
   pair.impacts = pair_impacts(value.get<dem::PairSetup>(), all.figures);
   pair.loops = joined(all.loops);
 
-  StudyResult out;
-  out.value = value;
-  out.realizations = files;
-  add_identity(out.summary, value);
+  StudyResult out = begin_result(value, files);
   add_figures(out.summary, all.figures);
   add_closed_forms(value.get<dem::PairSetup>(), out.summary);
   out.comparison.verdict.sentence = sentence_of(value, out.summary);
@@ -197,8 +193,6 @@ StudyResult analyse_pair(const Case& value, const std::vector<std::string>& file
   out.page = [pair](const StudyResult& result, const Realization* first) {
     return page_of(result, first, pair);
   };
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 

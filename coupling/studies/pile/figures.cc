@@ -1,4 +1,4 @@
-#include "coupling/studies/pile/figures.h"
+#include "coupling/studies/pile/keys.h"
 
 namespace grainfield::coupling {
 

@@ -1,4 +1,4 @@
-// Sections that the studies of piles share.
+// Sections that the studies of piles share, and their figures.
 #pragma once
 #include "coupling/case/study.h"
 
@@ -17,5 +17,8 @@ inline constexpr KeySection kFloorKeys{"floor", KeyRole::grains, declare_floor_k
 inline constexpr KeySection kSleepKeys{"sleep", KeyRole::grains, declare_sleep_keys};
 inline constexpr KeySection kChangeKeys{"change", KeyRole::grains, declare_change_keys};
 inline constexpr KeySection kHeapKeys{"heap", KeyRole::analysis, declare_heap_keys};
+
+/// Keys of its figures in summary.json.
+std::vector<SummaryKey> pile_figures();
 
 }  // namespace grainfield::coupling

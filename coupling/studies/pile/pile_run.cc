@@ -3,7 +3,6 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
-#include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/keys.h"
 
 namespace grainfield::coupling {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -31,10 +30,7 @@ class PileAnalysis {
 
   StudyResult run() {
     piles_.collect();
-    StudyResult out;
-    out.value = value_;
-    out.realizations = files_;
-    add_identity(out.summary, value_);
+    StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, piles_.figures());
     add_fields(out);
     add_comparison_of_models(out);
@@ -392,10 +388,7 @@ void check(const Case& value) {
 
 StudyResult analyse_pile(const Case& value, const std::vector<std::string>& realizations,
                          int threads) {
-  const auto start = std::chrono::steady_clock::now();
   StudyResult out = PileAnalysis(value, realizations, threads).run();
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "coupling/studies/pile_fields/figures.h"
+#include "coupling/studies/pile_fields/keys.h"
 
 namespace grainfield::coupling {
 

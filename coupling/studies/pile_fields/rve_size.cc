@@ -33,7 +33,7 @@ struct Step {
   double scatter = NAN;
 };
 
-struct Study {
+struct SizeSeries {
   std::vector<double> grains, radius;               // per size
   std::array<std::vector<Eigen::MatrixXd>, 3> raw;  // quantity, size: places x piles
   std::array<std::vector<Step>, 3> steps;           // quantity, size
@@ -41,7 +41,7 @@ struct Study {
   std::array<std::string, 3> why;
 };
 
-void measure(const PileSet& piles, Study& out) {
+void measure(const PileSet& piles, SizeSeries& out) {
   Eigen::MatrixXd places(kPlaces.size(), 2);
   const double half = (piles.mean(&PileFrame::half_left) + piles.mean(&PileFrame::half_right)) /
                       (2 * piles.height());
@@ -86,7 +86,7 @@ double centre(const Eigen::MatrixXd& m, Eigen::Index place) {
   return median_of({row.begin(), row.end()});
 }
 
-void compare(Study& out, double tolerance) {
+void compare(SizeSeries& out, double tolerance) {
   for (std::size_t s = 0; s < out.grains.size(); ++s) {
     const auto cells = out.raw[2][s].array().isFinite().count();
     out.grains[s] = cells > 0 ? out.grains[s] / static_cast<double>(cells) : NAN;
@@ -140,7 +140,7 @@ void compare(Study& out, double tolerance) {
 }  // namespace
 
 TopicResult rve_size_of_piles(const PileSet& piles) {
-  Study study;
+  SizeSeries study;
   measure(piles, study);
   const double tolerance = piles.setup().get<FieldsSetup>().tolerance;
   compare(study, tolerance);

@@ -1,9 +1,10 @@
-#include "coupling/studies/pile_fields/study.h"
+// Study pile-fields: what a pile is as a continuum, topic by topic (topic.h). It pours piles as
+// study pile does, or takes finished ones from grains.files, and changes their gravity.
+#include "coupling/case/study.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 
 #include "coupling/averaging/base.h"
@@ -12,7 +13,6 @@
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_run.h"
 #include "coupling/studies/pile_fields/drawing.h"
-#include "coupling/studies/pile_fields/figures.h"
 #include "coupling/studies/pile_fields/keys.h"
 #include "coupling/studies/pile_fields/pile_set.h"
 #include "coupling/studies/pile_fields/setup.h"
@@ -166,11 +166,7 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
 }
 
 StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
-  const auto start = std::chrono::steady_clock::now();
-  StudyResult out;
-  out.value = value;
-  out.realizations = files;
-  add_identity(out.summary, value);
+  StudyResult out = begin_result(value, files);
   const PileSet piles(value, files, threads);
   add_heaps(piles, files, out.summary);
   out.comparison = pressures(piles);
@@ -197,8 +193,6 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
                                                      const Realization* first) {
     return page_of(result, first, change, *looked, gaps);
   };
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 

@@ -1,11 +1,12 @@
-#include "coupling/studies/pile_fit/study.h"
+// Study "pile-fit": stress models fitted to poured or finished piles, and ranked.
+#include "coupling/case/study.h"
 
-#include <chrono>
 #include <memory>
 
 #include "coupling/fit/figures.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/fit/setup.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/pile/pile_run.h"
 #include "coupling/studies/pile_fit/keys.h"
 #include "dem/study/setup.h"
@@ -29,13 +30,10 @@ dem::Outlook foresee(const Case& value, std::int64_t draws) {
 }
 
 StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
-  const auto start = std::chrono::steady_clock::now();
   StudyResult out =
       heap_result(value, heap_data(value.get<FitSetup>(), heaps_of_runs(files), threads), threads);
   out.realizations = files;
   add_identity(out.summary, value);
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 

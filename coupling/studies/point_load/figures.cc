@@ -1,4 +1,4 @@
-#include "coupling/studies/point_load/figures.h"
+#include "coupling/studies/point_load/keys.h"
 
 namespace grainfield::coupling {
 

@@ -1,4 +1,4 @@
-// Sections that the studies of loaded layers share.
+// Sections that the studies of loaded layers share, and their figures.
 #pragma once
 #include "coupling/case/study.h"
 
@@ -9,5 +9,8 @@ void declare_load_keys(SectionKeys s);
 
 inline constexpr KeySection kPackingKeys{"packing", KeyRole::grains, declare_packing_keys};
 inline constexpr KeySection kLoadKeys{"load", KeyRole::grains, declare_load_keys};
+
+/// Keys of its figures in summary.json.
+std::vector<SummaryKey> point_load_figures();
 
 }  // namespace grainfield::coupling

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,7 +18,6 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/realization_file.h"
-#include "coupling/studies/point_load/figures.h"
 #include "coupling/studies/point_load/keys.h"
 #include "coupling/studies/point_load/page.h"
 #include "dem/study/setup.h"
@@ -107,10 +105,7 @@ class PointLoadAnalysis {
 
   StudyResult run() {
     for (const auto& file : files_) add(read_realization(file));
-    StudyResult out;
-    out.value = value_;
-    out.realizations = files_;
-    add_identity(out.summary, value_);
+    StudyResult out = begin_result(value_, files_);
     add_fields(out);
     add_models(out);
     add_own_figures(out.summary);
@@ -287,10 +282,7 @@ class PointLoadAnalysis {
 
 StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
                                int threads, const ModelEvaluator& evaluate) {
-  const auto start = std::chrono::steady_clock::now();
   StudyResult out = PointLoadAnalysis(value, realizations, threads, evaluate).run();
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 

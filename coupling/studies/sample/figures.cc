@@ -1,4 +1,4 @@
-#include "coupling/studies/sample/figures.h"
+#include "coupling/studies/sample/keys.h"
 
 namespace grainfield::coupling {
 

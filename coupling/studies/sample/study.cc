@@ -1,14 +1,14 @@
-#include "coupling/studies/sample/study.h"
+// Samples of grains under compression and shear: their recorded states as tables and curves.
+#include "coupling/case/study.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
-#include "coupling/studies/sample/figures.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/sample/keys.h"
 #include "coupling/studies/sample/page.h"
 #include "coupling/studies/sample/state_figures.h"
@@ -204,15 +204,11 @@ std::map<std::string, std::vector<double>> engine_figures(const std::vector<std:
   return out;
 }
 
-}  // namespace
-
+// states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
+// spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
-  const auto start = std::chrono::steady_clock::now();
   const StateTable table(files);
-  StudyResult out;
-  out.value = value;
-  out.realizations = files;
-  add_identity(out.summary, value);
+  StudyResult out = begin_result(value, files);
   add_figures(out.summary, engine_figures(files));
   add_figures(out.summary, state_figures(table, value.get<dem::SampleSetup>().plan.deformation));
   out.comparison.realizations = static_cast<int>(files.size());
@@ -238,10 +234,10 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
                   {"first solid fraction", "sample.initial_solid_fraction", ""},
                   {"volumetric strain", "sample.volumetric_strain", ""},
                   {"inertial number", "sample.inertial_number", ""}};
-  out.summary["time.analysis_s"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
+
+}  // namespace
 
 Study sample_study() {
   Study out;

@@ -1,10 +1,12 @@
-#include "coupling/studies/solvers/elastic.h"
-
+// A finite-element model against its closed form, without grains. The first model takes the place
+// of the simulation in the tables; the others are compared with it.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/case/study.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/solvers/keys.h"
 #include "coupling/studies/solvers/models_only.h"
 #include "coupling/studies/solvers/setup.h"
@@ -60,16 +62,12 @@ Study elastic_study(const char* name, const char* meaning) {
     require_models(of_dimension(value), places_of(value).facts);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
-    return analyse_elastic(value);
+    return compare_models(value, of_dimension(value), places_of(value));
   };
   return out;
 }
 
 }  // namespace
-
-StudyResult analyse_elastic(const Case& value) {
-  return compare_models(value, of_dimension(value), places_of(value));
-}
 
 Study elastic_layer_study() {
   Study out = elastic_study("elastic-layer", "finite elements of a loaded layer, closed form");

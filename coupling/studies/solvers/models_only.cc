@@ -48,9 +48,7 @@ StudyResult compare_models(const Case& value, const std::vector<ModelChoice>& ch
                                            -depths.back(), -0.1 * depths.back(), kRows);
   sets.push_back({in_space(grid, dim)});
 
-  StudyResult out;
-  out.value = value;
-  add_identity(out.summary, value);
+  StudyResult out = begin_result(value, {});
   std::vector<Profile> profiles;
   std::vector<ModelProfiles> models;
   double seconds = 0;

@@ -1,10 +1,12 @@
-#include "coupling/studies/solvers/osl.h"
-
+// Oriented stress linearity as a field problem against its closed forms, without grains: on
+// horizontal lines through the heap (osl-wedge) or the layer (osl-layer).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/case/study.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/solvers/keys.h"
 #include "coupling/studies/solvers/models_only.h"
 #include "coupling/studies/solvers/setup.h"
@@ -46,16 +48,12 @@ Study osl_study(const char* name, const char* meaning) {
     require_models(value.models, places_of(value).facts);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
-    return analyse_osl(value);
+    return compare_models(value, value.models, places_of(value));
   };
   return out;
 }
 
 }  // namespace
-
-StudyResult analyse_osl(const Case& value) {
-  return compare_models(value, value.models, places_of(value));
-}
 
 Study osl_wedge_study() {
   Study out = osl_study("osl-wedge", "oriented stress linearity of a heap, solvers, closed form");

@@ -12,9 +12,9 @@
 #include "coupling/heap/base_shape.h"
 #include "coupling/heap/slip_lines.h"
 #include "coupling/models/models.h"
+#include "coupling/run/study_result.h"
 #include "coupling/studies/wedge/page.h"
 #include "coupling/studies/wedge/setup.h"
-#include "coupling/studies/wedge/study.h"
 
 namespace grainfield::coupling {
 
@@ -41,10 +41,14 @@ struct WedgeMember {
   double nearest_rel_l2 = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// All the models of a case on the same lines and points.
+/// All the models of a case on the same horizontal lines through the heap, and points. Where
+/// [wedge] lists histories, dilations or bases, every finite-element heap of the case is solved for
+/// all their combinations, and one without equilibrium is an entry of the table; else it fails the
+/// study.
 class WedgeAnalysis {
  public:
-  /// Finds the combinations that the case asks for. Throws std::invalid_argument naming the key.
+  /// Finds the combinations that the case asks for. Throws std::invalid_argument naming the key,
+  /// also for fewer than two models or no finite-element heap.
   explicit WedgeAnalysis(const Case& value);
   /// Evaluates, compares, writes down. Throws ComputationFailed where no heap has an equilibrium.
   StudyResult run();

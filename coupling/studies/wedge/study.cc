@@ -1,4 +1,6 @@
-#include "coupling/studies/wedge/study.h"
+// Elastic-plastic heaps beside the closed wedges, without grains: how they were laid, their
+// dilation and their base against what presses on the base.
+#include "coupling/case/study.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +12,6 @@
 #include "coupling/output/triangles_vtu.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/wedge/analysis.h"
-#include "coupling/studies/wedge/figures.h"
 #include "coupling/studies/wedge/keys.h"
 
 namespace grainfield::coupling {
@@ -23,9 +24,7 @@ StudyResult WedgeAnalysis::run() {
     throw continuum::ComputationFailed("no heap of the study has an equilibrium; the first: " +
                                        members_[first_heap()].failed);
   for (WedgeMember& member : members_) find_nearest(member);
-  StudyResult out;
-  out.value = value_;
-  add_identity(out.summary, value_);
+  StudyResult out = begin_result(value_, {});
   compare_with(*first, out);
   summarize(out);
   add_files(out);
@@ -138,8 +137,6 @@ void WedgeAnalysis::add_files(StudyResult& out) const {
   }
 }
 
-StudyResult analyse_wedge(const Case& value) { return WedgeAnalysis(value).run(); }
-
 Study wedge_study() {
   Study out;
   out.name = "wedge";
@@ -150,7 +147,7 @@ Study wedge_study() {
   out.fills = {"h", "rho_g", "phi_deg", "left_deg", "right_deg"};
   out.check = [](const Case& value) { WedgeAnalysis{value}; };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {
-    return analyse_wedge(value);
+    return WedgeAnalysis(value).run();
   };
   return out;
 }
