@@ -38,7 +38,7 @@ const std::vector<Room>& rooms() {
       {"studies/pile_fields",
        {"averaging", "case", "elastic_constants", "heap", "output", "report", "run", "statistics",
         "strain", "structure", "studies/pile"}},
-      {"studies/pile_fit", {"case", "fit", "studies/pile"}},
+      {"studies/pile_fit", {"case", "fit", "run", "studies/pile"}},
       {"studies/lattice_pile", {"case", "compare", "models", "output", "report", "run"}},
       {"studies/sample", {"averaging", "case", "compare", "output", "report", "run", "structure"}},
       {"studies/pair", {"case", "output", "report", "run"}},
