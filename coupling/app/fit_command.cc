@@ -60,6 +60,12 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
+  command
+      ->add_option("--coverage", request.coverage,
+                   "sizes N: how often intervals from N of the heaps hold the constants of the "
+                   "rest (coverage.md); takes long")
+      ->delimiter(',');
+  command->add_option("--draws", request.draws, "of --coverage, of each size; default 100");
   add_output(*command, request.folder, "folder; default results/fit-INPUT");
   add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {
@@ -87,6 +93,7 @@ void add_fit(CLI::App& app, Action& action) {
         note("warning: {}", text);
       }
       say("fitted to {}\n", shown(outcome.packings));
+      if (!outcome.coverage.empty()) say("{}", outcome.coverage);
       say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,
           printable_name(wanted.folder));
       return 0;

@@ -16,6 +16,16 @@ bool has(const Fit& fit, const std::string& name) {
                      [&](const FittedParameter& p) { return p.parameter.name == name; });
 }
 
+// Over the realizations left out; nan without.
+double jackknife(const Fit& fit, const std::function<double(const Eigen::VectorXd&)>& of) {
+  const Eigen::Index r = fit.left_out.cols();
+  if (r < 3) return kNan;
+  Eigen::VectorXd values(r);
+  for (Eigen::Index k = 0; k < r; ++k) values[k] = of(fit.left_out.col(k));
+  return std::sqrt((values.array() - values.mean()).square().sum() * static_cast<double>(r - 1) /
+                   static_cast<double>(r));
+}
+
 FittedParameter derived(const std::string& name, const std::string& unit, const Fit& fit,
                         const std::function<double(const Eigen::VectorXd&)>& of) {
   const auto n = static_cast<Eigen::Index>(fit.parameters.size());
@@ -23,7 +33,7 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
   for (Eigen::Index k = 0; k < n; ++k) {
     const FittedParameter& p = fit.parameters[static_cast<std::size_t>(k)];
     at[k] = p.value;
-    error[k] = p.error;
+    error[k] = p.covariance_error;
     drawn[k] = p.bootstrap_error;
   }
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -42,7 +52,9 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
   out.parameter.name = name;
   out.parameter.unit = unit;
   out.value = of(at);
-  out.error = spread(error);
+  out.covariance_error = spread(error);
+  out.jackknife_error = jackknife(fit, of);
+  out.error = std::isfinite(out.jackknife_error) ? out.jackknife_error : out.covariance_error;
   out.bootstrap_error = error.allFinite() ? spread(drawn) : kNan;
   out.low = out.high = kNan;
   return out;

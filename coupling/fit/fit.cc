@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "continuum/constants.h"
+#include "coupling/fit/intervals.h"
 #include "coupling/statistics/bootstrap.h"
 
 namespace grainfield::coupling {
@@ -154,7 +154,7 @@ Eigen::VectorXd predict(const FitData& data, const FitModel& model,
 Eigen::VectorXd best_parameters(const FitData& data, const Eigen::VectorXd& values,
                                 const Eigen::MatrixXd& whitener, const FitModel& model,
                                 const std::vector<Eigen::VectorXd>& starts, double huber,
-                                bool* converged) {
+                                bool* converged, std::vector<Eigen::VectorXd>* ends) {
   if (starts.empty()) {
     throw std::invalid_argument(fmt::format("fit of {}: no start of the search", model.name));
   }
@@ -170,6 +170,7 @@ Eigen::VectorXd best_parameters(const FitData& data, const Eigen::VectorXd& valu
     Eigen::VectorXd inner = bounds.inner(start);
     bool good = false;
     const double chi2 = minimise(residuals, inner, good);
+    if (ends != nullptr && good) ends->push_back(bounds.outer(inner));
     if (chi2 < least) {
       least = chi2;
       best = inner;
@@ -194,8 +195,9 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
   const std::vector<Eigen::VectorXd> starts = model.starts.empty() && k == 0
                                                   ? std::vector<Eigen::VectorXd>{Eigen::VectorXd(0)}
                                                   : model.starts;
+  std::vector<Eigen::VectorXd> ends;
   const Eigen::VectorXd best = best_parameters(data, mean, covariance.whitener, model, starts,
-                                               options.huber, &out.converged);
+                                               options.huber, &out.converged, &ends);
   int outside = 0;
   out.model = predict(data, model, best, &outside);
   if (outside == data.values()) {
@@ -293,28 +295,37 @@ Fit fit(const FitData& data, const Covariance& covariance, const FitModel& model
                                   static_cast<double>(column.size() - 1));
     }
   }
-  // Errors estimated from few realizations: Student's t.
-  double t = 1.96;
-  if (data.realizations() > 1) {
-    t = boost::math::quantile(boost::math::students_t(data.realizations() - 1.0),
-                              0.5 + 0.5 * options.level);
-  }
+  const Eigen::VectorXd left_out_errors = leave_out(data, covariance, model, best, options, out);
+  const double t = student(data.realizations(), options.level);
   for (Eigen::Index p = 0; p < k; ++p) {
     FittedParameter f;
     f.parameter = model.parameters[static_cast<std::size_t>(p)];
     f.value = best[p];
     f.at_bound = bound[static_cast<std::size_t>(p)];
-    f.error = f.at_bound ? kNan : std::sqrt(spread(p, p));
     f.determined = determined[static_cast<std::size_t>(p)];
-    f.bootstrap_error = f.determined && !f.at_bound ? drawn[p] : kNan;
-    f.low = f.value - t * f.error;
-    f.high = f.value + t * f.error;
+    const bool free = f.determined && !f.at_bound;
+    f.covariance_error = f.at_bound ? kNan : std::sqrt(spread(p, p));
+    f.bootstrap_error = free ? drawn[p] : kNan;
+    f.jackknife_error = free ? left_out_errors[p] : kNan;
+    f.error = std::isfinite(f.jackknife_error) ? f.jackknife_error : f.covariance_error;
+    const auto about = [&](double error) {
+      return Interval{f.value - t * error, f.value + t * error};
+    };
+    f.by_covariance = about(f.covariance_error);
+    f.by_bootstrap = about(f.bootstrap_error);
+    f.by_jackknife = about(f.jackknife_error);
+    if (free && known && options.profile) {
+      f.by_profile = profile_interval(data, covariance, model, best, p, t * t, f.covariance_error);
+    }
+    f.low = about(f.error).low;
+    f.high = about(f.error).high;
     if (f.at_bound) {
       out.note +=
           fmt::format("{}{} ends at its bound", out.note.empty() ? "" : "; ", f.parameter.name);
     }
     out.parameters.push_back(f);
   }
+  add_other_minima(data, covariance, model, ends, best, t, out);
   if (!out.converged) {
     out.note += fmt::format("{}the search did not converge", out.note.empty() ? "" : "; ");
   }

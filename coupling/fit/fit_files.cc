@@ -10,6 +10,7 @@
 
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
+#include "coupling/fit/coverage.h"
 #include "coupling/fit/heap_data.h"
 #include "coupling/fit/heap_report.h"
 #include "coupling/fit/heap_result.h"
@@ -135,6 +136,24 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
   return out;
 }
 
+std::string coverage_of_heaps(const FitSetup& setup, const HeapData& heaps,
+                              const FitRequest& request) {
+  std::vector<FitModel> models;
+  const std::vector<FitModel> known = heap_models(heaps.facts);
+  for (const std::string& name : setup.models) {
+    const FitModel& model = find_fit_model(known, name);
+    if (model.absent.empty()) models.push_back(model);
+  }
+  CoverageOptions options;
+  options.sizes = request.coverage;
+  options.draws = request.draws;
+  options.covariance = setup.covariance;
+  options.huber = setup.huber;
+  options.bootstrap = static_cast<int>(setup.bootstrap);
+  options.threads = request.threads;
+  return coverage_text(coverage_of(heaps.data, models, options), heaps.data.realizations());
+}
+
 }  // namespace
 
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
@@ -179,6 +198,10 @@ FitOutcome fit_files(const FitRequest& request) {
   value.name = fs::path(request.inputs.front()).stem().string();
   value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
   out.warnings = data.warnings;
+  if (!request.coverage.empty()) {
+    out.coverage = coverage_of_heaps(value.fit, data, request);
+    write_text_file(results.staging("coverage.md"), out.coverage);
+  }
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
   out.verdict = result.comparison.verdict.sentence;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));

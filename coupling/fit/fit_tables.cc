@@ -38,9 +38,22 @@ std::string with_error(const FittedParameter& p) {
   return fmt::format("{:.{}f} +- {:.{}f}", p.value, digits, p.error, digits);
 }
 
+namespace {
+
+std::string size_of(double error) {
+  return std::isfinite(error) ? fmt::format("{:.2g}", error) : "-";
+}
+std::string shown(const Interval& i) {
+  return std::isnan(i.low) ? "-" : fmt::format("{:.3g} to {:.3g}", i.low, i.high);
+}
+
+}  // namespace
+
 const std::vector<std::string>& parameter_header() {
   static const std::vector<std::string> header{
-      "model", "parameter", "value", "bootstrap error", "unit", "strongest correlation", "note"};
+      "model",     "parameter", "value", "by the covariance",
+      "bootstrap", "profile",   "unit",  "strongest correlation",
+      "note"};
   return header;
 }
 
@@ -58,14 +71,12 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
         strongest = r;
         with = fmt::format("{:.2f} with {}", r, f.parameters[j].parameter.name);
       }
-      rows.push_back(
-          {f.name, p.parameter.name, with_error(p),
-           std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
-           p.parameter.unit, with,
-           p.at_bound      ? "at its bound"
-           : !p.determined ? "not determined"
-           : !f.converged  ? "search did not converge"
-                           : ""});
+      rows.push_back({f.name, p.parameter.name, with_error(p), size_of(p.covariance_error),
+                      size_of(p.bootstrap_error), shown(p.by_profile), p.parameter.unit, with,
+                      p.at_bound      ? "at its bound"
+                      : !p.determined ? "not determined"
+                      : !f.converged  ? "search did not converge"
+                                      : ""});
     }
   }
   return rows;
@@ -120,12 +131,17 @@ std::string tex_table(const std::vector<std::string>& header,
 }
 
 std::string parameters_csv(const std::vector<Fit>& fits) {
-  std::string out = "model,parameter,unit,value,error,bootstrap_error,low,high,at_bound\n";
+  std::string out =
+      "model,parameter,unit,value,error,low,high,covariance_error,bootstrap_error,jackknife_error,"
+      "profile_low,profile_high,at_bound\n";
   for (const Fit& f : fits) {
     for (const FittedParameter& p : f.parameters) {
-      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", f.name, p.parameter.name, p.parameter.unit,
-                         number(p.value), number(p.error), number(p.bootstrap_error), number(p.low),
-                         number(p.high), p.at_bound ? 1 : 0);
+      out += fmt::format("{},{},{}", f.name, p.parameter.name, p.parameter.unit);
+      for (const double v : {p.value, p.error, p.low, p.high, p.covariance_error, p.bootstrap_error,
+                             p.jackknife_error, p.by_profile.low, p.by_profile.high}) {
+        out += fmt::format(",{}", number(v));
+      }
+      out += fmt::format(",{}\n", p.at_bound ? 1 : 0);
     }
   }
   return out;
@@ -137,7 +153,9 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
     for (const FittedParameter& p : f.parameters) {
       summary[prefix + p.parameter.name] = p.value;
       summary[prefix + p.parameter.name + ".error"] = p.error;
+      summary[prefix + p.parameter.name + ".covariance_error"] = p.covariance_error;
       summary[prefix + p.parameter.name + ".bootstrap_error"] = p.bootstrap_error;
+      summary[prefix + p.parameter.name + ".jackknife_error"] = p.jackknife_error;
     }
     summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
     summary[prefix + "chi2_chance"] = f.chance;

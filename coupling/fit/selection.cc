@@ -1,6 +1,7 @@
 #include "coupling/fit/selection.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -192,6 +193,14 @@ Selection select(const FitData& data, const Covariance& covariance,
     }
   }
   out.sentence += doubt(fits[best]);
+  for (std::size_t k = 0; k < m; ++k) {
+    if (fits[k].turning_signs.empty() ||
+        std::find(names.begin(), names.end(), fits[k].name) == names.end()) {
+      continue;
+    }
+    out.sentence += fmt::format(" The sign of {} hangs on single realizations: {}.", fits[k].name,
+                                fmt::join(fits[k].turning_signs, "; "));
+  }
   return out;
 }
 

@@ -15,7 +15,7 @@ FittedParameter fitted(const std::string& name, double value, double error) {
   FittedParameter p;
   p.parameter.name = name;
   p.value = value;
-  p.error = error;
+  p.error = p.covariance_error = error;
   p.bootstrap_error = 2 * error;
   return p;
 }
@@ -79,7 +79,8 @@ TEST(DerivedFigures, OfOneFreeNumberHoldEta) {
 
 TEST(DerivedFigures, WithoutErrorsHaveNone) {
   Fit fit = osl(0);
-  fit.parameters[1].error = fit.parameters[1].bootstrap_error = kNan;
+  fit.parameters[1].error = fit.parameters[1].covariance_error = fit.parameters[1].bootstrap_error =
+      kNan;
   const auto figures = derived_figures(fit, 28);
   EXPECT_TRUE(std::isfinite(figures[0].value));
   EXPECT_TRUE(std::isnan(figures[0].error));

@@ -193,7 +193,7 @@ TEST(LayerVerdict, OneRealizationHasNoSpread) {
 TEST(Posteriors, DrawEveryParameterWithAnError) {
   Fit f = with_parameters("layer_rough", vector({0.3}));
   EXPECT_TRUE(posterior_sections({&f}, 8).empty());
-  f.parameters[0].error = 0.05;
+  f.parameters[0].error = f.parameters[0].covariance_error = 0.05;
   f.parameters[0].bootstrap_error = 0.06;
   const auto sections = posterior_sections({&f}, 8);
   ASSERT_EQ(sections.size(), 1U);
