@@ -36,7 +36,6 @@ void add_fit(CLI::App& app, Action& action) {
     FitRequest request;
     std::vector<std::string> models, components;
     std::vector<double> heights;
-    std::string covariance;
     double width = 0;
   };
   auto given = std::make_shared<Given>();
@@ -55,8 +54,6 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--components", given->components, "fit.components")->delimiter(',');
   auto* width = command->add_option("--width-diameters", given->width,
                                     "fit.width_diameters: of the averaging (snapshots only)");
-  command->add_option("--covariance", given->covariance,
-                      "fit.covariance: auto | parametric | sample | diagonal");
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
@@ -81,9 +78,6 @@ void add_fit(CLI::App& app, Action& action) {
         set.push_back("fit.components=" + quoted_list(given->components));
       }
       if (width->count() > 0) set.push_back(fmt::format("fit.width_diameters={}", given->width));
-      if (!given->covariance.empty()) {
-        set.push_back("fit.covariance=\"" + given->covariance + "\"");
-      }
       if (wanted.folder.empty()) {
         wanted.folder =
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();

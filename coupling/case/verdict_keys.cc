@@ -23,9 +23,6 @@ void verdict(Section s) {
   s.word("components", +IN(Words, verdict.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", +IN(bool, verdict.base), "the forces on the base are fitted as well");
-  s.word("covariance", +IN(string, verdict.covariance),
-         {"auto", "parametric", "sample", "diagonal"},
-         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 packings");
   s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }

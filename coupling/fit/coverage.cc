@@ -10,17 +10,12 @@
 
 #include "continuum/constants.h"
 #include "coupling/fit/fit_tables.h"
+#include "coupling/statistics/agreement.h"
 #include "coupling/statistics/parallel.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling {
 namespace {
-
-FitData columns_of(const FitData& data, const std::vector<int>& chosen) {
-  FitData out = data;
-  out.samples = data.samples(Eigen::all, chosen);
-  return out;
-}
 
 // The first `size` of a shuffled row of numbers below n, and the rest.
 std::pair<std::vector<int>, std::vector<int>> draw(int n, int size, std::uint64_t seed) {
@@ -35,42 +30,62 @@ std::pair<std::vector<int>, std::vector<int>> draw(int n, int size, std::uint64_
   return {{all.begin(), all.begin() + size}, {all.begin() + size, all.end()}};
 }
 
+// The model as the drawn realizations have it, whose own subsets count among the drawn.
+FitModel of_drawn(const FitModel& model, const std::vector<int>& chosen) {
+  if (!model.measured_on) return model;
+  FitModel out = model_of(model, chosen);
+  out.measured_on = [whole = model.measured_on, chosen](const std::vector<int>& part) {
+    std::vector<int> numbers;
+    for (const int k : part) numbers.push_back(chosen[static_cast<std::size_t>(k)]);
+    return whole(numbers);
+  };
+  return out;
+}
+
 struct Drawn {
   std::vector<Fit> fits;                ///< in the order of the models
   std::vector<Eigen::VectorXd> others;  ///< constants of the rest
   std::string named;                    ///< the model supported alone; empty: none
+  bool alarm = false;                   ///< its mean disagrees with that of the rest
 };
 
 Drawn fit_draw(const FitData& data, const std::vector<FitModel>& models,
                const std::vector<Fit>& all, const CoverageOptions& options, int size,
                std::uint64_t seed) {
   const auto [chosen, rest] = draw(data.realizations(), size, seed);
-  const FitData few = columns_of(data, chosen), many = columns_of(data, rest);
-  const Covariance own = covariance_of(few, options.covariance);
-  const Covariance theirs = covariance_of(many, options.covariance);
+  const FitData few = realizations_of(data, chosen), many = realizations_of(data, rest);
+  const Weights own = weights_of(few), theirs = weights_of(many);
   FitOptions fitting;
   fitting.huber = options.huber;
   fitting.bootstrap = options.bootstrap;
   fitting.level = options.level;
+  fitting.profile = options.profile;
   Drawn out;
+  std::vector<FitModel> of_few;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    out.fits.push_back(fit(few, own, models[m], fitting));
-    Eigen::VectorXd start(static_cast<Eigen::Index>(all[m].parameters.size()));
-    for (Eigen::Index k = 0; k < start.size(); ++k) {
-      start[k] = all[m].parameters[static_cast<std::size_t>(k)].value;
-    }
-    out.others.push_back(
-        best_parameters(many, many.mean(), theirs.whitener, models[m], {start}, options.huber));
+    of_few.push_back(of_drawn(models[m], chosen));
+    out.fits.push_back(fit(few, own, of_few.back(), fitting));
+    out.others.push_back(best_parameters(many, many.mean(), theirs, model_of(models[m], rest),
+                                         {parameters_of(all[m])}, options.huber));
   }
   SelectionOptions selecting;
   selecting.huber = options.huber;
-  selecting.by_level = false;
-  const Selection selection = select(few, own, models, out.fits, selecting);
+  const Selection selection = select(few, own, of_few, out.fits, selecting);
   if (selection.distinguishable) out.named = selection.ranking.front().name;
+  const Eigen::VectorXd apart = own.weight.cwiseProduct(few.mean() - many.mean());
+  const Eigen::MatrixXd spread = own.weight.asDiagonal() * (few.samples.colwise() - few.mean());
+  const double share = static_cast<double>(size) / static_cast<double>(rest.size());
+  out.alarm = !agreement(apart, spread, share).holds();
   return out;
 }
 
-ConstantCoverage of_constant(const std::vector<Drawn>& draws, std::size_t m, std::size_t p) {
+// Both ends as far again from the middle as `wider` says.
+Interval widened(const Interval& i, double middle, double wider) {
+  return {middle - wider * (middle - i.low), middle + wider * (i.high - middle)};
+}
+
+ConstantCoverage of_constant(const std::vector<Drawn>& draws, std::size_t m, std::size_t p,
+                             double wider) {
   ConstantCoverage out;
   const Fit& first = draws.front().fits[m];
   out.model = first.name;
@@ -84,10 +99,10 @@ ConstantCoverage of_constant(const std::vector<Drawn>& draws, std::size_t m, std
                        (truth - f.parameter.least < room || f.parameter.most - truth < room);
     if (bound || f.at_bound || !f.determined) continue;
     ++out.draws;
-    out.by_covariance += f.by_covariance.holds(truth);
-    out.by_bootstrap += f.by_bootstrap.holds(truth);
-    out.by_jackknife += f.by_jackknife.holds(truth);
-    out.by_profile += f.by_profile.holds(truth);
+    out.by_covariance += widened(f.by_covariance, f.value, wider).holds(truth);
+    out.by_bootstrap += widened(f.by_bootstrap, f.value, wider).holds(truth);
+    out.by_jackknife += widened(f.by_jackknife, f.value, wider).holds(truth);
+    out.by_profile += widened(f.by_profile, f.value, wider).holds(truth);
     sum += f.value;
     squares += f.value * f.value;
     out.covariance_error += f.covariance_error * f.covariance_error;
@@ -118,18 +133,17 @@ Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
   if (options.draws < 1) {
     throw std::invalid_argument(fmt::format("draws: found {}, allowed: 1 or more", options.draws));
   }
-  const Covariance covariance = covariance_of(data, options.covariance);
+  const Weights weights = weights_of(data);
   FitOptions plain;
   plain.huber = options.huber;
   plain.bootstrap = 0;
   plain.jackknife = plain.profile = false;
   std::vector<Fit> all;
-  for (const FitModel& model : models) all.push_back(fit(data, covariance, model, plain));
+  for (const FitModel& model : models) all.push_back(fit(data, weights, model, plain));
   SelectionOptions selecting;
   selecting.huber = options.huber;
-  selecting.by_level = false;
   Coverage out;
-  for (const Score& s : select(data, covariance, models, all, selecting).ranking) {
+  for (const Score& s : select(data, weights, models, all, selecting).ranking) {
     if (s.supported) out.supported.push_back(s.name);
   }
   for (const int size : options.sizes) {
@@ -143,12 +157,13 @@ Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
     });
     for (std::size_t m = 0; m < models.size(); ++m) {
       for (std::size_t p = 0; p < models[m].parameters.size(); ++p) {
-        out.constants.push_back(of_constant(draws, m, p));
+        out.constants.push_back(of_constant(draws, m, p, std::sqrt(1.0 + size / (n - 1.0 * size))));
         out.constants.back().size = size;
       }
     }
     VerdictCoverage verdict{size, options.draws};
     for (const Drawn& d : draws) {
+      verdict.false_alarms += d.alarm;
       if (d.named.empty()) continue;
       ++verdict.named;
       verdict.wrong +=
@@ -179,9 +194,12 @@ std::string coverage_text(const Coverage& coverage, int realizations) {
   rows.clear();
   for (const VerdictCoverage& v : coverage.verdicts) {
     rows.push_back({fmt::format("{}", v.size), fmt::format("{}", v.draws),
-                    fmt::format("{}", v.named), fmt::format("{}", v.wrong)});
+                    fmt::format("{}", v.named), fmt::format("{}", v.wrong),
+                    fmt::format("{}", v.false_alarms)});
   }
-  out += "\n" + markdown_table({"drawn", "draws", "one model named", "of these wrong"}, rows);
+  out += "\n" + markdown_table({"drawn", "draws", "one model named", "of these wrong",
+                                "disagrees with the rest by chance"},
+                               rows);
   return out + fmt::format("\nSupported by all realizations together: {}\n",
                            fmt::join(coverage.supported, ", "));
 }

@@ -13,15 +13,16 @@ namespace grainfield::coupling {
 struct CoverageOptions {
   std::vector<int> sizes{4, 6, 8};  ///< realizations drawn
   int draws = 100;                  ///< of each size
-  std::string covariance = "auto";
   double huber = 0;
   int bootstrap = 200;
+  bool profile = true;
   double level = 0.95;
   std::uint64_t seed = 1;
   int threads = 1;  ///< the bits do not depend on it
 };
 
-/// Of one constant, over the draws in which neither it nor that of the rest is at a bound.
+/// Of one constant, over the draws in which neither it nor that of the rest is at a bound. The rest
+/// have an error, too: intervals of n out of N are wider by sqrt(1 + n / (N - n)).
 struct ConstantCoverage {
   std::string model, parameter;
   int size = 0, draws = 0;
@@ -36,6 +37,8 @@ struct VerdictCoverage {
   int size = 0, draws = 0;
   int named = 0;  ///< draws in which one model was supported alone
   int wrong = 0;  ///< of these, those whose model all realizations together do not support
+  /// Draws whose mean "disagrees" with the mean of the rest by statistics/agreement.h: by chance.
+  int false_alarms = 0;
 };
 
 struct Coverage {
@@ -45,6 +48,7 @@ struct Coverage {
 };
 
 /// Throws std::invalid_argument for sizes below 3, or above half of the realizations.
+/// What models take from the packings (slopes) is measured on the drawn ones and on the rest.
 Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
                      const CoverageOptions& options);
 

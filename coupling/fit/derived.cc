@@ -63,8 +63,15 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
 }  // namespace
 
 std::vector<FittedParameter> derived_figures(const Fit& fit, double slope_deg) {
-  if (!has(fit, "mu")) return {};
   const double phi = slope_deg * kDegree;
+  if (has(fit, "a_yy") && fit.parameters.size() == 7) {
+    const double t = std::tan(phi);
+    return {derived("flank_balance_x", "-", fit,
+                    [t](const Eigen::VectorXd& p) { return p[5] - p[3] * t; }),
+            derived("flank_balance_y", "-", fit,
+                    [t](const Eigen::VectorXd& p) { return p[4] - 1 - p[5] * t; })};
+  }
+  if (!has(fit, "mu")) return {};
   const auto closure = [phi](const Eigen::VectorXd& p) {
     if (p.size() == 2) return continuum::Closure{p[0], p[1]};
     return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};

@@ -12,6 +12,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/fit/coverage.h"
 #include "coupling/fit/heap_data.h"
+#include "coupling/fit/heap_fits.h"
 #include "coupling/fit/heap_report.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/output/atomic_file.h"
@@ -139,7 +140,7 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
 std::string coverage_of_heaps(const FitSetup& setup, const HeapData& heaps,
                               const FitRequest& request) {
   std::vector<FitModel> models;
-  const std::vector<FitModel> known = heap_models(heaps.facts);
+  const std::vector<FitModel> known = models_of(setup, heaps);
   for (const std::string& name : setup.models) {
     const FitModel& model = find_fit_model(known, name);
     if (model.absent.empty()) models.push_back(model);
@@ -147,7 +148,6 @@ std::string coverage_of_heaps(const FitSetup& setup, const HeapData& heaps,
   CoverageOptions options;
   options.sizes = request.coverage;
   options.draws = request.draws;
-  options.covariance = setup.covariance;
   options.huber = setup.huber;
   options.bootstrap = static_cast<int>(setup.bootstrap);
   options.threads = request.threads;

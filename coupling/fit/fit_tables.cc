@@ -84,26 +84,45 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
 
 const std::vector<std::string>& ranking_header() {
   static const std::vector<std::string> header{"model",       "free numbers", "chi2/dof",
-                                               "AICc behind", "CV behind",    "CV over heights",
+                                               "chance to",   "behind",       "behind, heights",
                                                "relative L2", "supported"};
   return header;
 }
 
 std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                                                    const Selection& selection) {
+  const auto difference = [](double value, double error) {
+    return std::isfinite(value) ? fmt::format("{:.2g} +- {:.1g}", value, error) : "-";
+  };
   std::vector<std::vector<std::string>> rows;
   for (const Score& s : selection.ranking) {
     const Fit& f = fit_named(fits, s.name);
     rows.push_back({s.name, fmt::format("{}", f.parameters.size()),
-                    std::isnan(f.chi2_per_dof) ? "-" : number(f.chi2_per_dof),
-                    std::isnan(s.aicc_difference) ? "-" : fmt::format("{:.1f}", s.aicc_difference),
-                    std::isfinite(s.behind_error)
-                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
-                        : "-",
-                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
+                    std::isnan(f.chi2_per_dof) ? "-" : fmt::format("{:.3g}", f.chi2_per_dof),
+                    std::isnan(f.chance) ? "-" : fmt::format("{:.3g}", f.chance),
+                    difference(s.behind, s.behind_error),
+                    difference(s.heights_behind, s.heights_error),
                     fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
   }
   return rows;
+}
+
+const std::string& ranking_note() {
+  static const std::string note =
+      "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
+      "Behind: squared difference on realizations left out, from the best model, over the signal's "
+      "square, with its paired error; heights: the same on heights left out. Supported: not behind "
+      "by more than chance.";
+  return note;
+}
+
+const std::string& constants_note() {
+  static const std::string note =
+      "+-: by leaving one realization out at a time (jackknife), of which intervals are Student's "
+      "t "
+      "of realizations - 1 times it. Beside it the errors by the values' covariance, by bootstrap "
+      "draws of the realizations, and the 95 % interval by the profile of the misfit.";
+  return note;
 }
 
 std::string markdown_table(const std::vector<std::string>& header,
@@ -167,10 +186,10 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
 void add_ranking(Summary& summary, const Selection& selection) {
   for (const Score& s : selection.ranking) {
     const std::string prefix = "fit." + s.name + ".";
-    summary[prefix + "aicc_difference"] = s.aicc_difference;
     summary[prefix + "cv_behind"] = s.behind;
     summary[prefix + "cv_behind_error"] = s.behind_error;
-    summary[prefix + "cv_heights"] = s.level_score;
+    summary[prefix + "heights_behind"] = s.heights_behind;
+    summary[prefix + "heights_behind_error"] = s.heights_error;
     summary[prefix + "supported"] = s.supported ? "yes" : "no";
   }
 }

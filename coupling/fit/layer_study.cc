@@ -49,7 +49,7 @@ FiniteElementFit solve(const std::string& name, const LayerFits& fits, const Lay
   const Eigen::MatrixXd seen =
       sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
   const FitData& data = fits.layers.data;
-  judge_elements(out, data, fits.covariance, fit_named(fits.fits, out.of),
+  judge_elements(out, data, fits.weights, fit_named(fits.fits, out.of),
                  sight.pick(seen, data.points));
   return out;
 }
@@ -182,7 +182,7 @@ LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, i
   LayerFits out;
   out.layers = layer_data(value, files, threads);
   const FitData& data = out.layers.data;
-  out.covariance = covariance_of(data, value.verdict.covariance);
+  out.weights = weights_of(data);
   // Components share their points: the sight needs each once.
   std::vector<int> once;
   std::map<std::pair<double, double>, int> seen;
@@ -197,9 +197,9 @@ LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, i
   options.threads = threads;
   for (const std::string& name : value.verdict.models) {
     out.models.push_back(find_fit_model(known, name));
-    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+    out.fits.push_back(fit(data, out.weights, out.models.back(), options));
   }
-  out.selection = select(data, out.covariance, out.models, out.fits);
+  out.selection = select(data, out.weights, out.models, out.fits);
   out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
   for (const std::string& name : value.verdict.finite_elements) {
     out.elements.push_back(solve(name, out, *sight));

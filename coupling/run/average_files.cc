@@ -127,7 +127,13 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     out.diameter += mean_diameter(s) / n;
     out.left = std::max(out.left, placed.left);
     out.right = std::min(out.right, placed.right);
-    if (request.frame == "heap") out.heaps.push_back(placed.heap);
+    if (request.frame == "heap") {
+      out.heaps.push_back(placed.heap);
+      if (!placed.heap.in_flight.empty()) {
+        warnings.push_back(
+            fmt::format("{}:{}: {}", item.state.file, item.state.group, placed.heap.in_flight));
+      }
+    }
     const double force = -s.applied_force.y();
     if (request.response && &item != &items.front() && force != out.load) {
       throw std::invalid_argument(
