@@ -94,6 +94,8 @@ struct VerdictSetup {
   std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   bool base = true;
+  std::vector<double> coverage;  ///< sizes of draws: fit/coverage.h; empty: not done
+  std::int64_t coverage_draws = 100;
   std::int64_t bootstrap = 100;
 };
 

@@ -23,6 +23,12 @@ void verdict(Section s) {
   s.word("components", +IN(Words, verdict.components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", +IN(bool, verdict.base), "the forces on the base are fitted as well");
+  s.number("coverage", "-", +IN(std::vector<double>, verdict.coverage), {3, 1e6},
+           "sizes N: how often intervals from N of the packings hold the constants of the rest "
+           "(coverage.md); takes long");
+  s.or_none();
+  s.number("coverage_draws", "-", +IN(std::int64_t, verdict.coverage_draws), {1, 1e6},
+           "draws of every size of verdict.coverage");
   s.number("bootstrap", "-", +IN(std::int64_t, verdict.bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }

@@ -118,6 +118,7 @@ double hotelling(const Eigen::Vector2d& constraints, const Eigen::MatrixXd& draw
       centred.transpose() * centred / static_cast<double>(rows - 1) * n / (n - 1.0);
   // Copies of one packing, or constraints that move together: no test.
   const double size = covariance.trace() / 2;
+  if (!(size > std::pow(rounding_of_constraint * scale, 2))) return kNan;
   if (!(covariance.determinant() > kSingular * size * size)) return kNan;
   const double t2 = constraints.dot(covariance.inverse() * constraints);
   return boost::math::cdf(

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "coupling/fit/coverage.h"
 #include "coupling/fit/finished_layers.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
@@ -152,6 +153,16 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", layer_fits_markdown(*fits)},
                {"fits.tex", layer_fits_tex(*fits)}};
+  if (!value.verdict.coverage.empty()) {
+    CoverageOptions options;
+    options.sizes.assign(value.verdict.coverage.begin(), value.verdict.coverage.end());
+    options.draws = static_cast<int>(value.verdict.coverage_draws);
+    options.bootstrap = static_cast<int>(value.verdict.bootstrap);
+    options.threads = threads;
+    const FitData& data = fits->layers.data;
+    out.texts.emplace_back("coverage.md", coverage_text(coverage_of(data, fits->models, options),
+                                                        data.realizations()));
+  }
   out.overview = {{"best model", "verdict.best_model", ""},
                   {"alone", "verdict.distinguishable", ""},
                   {"equations", "verdict.equations", ""},

@@ -317,7 +317,9 @@ TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
       found += says(s) ? 1 : 0;
     }
     EXPECT_LE(alarms, trials * 4 / 100) << n;
-    if (n > 4) EXPECT_GE(found, trials * 9 / 10) << n;
+    if (n > 4) {
+      EXPECT_GE(found, trials * 9 / 10) << n;
+    }
   }
 }
 
