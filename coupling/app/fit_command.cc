@@ -36,7 +36,6 @@ void add_fit(CLI::App& app, Action& action) {
     FitRequest request;
     std::vector<std::string> models, components;
     std::vector<double> heights;
-    std::string covariance;
     double width = 0;
   };
   auto given = std::make_shared<Given>();
@@ -55,11 +54,15 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--components", given->components, "fit.components")->delimiter(',');
   auto* width = command->add_option("--width-diameters", given->width,
                                     "fit.width_diameters: of the averaging (snapshots only)");
-  command->add_option("--covariance", given->covariance,
-                      "fit.covariance: auto | parametric | sample | diagonal");
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
+  command
+      ->add_option("--coverage", request.coverage,
+                   "sizes N: how often intervals from N of the heaps hold the constants of the "
+                   "rest (coverage.md); takes long")
+      ->delimiter(',');
+  command->add_option("--draws", request.draws, "of --coverage, of each size; default 100");
   add_output(*command, request.folder, "folder; default results/fit-INPUT");
   add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {
@@ -75,9 +78,6 @@ void add_fit(CLI::App& app, Action& action) {
         set.push_back("fit.components=" + quoted_list(given->components));
       }
       if (width->count() > 0) set.push_back(fmt::format("fit.width_diameters={}", given->width));
-      if (!given->covariance.empty()) {
-        set.push_back("fit.covariance=\"" + given->covariance + "\"");
-      }
       if (wanted.folder.empty()) {
         wanted.folder =
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
@@ -87,6 +87,7 @@ void add_fit(CLI::App& app, Action& action) {
         note("warning: {}", text);
       }
       say("fitted to {}\n", shown(outcome.packings));
+      if (!outcome.coverage.empty()) say("{}", outcome.coverage);
       say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,
           printable_name(wanted.folder));
       return 0;

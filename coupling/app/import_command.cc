@@ -182,7 +182,9 @@ void add_import(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--time-step", o.time_step, "s; time of a dump = step times this");
   command->add_option("--group", o.group, "of the snapshot; default /step_N or /packing");
-  command->add_option("--load", given->load, "ID=FX,FY[,FZ]: the force applied to a grain, N");
+  command->add_option(
+      "--load", given->load,
+      "ID=FX,FY[,FZ]: the force applied to a grain, N; of several steps on the latest");
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
   command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
   command->add_flag("--leave-out-distant", o.leave_out_distant,

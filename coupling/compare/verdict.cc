@@ -14,6 +14,7 @@
 #include <numeric>
 
 #include "continuum/constants.h"
+#include "coupling/statistics/agreement.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -23,8 +24,6 @@ constexpr double confidence = 0.95;
 constexpr int least_for_chi2 = 4;
 // Errors below this share of the signal are rounding: the realizations are copies of one.
 constexpr double rounding = 1e-9;
-// A model fits when its chi2/dof is within so many standard deviations sqrt(2/dof) of 1.
-constexpr double chi2_sigmas = 3;
 // A model that misses by more than half of the signal describes nothing, even when others do worse.
 constexpr double most_rel_l2 = 0.5;
 
@@ -96,8 +95,41 @@ std::string describe(const ModelComparison& result, bool by_chi2) {
 // It describes nothing.
 bool misses(const ModelComparison& best) { return best.overall.rel_l2 > most_rel_l2; }
 
+// The model against the realizations, as fits have it (statistics/agreement.h): every profile in
+// units of its own root mean square. nan without single values of every realization.
+Agreement agreement_of(const Comparison& c, std::size_t model) {
+  std::vector<double> off;
+  std::vector<Eigen::VectorXd> samples;
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    const Profile& p = c.profiles[k];
+    if (p.samples.cols() != c.realizations || p.samples.rows() != p.x.size())
+      return {kNan, kNan, kNan, kNan};
+    double square = 0;
+    int count = 0;
+    for (const double v : p.mean) {
+      if (!std::isfinite(v)) continue;
+      square += v * v;
+      ++count;
+    }
+    const double unit = std::sqrt(square / std::max(count, 1));
+    for (Eigen::Index i = 0; unit > 0 && i < p.x.size(); ++i) {
+      const double d = p.mean[i] - c.models[model].values[k][i];
+      if (!std::isfinite(d) || !p.samples.row(i).allFinite()) continue;
+      off.push_back(d / unit);
+      samples.emplace_back((p.samples.row(i).array() - p.samples.row(i).mean()) / unit);
+    }
+  }
+  Eigen::MatrixXd deviations(static_cast<Eigen::Index>(off.size()), c.realizations);
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    deviations.row(static_cast<Eigen::Index>(k)) = samples[k].transpose();
+  }
+  return agreement(
+      Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size())),
+      deviations);
+}
+
 // Says so when even the nearest model is not within the errors, or describes nothing.
-void add_misfit(const ModelComparison& best, bool by_chi2, std::string& sentence) {
+void add_misfit(const ModelComparison& best, const Agreement& found, std::string& sentence) {
   if (misses(best)) {
     sentence = fmt::format(
         "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
@@ -105,12 +137,11 @@ void add_misfit(const ModelComparison& best, bool by_chi2, std::string& sentence
         100 * best.overall.rel_l2, sentence);
     return;
   }
-  const double excess = chi2_sigmas * std::sqrt(2 / best.overall.dof);
-  if (by_chi2 && best.overall.chi2_per_dof > 1 + excess) {
+  if (found.ratio > found.chance) {
     sentence += fmt::format(
-        " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.2g} "
-        "would be chance.",
-        best.overall.chi2_per_dof, 1 + excess);
+        " No model agrees within the errors: the nearest misses by {:.3g} times what the spread "
+        "explains, where up to {:.3g} would be chance.",
+        found.ratio, found.chance);
   }
 }
 
@@ -131,6 +162,8 @@ Verdict judge(const Comparison& c) {
   });
   for (std::size_t k : order) v.ranking.push_back(c.results[k].key);
   const ModelComparison& best = c.results[order.front()];
+  const Agreement found =
+      by_chi2 ? agreement_of(c, order.front()) : Agreement{kNan, kNan, kNan, kNan};
   v.best_model = best.key;
   v.position = v.position_error = kNan;
 
@@ -149,7 +182,7 @@ Verdict judge(const Comparison& c) {
   if (other == order.end()) {
     v.sentence = fmt::format("Of the {} models, the grains are nearest to {}{}.", best.family,
                              describe(best, by_chi2), runner_up);
-    add_misfit(best, by_chi2, v.sentence);
+    add_misfit(best, found, v.sentence);
     return v;
   }
   Projection p = project(c, c.models[*other], c.models[order.front()]);
@@ -185,7 +218,7 @@ Verdict judge(const Comparison& c) {
                  : fmt::format("All {} realizations are equal, spread unknown", c.realizations),
         describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
   }
-  add_misfit(best, by_chi2, v.sentence);
+  add_misfit(best, found, v.sentence);
   return v;
 }
 

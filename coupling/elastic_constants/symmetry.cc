@@ -24,6 +24,9 @@ constexpr double rounding = 1e-26;
 // Constraints below this share of C11 are rounding.
 constexpr double rounding_of_constraint = 1e-10;
 
+// Determinant of a covariance below this share of its trace's square is rounding.
+constexpr double kSingular = 1e-12;
+
 using Equations = Eigen::Matrix<double, 3, 4>;
 
 // Of one sample, in units that make their sum of squares the squared norm of the tensors. Unknowns
@@ -113,7 +116,10 @@ double hotelling(const Eigen::Vector2d& constraints, const Eigen::MatrixXd& draw
   // The spread over draws has divisor n, that of a sample n - 1.
   const Eigen::Matrix2d covariance =
       centred.transpose() * centred / static_cast<double>(rows - 1) * n / (n - 1.0);
-  if (!(covariance.determinant() > 0)) return 0;
+  // Copies of one packing, or constraints that move together: no test.
+  const double size = covariance.trace() / 2;
+  if (!(size > std::pow(rounding_of_constraint * scale, 2))) return kNan;
+  if (!(covariance.determinant() > kSingular * size * size)) return kNan;
   const double t2 = constraints.dot(covariance.inverse() * constraints);
   return boost::math::cdf(
       boost::math::complement(boost::math::fisher_f(2, n - 2), t2 * (n - 2) / (2 * (n - 1.0))));

@@ -139,7 +139,13 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     out.right = std::min(out.right, placed.right);
     out.front = std::max(out.front, placed.front);
     out.back = std::min(out.back, placed.back);
-    if (request.frame == "heap") out.heaps.push_back(placed.heap);
+    if (request.frame == "heap") {
+      out.heaps.push_back(placed.heap);
+      if (!placed.heap.in_flight.empty()) {
+        warnings.push_back(
+            fmt::format("{}:{}: {}", item.state.file, item.state.group, placed.heap.in_flight));
+      }
+    }
     const double force = -s.applied_force[up_axis(s.dim)];
     if (request.response && &item != &items.front() && force != out.load) {
       throw std::invalid_argument(

@@ -202,6 +202,11 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
     for (const FieldRow& row : rows) chosen.push_back(&row);
   } else {
     std::vector<double> heights = options.heights;
+    for (const double share : heights) {
+      if (share > 0 && share <= 1) continue;
+      throw std::invalid_argument(fmt::format(
+          "--heights: found {:g}, allowed: above 0, up to 1, shares of the height", share));
+    }
     if (heights.empty()) {
       heights = scene.scene == Scene::heap ? std::vector<double>{0.1, 0.25, 0.4}
                                            : std::vector<double>{0.75, 0.5, 0.25};

@@ -11,7 +11,9 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/files/average_files.h"
+#include "coupling/fit/coverage.h"
 #include "coupling/fit/heap_data.h"
+#include "coupling/fit/heap_fits.h"
 #include "coupling/fit/heap_report.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/fit/setup.h"
@@ -136,6 +138,23 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
   return out;
 }
 
+std::string coverage_of_heaps(const FitSetup& setup, const HeapData& heaps,
+                              const FitRequest& request) {
+  std::vector<FitModel> models;
+  const std::vector<FitModel> known = models_of(setup, heaps);
+  for (const std::string& name : setup.models) {
+    const FitModel& model = find_fit_model(known, name);
+    if (model.absent.empty()) models.push_back(model);
+  }
+  CoverageOptions options;
+  options.sizes = request.coverage;
+  options.draws = request.draws;
+  options.huber = setup.huber;
+  options.bootstrap = static_cast<int>(setup.bootstrap);
+  options.threads = request.threads;
+  return coverage_text(coverage_of(heaps.data, models, options), heaps.data.realizations());
+}
+
 }  // namespace
 
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
@@ -181,6 +200,10 @@ FitOutcome fit_files(const FitRequest& request) {
   value.name = fs::path(request.inputs.front()).stem().string();
   value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
   out.warnings = data.warnings;
+  if (!request.coverage.empty()) {
+    out.coverage = coverage_of_heaps(value.fit, data, request);
+    write_text_file(results.staging("coverage.md"), out.coverage);
+  }
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
   out.verdict = result.comparison.verdict.sentence;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));

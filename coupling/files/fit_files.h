@@ -14,6 +14,8 @@ struct FitRequest {
   Overrides overrides;              ///< "fit.heights=[0.2]"
   std::string folder;
   int threads = 1;
+  std::vector<int> coverage;  ///< realizations to draw, coverage.h; empty: that is not done
+  int draws = 100;
 };
 
 /// What was fitted, for people.
@@ -22,6 +24,7 @@ struct FitOutcome {
   std::string note;                   ///< weights and what is missing for better ones
   std::vector<std::string> warnings;  ///< what makes the constants doubtful
   std::string verdict;
+  std::string coverage;  ///< tables; empty: not asked for
 };
 
 /// Key [fit] of a case file (other sections are not looked at) with overrides. Throws
@@ -29,10 +32,10 @@ struct FitOutcome {
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides);
 
 /// Fits the models to the heaps and writes fits.csv/.md/.tex, profiles.csv/.md/.tex, fit.toml (the
-/// settings, every default spelled out), report.html and summary.json. Of a file without a group:
-/// its snapshots named "pile" where there are such, else all; or its one field of a heap. Throws
-/// std::invalid_argument for inputs that are neither or of both kinds, several time steps of one
-/// packing, and what reading, averaging and fitting throw.
+/// settings, every default spelled out), report.html and summary.json; coverage.md where asked for.
+/// Of a file without a group: its snapshots named "pile" where there are such, else all; or its one
+/// field of a heap. Throws std::invalid_argument for inputs that are neither or of both kinds,
+/// several time steps of one packing, and what reading, averaging and fitting throw.
 FitOutcome fit_files(const FitRequest& request);
 
 }  // namespace grainfield::coupling

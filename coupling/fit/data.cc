@@ -6,6 +6,12 @@
 
 namespace grainfield::coupling {
 
+FitData realizations_of(const FitData& data, const std::vector<int>& chosen) {
+  FitData out = data;
+  out.samples = data.samples(Eigen::all, chosen);
+  return out;
+}
+
 FitData rows_of(const FitData& data, const std::vector<int>& rows) {
   FitData out;
   out.components = data.components;
@@ -14,11 +20,13 @@ FitData rows_of(const FitData& data, const std::vector<int>& rows) {
   out.points.resize(n, data.points.cols());
   out.samples.resize(n, data.samples.cols());
   if (data.error.size() > 0) out.error.resize(n);
+  if (data.scale.size() > 0) out.scale.resize(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const int row = rows[static_cast<std::size_t>(k)];
     out.points.row(k) = data.points.row(row);
     out.samples.row(k) = data.samples.row(row);
     if (data.error.size() > 0) out.error[k] = data.error[row];
+    if (data.scale.size() > 0) out.scale[k] = data.scale[row];
     out.component.push_back(data.component[static_cast<std::size_t>(row)]);
     out.level.push_back(data.level[static_cast<std::size_t>(row)]);
   }
@@ -29,9 +37,10 @@ void check(const FitData& data) {
   const auto n = static_cast<std::size_t>(data.samples.rows());
   if (data.points.rows() != data.samples.rows() || data.component.size() != n ||
       data.level.size() != n || data.points.cols() != 2 ||
-      (data.error.size() != 0 && data.error.size() != data.samples.rows())) {
+      (data.error.size() != 0 && data.error.size() != data.samples.rows()) ||
+      (data.scale.size() != 0 && data.scale.size() != data.samples.rows())) {
     throw std::invalid_argument(
-        "data to fit: points, components, levels, samples and errors differ in size");
+        "data to fit: points, components, levels, samples, errors and units differ in size");
   }
   if (n == 0 || data.samples.cols() == 0) throw std::invalid_argument("data to fit: no values");
   for (const std::string& c : data.components) {
@@ -51,6 +60,9 @@ void check(const FitData& data) {
   }
   if (data.error.size() > 0 && !(data.error.allFinite() && data.error.minCoeff() > 0)) {
     throw std::invalid_argument("data to fit: a standard error is not above 0");
+  }
+  if (data.scale.size() > 0 && !(data.scale.allFinite() && data.scale.minCoeff() > 0)) {
+    throw std::invalid_argument("data to fit: a working unit is not above 0");
   }
 }
 

@@ -17,11 +17,17 @@ struct FitData {
   /// Standard errors of the mean where single realizations are not known (samples: one column, the
   /// mean); else empty.
   Eigen::VectorXd error;
+  /// Working unit of every value, N/m: its difference from a model counts in this. A stated, smooth
+  /// function of the place, never of the ensemble. Empty: 1.
+  Eigen::VectorXd scale;
 
   int values() const { return static_cast<int>(samples.rows()); }
   int realizations() const { return static_cast<int>(samples.cols()); }
   Eigen::VectorXd mean() const { return samples.rowwise().mean(); }
 };
+
+/// The realizations named, in this order, with repetitions.
+FitData realizations_of(const FitData& data, const std::vector<int>& chosen);
 
 /// The rows named; points, components, levels and samples together.
 FitData rows_of(const FitData& data, const std::vector<int>& rows);

@@ -16,6 +16,16 @@ bool has(const Fit& fit, const std::string& name) {
                      [&](const FittedParameter& p) { return p.parameter.name == name; });
 }
 
+// Over the realizations left out; nan without.
+double jackknife(const Fit& fit, const std::function<double(const Eigen::VectorXd&)>& of) {
+  const Eigen::Index r = fit.left_out.cols();
+  if (r < 3) return kNan;
+  Eigen::VectorXd values(r);
+  for (Eigen::Index k = 0; k < r; ++k) values[k] = of(fit.left_out.col(k));
+  return std::sqrt((values.array() - values.mean()).square().sum() * static_cast<double>(r - 1) /
+                   static_cast<double>(r));
+}
+
 FittedParameter derived(const std::string& name, const std::string& unit, const Fit& fit,
                         const std::function<double(const Eigen::VectorXd&)>& of) {
   const auto n = static_cast<Eigen::Index>(fit.parameters.size());
@@ -23,7 +33,7 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
   for (Eigen::Index k = 0; k < n; ++k) {
     const FittedParameter& p = fit.parameters[static_cast<std::size_t>(k)];
     at[k] = p.value;
-    error[k] = p.error;
+    error[k] = p.covariance_error;
     drawn[k] = p.bootstrap_error;
   }
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -42,7 +52,9 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
   out.parameter.name = name;
   out.parameter.unit = unit;
   out.value = of(at);
-  out.error = spread(error);
+  out.covariance_error = spread(error);
+  out.jackknife_error = jackknife(fit, of);
+  out.error = std::isfinite(out.jackknife_error) ? out.jackknife_error : out.covariance_error;
   out.bootstrap_error = error.allFinite() ? spread(drawn) : kNan;
   out.low = out.high = kNan;
   return out;
@@ -51,8 +63,15 @@ FittedParameter derived(const std::string& name, const std::string& unit, const 
 }  // namespace
 
 std::vector<FittedParameter> derived_figures(const Fit& fit, double slope_deg) {
-  if (!has(fit, "mu")) return {};
   const double phi = slope_deg * kDegree;
+  if (has(fit, "a_yy") && fit.parameters.size() == 7) {
+    const double t = std::tan(phi);
+    return {derived("flank_balance_x", "-", fit,
+                    [t](const Eigen::VectorXd& p) { return p[5] - p[3] * t; }),
+            derived("flank_balance_y", "-", fit,
+                    [t](const Eigen::VectorXd& p) { return p[4] - 1 - p[5] * t; })};
+  }
+  if (!has(fit, "mu")) return {};
   const auto closure = [phi](const Eigen::VectorXd& p) {
     if (p.size() == 2) return continuum::Closure{p[0], p[1]};
     return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};

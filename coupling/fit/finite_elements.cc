@@ -19,7 +19,7 @@ std::string constants_text(const continuum::Settings& settings) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance& covariance,
+void judge_elements(FiniteElementFit& out, const FitData& data, const Weights& weights,
                     const Fit& fitted, const Eigen::MatrixXd& stresses) {
   const FitModel given{out.name,
                        out.name,
@@ -29,9 +29,9 @@ void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance
                        ""};
   out.model = predict(data, given, Eigen::VectorXd(0));
   const Eigen::VectorXd mean = data.mean(), off = mean - out.model;
-  out.chi2_per_dof = std::isfinite(fitted.chance)
-                         ? (covariance.whitener * off).squaredNorm() / fitted.dof
-                         : std::nan("");
+  // The fitted model's spread is this one's, too.
+  out.chi2_per_dof =
+      fitted.chi2_per_dof * weights.weight.cwiseProduct(off).squaredNorm() / fitted.misfit;
   out.rel_l2 = off.norm() / mean.norm();
   out.from_closed = (out.model - fitted.model).norm() / fitted.model.norm();
 }

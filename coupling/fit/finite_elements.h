@@ -17,7 +17,7 @@ struct FiniteElementFit {
   std::string constants;    ///< "base=rough, nu=0.21"
   std::string why;          ///< not empty: was not solved, for this reason
   Eigen::VectorXd model;    ///< at the data's rows
-  double chi2_per_dof = 0;  ///< with the fitted model's degrees of freedom
+  double chi2_per_dof = 0;  ///< with the fitted model's spread
   double rel_l2 = 0;        ///< |grains - it| / |grains|
   double from_closed = 0;   ///< |it - fitted model| / |fitted model|
 };
@@ -27,7 +27,7 @@ std::string constants_text(const continuum::Settings& settings);
 
 /// Fills model and the distances of `out` from the stresses (n x 3, tension positive; nan counts as
 /// 0) at the data's rows.
-void judge_elements(FiniteElementFit& out, const FitData& data, const Covariance& covariance,
+void judge_elements(FiniteElementFit& out, const FitData& data, const Weights& weights,
                     const Fit& fitted, const Eigen::MatrixXd& stresses);
 
 const std::vector<std::string>& elements_header();

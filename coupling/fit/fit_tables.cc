@@ -38,9 +38,22 @@ std::string with_error(const FittedParameter& p) {
   return fmt::format("{:.{}f} +- {:.{}f}", p.value, digits, p.error, digits);
 }
 
+namespace {
+
+std::string size_of(double error) {
+  return std::isfinite(error) ? fmt::format("{:.2g}", error) : "-";
+}
+std::string shown(const Interval& i) {
+  return std::isnan(i.low) ? "-" : fmt::format("{:.3g} to {:.3g}", i.low, i.high);
+}
+
+}  // namespace
+
 const std::vector<std::string>& parameter_header() {
   static const std::vector<std::string> header{
-      "model", "parameter", "value", "bootstrap error", "unit", "strongest correlation", "note"};
+      "model",     "parameter", "value", "by the covariance",
+      "bootstrap", "profile",   "unit",  "strongest correlation",
+      "note"};
   return header;
 }
 
@@ -58,14 +71,12 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
         strongest = r;
         with = fmt::format("{:.2f} with {}", r, f.parameters[j].parameter.name);
       }
-      rows.push_back(
-          {f.name, p.parameter.name, with_error(p),
-           std::isfinite(p.bootstrap_error) ? fmt::format("{:.2g}", p.bootstrap_error) : "-",
-           p.parameter.unit, with,
-           p.at_bound      ? "at its bound"
-           : !p.determined ? "not determined"
-           : !f.converged  ? "search did not converge"
-                           : ""});
+      rows.push_back({f.name, p.parameter.name, with_error(p), size_of(p.covariance_error),
+                      size_of(p.bootstrap_error), shown(p.by_profile), p.parameter.unit, with,
+                      p.at_bound      ? "at its bound"
+                      : !p.determined ? "not determined"
+                      : !f.converged  ? "search did not converge"
+                                      : ""});
     }
   }
   return rows;
@@ -73,26 +84,45 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
 
 const std::vector<std::string>& ranking_header() {
   static const std::vector<std::string> header{"model",       "free numbers", "chi2/dof",
-                                               "AICc behind", "CV behind",    "CV over heights",
+                                               "chance to",   "behind",       "behind, heights",
                                                "relative L2", "supported"};
   return header;
 }
 
 std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                                                    const Selection& selection) {
+  const auto difference = [](double value, double error) {
+    return std::isfinite(value) ? fmt::format("{:.2g} +- {:.1g}", value, error) : "-";
+  };
   std::vector<std::vector<std::string>> rows;
   for (const Score& s : selection.ranking) {
     const Fit& f = fit_named(fits, s.name);
     rows.push_back({s.name, fmt::format("{}", f.parameters.size()),
-                    std::isnan(f.chi2_per_dof) ? "-" : number(f.chi2_per_dof),
-                    std::isnan(s.aicc_difference) ? "-" : fmt::format("{:.1f}", s.aicc_difference),
-                    std::isfinite(s.behind_error)
-                        ? fmt::format("{:.3g} +- {:.2g}", s.behind, s.behind_error)
-                        : "-",
-                    std::isfinite(s.level_score) ? fmt::format("{:.3g}", s.level_score) : "-",
+                    std::isnan(f.chi2_per_dof) ? "-" : fmt::format("{:.3g}", f.chi2_per_dof),
+                    std::isnan(f.chance) ? "-" : fmt::format("{:.3g}", f.chance),
+                    difference(s.behind, s.behind_error),
+                    difference(s.heights_behind, s.heights_error),
                     fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
   }
   return rows;
+}
+
+const std::string& ranking_note() {
+  static const std::string note =
+      "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
+      "Behind: squared difference on realizations left out, from the best model, over the signal's "
+      "square, with its paired error; heights: the same on heights left out. Supported: not behind "
+      "by more than chance.";
+  return note;
+}
+
+const std::string& constants_note() {
+  static const std::string note =
+      "+-: by leaving one realization out at a time (jackknife), of which intervals are Student's "
+      "t "
+      "of realizations - 1 times it. Beside it the errors by the values' covariance, by bootstrap "
+      "draws of the realizations, and the 95 % interval by the profile of the misfit.";
+  return note;
 }
 
 std::string markdown_table(const std::vector<std::string>& header,
@@ -120,12 +150,17 @@ std::string tex_table(const std::vector<std::string>& header,
 }
 
 std::string parameters_csv(const std::vector<Fit>& fits) {
-  std::string out = "model,parameter,unit,value,error,bootstrap_error,low,high,at_bound\n";
+  std::string out =
+      "model,parameter,unit,value,error,low,high,covariance_error,bootstrap_error,jackknife_error,"
+      "profile_low,profile_high,at_bound\n";
   for (const Fit& f : fits) {
     for (const FittedParameter& p : f.parameters) {
-      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", f.name, p.parameter.name, p.parameter.unit,
-                         number(p.value), number(p.error), number(p.bootstrap_error), number(p.low),
-                         number(p.high), p.at_bound ? 1 : 0);
+      out += fmt::format("{},{},{}", f.name, p.parameter.name, p.parameter.unit);
+      for (const double v : {p.value, p.error, p.low, p.high, p.covariance_error, p.bootstrap_error,
+                             p.jackknife_error, p.by_profile.low, p.by_profile.high}) {
+        out += fmt::format(",{}", number(v));
+      }
+      out += fmt::format(",{}\n", p.at_bound ? 1 : 0);
     }
   }
   return out;
@@ -137,7 +172,9 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
     for (const FittedParameter& p : f.parameters) {
       summary[prefix + p.parameter.name] = p.value;
       summary[prefix + p.parameter.name + ".error"] = p.error;
+      summary[prefix + p.parameter.name + ".covariance_error"] = p.covariance_error;
       summary[prefix + p.parameter.name + ".bootstrap_error"] = p.bootstrap_error;
+      summary[prefix + p.parameter.name + ".jackknife_error"] = p.jackknife_error;
     }
     summary[prefix + "chi2_per_dof"] = f.chi2_per_dof;
     summary[prefix + "chi2_chance"] = f.chance;
@@ -149,10 +186,10 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
 void add_ranking(Summary& summary, const Selection& selection) {
   for (const Score& s : selection.ranking) {
     const std::string prefix = "fit." + s.name + ".";
-    summary[prefix + "aicc_difference"] = s.aicc_difference;
     summary[prefix + "cv_behind"] = s.behind;
     summary[prefix + "cv_behind_error"] = s.behind_error;
-    summary[prefix + "cv_heights"] = s.level_score;
+    summary[prefix + "heights_behind"] = s.heights_behind;
+    summary[prefix + "heights_behind_error"] = s.heights_error;
     summary[prefix + "supported"] = s.supported ? "yes" : "no";
   }
 }

@@ -26,16 +26,21 @@ const std::vector<std::string>& ranking_header();
 std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                                                    const Selection& selection);
 
+/// What the columns of the two tables say, for captions.
+const std::string& ranking_note();
+const std::string& constants_note();
+
 std::string markdown_table(const std::vector<std::string>& header,
                            const std::vector<std::vector<std::string>>& rows);
 std::string tex_table(const std::vector<std::string>& header,
                       const std::vector<std::vector<std::string>>& rows);
-/// model,parameter,unit,value,error,bootstrap_error,low,high,at_bound
+/// One row per parameter of every fit: value, error and interval quoted, and every other error.
 std::string parameters_csv(const std::vector<Fit>& fits);
 
-/// fit.MODEL.PARAMETER, .error, .bootstrap_error; fit.MODEL.{chi2_per_dof,rel_l2,note}.
+/// fit.MODEL.PARAMETER, .error, .covariance_error, .bootstrap_error, .jackknife_error;
+/// fit.MODEL.{chi2_per_dof,rel_l2,note}.
 void add_parameters(Summary& summary, const std::vector<Fit>& fits);
-/// fit.MODEL.{aicc_difference,cv_behind,cv_behind_error,cv_heights,supported}.
+/// fit.MODEL.{cv_behind,cv_behind_error,heights_behind,heights_behind_error,supported}.
 void add_ranking(Summary& summary, const Selection& selection);
 
 }  // namespace grainfield::coupling

@@ -46,6 +46,13 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
   }
 }
 
+// All but those of these numbers, from 1.
+HeapReader without(const HeapReader& all, const std::vector<double>& numbers) {
+  const std::vector<std::size_t> kept = kept_realizations(all.count, numbers);
+  return {kept.size(), [read = all.read, kept](std::size_t k) { return read(kept[k]); },
+          [name = all.name, kept](std::size_t k) { return name(kept[k]); }};
+}
+
 }  // namespace
 
 HeapReader heaps_of_runs(const std::vector<std::string>& files) {
@@ -53,23 +60,26 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files) {
           [files](std::size_t k) { return files[k]; }};
 }
 
-HeapData heap_data(const FitSetup& setup, const HeapReader& heaps, int threads) {
+HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threads) {
+  const HeapReader heaps = without(all_heaps, setup.leave_out);
   HeapData out;
   DoubtList doubts;
-  double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity(), most = 0;
+  double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity();
   const auto count = static_cast<double>(heaps.count);
   for (std::size_t k = 0; k < heaps.count; ++k) {
     out.frames.push_back(frame_of(heaps, k, doubts));
+    if (const std::string& flying = out.frames.back().in_flight; !flying.empty()) {
+      out.warnings.push_back(fmt::format("{}: {}", heaps.name(k), flying));
+    }
     height += out.frames.back().height / count;
     least = std::min(least, out.frames.back().height);
-    most = std::max(most, out.frames.back().height);
     diameter += out.frames.back().diameter / count;
   }
   const HeapSlopes slopes = slopes_of(setup, out.frames);
-  out.warnings = doubts.lines();
+  for (std::string& line : doubts.lines()) out.warnings.push_back(std::move(line));
   out.width = setup.width_diameters * diameter;
   warn_of_low_heights(setup.heights, least, out.width, out);
-  warn_of_unlike_heaps(least, most, out);
+  warn_of_unlike_heaps(heaps.name, out);
   warn_of_set_slopes(setup, out);
   AverageOptions options;
   options.method = "coarse_graining";

@@ -59,7 +59,7 @@ std::vector<FiniteElementFit> heap_elements(const HeapFits& fits,
     e.constants = constants_text(settings);
     try {
       const auto model = continuum::make_model(name, settings);
-      judge_elements(e, fits.heaps.data, fits.covariance, *fitted,
+      judge_elements(e, fits.heaps.data, fits.weights, *fitted,
                      model->stress(fits.heaps.data.points));
     } catch (const continuum::ComputationFailed& failure) {
       e.why = failure.what();

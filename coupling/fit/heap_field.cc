@@ -38,9 +38,34 @@ std::string kernel_name(const Field& field, const std::string& where) {
              : "heaviside";
 }
 
+// The field without the realizations of these numbers, from 1, in its single values.
+Field without_realizations(const Field& whole, const std::vector<double>& numbers,
+                           const std::string& where) {
+  if (numbers.empty()) return whole;
+  const std::vector<std::size_t> kept =
+      kept_realizations(static_cast<std::size_t>(whole.realizations), numbers);
+  Field out = whole;
+  const std::vector<int> chosen(kept.begin(), kept.end());
+  out.realizations = static_cast<int>(chosen.size());
+  for (Column& column : out.columns) {
+    if (column.samples.size() == 0) {
+      column.error.resize(0);
+      continue;
+    }
+    column.samples = Eigen::MatrixXd(column.samples(Eigen::all, chosen));
+    column.value = column.samples.rowwise().mean();
+  }
+  if (out.find("sigma_yy") == nullptr || out.find("sigma_yy")->samples.size() == 0) {
+    throw std::invalid_argument(
+        fmt::format("fit.leave_out: {} has no values of single realizations", where));
+  }
+  return out;
+}
+
 }  // namespace
 
-HeapData heap_data(const FitSetup& setup, const Field& field, const std::string& where) {
+HeapData heap_data(const FitSetup& setup, const Field& whole, const std::string& where) {
+  const Field field = without_realizations(whole, setup.leave_out, where);
   if (field.points.cols() != 2) refuse_field(where, "is 3D; fits of heaps need a 2D field");
   std::vector<std::string> missing;
   std::vector<const Column*> columns;
@@ -59,7 +84,16 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
   const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
   require_compression(field, where);
   HeapData out;
-  const HeapFieldFacts facts = heap_field_facts(field, count, where);
+  HeapFieldFacts facts =
+      heap_field_facts(whole, single ? static_cast<std::size_t>(whole.realizations) : 1, where);
+  if (field.realizations != whole.realizations) {
+    const std::vector<std::size_t> kept = kept_realizations(facts.height.size(), setup.leave_out);
+    for (auto* list : {&facts.height, &facts.pressure, &facts.left_deg, &facts.right_deg}) {
+      std::vector<double> of_kept;
+      for (const std::size_t k : kept) of_kept.push_back((*list)[k]);
+      *list = std::move(of_kept);
+    }
+  }
   const std::vector<double>& pressures = facts.pressure;
   const double height = facts.mean_height(), pressure = facts.mean_pressure();
   for (std::size_t r = 0; r < count; ++r) {
@@ -137,14 +171,17 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
     }
   }
   drop_copies(
-      all, grid, [&](std::size_t r) { return fmt::format("realization {} of {}", r, where); }, out);
+      all, grid, [&](std::size_t r) { return fmt::format("realization {} of {}", r + 1, where); },
+      out);
   if (mapped) fill_heap_maps(grid, out.facts, out.width / height, out.maps);
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);
   warn_of_low_heights(shares, height, out.width, out);
   warn_of_set_slopes(setup, out);
+  warn_of_unlike_heaps(
+      [&](std::size_t r) { return fmt::format("realization {} of {}", r + 1, where); }, out);
   keep_rows(setup, places, level, all, out);
-  if (!single && field.realizations > 1) {
+  if (count == 1) {
     HeapData beside;
     beside.data.levels = out.data.levels;
     // Errors of the same rows: those that have a value but no error end the use of errors.
@@ -155,10 +192,12 @@ HeapData heap_data(const FitSetup& setup, const Field& field, const std::string&
     if (beside.data.values() == out.data.values() && (beside.data.samples.array() > 0).all()) {
       out.data.error = beside.data.samples.col(0);
     }
-    out.note = fmt::format(
-        "{} holds the mean of {} realizations without their single values (average them anew with "
-        "`grainfield average --frame heap`)",
-        where, field.realizations);
+    if (field.realizations > 1)
+      out.note = fmt::format(
+          "{} holds the mean of {} realizations without their single values (average them anew "
+          "with "
+          "`grainfield average --frame heap`)",
+          where, field.realizations);
   }
   return out;
 }

@@ -1,31 +1,99 @@
 #include "coupling/fit/heap_fits.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "coupling/compare/significance.h"
+#include "coupling/fit/derived.h"
+#include "coupling/fit/fit_tables.h"
+#include "coupling/fit/heap_rows.h"
+#include "coupling/fit/heap_sight.h"
+#include "coupling/fit/intervals.h"
 
 namespace grainfield::coupling {
+
+std::vector<FitModel> models_of(const FitSetup& setup, const HeapData& heaps) {
+  std::vector<FitModel> out;
+  for (FitModel& model : heap_models(heaps.facts)) {
+    out.push_back(seen_through_kernel(std::move(model), heaps.facts.smoothing));
+  }
+  if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
+  const auto of_part = [setup, frames = heaps.frames, all = heaps.facts](
+                           const std::string& name, const std::vector<int>& chosen) {
+    std::vector<PileFrame> part;
+    for (const int k : chosen) part.push_back(frames[static_cast<std::size_t>(k)]);
+    HeapFacts facts = all;
+    const HeapSlopes slopes = slopes_of(setup, part);
+    facts.slope_deg = slopes.mean_deg;
+    if (all.left_deg > 0) {
+      facts.left_deg = slopes.left_deg;
+      facts.right_deg = slopes.right_deg;
+    }
+    if (facts.friction_deg > 0) {
+      facts.friction_deg = std::max({facts.friction_deg, facts.left(), facts.right()});
+    }
+    return seen_through_kernel(find_fit_model(heap_models(facts), name), facts.smoothing);
+  };
+  for (FitModel& model : out) {
+    model.measured_on = [of_part, name = model.name](const std::vector<int>& chosen) {
+      return of_part(name, chosen);
+    };
+  }
+  return out;
+}
+
+namespace {
+
+// What constants that are no stress field are called; empty: they are one within the errors.
+std::string imbalance(const Fit& fit, double slope_deg, int realizations) {
+  std::vector<std::string> off;
+  for (const FittedParameter& d : derived_figures(fit, slope_deg)) {
+    if (d.parameter.name.compare(0, 13, "flank_balance") != 0) continue;
+    const double reach = std::isfinite(d.error) ? student(realizations, 0.95) * d.error : 0.01;
+    if (std::fabs(d.value) <= reach) continue;
+    off.push_back(fmt::format("{} = {}",
+                              d.parameter.name == "flank_balance_x" ? "a_xy - a_xx tan(slope)"
+                                                                    : "a_yy - 1 - a_xy tan(slope)",
+                              with_error(d)));
+  }
+  if (off.empty()) return "";
+  return fmt::format(
+      "a description, no stress field: its flanks are out of balance, {}, where equilibrium asks "
+      "for 0; cantelaube_continuous is the fit within equilibrium and yield",
+      fmt::join(off, ", "));
+}
+
+}  // namespace
 
 HeapFits fit_heaps(const FitSetup& setup, HeapData heaps, int threads) {
   HeapFits out;
   out.heaps = std::move(heaps);
   const FitData& data = out.heaps.data;
-  out.covariance = covariance_of(data, setup.covariance);
-  const std::vector<FitModel> known = heap_models(out.heaps.facts);
+  out.weights = weights_of(data);
+  const std::vector<FitModel> known = models_of(setup, out.heaps);
   FitOptions options;
   options.huber = setup.huber;
   options.bootstrap = static_cast<int>(setup.bootstrap);
   options.threads = threads;
-  for (const std::string& name : setup.models) {
+  std::vector<std::string> names = setup.models;
+  // Beside constants that are free of equilibrium and yield stands the fit that is bound to both.
+  const auto named = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (named("cantelaube") && !named("cantelaube_continuous")) {
+    names.push_back("cantelaube_continuous");
+  }
+  for (const std::string& name : names) {
     const FitModel& model = find_fit_model(known, name);
     if (!model.absent.empty()) {
       out.absent.push_back(model);
       continue;
     }
     out.models.push_back(model);
-    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+    out.fits.push_back(fit(data, out.weights, out.models.back(), options));
   }
   if (out.models.empty()) {
     throw std::invalid_argument(fmt::format("fit.models: {}: {}; choose another model",
@@ -33,7 +101,14 @@ HeapFits fit_heaps(const FitSetup& setup, HeapData heaps, int threads) {
   }
   SelectionOptions selection;
   selection.huber = setup.huber;
-  out.selection = select(data, out.covariance, out.models, out.fits, selection);
+  out.selection = select(data, out.weights, out.models, out.fits, selection);
+  for (Fit& f : out.fits) {
+    const std::string off = imbalance(f, out.heaps.facts.slope_deg, data.realizations());
+    if (off.empty()) continue;
+    f.note += (f.note.empty() ? "" : "; ") + off;
+    const Score& first = out.selection.ranking.front();
+    if (first.name == f.name) out.selection.sentence += fmt::format(" {}: {}.", f.name, off);
+  }
   return out;
 }
 
@@ -74,7 +149,7 @@ Comparison profiles_of(const HeapFits& fits) {
         const Eigen::VectorXd row = p.samples.row(k);
         p.error[k] = spread_of({row.begin(), row.end()}).standard_error;
       }
-      p.independent_length = fits.covariance.correlation_length * h;
+      p.independent_length = fits.heaps.kernel->independent_length() * h;
       for (std::size_t m = 0; m < models.size(); ++m) {
         Eigen::VectorXd values(static_cast<Eigen::Index>(rows.size()));
         for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -10,14 +10,18 @@ namespace grainfield::coupling {
 
 struct HeapFits {
   HeapData heaps;
-  Covariance covariance;
+  Weights weights;
   std::vector<FitModel> models;
   std::vector<Fit> fits;  ///< in the order of models
   Selection selection;
   std::vector<FitModel> absent;  ///< asked for, but there is no such field for this heap
 };
 
-/// Covariance, one fit per setup.models, and their ranking. The bits do not depend on threads.
+/// The models of the heaps, with slopes that a part of the realizations has alone where these are
+/// measured: their spread is part of the constants' errors.
+std::vector<FitModel> models_of(const FitSetup& setup, const HeapData& heaps);
+
+/// Weights, one fit per setup.models, and their ranking. The bits do not depend on threads.
 /// Throws std::invalid_argument for unknown models and what data and models throw.
 HeapFits fit_heaps(const FitSetup& setup, HeapData heaps, int threads);
 

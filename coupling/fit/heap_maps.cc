@@ -76,9 +76,8 @@ Eigen::MatrixXd model_on_maps(const HeapFits& fits, const std::string& name) {
   }
   // There is nothing outside of the heap.
   const StressFunction stress = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
-    return model.stress(points, parameters).unaryExpr([](double v) {
-      return std::isnan(v) ? 0.0 : v;
-    });
+    const auto& exact = model.at_point ? model.at_point : model.stress;
+    return exact(points, parameters).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
   };
   const Eigen::MatrixXd seen =
       smooth_in_plane(stress, m.points(inside, Eigen::all), *fits.heaps.kernel, 1);

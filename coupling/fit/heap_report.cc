@@ -26,34 +26,31 @@ const FittedParameter* parameter_of(const Fit& fit, const std::string& name) {
   return nullptr;
 }
 
+std::string number_or_dash(double v) { return std::isfinite(v) ? fmt::format("{:.2g}", v) : "-"; }
+
 // The constants and, below those of their model, what follows from them.
 std::vector<std::vector<std::string>> constants_rows(const HeapFits& fits) {
   std::vector<std::vector<std::string>> rows;
   for (const Fit& f : fits.fits) {
     for (auto& row : parameter_rows({f})) rows.push_back(std::move(row));
     for (const FittedParameter& d : derived_figures(f, fits.heaps.facts.slope_deg)) {
-      rows.push_back(
-          {f.name, d.parameter.name, with_error(d),
-           std::isfinite(d.bootstrap_error) ? fmt::format("{:.2g}", d.bootstrap_error) : "-",
-           d.parameter.unit, "-", "follows from those above"});
+      rows.push_back({f.name, d.parameter.name, with_error(d), number_or_dash(d.covariance_error),
+                      number_or_dash(d.bootstrap_error), "-", d.parameter.unit, "-",
+                      "follows from those above"});
     }
   }
   return rows;
 }
 
 std::string weights_note(const HeapFits& fits) {
-  const Covariance& c = fits.covariance;
   const auto counted = [](int n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
   std::string out = fmt::format("{} values of {} at {}", fits.heaps.data.values(),
                                 counted(fits.heaps.data.realizations(), "pile"),
                                 counted(static_cast<int>(fits.heaps.data.levels.size()), "height"));
-  if (c.kind != "unknown") {
-    out += fmt::format("; {} covariance, correlation length {:.3g} h, {:.0f} effective values",
-                       c.kind, c.correlation_length, c.effective_values);
-  }
-  if (!c.note.empty()) out += "; " + c.note;
+  out += ", each in units of rho g h";
+  if (!fits.weights.note.empty()) out += "; " + fits.weights.note;
   for (const FitModel& model : fits.absent) {
     out += fmt::format("; {} left out: {}", model.name, model.absent);
   }
@@ -107,9 +104,9 @@ Frame frame_of(const HeapFits& fits, int component, int level, const std::vector
     const Eigen::Index row = rows[static_cast<std::size_t>(k)];
     grains.x[k] = data.points(row, 0);
     grains.y[k] = sign * mean[row];
-    grains.error[k] = std::sqrt(fits.covariance.of_mean(row, row));
+    grains.error[k] = fits.weights.error[row];
   }
-  if (fits.covariance.kind == "unknown") grains.error.resize(0);
+  if (!fits.weights.known()) grains.error.resize(0);
   frame.series.push_back(grains);
   for (const Line& model : models) {
     Series s{model.label, grains.x, Eigen::VectorXd(n), {}, false};
@@ -176,9 +173,6 @@ void add_fits(Summary& summary, const HeapFits& fits) {
   }
   summary["fit.weights"] = weights_note(fits);
   summary["fit.warnings"] = fmt::format("{}", fmt::join(fits.heaps.warnings, "; "));
-  summary["fit.covariance"] = fits.covariance.kind;
-  summary["fit.correlation_length"] = fits.covariance.correlation_length;
-  summary["fit.effective_values"] = fits.covariance.effective_values;
   add_parameters(summary, fits.fits);
   for (const Fit& f : fits.fits) {
     const std::string prefix = "fit." + f.name + ".";
@@ -235,7 +229,7 @@ std::vector<Section> fit_sections(const HeapFits& fits) {
   for (Section& section : heap_map_sections(fits, best)) {
     out.push_back(std::move(section));
   }
-  if (fits.covariance.kind != "unknown") {
+  if (fits.weights.known()) {
     std::vector<Frame> frames;
     for (int c = 0; c < static_cast<int>(data.components.size()); ++c) {
       Frame frame = residual_frame(fits, best, c);
@@ -253,15 +247,10 @@ std::vector<Section> fit_sections(const HeapFits& fits) {
   for (Section& section : posterior_sections(ranked, data.realizations())) {
     out.push_back(std::move(section));
   }
-  out.emplace_back(Table{"Ranking",
-                         "AICc behind: from the best. CV behind: cross-validation, squared "
-                         "difference per effective value on realizations left out, from the best. "
-                         "Supported: not behind in both.",
-                         ranking_header(), ranking_rows(fits.fits, fits.selection)});
-  out.emplace_back(Table{"Fitted constants",
-                         "Errors from the covariance; beside them those of bootstrap draws of the "
-                         "piles.",
-                         parameter_header(), constants_rows(fits)});
+  out.emplace_back(
+      Table{"Ranking", ranking_note(), ranking_header(), ranking_rows(fits.fits, fits.selection)});
+  out.emplace_back(
+      Table{"Fitted constants", constants_note(), parameter_header(), constants_rows(fits)});
   return out;
 }
 

@@ -140,12 +140,41 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       std::ceil(100 * width / height) / 100));
 }
 
-void warn_of_unlike_heaps(double least, double most, HeapData& out) {
-  if (!(most > kUnlikeHeights * least)) return;
+void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, HeapData& out) {
+  if (out.frames.size() < 2) return;
+  std::vector<double> heights;
+  for (const PileFrame& frame : out.frames) heights.push_back(frame.height);
+  std::sort(heights.begin(), heights.end());
+  const double median = heights[heights.size() / 2];
+  std::vector<std::string> unlike;
+  for (std::size_t k = 0; k < out.frames.size(); ++k) {
+    const double h = out.frames[k].height;
+    if (h <= kUnlikeHeights * median && median <= kUnlikeHeights * h) continue;
+    unlike.push_back(fmt::format("{} (number {}, {:.3g} m)", name(k), k + 1, h));
+  }
+  if (unlike.empty()) return;
   out.warnings.push_back(fmt::format(
-      "heaps {:.3g} to {:.3g} m high in one ensemble: are they realizations of one? The averaging "
-      "width, {:.3g} m, is the same for all",
-      least, most, out.width));
+      "heaps {:.3g} to {:.3g} m high in one ensemble: are they realizations of one? Unlike the "
+      "others ({:.3g} m): {}; fit.leave_out=[NUMBER, ...] leaves them out",
+      heights.front(), heights.back(), median, fmt::join(unlike, ", ")));
+}
+
+std::vector<std::size_t> kept_realizations(std::size_t count, const std::vector<double>& numbers) {
+  std::vector<std::size_t> out;
+  for (const double number : numbers) {
+    if (number >= 1 && number <= static_cast<double>(count) && number == std::floor(number)) {
+      continue;
+    }
+    throw std::invalid_argument(
+        fmt::format("fit.leave_out: found {:g}, allowed: whole numbers 1 to {}", number, count));
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (std::find(numbers.begin(), numbers.end(), static_cast<double>(k + 1)) == numbers.end()) {
+      out.push_back(k);
+    }
+  }
+  if (out.empty()) throw std::invalid_argument("fit.leave_out: leaves no realization");
+  return out;
 }
 
 void warn_of_set_slopes(const FitSetup& setup, HeapData& out) {

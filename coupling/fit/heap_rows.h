@@ -32,8 +32,13 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoot
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
                          HeapData& out);
 
-/// Adds a warning when the heaps' heights, `least` to `most` m, are not those of one ensemble.
-void warn_of_unlike_heaps(double least, double most, HeapData& out);
+/// Adds a warning that names every heap whose height differs from the median by more than a
+/// realization's does (kUnlikeHeights): one of another size, or with a stray grain.
+void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, HeapData& out);
+
+/// Indices of the realizations that are not among `numbers` (from 1). Throws std::invalid_argument
+/// "fit.leave_out: ..." for a number that there is not, or when none is left.
+std::vector<std::size_t> kept_realizations(std::size_t count, const std::vector<double>& numbers);
 
 /// Adds a warning for slopes of the setup that are more than 5 degrees off the heaps' own.
 void warn_of_set_slopes(const FitSetup& setup, HeapData& out);

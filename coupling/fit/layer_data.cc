@@ -108,6 +108,7 @@ LayerData layer_data(const Case& value, const std::vector<std::string>& files, i
   data.points.resize(rows, 2);
   for (Eigen::Index k = 0; k < rows; ++k) data.points.row(k) = places[static_cast<std::size_t>(k)];
   data.samples = all;
+  data.scale = (-data.points.col(1)).cwiseInverse();
   data = rows_of(data, kept);
   return out;
 }

@@ -11,7 +11,9 @@
 namespace grainfield::coupling {
 
 struct LayerData {
-  FitData data;           ///< loaded - unloaded; lengths over h, stresses over F/h; base: y = -1
+  /// loaded - unloaded; lengths over h, stresses over F/h; base: y = -1. Working unit: F over the
+  /// value's depth, which the peak of every model falls off with.
+  FitData data;
   double depth = 0;       ///< h, m: mean over realizations
   double force = 0;       ///< F, N
   double diameter = 0;    ///< mean of the grains, m

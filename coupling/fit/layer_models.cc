@@ -161,14 +161,6 @@ std::string type_of_equations(const std::string& model) {
   return model.find("osl") != std::string::npos ? "hyperbolic" : "elliptic";
 }
 
-Eigen::VectorXd parameters_of(const Fit& fit) {
-  VectorXd out(static_cast<Eigen::Index>(fit.parameters.size()));
-  for (Eigen::Index k = 0; k < out.size(); ++k) {
-    out[k] = fit.parameters[static_cast<std::size_t>(k)].value;
-  }
-  return out;
-}
-
 Ratio rho_of(const Fit& fit) {
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FittedParameter& p = fit.parameters[k];

@@ -28,9 +28,6 @@ const std::vector<std::string>& layer_model_names();
 /// "elliptic" or "hyperbolic", by the name of the model or of its finite elements.
 std::string type_of_equations(const std::string& model);
 
-/// The fitted values in the model's order.
-Eigen::VectorXd parameters_of(const Fit& fit);
-
 /// rho of a fit of an orthotropic_* model, with its error; nan of other models.
 struct Ratio {
   double value = 0, error = 0;
@@ -41,9 +38,9 @@ Ratio rho_of(const Fit& fit);
 /// left to the run); label: the fitted model's name.
 ModelChoice fitted_choice(const Fit& fit, double h);
 /// The finite-element model `name` of the registry with the constants of the best of the fits
-/// (least AICc) that it can represent: fe_elastic_half_space of flamant, fe_elastic_layer of
-/// layer_*, fe_orthotropic_layer of orthotropic_layer_*, fe_osl_layer of osl_layer_absorbing.
-/// Null, with the reason in `why`, when there is no such fit.
+/// (least expected misfit) that it can represent: fe_elastic_half_space of flamant,
+/// fe_elastic_layer of layer_*, fe_orthotropic_layer of orthotropic_layer_*, fe_osl_layer of
+/// osl_layer_absorbing. Null, with the reason in `why`, when there is no such fit.
 std::unique_ptr<ModelChoice> finite_element_choice(const std::string& name,
                                                    const std::vector<Fit>& fits, double h,
                                                    std::string& of, std::string& why);

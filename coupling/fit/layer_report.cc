@@ -28,15 +28,10 @@ std::vector<std::vector<std::string>> layer_ranking_rows(const LayerFits& fits) 
 }
 
 std::string weights_note(const LayerFits& fits) {
-  const Covariance& c = fits.covariance;
-  std::string out =
-      fmt::format("{} values of {} layers on {} levels; {} covariance", fits.layers.data.values(),
-                  fits.layers.data.realizations(), fits.layers.data.levels.size(), c.kind);
-  if (c.correlation_length > 0) {
-    out += fmt::format(", correlation length {:.3g} h, {:.0f} effective values",
-                       c.correlation_length, c.effective_values);
-  }
-  return c.note.empty() ? out : out + "; " + c.note;
+  const std::string out = fmt::format(
+      "{} values of {} layers on {} levels, each in units of F over its depth",
+      fits.layers.data.values(), fits.layers.data.realizations(), fits.layers.data.levels.size());
+  return fits.weights.note.empty() ? out : out + "; " + fits.weights.note;
 }
 
 std::string level_title(const std::string& level) {
@@ -47,9 +42,6 @@ std::string level_title(const std::string& level) {
 
 void add_layer_fits(Summary& summary, const LayerFits& fits) {
   summary["fit.values"] = static_cast<double>(fits.layers.data.values());
-  summary["fit.covariance"] = fits.covariance.kind;
-  summary["fit.correlation_length"] = fits.covariance.correlation_length;
-  summary["fit.effective_values"] = fits.covariance.effective_values;
   add_parameters(summary, fits.fits);
   add_ranking(summary, fits.selection);
   for (const Fit& f : fits.fits) {
@@ -106,9 +98,9 @@ std::vector<Frame> layer_frames(const LayerFits& fits, const std::string& compon
       const Eigen::Index row = rows[static_cast<std::size_t>(k)];
       grains.x[k] = data.points(row, 0);
       grains.y[k] = sign * mean[row];
-      grains.error[k] = std::sqrt(fits.covariance.of_mean(row, row));
+      grains.error[k] = fits.weights.error[row];
     }
-    if (fits.covariance.kind == "unknown") grains.error.resize(0);
+    if (!fits.weights.known()) grains.error.resize(0);
     Frame frame{level_title(data.levels[level]), {grains}};
     for (const Fit& f : fits.fits) {
       Series s{f.name, grains.x, Eigen::VectorXd(n), {}, false};
@@ -162,17 +154,11 @@ std::vector<Section> layer_pictures(const LayerFits& fits) {
 
 std::vector<Section> layer_tables(const LayerFits& fits, const std::string& of) {
   std::vector<Section> out;
-  out.emplace_back(
-      Table{of.empty() ? "Ranking" : of + "ranking",
-            "AICc behind: from the best. CV behind: cross-validation, squared difference per "
-            "effective value on realizations left out, from the best. CV over heights: the same on "
-            "the level left out. Supported: not behind in both. " +
-                weights_note(fits) + ".",
-            layer_ranking_header(), layer_ranking_rows(fits)});
+  out.emplace_back(Table{of.empty() ? "Ranking" : of + "ranking",
+                         ranking_note() + " " + weights_note(fits) + ".", layer_ranking_header(),
+                         layer_ranking_rows(fits)});
   out.emplace_back(Table{of.empty() ? "Fitted constants" : of + "fitted constants",
-                         "Errors from the covariance; beside them those of bootstrap draws of the "
-                         "realizations.",
-                         parameter_header(), parameter_rows(fits.fits)});
+                         constants_note(), parameter_header(), parameter_rows(fits.fits)});
   if (!fits.elements.empty()) {
     out.emplace_back(Table{of.empty() ? "Finite elements with the fitted constants"
                                       : of + "finite elements with the fitted constants",

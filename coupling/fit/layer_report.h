@@ -15,7 +15,7 @@ namespace grainfield::coupling {
 /// Everything that was fitted to one ensemble of layers.
 struct LayerFits {
   LayerData layers;
-  Covariance covariance;
+  Weights weights;
   std::vector<FitModel> models;
   std::vector<Fit> fits;  ///< in the order of models
   Selection selection;

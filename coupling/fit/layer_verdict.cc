@@ -64,14 +64,14 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   if (fits.empty() || selection.ranking.empty()) {
     throw std::invalid_argument("verdict: no fitted model");
   }
-  if (realizations < least_for_significance || std::isnan(fits.front().aicc)) {
+  if (realizations < least_for_significance || std::isnan(fits.front().chi2_per_dof)) {
     return without_spread(fits, realizations);
   }
   LayerVerdict out;
   std::vector<std::string> supported;
   std::set<std::string> types;
   const Fit* simplest = nullptr;
-  for (const Score& s : selection.ranking) {  // by AICc: the first of equals stays
+  for (const Score& s : selection.ranking) {  // the first of equals stays
     if (!s.supported) continue;
     const Fit& f = fit_named(fits, s.name);
     supported.push_back(s.name);
@@ -83,22 +83,20 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   out.alone = std::all_of(supported.begin(), supported.end(),
                           [&](const std::string& name) { return contains(name, out.model); });
   out.agrees = simplest->chi2_per_dof <= simplest->chance;
-  const std::string evidence = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
+  const std::string nearness = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
                                            simplest->chi2_per_dof, 100 * simplest->rel_l2);
   if (out.alone) {
-    out.sentence = fmt::format("Supported: {} ({})", out.model, evidence);
+    out.sentence = fmt::format("Supported: {} ({})", out.model, nearness);
     for (const Score& s : selection.ranking) {
       if (s.supported || contains(s.name, out.model)) continue;
-      out.sentence += fmt::format(
-          "; {}, the next, is behind by {:.1f} in AICc and by {:.3g} +- {:.2g} in "
-          "cross-validation over {} realizations",
-          s.name, s.aicc_difference, s.behind, s.behind_error, realizations);
+      out.sentence +=
+          fmt::format("; {}, the next, is {}; {} realizations", s.name, evidence(s), realizations);
       break;
     }
     out.sentence += ".";
   } else {
     out.sentence = fmt::format("Not distinguishable: {}; the simplest is {} ({}).",
-                               joined(supported), out.model, evidence);
+                               joined(supported), out.model, nearness);
   }
   if (out.equations == "not distinguishable") {
     out.sentence += " Elliptic or hyperbolic: not distinguishable.";
@@ -106,8 +104,8 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
     out.sentence += fmt::format(" The response is {}", out.equations);
     for (const Score& s : selection.ranking) {
       if (type_of_equations(s.name) == out.equations) continue;
-      out.sentence += fmt::format(": the best {} model, {}, is behind by {:.1f} in AICc",
-                                  type_of_equations(s.name), s.name, s.aicc_difference);
+      out.sentence += fmt::format(": the best {} model, {}, is {}", type_of_equations(s.name),
+                                  s.name, evidence(s));
       break;
     }
     out.sentence += ".";
@@ -117,6 +115,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
         " No agreement within the errors: chi2/dof {:.3g}, where up to {:.3g} would be chance.",
         simplest->chi2_per_dof, simplest->chance);
   }
+  out.sentence += sign_doubts(fits, supported);
   return out;
 }
 

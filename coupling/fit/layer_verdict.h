@@ -9,7 +9,7 @@
 namespace grainfield::coupling {
 
 struct LayerVerdict {
-  /// The supported model with the fewest free numbers (least AICc among equals): richer models of
+  /// The supported model with the fewest free numbers (the best among equals): richer models of
   /// which it is a special case cannot be told from it and do not outbid it.
   std::string model;
   bool alone = false;     ///< every supported model contains it as a special case

@@ -26,7 +26,20 @@ struct FitModel {
   /// positive; nan outside the model's domain or for parameters it cannot take.
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> stress;
   std::string absent;  ///< why there is no such field for this heap; empty: there is
+  /// The model with what it takes from the packings (slopes) measured on these realizations alone,
+  /// with repetitions; empty: it takes nothing from them.
+  std::function<FitModel(const std::vector<int>&)> measured_on = {};
+  /// The same at the points themselves where `stress` is seen through a kernel; else empty.
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> at_point = {};
 };
+
+/// The model as these realizations alone have it; itself where it takes nothing from them or where
+/// there is no such field for them.
+inline FitModel model_of(const FitModel& model, const std::vector<int>& realizations) {
+  if (!model.measured_on) return model;
+  FitModel out = model.measured_on(realizations);
+  return out.absent.empty() ? out : model;
+}
 
 /// A vector of these numbers.
 inline Eigen::VectorXd numbers(std::initializer_list<double> values) {

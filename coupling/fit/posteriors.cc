@@ -20,9 +20,10 @@ std::vector<Section> posterior_sections(const std::vector<const Fit*>& fits, int
   std::vector<Frame> frames;
   for (const Fit* f : fits) {
     for (const FittedParameter& p : f->parameters) {
-      if (!(p.error > 0) || realizations < 2 || static_cast<int>(frames.size()) >= most) continue;
+      if (!(p.covariance_error > 0) || realizations < 2 || static_cast<int>(frames.size()) >= most)
+        continue;
       const bool drawn = p.bootstrap_error > 0;
-      const double reach = kReach * std::max(p.error, drawn ? p.bootstrap_error : 0.0);
+      const double reach = kReach * std::max(p.covariance_error, drawn ? p.bootstrap_error : 0.0);
       const double low = std::max(p.value - reach, p.parameter.least);
       const double high = std::min(p.value + reach, p.parameter.most);
       Frame frame;
@@ -38,7 +39,7 @@ std::vector<Section> posterior_sections(const std::vector<const Fit*>& fits, int
       const boost::math::normal normal;
       for (Eigen::Index k = 0; k < kPoints; ++k) {
         const double off = covariance.x[k] - p.value;
-        covariance.y[k] = pdf(t, off / p.error) / p.error;
+        covariance.y[k] = pdf(t, off / p.covariance_error) / p.covariance_error;
         bootstrap.y[k] =
             drawn ? pdf(normal, off / p.bootstrap_error) / p.bootstrap_error : std::nan("");
       }

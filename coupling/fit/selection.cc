@@ -1,8 +1,8 @@
 #include "coupling/fit/selection.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -17,181 +17,206 @@ namespace {
 
 constexpr int kLeastRealizations = 3;
 
-std::vector<Eigen::VectorXd> starts_of(const FitModel& model, const Fit& fit) {
-  Eigen::VectorXd best(static_cast<Eigen::Index>(fit.parameters.size()));
-  for (Eigen::Index k = 0; k < best.size(); ++k) {
-    best[k] = fit.parameters[static_cast<std::size_t>(k)].value;
-  }
-  (void)model;
-  return {best};
+std::vector<Eigen::VectorXd> starts_of(const Fit& fit) {
+  std::vector<Eigen::VectorXd> out{parameters_of(fit)};
+  out.insert(out.end(), fit.other_minima.begin(), fit.other_minima.end());
+  return out;
 }
 
-// Per realization left out: |W (it - model of the others)|^2 / (R n). W is of the mean of R.
-Eigen::VectorXd realization_scores(const FitData& data, const Covariance& c, const FitModel& model,
-                                   const Fit& fit, double huber) {
+// What every realization is held against by one judge: the model's values, values x realizations.
+using Forecast = Eigen::MatrixXd;
+
+// Constants and slopes of all realizations but the one.
+Forecast of_realizations(const FitData& data, const Weights& weights, const FitModel& model,
+                         const Fit& fit, double huber) {
   const int r = data.realizations();
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(r, kNan);
-  if (r < kLeastRealizations) return out;
-  const Eigen::VectorXd sum = data.samples.rowwise().sum();
+  Forecast out(data.values(), r);
   for (int left = 0; left < r; ++left) {
-    const Eigen::VectorXd others = (sum - data.samples.col(left)) / (r - 1.0);
-    const Eigen::VectorXd parameters =
-        best_parameters(data, others, c.whitener, model, starts_of(model, fit), huber);
-    const Eigen::VectorXd off = data.samples.col(left) - predict(data, model, parameters);
-    out[left] = (c.whitener * off).squaredNorm() / (r * c.effective_values);
-  }
-  return out;
-}
-
-Eigen::MatrixXd part(const Eigen::MatrixXd& m, const std::vector<int>& rows) {
-  Eigen::MatrixXd out(rows.size(), rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = m(rows[i], rows[j]);
+    std::vector<int> rest;
+    for (int k = 0; k < r; ++k) {
+      if (k != left) rest.push_back(k);
     }
+    const FitModel own = model_of(model, rest);
+    const Eigen::VectorXd mean = data.samples(Eigen::all, rest).rowwise().mean();
+    out.col(left) =
+        predict(data, own, best_parameters(data, mean, weights, own, starts_of(fit), huber));
   }
   return out;
 }
 
-Eigen::MatrixXd whitener_of(const Eigen::MatrixXd& covariance) {
-  const Eigen::Index n = covariance.rows();
-  return Eigen::LLT<Eigen::MatrixXd>(covariance).matrixL().solve(Eigen::MatrixXd::Identity(n, n));
-}
-
-// Mean over levels left out of |W (mean there - model of the other levels)|^2 per value.
-double level_score(const FitData& data, const Covariance& c, const FitModel& model, const Fit& fit,
-                   double huber) {
-  double sum = 0;
-  int parts = 0;
-  const Eigen::VectorXd mean = data.mean();
+// Constants of the mean at all heights but the value's own.
+Eigen::VectorXd of_heights(const FitData& data, const FitModel& model, const Fit& fit,
+                           double huber) {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(data.values(), kNan);
+  if (data.levels.size() < 2) return out;
   for (int level = 0; level < static_cast<int>(data.levels.size()); ++level) {
-    std::vector<int> in, out;
+    std::vector<int> in, there;
     for (int k = 0; k < data.values(); ++k) {
-      (data.level[static_cast<std::size_t>(k)] == level ? out : in).push_back(k);
+      (data.level[static_cast<std::size_t>(k)] == level ? there : in).push_back(k);
     }
-    if (in.empty() || out.empty()) continue;
-    const FitData rest = rows_of(data, in), there = rows_of(data, out);
-    const Eigen::VectorXd parameters = best_parameters(
-        rest, rest.mean(), whitener_of(part(c.of_mean, in)), model, starts_of(model, fit), huber);
-    const Eigen::VectorXd off = there.mean() - predict(there, model, parameters);
-    sum +=
-        (whitener_of(part(c.of_mean, out)) * off).squaredNorm() / static_cast<double>(out.size());
-    ++parts;
+    if (in.empty() || there.empty()) continue;
+    const FitData rest = rows_of(data, in), at = rows_of(data, there);
+    const Eigen::VectorXd constants =
+        best_parameters(rest, rest.mean(), weights_of(rest), model, starts_of(fit), huber);
+    out(there) = predict(at, model, constants);
   }
-  return parts >= 2 ? sum / parts : kNan;
+  return out;
 }
 
-// What the best fit's chi squared says against every model; empty: nothing.
-std::string doubt(const Fit& best) {
-  if (!std::isnan(best.aicc) && !(best.dof > 0)) {
-    return fmt::format(" {} has as many free numbers as there are effective values: no test.",
-                       best.name);
+// Mean and standard error of the paired difference of squares of two forecasts.
+struct Difference {
+  double mean = kNan, error = kNan;
+};
+
+Difference paired(const FitData& data, const Weights& weights, const Forecast& one,
+                  const Forecast& best) {
+  Difference out;
+  const double r = data.realizations();
+  const auto squares = [&](const Forecast& f) -> Eigen::VectorXd {
+    return (weights.weight.asDiagonal() * (data.samples - f)).colwise().squaredNorm();
+  };
+  const Eigen::VectorXd behind = squares(one) - squares(best);
+  out.mean = behind.mean();
+  if (weights.errors_from == ErrorsFrom::data) {
+    // Linear in the values; the components of a point may be tied and count as one.
+    const Eigen::VectorXd slope = 2 * weights.weight.cwiseAbs2().cwiseProduct((best - one).col(0));
+    out.error = std::sqrt(static_cast<double>(data.components.size())) *
+                slope.cwiseProduct(weights.error).norm();
+  } else if (r >= kLeastRealizations) {
+    out.error = std::sqrt((behind.array() - out.mean).square().sum() / (r - 1) / r);
   }
+  return out;
+}
+
+// What the best fit says against every model; empty: nothing.
+std::string doubt(const Fit& best) {
   if (!(best.chi2_per_dof > best.chance)) return "";
   return fmt::format(
-      " No model agrees within the errors: the nearest has chi2/dof {:.3g}, where up to {:.3g} "
-      "would be chance.",
-      best.chi2_per_dof, best.chance);
+      " No model agrees within the errors: the nearest misses by {:.3g} times what the spread "
+      "explains, where up to {:.3g} would be chance (relative L2 {:.1f} %).",
+      best.chi2_per_dof, best.chance, 100 * best.rel_l2);
 }
 
 }  // namespace
 
 double least_errors(int realizations) {
+  if (realizations == 1) return 1.96;
   if (realizations < kLeastRealizations) return std::numeric_limits<double>::infinity();
   return boost::math::quantile(boost::math::students_t(realizations - 1.0), 0.975);
 }
 
-void mark_supported(std::vector<Score>& ranking, double least_aicc, double least_errors) {
+std::string evidence(const Score& s) {
+  std::string out =
+      fmt::format("behind by {:.2g} +- {:.1g} on realizations left out", s.behind, s.behind_error);
+  if (std::isfinite(s.heights_behind)) {
+    out += fmt::format(" and by {:.2g} +- {:.1g} on heights left out", s.heights_behind,
+                       s.heights_error);
+  }
+  return out + " (squared, of the signal's)";
+}
+
+std::string sign_doubts(const std::vector<Fit>& fits, const std::vector<std::string>& names) {
+  std::string out;
+  for (const Fit& f : fits) {
+    if (f.turning_signs.empty() || std::find(names.begin(), names.end(), f.name) == names.end()) {
+      continue;
+    }
+    out += fmt::format(" The sign of {} hangs on single realizations: {}.", f.name,
+                       fmt::join(f.turning_signs, "; "));
+  }
+  return out;
+}
+
+void mark_supported(std::vector<Score>& ranking, double least_errors) {
   for (Score& s : ranking) {
-    const bool clearly_behind = s.aicc_difference > least_aicc &&
-                                s.behind > least_errors * s.behind_error;  // false for nan
+    const bool clearly_behind =
+        s.behind > least_errors * s.behind_error && !(s.heights_behind < 0);  // false for nan
     s.supported = &s == &ranking.front() || !clearly_behind;
   }
   // Who is at least as far behind in both as one that is not supported is not supported either.
   const std::vector<Score> judged = ranking;
   for (std::size_t k = 1; k < ranking.size(); ++k) {
     for (const Score& other : judged) {
-      if (!other.supported && ranking[k].aicc_difference >= other.aicc_difference &&
-          ranking[k].behind >= other.behind) {
+      if (!other.supported && ranking[k].behind >= other.behind &&
+          !(ranking[k].heights_behind < other.heights_behind)) {
         ranking[k].supported = false;
       }
     }
   }
 }
 
-Selection select(const FitData& data, const Covariance& covariance,
-                 const std::vector<FitModel>& models, const std::vector<Fit>& fits,
-                 const SelectionOptions& options) {
+Selection select(const FitData& data, const Weights& weights, const std::vector<FitModel>& models,
+                 const std::vector<Fit>& fits, const SelectionOptions& options) {
   if (models.empty() || models.size() != fits.size()) {
     throw std::invalid_argument("selection: one fit per model, and at least one");
   }
   const std::size_t m = models.size();
-  std::vector<Eigen::VectorXd> scores;
-  std::vector<double> levels;
-  for (std::size_t k = 0; k < m; ++k) {
-    scores.push_back(realization_scores(data, covariance, models[k], fits[k], options.huber));
-    levels.push_back(
-        options.by_level ? level_score(data, covariance, models[k], fits[k], options.huber) : kNan);
+  const int r = data.realizations();
+  const bool left_out = weights.errors_from == ErrorsFrom::realizations && r >= kLeastRealizations;
+  const bool judged = left_out || weights.errors_from == ErrorsFrom::data;
+  const double signal = weights.weight.cwiseProduct(data.mean()).squaredNorm();
+  std::vector<Forecast> forecasts(m);
+  std::vector<Eigen::VectorXd> heights(m);
+  std::vector<double> scores(m, kNan);
+  for (std::size_t k = 0; judged && k < m; ++k) {
+    forecasts[k] = left_out ? of_realizations(data, weights, models[k], fits[k], options.huber)
+                            : Forecast(fits[k].model);
+    heights[k] = options.by_level ? of_heights(data, models[k], fits[k], options.huber)
+                                  : Eigen::VectorXd::Constant(data.values(), kNan);
+    const Eigen::MatrixXd off = weights.weight.asDiagonal() * (data.samples - forecasts[k]);
+    // A single field is no new one: what the constants took of its noise is added.
+    scores[k] =
+        off.colwise().squaredNorm().mean() + (left_out ? 0 : fits[k].expected - fits[k].misfit);
   }
+  const auto rank = [&](std::size_t k) { return judged ? scores[k] : fits[k].rel_l2; };
   std::vector<std::size_t> order(m);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return better(fits[a], fits[b]); });
+                   [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   const std::size_t best = order.front();
   Selection out;
-  const int r = data.realizations();
   for (const std::size_t k : order) {
     Score s;
     s.name = models[k].name;
-    // More free numbers than values is behind everything, too.
-    s.aicc_difference = fits[k].aicc == fits[best].aicc ? 0 : fits[k].aicc - fits[best].aicc;
-    s.realization_score = scores[k].mean();
-    s.level_score = levels[k];
-    const Eigen::VectorXd behind = scores[k] - scores[best];
-    s.behind = behind.mean();
-    s.behind_error =
-        r >= kLeastRealizations
-            ? std::sqrt((behind.array() - behind.mean()).square().sum() / (r - 1.0) / r)
-            : kNan;
+    s.score = scores[k] / signal;
+    s.behind = s.behind_error = s.heights_behind = s.heights_error = kNan;
+    if (judged) {
+      s.behind = (scores[k] - scores[best]) / signal;
+      s.behind_error = paired(data, weights, forecasts[k], forecasts[best]).error / signal;
+      const Difference apart =
+          paired(data, weights, heights[k].replicate(1, r), heights[best].replicate(1, r));
+      s.heights_behind = apart.mean / signal;
+      s.heights_error = apart.error / signal;
+    }
     out.ranking.push_back(s);
   }
-  mark_supported(out.ranking, options.least_aicc, least_errors(r));
+  mark_supported(out.ranking, least_errors(r));
   std::stable_partition(out.ranking.begin(), out.ranking.end(),
                         [](const Score& s) { return s.supported; });
-  const auto supported = std::count_if(out.ranking.begin(), out.ranking.end(),
-                                       [](const Score& s) { return s.supported; });
-  out.distinguishable = supported == 1 && m > 1 && r >= kLeastRealizations;
   std::vector<std::string> names;
   for (const Score& s : out.ranking) {
     if (s.supported) names.push_back(s.name);
   }
+  out.distinguishable = judged && names.size() == 1 && m > 1;
   if (m == 1) {
     out.sentence = fmt::format("{} is the only model.", names.front());
   } else if (out.distinguishable) {
     const Score& second = out.ranking[1];
-    out.sentence = fmt::format(
-        "{} is supported: the next, {}, is behind by {:.1f} in AICc and by {:.3g} +- {:.2g} in "
-        "cross-validation over {} realizations.",
-        names.front(), second.name, second.aicc_difference, second.behind, second.behind_error, r);
+    out.sentence = fmt::format("{} is supported: the next, {}, is {}; {} realization{}.",
+                               names.front(), second.name, evidence(second), r, r == 1 ? "" : "s");
   } else {
     out.sentence = fmt::format("Not distinguishable: {}", fmt::join(names, ", "));
-    const Score& second = out.ranking[1];
-    if (std::isnan(fits[best].aicc)) {
+    if (judged) {
+      const Score& second = out.ranking[1];
+      out.sentence += fmt::format("; {} is {}; {} realization{}.", second.name, evidence(second), r,
+                                  r == 1 ? "" : "s");
+    } else {
       out.sentence +=
           fmt::format("; the nearest misses by {:.1f} % (relative L2), the next by {:.1f} %.",
                       100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
-    } else if (std::isnan(second.behind_error)) {
-      out.sentence +=
-          fmt::format("; the second is behind by {:.1f} in AICc.", second.aicc_difference);
-    } else {
-      out.sentence += fmt::format(
-          "; the second is behind by {:.1f} in AICc and by {:.3g} +- {:.2g} in cross-validation "
-          "over "
-          "{} realizations.",
-          second.aicc_difference, second.behind, second.behind_error, r);
     }
   }
-  out.sentence += doubt(fits[best]);
+  out.sentence += doubt(fits[best]) + sign_doubts(fits, names);
   return out;
 }
 

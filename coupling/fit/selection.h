@@ -1,12 +1,18 @@
 // Which of several fitted models the data support.
 //
-// Two independent judges: AICc on all data, and cross-validation: parameters from some realizations
-// (or from some heights), scored on those left out by the whitened squared difference. A model wins
-// when it is ahead of the runner-up in AICc by more than `least_aicc` and in the cross-validation
-// beyond the standard error of the difference over the parts left out (Student's t, 95 %). A model
-// that is so far behind the best is not supported, nor is any that is at least as far behind in
-// both: a larger deficit with a larger error is no better support than a smaller one. The rest are
-// "not distinguishable".
+// Two judges that can disagree. The first predicts realizations: constants from all but one, scored
+// on that one by its squared difference in working units, which are fixed and hold nothing of it.
+// The second predicts heights: constants from the other heights of all realizations, scored on the
+// height left out, realization by realization. Differences between two models are paired over the
+// realizations, so that what the realizations share drops out; their errors have Student's t with
+// as many degrees of freedom as realizations less one. (AICc of all data is the first judge once
+// more, without its error.)
+//
+// A model is not supported when it is behind the best by more than chance in the first judge, and
+// the second does not have it ahead; nor is any that is at least as far behind in both as one that
+// is not: a larger deficit with a larger error is no better support than a smaller one. The rest
+// are "not distinguishable". Of a single field with errors the differences are those of the mean,
+// with the errors that came with it.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,42 +22,48 @@
 namespace grainfield::coupling {
 
 struct SelectionOptions {
-  double least_aicc = 6;  ///< Burnham and Anderson 2002: little support above 4 to 7
-  double huber = 0;       ///< as FitOptions
-  bool by_level = true;   ///< leaves out levels too, where there are two or more
+  double huber = 0;      ///< as FitOptions
+  bool by_level = true;  ///< leaves out heights too, where there are two or more
 };
 
+/// Differences are shares of the mean field's own sum of squares, |model - grains|^2 / |grains|^2.
 struct Score {
   std::string name;
-  double aicc_difference = 0;    ///< from the best; nan with one realization
-  double realization_score = 0;  ///< mean over the realizations left out of the squared difference
-                                 ///< per effective value; nan below 3 realizations
-  double level_score = 0;        ///< the same over the levels left out; nan below 2 levels
-  double behind = 0;             ///< mean difference of realization_score to the best
-  double behind_error = 0;       ///< its standard error over the realizations
-  bool supported = false;        ///< see above
+  double score = 0;           ///< first judge: mean squared difference; nan without errors
+  double behind = 0;          ///< its difference to the best model's
+  double behind_error = 0;    ///< standard error of that
+  double heights_behind = 0;  ///< second judge: difference to the best model's; nan below 2 heights
+  double heights_error = 0;   ///< standard error of that
+  bool supported = false;     ///< see above
 };
 
 /// Sets `supported` of scores with their differences to the best, which is the first: see above;
-/// `least_errors`: standard errors that count as behind. Without cross-validation (behind nan) all
-/// are supported.
-void mark_supported(std::vector<Score>& ranking, double least_aicc, double least_errors);
+/// `least_errors`: standard errors that count as behind. Without scores (behind nan) all are
+/// supported.
+void mark_supported(std::vector<Score>& ranking, double least_errors);
 
 /// Student's t, 95 %, two-sided, of the difference over so many realizations left out; infinite
-/// below 3.
+/// for 2; of 1 (errors known) the normal one.
 double least_errors(int realizations);
 
 struct Selection {
-  /// The supported ones first, each part by AICc; with one realization by relative L2.
+  /// The supported ones first, each part by the first judge; without errors by relative L2.
   std::vector<Score> ranking;
   bool distinguishable = false;
-  std::string sentence;  ///< for people, one line
+  /// For people, one line: what is supported and by which evidence, whether any model agrees within
+  /// the errors, and constants whose sign hangs on one realization.
+  std::string sentence;
 };
 
-/// Ranks the models. `fits`: of the same data and covariance, in the order of `models`. Throws
+/// "b behind by 1.2e-02 +- 3e-03 in realizations and 2e-02 +- 1e-02 in heights left out".
+std::string evidence(const Score& score);
+
+/// " The sign of osl hangs on single realizations: mu is ..." for the models named; may be empty.
+std::string sign_doubts(const std::vector<Fit>& fits, const std::vector<std::string>& names);
+
+/// Ranks the models. `fits`: of the same data and weights, in the order of `models`. Throws
 /// std::invalid_argument for no model or sizes that differ.
-Selection select(const FitData& data, const Covariance& covariance,
-                 const std::vector<FitModel>& models, const std::vector<Fit>& fits,
-                 const SelectionOptions& options = {});
+Selection select(const FitData& data, const Weights& weights, const std::vector<FitModel>& models,
+                 const std::vector<Fit>& fits, const SelectionOptions& options = {});
 
 }  // namespace grainfield::coupling

@@ -21,8 +21,8 @@ struct FitSetup {
   std::vector<std::string> finite_elements;  ///< solved with the constants, beside the fits
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   std::vector<double> heights = {0.1, 0.25, 0.4};
+  std::vector<double> leave_out;  ///< numbers of realizations, from 1
   double width_diameters = 2;
-  std::string covariance = "auto";
   double left_deg = 0, right_deg = 0;  ///< slopes of the flanks; 0: measured
   double friction_deg = 0;             ///< of the two-sided models; 0: the steeper slope
   double huber = 0;
@@ -42,7 +42,8 @@ struct VerdictSetup {
   std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   bool base = true;
-  std::string covariance = "auto";
+  std::vector<double> coverage;  ///< sizes of draws: fit/coverage.h; empty: not done
+  std::int64_t coverage_draws = 100;
   std::int64_t bootstrap = 100;
 };
 

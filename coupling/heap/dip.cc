@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "coupling/averaging/base.h"
@@ -9,7 +10,7 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kLevel = 0.05;
+constexpr double kLevel = 0.05;  // two-sided
 
 // Of so few normal numbers the standard error itself is uncertain by 1/sqrt(2 (n - 1)).
 std::string few_realizations(int n) {
@@ -46,10 +47,10 @@ Dip judge_dip(const std::vector<BaseWindows>& piles) {
   out.window_ratio = out.centre / out.shoulder;
   out.difference = spread_of(differences);
   const double p = out.difference.p_value;
-  out.verdict = std::isnan(p)    ? "undecided"
-                : p < kLevel     ? "dip"
-                : p > 1 - kLevel ? "peak"
-                                 : "neither";
+  out.verdict = std::isnan(p)          ? "undecided"
+                : 2 * p < kLevel       ? "dip"
+                : 2 * (1 - p) < kLevel ? "peak"
+                                       : "neither";
   return out;
 }
 
@@ -66,9 +67,10 @@ std::string dip_sentence(const Dip& dip) {
   const double p = dip.difference.p_value;
   const std::string spread =
       fmt::format(
-          "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} if there were no {}",
+          "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} (two-sided) if there "
+          "were none",
           numbers, dip.difference.mean, dip.difference.standard_error, dip.difference.values,
-          peak ? 1 - p : p, peak ? "peak" : "dip") +
+          2 * std::min(p, 1 - p)) +
       few_realizations(dip.difference.values);
   if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
   if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);

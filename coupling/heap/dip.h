@@ -24,8 +24,8 @@ struct Dip {
   Spread difference;                ///< shoulder - centre of every pile, rho g h: above 0 is a dip
   std::string verdict;  ///< "dip", "peak", "neither" or "undecided" (below 3 realizations)
 };
-/// A dip where the difference is above 0, a peak where it is below, at 5 % (one-sided, Student's
-/// t); neither in between.
+/// A dip where the difference is above 0, a peak where it is below, at 5 % for both together
+/// (two-sided, Student's t); neither in between.
 Dip judge_dip(const std::vector<BaseWindows>& piles);
 /// One line for people.
 std::string dip_sentence(const Dip& dip);

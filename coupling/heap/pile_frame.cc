@@ -1,10 +1,13 @@
 #include "coupling/heap/pile_frame.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 
 #include "continuum/constants.h"
 #include "coupling/averaging/layer.h"
+#include "dem/heap/carried.h"
 #include "dem/heap/surface.h"
 #include "dem/heap/volume_fraction.h"
 
@@ -61,6 +64,21 @@ dem::Snapshot on_floor_zero(dem::Snapshot pile, double floor) {
   return pile;
 }
 
+// Takes out what is in flight and says so.
+std::string without_grains_in_flight(dem::Snapshot& pile, double diameter) {
+  const std::vector<std::size_t> flying = dem::grains_in_flight(pile, diameter);
+  if (flying.empty()) return "";
+  const dem::Grain first = pile.grains[flying.front()];
+  for (std::size_t k = flying.size(); k-- > 0;) {
+    pile.grains.erase(pile.grains.begin() + static_cast<std::ptrdiff_t>(flying[k]));
+  }
+  return fmt::format(
+      "{} grain{} in flight, no part of the heap: id {} at x = {:.4g} m, {:.4g} m "
+      "above the floor{}",
+      flying.size(), flying.size() == 1 ? "" : "s", first.id, first.position.x(),
+      first.position.y(), flying.size() == 1 ? "" : ", and others");
+}
+
 double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
   return window.empty() ? kNan : dem::volume_fraction(pile, window);
 }
@@ -83,10 +101,10 @@ PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
     throw std::invalid_argument("the snapshot is 3D; a 2D one is needed");
   }
   const double floor = floor_of(heap_as_it_is);
-  dem::Snapshot moved;
-  if (floor != 0) moved = on_floor_zero(heap_as_it_is, floor);
-  const dem::Snapshot& pile = floor != 0 ? moved : heap_as_it_is;
+  dem::Snapshot pile = on_floor_zero(heap_as_it_is, floor);
   PileFrame frame;
+  frame.in_flight = without_grains_in_flight(pile, mean_diameter(pile));
+  pile.contacts.clear();  // their indices are those of all grains
   frame.floor = floor;
   frame.diameter = mean_diameter(pile);
   frame.gravity = pile.gravity.norm();

@@ -1,6 +1,7 @@
 // A heap in coordinates that piles of slightly different height share.
 #pragma once
 #include <Eigen/Core>
+#include <string>
 
 #include "dem/snapshot/snapshot.h"
 
@@ -24,6 +25,9 @@ struct PileFrame {
   double grain_density = 0;                          ///< mass over area of the grains, kg/m2
   double gravity = 0;                                ///< m/s2
   double diameter = 0;                               ///< mean of the grains, m
+  /// Grains in flight (dem/heap/carried.h), which are no part of the surface, the height and the
+  /// volume fraction: the first with id and place, and how many; empty: none.
+  std::string in_flight;
 
   /// rho g h, N/m: grain density times volume fraction times gravity times height.
   double pressure() const { return grain_density * volume_fraction * gravity * height; }

@@ -139,7 +139,8 @@ void import_snapshots(const ImportOptions& options,
   if (!stepped && (options.all_steps || !options.steps.empty()))
     throw std::invalid_argument("--step: the files of " + format.name + " hold no time steps");
   TableReader reader;
-  for (const StepChoice& choice : chosen_steps(options, steps)) {
+  const std::vector<StepChoice> chosen = chosen_steps(options, steps);
+  for (const StepChoice& choice : chosen) {
     const StepTables& tables = steps.at(choice.step);
     for (const auto* list : {&tables.grains, &tables.contacts, &tables.walls})
       for (const ForeignTable& table : *list)
@@ -158,6 +159,11 @@ void import_snapshots(const ImportOptions& options,
     assembly.settle();
     for (const ForeignTable& table : tables.contacts) assembly.add_contacts(table);
     ImportedSnapshot done = assembly.finish();
+    // Of several states the latest is the loaded one: the others are what the load has changed.
+    if (std::any_of(chosen.begin(), chosen.end(),
+                    [&](const StepChoice& other) { return other.step > choice.step; })) {
+      done.snapshot.applied_force.setZero();
+    }
     names.require_all_used();
     const std::string plain = stepped ? fmt::format("/step_{}", choice.step) : "/packing";
     done.group =

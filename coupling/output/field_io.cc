@@ -75,7 +75,10 @@ void write_one(hid_t root, const std::string& name, const Field& field) {
   std::vector<double> points;
   for (Eigen::Index p = 0; p < field.points.rows(); ++p)
     for (int d = 0; d < dim; ++d) points.push_back(field.points(p, d));
-  h5::write(group, "points", points, dim, "m");
+  const auto frame = field.attributes.find("frame");
+  const bool scaled = frame != field.attributes.end() &&
+                      frame->second.find("lengths over its height h") != std::string::npos;
+  h5::write(group, "points", points, dim, scaled ? "h" : "m");
   h5::write_attribute(group, "kind", "field");
   h5::write_attribute(group, "dim", dim);
   h5::write_attribute(group, "nx", field.nx);

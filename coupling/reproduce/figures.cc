@@ -70,12 +70,16 @@ SourceFigure dip(const char* source, const char* what, const char* study, const 
             const auto p = r.plain(name, "dip.p_value");
             const auto centre = r.plain(name, "dip.ratio");
             if (!verdict || !difference || !p || !centre) return std::nullopt;
+            // Judged anew: two-sided, whatever the rule when it was recorded.
+            const double both = 2 * std::min(*p, 1 - *p);
+            const std::string judged = std::isnan(both) ? *verdict
+                                       : both >= 0.05   ? "neither"
+                                       : *p < 0.5       ? "dip"
+                                                        : "peak";
             return fmt::format(
-                "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} if there were no {}; "
-                "centre over "
-                "largest {:.2f}",
-                *verdict, difference->value, difference->error, *verdict == "peak" ? 1 - *p : *p,
-                *verdict == "peak" ? "peak" : "dip", *centre);
+                "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} (two-sided) if there were "
+                "none; centre over largest {:.2f}",
+                judged, difference->value, difference->error, both, *centre);
           },
           0};
 }

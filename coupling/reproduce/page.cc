@@ -34,6 +34,8 @@ std::pair<std::string, std::string> row_of(const SourceFigure& figure, const Res
   if (!ours) return {kNotRun, ""};
   const std::string word = ours->substr(0, ours->find(':'));
   if (word == "undecided") return {*ours, "too few realizations to tell"};
+  // What is not there beyond the spread says nothing of a dip, nor of none.
+  if (word == "neither") return {*ours, "uninformative"};
   const bool same = std::find(figure.words.begin(), figure.words.end(), word) != figure.words.end();
   return {*ours, same ? "agrees" : "differs"};
 }
@@ -113,9 +115,9 @@ std::string reproduction_page(const Results& results) {
       "the "
       "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
       "exceeds what a true model's does by chance (1.35 of 1000). A "
-      "dip or peak is one at 5 % (one-sided, Student's t over realizations: mean base pressure "
-      "beside the apex minus that under it); a peak meets \"no dip\" too. Nothing was tuned to "
-      "agree.\n\n"
+      "dip or peak is one at 5 % (two-sided, Student's t over realizations: mean base pressure "
+      "beside the apex minus that under it); a peak meets \"no dip\" too; neither is "
+      "uninformative: it agrees with a dip as with none. Nothing was tuned to agree.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"
       "|---|---|---|---|---|---|---|\n",
       100 * kTooWide);

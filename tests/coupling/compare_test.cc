@@ -285,6 +285,44 @@ TEST(Compare, Chi2OfTheTruthIsOne) {
   }
 }
 
+// A true model on three depths whose noise is tied: chance alone seldom says that none agrees.
+TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
+  for (const int n : {4, 8, 16}) {
+    int alarms = 0, found = 0;
+    constexpr int trials = 200;
+    for (int t = 0; t < trials; ++t) {
+      Scene s = scene(n, 0.92, 0.15, static_cast<unsigned>(3000 + t));
+      const Scene other = scene(n, 0.92, 0.15, static_cast<unsigned>(7000 + t));
+      const VectorXd truth = bell(s.profiles[0].x, 0, 1, 0.92);
+      for (const double own : {0.3, 0.8}) {
+        Profile p = s.profiles[0];
+        p.name = p.key = own < 0.5 ? "depth_0.2" : "depth_0.3";
+        const double rest = std::sqrt(1 - own * own), size = own < 0.5 ? 0.5 : 0.25;
+        p.samples = size * ((rest * (s.profiles[0].samples.colwise() - truth) +
+                             own * (other.profiles[0].samples.colwise() - truth))
+                                .colwise() +
+                            truth);
+        p.mean = p.samples.rowwise().mean();
+        p.error =
+            ((p.samples.colwise() - p.mean).rowwise().squaredNorm() / (n - 1.0) / n).cwiseSqrt();
+        s.profiles.push_back(p);
+        for (ModelProfiles& m : s.models) m.values.push_back(size * m.values[0]);
+      }
+      s.models = {s.models[1]};
+      const auto says = [&](const Scene& one) {
+        return compared(one).verdict.sentence.find("No model agrees") != std::string::npos;
+      };
+      alarms += says(s) ? 1 : 0;
+      for (auto& values : s.models[0].values) values *= 1.4;
+      found += says(s) ? 1 : 0;
+    }
+    EXPECT_LE(alarms, trials * 4 / 100) << n;
+    if (n > 4) {
+      EXPECT_GE(found, trials * 9 / 10) << n;
+    }
+  }
+}
+
 TEST(Compare, VerdictOfAClearCase) {
   const Comparison c = compared(scene(8, 0.92, 0.05));
   EXPECT_EQ(c.verdict.best_model, "layer_smooth");

@@ -45,7 +45,7 @@ TEST(ElasticSymmetry, ExactOrthotropicConstantsComeBack) {
       EXPECT_LT(f.residual_orthotropic, 1e-13);
       EXPECT_GT(f.residual_isotropic, 1e-3);
       EXPECT_LT(f.p_samples, 1e-10);
-      EXPECT_LT(f.p_realizations, 1e-3);
+      EXPECT_TRUE(std::isnan(f.p_realizations));  // without a spread over realizations: no test
       EXPECT_LT(f.aicc_orthotropic, f.aicc_isotropic);
       EXPECT_FALSE(f.isotropy_holds());
       EXPECT_EQ(f.note, "");

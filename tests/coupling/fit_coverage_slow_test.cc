@@ -2,12 +2,25 @@
 // one that made the data.
 #include <gtest/gtest.h>
 
+#include "coupling/fit/coverage.h"
+#include "coupling/fit/heap_sight.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 90.
+// The averaging's kernel: points lie about half an independent length apart, 1.8 of its standard
+// deviation, m.
+constexpr double kSmoothing = 0.011;
+
+std::vector<FitModel> seen(const std::vector<FitModel>& models) {
+  std::vector<FitModel> out;
+  for (const FitModel& model : models) out.push_back(seen_through_kernel(model, kSmoothing));
+  return out;
+}
+
+// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, three standard
+// deviations of the count below 95.
 void expect_coverage(const std::vector<FitModel>& models, const std::vector<Truth>& all,
                      FitData data, std::uint64_t seed) {
   dem::Random random(seed);
@@ -19,24 +32,78 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
       fill(data, exact, 8, 0.05, 0.03, random);
       FitOptions options;
       options.bootstrap = 0;
-      const Fit f = fit(data, covariance_of(data), model, options);
+      options.profile = false;
+      const Fit f = fit(data, weights_of(data), model, options);
       for (std::size_t k = 0; k < inside.size(); ++k) {
         inside[k] +=
             f.parameters[k].low < truth.parameters[k] && truth.parameters[k] < f.parameters[k].high;
       }
     }
     for (std::size_t k = 0; k < inside.size(); ++k) {
-      EXPECT_GE(inside[k], 90) << truth.model << " " << model.parameters[k].name;
+      EXPECT_GE(inside[k], 88) << truth.model << " " << model.parameters[k].name;
     }
   }
 }
 
 TEST(Fit, IntervalsCoverTheTruth) {
-  expect_coverage(heap_models({kSlope, kRhoG, kHeight}), truths(), places(15), 11);
+  expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight})), truths(), places(15), 11);
 }
 
 TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
-  expect_coverage(heap_models(two_slopes()), two_sided_truths(), places(15, kLeft, kRight), 21);
+  expect_coverage(seen(heap_models(two_slopes())), two_sided_truths(), places(15, kLeft, kRight),
+                  21);
+}
+
+// Noise as grains have it: components of a point are tied, its size grows with the depth and is
+// another for every component, and it leans to one side.
+void fill_as_grains(FitData& data, const Eigen::VectorXd& truth, int realizations, double share,
+                    dem::Random& random) {
+  FitData gauss = data;
+  fill(gauss, Eigen::VectorXd::Zero(data.values()), realizations, share, 0.03, random);
+  const int per = data.values() / 3;
+  data.samples.resize(data.values(), realizations);
+  for (int k = 0; k < data.values(); ++k) {
+    const double size = (0.4 + 0.4 * (k / per)) * (0.3 - data.points(k, 1) / kHeight);
+    for (int r = 0; r < realizations; ++r) {
+      const double z =
+          (0.8 * gauss.samples(k, r) + 0.6 * gauss.samples(k % per, r)) / (share * kRhoG * kHeight);
+      data.samples(k, r) = truth[k] + share * kRhoG * kHeight * size * (z + 0.15 * (z * z - 1));
+    }
+  }
+}
+
+// The short form of `grainfield fit --coverage`: the truth is half-way between two models, so that
+// none holds; intervals of few hold the constants of the rest, and hardly any verdict names another
+// model than the rest do.
+TEST(Fit, CoverageOfModelsThatDoNotHold) {
+  const auto known = seen(heap_models({kSlope, kRhoG, kHeight}));
+  FitData data = places(15);
+  const FitModel& free = find_fit_model(known, "cantelaube");
+  const Eigen::VectorXd truth =
+      0.5 * predict(data, free, vector({0.34, 0.49, -0.2, 0.78, 1.23, 0.38, 35})) +
+      0.5 * predict(data, find_fit_model(known, "hydrostatic"), Eigen::VectorXd(0));
+  dem::Random random(4);
+  fill_as_grains(data, truth, 96, 0.1, random);
+  CoverageOptions options;
+  options.sizes = {4, 8};
+  options.draws = 60;
+  options.bootstrap = 0;
+  options.profile = false;
+  std::vector<FitModel> models;
+  for (const char* name : {"osl_yield", "osl", "cantelaube_continuous", "cantelaube_plus"}) {
+    models.push_back(find_fit_model(known, name));
+  }
+  const Coverage c = coverage_of(data, models, options);
+  double pooled = 0;
+  for (const ConstantCoverage& one : c.constants) {
+    EXPECT_GE(one.by_jackknife, 0.85) << one.model << " " << one.parameter << " " << one.size;
+    pooled += one.by_jackknife / static_cast<double>(c.constants.size());
+  }
+  EXPECT_NEAR(pooled, 0.95, 0.04);
+  for (const VerdictCoverage& v : c.verdicts) {
+    EXPECT_LE(v.wrong, 3) << v.size;
+    EXPECT_LE(v.false_alarms, 3) << v.size;
+  }
 }
 
 // Of 100 ensembles at least 95 name the model that made them; with an effect far below the noise
@@ -54,7 +121,7 @@ TEST(Fit, SelectionNamesTheModelThatMadeTheData) {
     int named = 0;
     for (int trial = 0; trial < 100; ++trial) {
       fill(data, exact, 8, noise, 0.03, random);
-      const Covariance c = covariance_of(data);
+      const Weights c = weights_of(data);
       std::vector<Fit> fits;
       for (const FitModel& m : models) fits.push_back(fit(data, c, m, options));
       const Selection s = select(data, c, models, fits);

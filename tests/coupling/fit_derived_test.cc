@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "continuum/closed/osl.h"
@@ -15,7 +16,7 @@ FittedParameter fitted(const std::string& name, double value, double error) {
   FittedParameter p;
   p.parameter.name = name;
   p.value = value;
-  p.error = error;
+  p.error = p.covariance_error = error;
   p.bootstrap_error = 2 * error;
   return p;
 }
@@ -77,9 +78,34 @@ TEST(DerivedFigures, OfOneFreeNumberHoldEta) {
   EXPECT_NEAR(figures[2].error, std::fabs(more - figures[2].value), 1e-9);
 }
 
+// Flanks of the theory are in equilibrium; others say by how much they are not.
+TEST(DerivedFigures, OfFreeFlanksAreTheirBalance) {
+  const double phi = 28 * kDegree, b = std::numbers::pi / 2 - phi;
+  Fit fit;
+  for (const auto& [name, value] :
+       std::vector<std::pair<std::string, double>>{{"a1", 0.3},
+                                                   {"a2", 0.5},
+                                                   {"b1", -0.2},
+                                                   {"a_xx", std::pow(std::sin(b), 2)},
+                                                   {"a_yy", 1 + std::pow(std::cos(b), 2)},
+                                                   {"a_xy", std::sin(b) * std::cos(b)},
+                                                   {"beta_hat_deg", 35}}) {
+    fit.parameters.push_back(fitted(name, value, 0.01));
+  }
+  fit.correlation = Eigen::MatrixXd::Identity(7, 7);
+  auto figures = derived_figures(fit, 28);
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_NEAR(figures[0].value, 0, 1e-12);
+  EXPECT_NEAR(figures[1].value, 0, 1e-12);
+  EXPECT_NEAR(figures[1].error, 0.01 * std::sqrt(1 + std::pow(std::tan(phi), 2)), 1e-8);
+  fit.parameters[4].value += 0.3;
+  EXPECT_NEAR(derived_figures(fit, 28)[1].value, 0.3, 1e-12);
+}
+
 TEST(DerivedFigures, WithoutErrorsHaveNone) {
   Fit fit = osl(0);
-  fit.parameters[1].error = fit.parameters[1].bootstrap_error = kNan;
+  fit.parameters[1].error = fit.parameters[1].covariance_error = fit.parameters[1].bootstrap_error =
+      kNan;
   const auto figures = derived_figures(fit, 28);
   EXPECT_TRUE(std::isfinite(figures[0].value));
   EXPECT_TRUE(std::isnan(figures[0].error));

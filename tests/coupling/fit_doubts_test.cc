@@ -138,6 +138,14 @@ TEST(FitDoubts, HeapsOfUnlikeHeightAreNamed) {
   const Output fit = program("fit " + file + " --heights 0.2,0.3" + kModels + (folder / "fit"));
   ASSERT_EQ(fit.code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("m high in one ensemble: are they realizations of one?"));
+  EXPECT_THAT(fit.err, HasSubstr("heap.h5:/a/pile (number 1, 0.3"));
+  const Output kept = program("fit " + file + " --heights 0.2,0.3 --set fit.leave_out=[1]" +
+                              kModels + (folder / "kept"));
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.err, Not(HasSubstr("in one ensemble")));
+  EXPECT_THAT(kept.out, HasSubstr(" of 1 pile"));
+  expect_refusal(program("fit " + file + " --set fit.leave_out=[3]" + kModels + (folder / "none")),
+                 "fit.leave_out: found 3, allowed: whole numbers 1 to 2");
   const Output average =
       program("average " + file + " --frame heap --grid 9x5 -o " + (folder / "field.h5"));
   ASSERT_EQ(average.code, 0) << average.err;
@@ -167,6 +175,37 @@ TEST(FitDoubts, TheImportsWarningsAreRepeated) {
   dem::Snapshot noisy = heap(1, 0.9);
   EXPECT_THAT(doubts_of(check_packing(noisy)),
               ::testing::Contains(HasSubstr("unbalanced force ratio ")));
+}
+
+// Three grains above the heap, as poured packings of other programs have them.
+TEST(FitDoubts, GrainsInFlightAreNamedAndLeftOut) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5", clean = folder / "clean.h5";
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    dem::Snapshot s = heap(seed);
+    dem::write_snapshot(clean, "/" + std::to_string(seed) + "/pile", s);
+    for (int k = 0; k < 3 && seed == 2; ++k) {
+      dem::Grain g = s.grains.back();
+      g.id = 90000 + k;
+      g.position = {0.05 * k, 1.0 + 0.1 * k, 0};
+      s.grains.push_back(g);
+    }
+    dem::write_snapshot(file, "/" + std::to_string(seed) + "/pile", s);
+  }
+  ASSERT_EQ(program("fit " + clean + kModels + (folder / "clean")).code, 0);
+  const Output fit = program("fit " + file + kModels + (folder / "fit"));
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("heap.h5:/2/pile: 3 grains in flight, no part of the heap: id "
+                                 "90000 at x = 0 m, 0.7 m above the floor, and others"));
+  const Summary one = read_summary(folder / "clean/summary.json"),
+                two = read_summary(folder / "fit/summary.json");
+  for (const char* key : {"fit.osl.mu", "fit.osl.eta", "fit.slope_deg"}) {
+    EXPECT_NEAR(std::get<double>(one.at(key)), std::get<double>(two.at(key)), 1e-9) << key;
+  }
+  const Output average =
+      program("average " + file + " --frame heap --grid 9x5 -o " + (folder / "field.h5"));
+  ASSERT_EQ(average.code, 0) << average.err;
+  EXPECT_THAT(average.err, HasSubstr("/2/pile: 3 grains in flight"));
 }
 
 TEST(FitDoubts, HeightsBelowTheAveragingWidthAreNamed) {

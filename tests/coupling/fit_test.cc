@@ -1,4 +1,4 @@
-// Fits of stress models: known constants come back, covariance, bad data.
+// Fits of stress models: known constants come back, weights, errors, bad data.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ TEST(Fit, WithoutNoiseTheConstantsComeBack) {
     const FitModel& model = find_fit_model(models, truth.model);
     FitData data = places(41);
     data.samples.col(0) = predict(data, model, truth.parameters);
-    const Covariance covariance = covariance_of(data);
-    EXPECT_EQ(covariance.kind, "unknown");
-    const Fit f = fit(data, covariance, model);
+    const Weights weights = weights_of(data);
+    EXPECT_FALSE(weights.known());
+    const Fit f = fit(data, weights, model);
     EXPECT_LT(f.rel_l2, 1e-3) << truth.model;
     for (std::size_t k = 0; k < f.parameters.size(); ++k) {
       EXPECT_NEAR(f.parameters[k].value, truth.parameters[k],
@@ -35,7 +35,7 @@ TEST(Fit, WithoutNoiseTheConstantsOfTwoSlopesComeBack) {
     int outside = 0;
     data.samples.col(0) = predict(data, model, truth.parameters, &outside);
     ASSERT_EQ(outside, 0) << truth.model;
-    const Fit f = fit(data, covariance_of(data), model);
+    const Fit f = fit(data, weights_of(data), model);
     EXPECT_LT(f.rel_l2, 1e-4) << truth.model;
     for (std::size_t k = 0; k < f.parameters.size(); ++k) {
       EXPECT_NEAR(f.parameters[k].value, truth.parameters[k],
@@ -77,62 +77,61 @@ TEST(Fit, ModelsThatDoNotExistSayWhy) {
   EXPECT_LE(absent, 2);
 }
 
-TEST(Fit, CovarianceFindsSizeAndLengthOfTheNoise) {
+// The weights are fixed: other realizations, more of them, or louder ones change nothing.
+TEST(Fit, WeightsDoNotDependOnTheEnsemble) {
   dem::Random random(5);
-  FitData data = places(25);
-  double length = 0, error = 0;
-  for (int trial = 0; trial < 20; ++trial) {
-    fill(data, Eigen::VectorXd::Zero(data.values()), 10, 0.1, 0.03, random);
-    const Covariance c = covariance_of(data);
-    EXPECT_EQ(c.kind, "parametric");
-    length += c.correlation_length / 20;
-    error += c.of_mean.diagonal().mean() / 20;
-  }
-  // Matern's length that is nearest to a Gaussian of 0.03 m.
-  EXPECT_GT(length, 0.02);
-  EXPECT_LT(length, 0.08);
-  EXPECT_NEAR(std::sqrt(error), 0.1 * kRhoG * kHeight / std::sqrt(10),
-              0.05 * kRhoG * kHeight * 0.1);
-}
-
-TEST(Fit, FallsBackWithANote) {
-  dem::Random random(6);
   FitData data = places(9);
-  fill(data, Eigen::VectorXd::Zero(data.values()), 5, 0.1, 0.03, random);
-  EXPECT_THAT(covariance_of(data, "sample").note,
-              testing::HasSubstr("sample covariance of 81 values needs 84 realizations, found 5"));
-  EXPECT_EQ(covariance_of(data, "sample").kind, "parametric");
-  EXPECT_EQ(covariance_of(data, "diagonal").kind, "diagonal");
-  EXPECT_LT(covariance_of(data, "diagonal").effective_values, 81);
-  fill(data, Eigen::VectorXd::Zero(data.values()), 2, 0.1, 0.03, random);
-  EXPECT_EQ(covariance_of(data).kind, "diagonal");
-  EXPECT_THAT(covariance_of(data).note, testing::HasSubstr("needs 3 realizations, found 2"));
-  EXPECT_THROW(covariance_of(data, "full"), std::invalid_argument);
-  fill(data, Eigen::VectorXd::Zero(data.values()), 100, 0.1, 0.03, random);
-  EXPECT_EQ(covariance_of(data, "sample").kind, "sample");
+  data.scale = Eigen::VectorXd::LinSpaced(data.values(), 1, 3);
+  Eigen::VectorXd first;
+  for (const int realizations : {1, 2, 4, 16}) {
+    fill(data, Eigen::VectorXd::Zero(data.values()), realizations, 0.1 * realizations, 0.03,
+         random);
+    const Weights w = weights_of(data);
+    if (first.size() == 0) first = w.weight;
+    EXPECT_EQ((w.weight - first).norm(), 0);
+    EXPECT_EQ(w.errors_from == ErrorsFrom::realizations, realizations > 1);
+    if (realizations < 16) continue;
+    EXPECT_NEAR(w.error.mean(), 1.6 * kRhoG * kHeight / 4, 0.15 * 1.6 * kRhoG * kHeight / 4);
+  }
+  EXPECT_NEAR(first[0], 1, 1e-12);
+  EXPECT_NEAR(first[first.size() - 1], 1.0 / 3, 1e-12);
 }
 
-// 2 e E1(1) for two degrees of freedom: x is then exponential.
-TEST(Fit, BiasOfTheInverseVariance) {
-  EXPECT_NEAR(inverse_bias(3), 1.1926947246, 1e-8);
-  // Mean of 2/(1 + z^2), z normal.
-  EXPECT_NEAR(inverse_bias(2),
-              2 * std::sqrt(std::numbers::pi / 2) * std::exp(0.5) * std::erfc(std::sqrt(0.5)),
-              1e-6);
-  EXPECT_LT(inverse_bias(8), 1.075);
-  EXPECT_GT(inverse_bias(8), 1.05);
-  EXPECT_NEAR(inverse_bias(1000), 1, 1e-3);
-  EXPECT_THROW(inverse_bias(1), std::invalid_argument);
+// A straight line with its level free: the mean over all values, whose error over realizations is
+// exact, and so are the jackknife's and the sandwich's.
+TEST(Fit, ErrorsOfALinearConstantAreThoseOfItsRealizations) {
+  FitModel level;
+  level.name = level.label = "level";
+  const double far = std::numeric_limits<double>::infinity();
+  level.parameters = {{"a", "-", "level", -far, far}};
+  level.starts = {vector({0})};
+  level.stress = [](const Eigen::MatrixXd& points, const Eigen::VectorXd& p) {
+    return Eigen::MatrixXd::Constant(points.rows(), 3, p[0]);
+  };
+  dem::Random random(8);
+  FitData data = places(9);
+  for (const int realizations : {3, 5, 12}) {
+    fill(data, Eigen::VectorXd::Constant(data.values(), 7), realizations, 1e-3, 0.03, random);
+    const Eigen::VectorXd each = data.samples.colwise().mean();
+    const double n = realizations;
+    const double error = std::sqrt((each.array() - each.mean()).square().sum() / (n * (n - 1)));
+    const FittedParameter p = fit(data, weights_of(data), level).parameters.front();
+    EXPECT_NEAR(p.value, each.mean(), 1e-6);
+    EXPECT_NEAR(p.covariance_error, error, 1e-5 * error);
+    EXPECT_NEAR(p.jackknife_error, error, 1e-4 * error);
+    EXPECT_NEAR(p.error, error, 1e-4 * error);
+    EXPECT_NEAR(p.by_profile.high - p.by_profile.low, p.high - p.low, 0.03 * (p.high - p.low));
+  }
 }
 
 TEST(Fit, BadData) {
   FitData data = places(5);
   data.samples.setZero();
   data.components[0] = "pressure";
-  EXPECT_THROW(covariance_of(data), std::invalid_argument);
+  EXPECT_THROW(weights_of(data), std::invalid_argument);
   data = places(5);
   data.samples.setConstant(std::nan(""));
-  EXPECT_THROW(covariance_of(data), std::invalid_argument);
+  EXPECT_THROW(weights_of(data), std::invalid_argument);
   EXPECT_THROW(find_fit_model(heap_models({}), "jansen"), std::invalid_argument);
 }
 

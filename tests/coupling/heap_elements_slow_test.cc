@@ -18,12 +18,12 @@ HeapFits heap_of(const std::string& truth, const Eigen::VectorXd& parameters) {
   dem::Random random(3);
   fill(data, predict(data, find_fit_model(known, truth), parameters), 6, 0.02 / (kRhoG * kHeight),
        0.2, random);
-  out.covariance = covariance_of(data);
+  out.weights = weights_of(data);
   FitOptions options;
   options.bootstrap = 0;
   for (const char* name : {"osl", "cantelaube_plus"}) {
     out.models.push_back(find_fit_model(known, name));
-    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+    out.fits.push_back(fit(data, out.weights, out.models.back(), options));
   }
   return out;
 }

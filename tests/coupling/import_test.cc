@@ -250,7 +250,9 @@ TEST(Import, StepsOfADump) {
   const dem::Snapshot at_50 = dem::read_snapshot(folder / "s.h5", "/step_50");
   EXPECT_EQ(at_50.grains[0].position.x(), ours.grains[0].position.x() + 0.05);
   EXPECT_DOUBLE_EQ(at_50.time, 0.05);
-  ASSERT_EQ(import("--step 200=a/loaded --step 50=a/unloaded").code, 0);
+  ASSERT_EQ(import("--step 200=a/loaded --step 50=a/unloaded --load 1=0,-3").code, 0);
+  EXPECT_EQ(dem::read_snapshot(folder / "s.h5", "/a/loaded").applied_force.y(), -3);
+  EXPECT_EQ(dem::read_snapshot(folder / "s.h5", "/a/unloaded").applied_force.norm(), 0);
   EXPECT_THAT(groups(), ::testing::ElementsAre("/a/loaded", "/a/unloaded"));
   ASSERT_EQ(import("--add --step 0 --group a/start").code, 0);
   EXPECT_EQ(groups().size(), 3u);

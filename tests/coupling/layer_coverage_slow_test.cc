@@ -29,7 +29,7 @@ TEST(LayerFit, IntervalsCoverTheTruth) {
     for (int trial = 0; trial < kTrials; ++trial) {
       const FitData data =
           with_noise(scene(), truth.model, truth.parameters, kRealizations, 0.1, random);
-      const Fit f = fit(data, covariance_of(data), near, options);
+      const Fit f = fit(data, weights_of(data), near, options);
       for (std::size_t k = 0; k < inside.size(); ++k) {
         const double v = truth.parameters[static_cast<Eigen::Index>(k)];
         inside[k] += f.parameters[k].low <= v && v <= f.parameters[k].high ? 1 : 0;
@@ -63,13 +63,13 @@ Count verdicts(const LayerTruth& truth, double noise, int trials, bool among_all
   for (int trial = 0; trial < trials; ++trial) {
     const FitData data =
         with_noise(scene(), truth.model, truth.parameters, kRealizations, noise, random);
-    const Covariance covariance = covariance_of(data);
+    const Weights weights = weights_of(data);
     std::vector<Fit> fits;
-    for (const FitModel& m : models) fits.push_back(fit(data, covariance, m, options));
+    for (const FitModel& m : models) fits.push_back(fit(data, weights, m, options));
     SelectionOptions selection;
     selection.by_level = false;
     const LayerVerdict v =
-        layer_verdict(fits, select(data, covariance, models, fits, selection), kRealizations);
+        layer_verdict(fits, select(data, weights, models, fits, selection), kRealizations);
     out.named += v.alone && v.model == truth.model ? 1 : 0;
     out.type += v.equations == type_of_equations(truth.model) ? 1 : 0;
     out.undecided += v.equations == "not distinguishable" && !v.alone ? 1 : 0;

@@ -79,8 +79,7 @@ TEST(LayerFit, WithoutNoiseTheConstantsComeBack) {
     const FitData data = with_noise(scene(), truth.model, truth.parameters, 1, 0, random);
     FitOptions options;
     options.bootstrap = 0;
-    const Fit f =
-        fit(data, covariance_of(data), find_fit_model(scene().models, truth.model), options);
+    const Fit f = fit(data, weights_of(data), find_fit_model(scene().models, truth.model), options);
     EXPECT_LT(f.rel_l2, 1e-5) << truth.model;
     for (Eigen::Index k = 0; k < truth.parameters.size(); ++k) {
       EXPECT_NEAR(f.parameters[static_cast<std::size_t>(k)].value, truth.parameters[k], 2e-3)
@@ -94,7 +93,7 @@ TEST(LayerFit, FiniteElementsTakeTheBestFitsConstants) {
                         with_parameters("layer_rough", vector({0.27})),
                         with_parameters("orthotropic_layer_rough", vector({0.6, 0.6, 0.4})),
                         with_parameters("osl_layer_absorbing", vector({0.5, 0.1, 0.6}))};
-  fits[1].aicc = -10;
+  fits[1].expected = -10;
   std::string of, why;
   auto choice = finite_element_choice("fe_elastic_layer", fits, 0.2, of, why);
   ASSERT_NE(choice, nullptr);
@@ -121,7 +120,7 @@ Selection ranking(const std::vector<std::pair<std::string, bool>>& names) {
     Score s;
     s.name = name;
     s.supported = supported;
-    s.aicc_difference = behind;
+    s.heights_behind = s.heights_error = std::nan("");
     s.behind = 0.1 * behind;
     s.behind_error = 0.01;
     behind += 10;
@@ -156,8 +155,9 @@ TEST(LayerVerdict, RicherModelsDoNotOutbidTheirSpecialCase) {
   EXPECT_TRUE(v.alone);
   EXPECT_EQ(v.equations, "elliptic");
   EXPECT_THAT(v.sentence, HasSubstr("Supported: layer_smooth (chi2/dof 1, relative L2 10.0 %)"));
-  EXPECT_THAT(v.sentence, HasSubstr("The response is elliptic: the best hyperbolic model, "
-                                    "osl_layer_absorbing, is behind by 20.0 in AICc."));
+  EXPECT_THAT(v.sentence,
+              HasSubstr("The response is elliptic: the best hyperbolic model, "
+                        "osl_layer_absorbing, is behind by 2 +- 0.01 on realizations left out"));
 }
 
 TEST(LayerVerdict, EllipticAndHyperbolicTogetherAreNotDistinguishable) {
@@ -193,7 +193,7 @@ TEST(LayerVerdict, OneRealizationHasNoSpread) {
 TEST(Posteriors, DrawEveryParameterWithAnError) {
   Fit f = with_parameters("layer_rough", vector({0.3}));
   EXPECT_TRUE(posterior_sections({&f}, 8).empty());
-  f.parameters[0].error = 0.05;
+  f.parameters[0].error = f.parameters[0].covariance_error = 0.05;
   f.parameters[0].bootstrap_error = 0.06;
   const auto sections = posterior_sections({&f}, 8);
   ASSERT_EQ(sections.size(), 1U);

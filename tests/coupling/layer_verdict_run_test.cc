@@ -34,7 +34,7 @@ TEST(LayerVerdictRun, FromCaseToReport) {
   for (const char* key :
        {"verdict.best_model.even", "verdict.equations.uneven", "verdict.sentence.even",
         "fit.layer_rough.nu.even", "fit.osl_layer_absorbing.eta.uneven",
-        "fit.layer_smooth.aicc_difference.even", "compare.layer_rough.rel_l2.even"}) {
+        "fit.layer_smooth.heights_behind.even", "compare.layer_rough.rel_l2.even"}) {
     EXPECT_EQ(all.count(key), 1U) << key;
   }
   const std::string page = read_text(folder / "out/report.html");

@@ -98,6 +98,44 @@ TEST(PileFrame, MeasuresALatticeHeap) {
   EXPECT_DOUBLE_EQ(f.in_half_bases(f.apex_x + f.half_right / 2), 0.5);
 }
 
+// Grains in flight, single ones and a pair that touches, are no part of the heap; a rattler is.
+TEST(PileFrame, GrainsInFlightAreNoHeap) {
+  dem::Snapshot heap = test::lattice_heap(30);
+  const PileFrame before = pile_frame(heap);
+  EXPECT_EQ(before.in_flight, "");
+  const auto add = [&](double x, double y) {
+    dem::Grain g = heap.grains.front();
+    g.id = 7000 + static_cast<std::int64_t>(heap.grains.size());
+    g.position = {x, y, 0};
+    heap.grains.push_back(g);
+    return static_cast<std::int64_t>(heap.grains.size()) - 1;
+  };
+  const std::int64_t first = add(0.02, 2 * before.height);
+  add(-3 * before.half_left, 0.4 * before.height);
+  const std::int64_t a = add(0, 3 * before.height), b = add(0.004, 3 * before.height);
+  dem::Contact touch = heap.contacts.back();
+  touch.i = a;
+  touch.j = b;
+  heap.contacts.push_back(touch);
+  dem::Grain& inside = heap.grains[static_cast<std::size_t>(add(0, before.height / 2))];
+  inside.radius /= 100;
+  const PileFrame after = pile_frame(heap);
+  EXPECT_EQ(after.height, before.height);
+  EXPECT_EQ(after.apex_x, before.apex_x);
+  EXPECT_EQ(after.half_left, before.half_left);
+  EXPECT_EQ(after.repose_right_deg, before.repose_right_deg);
+  EXPECT_NEAR(after.volume_fraction, before.volume_fraction, 0.01);
+  EXPECT_THAT(after.in_flight,
+              HasSubstr("4 grains in flight, no part of the heap: id " +
+                        std::to_string(heap.grains[static_cast<std::size_t>(first)].id) +
+                        " at x = 0.02 m, "));
+  // Where the contacts with the floor are not known, the largest group is the heap.
+  std::erase_if(heap.contacts, [](const dem::Contact& c) { return c.j < 0; });
+  EXPECT_THAT(pile_frame(heap).in_flight, HasSubstr("4 grains in flight"));
+  heap.contacts.clear();
+  EXPECT_EQ(pile_frame(heap).in_flight, "");
+}
+
 TEST(PileFrame, AHeapOfAFewGrainsStillHasOne) {
   const PileFrame f = pile_frame(test::lattice_heap(3, 0.01));
   EXPECT_NEAR(f.apex_x, 0, 0.011);
@@ -227,7 +265,7 @@ TEST(PileAnalysis, FewRealizationsGiveNoVerdict) {
 }
 
 TEST(PileAnalysis, WithoutADipFewEnsemblesShowOne) {
-  // Windows of noise alone: at the 5 % level about one verdict in ten is wrong (both sides).
+  // Windows of noise alone: one verdict in twenty is wrong, dips and peaks together.
   dem::Random random(17);
   int dips = 0, peaks = 0;
   const int ensembles = 2000;
@@ -241,8 +279,8 @@ TEST(PileAnalysis, WithoutADipFewEnsemblesShowOne) {
     dips += dip.verdict == "dip";
     peaks += dip.verdict == "peak";
   }
-  EXPECT_NEAR(dips / double(ensembles), 0.05, 0.015);  // three standard deviations
-  EXPECT_NEAR(peaks / double(ensembles), 0.05, 0.015);
+  EXPECT_NEAR(dips / double(ensembles), 0.025, 0.011);  // three standard deviations
+  EXPECT_NEAR(peaks / double(ensembles), 0.025, 0.011);
 }
 
 TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {

@@ -58,7 +58,8 @@ std::vector<SummaryKey> pile_figures() {
       {"dip.p_value", "-",
        "one-sided probability of a difference this high if it were 0 (Student's t); nan below 3 "
        "realizations"},
-      {"dip.verdict", "text", "dip | peak | neither | undecided (at 5 %)"},
+      {"dip.verdict", "text",
+       "dip | peak | neither | undecided (at 5 %, two-sided: 2 min(p, 1 - p))"},
       {"change.*.coordination", "-", "contacts of a grain under the changed gravity"},
       {"change.*.coordination_ratio", "-", "the same over that of the pile"},
       {"change.*.dip_difference_change", "rho g h",

@@ -41,6 +41,10 @@ void declare_fit_keys(SectionKeys s) {
          "stresses that are fitted, all together");
   s.number("heights", "-", +IN(Numbers, heights), {1e-6, 1},
            "horizontal lines, shares of the pile's height above the base; all together");
+  s.number("leave_out", "-", +IN(Numbers, leave_out), {1, 1e6},
+           "numbers, from 1, of heaps that are left out (of another size, with a stray grain); "
+           "warnings name them");
+  s.or_none();
   s.number(
       "width_diameters", "-", +IN(double, width_diameters), {0.01, 100},
       "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
@@ -50,8 +54,6 @@ void declare_fit_keys(SectionKeys s) {
   s.number("right_deg", "deg", +IN(double, right_deg), {0, 89}, "the same on the right");
   s.number("friction_deg", "deg", +IN(double, friction_deg), {0, 89},
            "friction angle of the models that take the flanks apart; 0: the steeper slope");
-  s.word("covariance", +IN(string, covariance), {"auto", "parametric", "sample", "diagonal"},
-         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 piles");
   s.number("huber", "-", +IN(double, huber), {0, 1e6},
            "0: least squares; above: values further off than this many errors pull no more than "
            "that (points in the wrong region)");

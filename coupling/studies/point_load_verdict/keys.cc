@@ -28,8 +28,12 @@ void declare_verdict_keys(SectionKeys s) {
   s.word("components", +IN(Words, components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", +IN(bool, base), "the forces on the base are fitted as well");
-  s.word("covariance", +IN(string, covariance), {"auto", "parametric", "sample", "diagonal"},
-         "of the ensemble's mean on the points; auto: parametric, or diagonal below 3 packings");
+  s.number("coverage", "-", +IN(std::vector<double>, coverage), {3, 1e6},
+           "sizes N: how often intervals from N of the packings hold the constants of the rest "
+           "(coverage.md); takes long");
+  s.or_none();
+  s.number("coverage_draws", "-", +IN(std::int64_t, coverage_draws), {1, 1e6},
+           "draws of every size of verdict.coverage");
   s.number("bootstrap", "-", +IN(std::int64_t, bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "coupling/fit/coverage.h"
 #include "coupling/fit/figures.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
@@ -67,7 +68,7 @@ FiniteElementFit solve(const std::string& name, const LayerFits& fits, const Lay
   const Eigen::MatrixXd seen =
       sight.seen([&](const Eigen::MatrixXd& nodes) { return model->stress(nodes); }, half_plane);
   const FitData& data = fits.layers.data;
-  judge_elements(out, data, fits.covariance, fit_named(fits.fits, out.of),
+  judge_elements(out, data, fits.weights, fit_named(fits.fits, out.of),
                  sight.pick(seen, data.points));
   return out;
 }
@@ -170,6 +171,17 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.texts = {{"fits.csv", parameters_csv(fits->fits)},
                {"fits.md", layer_fits_markdown(*fits)},
                {"fits.tex", layer_fits_tex(*fits)}};
+  if (!value.get<VerdictSetup>().coverage.empty()) {
+    CoverageOptions options;
+    options.sizes.assign(value.get<VerdictSetup>().coverage.begin(),
+                         value.get<VerdictSetup>().coverage.end());
+    options.draws = static_cast<int>(value.get<VerdictSetup>().coverage_draws);
+    options.bootstrap = static_cast<int>(value.get<VerdictSetup>().bootstrap);
+    options.threads = threads;
+    const FitData& data = fits->layers.data;
+    out.texts.emplace_back("coverage.md", coverage_text(coverage_of(data, fits->models, options),
+                                                        data.realizations()));
+  }
   out.overview = {{"best model", "verdict.best_model", ""},
                   {"alone", "verdict.distinguishable", ""},
                   {"equations", "verdict.equations", ""},
@@ -200,7 +212,7 @@ LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, i
   LayerFits out;
   out.layers = layer_data(value, files, threads);
   const FitData& data = out.layers.data;
-  out.covariance = covariance_of(data, value.get<VerdictSetup>().covariance);
+  out.weights = weights_of(data);
   // Components share their points: the sight needs each once.
   std::vector<int> once;
   std::map<std::pair<double, double>, int> seen;
@@ -215,9 +227,9 @@ LayerFits fit_layers(const Case& value, const std::vector<std::string>& files, i
   options.threads = threads;
   for (const std::string& name : value.get<VerdictSetup>().models) {
     out.models.push_back(find_fit_model(known, name));
-    out.fits.push_back(fit(data, out.covariance, out.models.back(), options));
+    out.fits.push_back(fit(data, out.weights, out.models.back(), options));
   }
-  out.selection = select(data, out.covariance, out.models, out.fits);
+  out.selection = select(data, out.weights, out.models, out.fits);
   out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
   for (const std::string& name : value.get<VerdictSetup>().finite_elements) {
     out.elements.push_back(solve(name, out, *sight));

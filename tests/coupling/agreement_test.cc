@@ -1,0 +1,93 @@
+// Agreement of many tied values with what they should be: how often chance alone refuses it, and
+// what it finds.
+#include "coupling/statistics/agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr int kPlaces = 30, kComponents = 3, kTrials = 1000;
+
+// Three components that are tied at a place (0.5), correlated over `length` places, and of a
+// variance that falls off from the middle.
+struct Noise {
+  Eigen::MatrixXd root;
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> normal;
+
+  explicit Noise(double length, double grade) {
+    const int n = kPlaces * kComponents;
+    Eigen::MatrixXd c(n, n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const double d = (i % kPlaces - j % kPlaces) / length;
+        const double off = std::abs(i % kPlaces - 15) + std::abs(j % kPlaces - 15);
+        c(i, j) = std::exp(-grade * off / kPlaces - 0.5 * d * d) *
+                  (i / kPlaces == j / kPlaces ? 1 : 0.5) * (i == j ? 1 + 1e-6 : 1);
+      }
+    }
+    root = Eigen::LLT<Eigen::MatrixXd>(c).matrixL();
+  }
+  Eigen::MatrixXd draw(int realizations) {
+    Eigen::MatrixXd z(root.rows(), realizations);
+    for (double& v : z.reshaped()) v = normal(random);
+    return root * z;
+  }
+};
+
+double share_refused(Noise& noise, int realizations, double offset) {
+  int refused = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Eigen::MatrixXd y = noise.draw(realizations);
+    const Eigen::VectorXd mean = y.rowwise().mean();
+    refused +=
+        agreement(mean.array() + offset, Eigen::MatrixXd(y.colwise() - mean)).holds() ? 0 : 1;
+  }
+  return refused / static_cast<double>(kTrials);
+}
+
+// Nominal: 1 of 100. The bounds are three standard deviations of the count above 2 of 100.
+TEST(Agreement, ChanceRefusesATrueModelRarely) {
+  for (const double length : {0.5, 3.0, 10.0}) {
+    for (const double grade : {0.0, 3.0}) {
+      Noise noise(length, grade);
+      for (const int realizations : {3, 4, 8, 16}) {
+        EXPECT_LE(share_refused(noise, realizations, 0), 0.033)
+            << length << " " << grade << " " << realizations;
+      }
+    }
+  }
+}
+
+// An offset of one standard deviation of a single realization everywhere.
+TEST(Agreement, FindsWhatIsOff) {
+  Noise noise(3, 0);
+  EXPECT_GE(share_refused(noise, 16, 1), 0.95);
+  EXPECT_GE(share_refused(noise, 8, 1), 0.6);
+  EXPECT_GE(share_refused(noise, 4, 3), 0.9);
+}
+
+TEST(Agreement, KnownErrors) {
+  Eigen::VectorXd errors = Eigen::VectorXd::Constant(100, 2), off = errors;
+  const Agreement a = agreement(off, errors, 1);
+  EXPECT_NEAR(a.values, 100, 1e-9);
+  EXPECT_NEAR(a.ratio, 1, 1e-12);
+  EXPECT_TRUE(a.holds());
+  EXPECT_FALSE(agreement(2 * off, errors, 1).holds());
+  EXPECT_NEAR(agreement(off, errors, 4).values, 25, 1e-9);
+}
+
+TEST(Agreement, WithoutSpreadThereIsNone) {
+  const Eigen::VectorXd off = Eigen::VectorXd::Ones(5);
+  EXPECT_TRUE(std::isnan(agreement(off, Eigen::MatrixXd::Zero(5, 4)).ratio));
+  EXPECT_TRUE(std::isnan(agreement(off, Eigen::MatrixXd::Zero(5, 1)).ratio));
+  EXPECT_FALSE(agreement(off, Eigen::MatrixXd::Zero(5, 4)).holds());
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
