@@ -201,7 +201,7 @@ FitOutcome fit_files(const FitRequest& request) {
   value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
   out.warnings = data.warnings;
   if (!request.coverage.empty()) {
-    out.coverage = coverage_of_heaps(value.fit, data, request);
+    out.coverage = coverage_of_heaps(value.get<FitSetup>(), data, request);
     write_text_file(results.staging("coverage.md"), out.coverage);
   }
   StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
