@@ -19,8 +19,8 @@ std::vector<FitModel> seen(const std::vector<FitModel>& models) {
   return out;
 }
 
-// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, of 30 in at least
-// 24: three standard deviations of the count below 95 %, and a little.
+// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, of 20 in at least
+// 16: three standard deviations of the count below 95 %, and a little.
 void expect_coverage(const std::vector<FitModel>& models, const std::vector<Truth>& all,
                      FitData data, std::uint64_t seed, int trials = 100) {
   dem::Random random(seed);
