@@ -113,6 +113,10 @@ ConstantCoverage of_constant(const std::vector<Drawn>& draws, std::size_t m, std
        {&out.by_covariance, &out.by_bootstrap, &out.by_jackknife, &out.by_profile}) {
     *share = n > 0 ? *share / n : kNan;
   }
+  // Not asked for: no share.
+  const FittedParameter& one = draws.front().fits[m].parameters[p];
+  if (std::isnan(one.by_bootstrap.low)) out.by_bootstrap = kNan;
+  if (std::isnan(one.by_profile.low)) out.by_profile = kNan;
   out.spread = n > 1 ? std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1)) : kNan;
   out.covariance_error = std::sqrt(out.covariance_error / n);
   out.jackknife_error = std::sqrt(out.jackknife_error / n);

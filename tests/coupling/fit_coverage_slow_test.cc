@@ -19,16 +19,16 @@ std::vector<FitModel> seen(const std::vector<FitModel>& models) {
   return out;
 }
 
-// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, three standard
-// deviations of the count below 95.
+// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, of 20 in at least
+// 16: three standard deviations of the count below 95 %, and a little.
 void expect_coverage(const std::vector<FitModel>& models, const std::vector<Truth>& all,
-                     FitData data, std::uint64_t seed) {
+                     FitData data, std::uint64_t seed, int trials = 100) {
   dem::Random random(seed);
   for (const Truth& truth : all) {
     const FitModel& model = find_fit_model(models, truth.model);
     const Eigen::VectorXd exact = predict(data, model, truth.parameters);
     std::vector<int> inside(model.parameters.size(), 0);
-    for (int trial = 0; trial < 100; ++trial) {
+    for (int trial = 0; trial < trials; ++trial) {
       fill(data, exact, 8, 0.05, 0.03, random);
       FitOptions options;
       options.bootstrap = 0;
@@ -40,7 +40,8 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
       }
     }
     for (std::size_t k = 0; k < inside.size(); ++k) {
-      EXPECT_GE(inside[k], 88) << truth.model << " " << model.parameters[k].name;
+      EXPECT_GE(inside[k], trials == 100 ? 88 : trials * 8 / 10)
+          << truth.model << " " << model.parameters[k].name;
     }
   }
 }
