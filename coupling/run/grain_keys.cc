@@ -126,8 +126,8 @@ void declare_material_keys(SectionKeys s) {
       "rolling_friction", "-", +MATERIAL(double, rolling_friction), {0, 10},
       "rolling resistance of round grains: the pseudo-force against rolling is at most this times "
       "the "
-      "normal force, so a disk rests on slopes up to this tangent; 0: none. Not with sleep.on, "
-      "polygons or Newton's method",
+      "normal force, so a disk rests on slopes up to this tangent; 0: none. Not with polygons or "
+      "Newton's method",
       kLuding);
   s.number("rolling_stiffness", "N/m", +MATERIAL(double, rolling_stiffness), {0, 1e15},
            "rolling spring: pseudo-force per rolling displacement; stiffer: shorter time step",
@@ -167,7 +167,7 @@ void declare_motion_keys(SectionKeys s) {
       "Cundall 1987");
   s.flag("energy_balance", +MOTION(bool, energy_balance),
          "every contact accounts for what becomes of energy (slower): figures energy.*. With "
-         "verlet, without sleeping and Newton's method");
+         "verlet, without Newton's method");
 }
 
 void declare_rest_keys(SectionKeys s) {

@@ -58,6 +58,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"energy.lost_to_friction", "J", "by sliding, and in dashpots along contacts"},
       {"energy.lost_to_rolling", "J", "by rolling and twisting"},
       {"energy.lost_to_damping", "J", "to background and local damping"},
+      {"energy.lost_to_sleep", "J", "kinetic, of grains when they fell asleep"},
       {"energy.brought", "J", "kinetic and elastic, with grains that were added"},
       {"energy.work_of_gravity", "J", "on the grains since they were added"},
       {"energy.work_of_load", "J", "of the force on a grain"},

@@ -24,6 +24,11 @@ class Kept {
                                      [](const auto& a, PairKey b) { return a.first < b; });
     return it != list_.end() && it->first == key ? &it->second : nullptr;
   }
+  /// visit(key, memory), by keys.
+  template <class Visit>
+  void visit(Visit visit) const {
+    for (const auto& [key, memory] : list_) visit(key, memory);
+  }
 
  private:
   std::vector<std::pair<PairKey, Memory>> list_;

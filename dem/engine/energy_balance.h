@@ -11,7 +11,12 @@
 // rolling and twisting. The rest is the law's own: what a force that is no gradient of the energy
 // it states does by itself (overlap_area), and what a spring gains or loses as its stiffness
 // changes (hertz). It has either sign, and counts as work of the law.
+//
+// A grain that falls asleep stops: its kinetic energy is booked as `stopped`. Its contacts that
+// freeze end that step with the forces that they have at zero velocity, and keep their accounts and
+// what they store. A sleeper that wakes starts from rest: nothing is booked.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -133,6 +138,21 @@ struct EnergyBalance {
   std::vector<Account<D>> pairs, walls;  ///< as the list of contacts has them
   std::vector<OuterAccount<D>> outer;    ///< by grain's id
   ContactLosses gone;                    ///< in contacts before the last search
+  /// Of a frozen contact, by keys; seen from the grain with the lower id.
+  struct Frozen {
+    PairKey key = 0;
+    Account<D> account;
+  };
+  std::vector<Frozen> frozen;
+  double stopped = 0;  ///< J, kinetic, of grains when they fell asleep
+
+  /// A grain falls asleep, with so much kinetic energy, J.
+  void stop(double energy, std::int64_t id) {
+    stopped += energy;
+    if (static_cast<std::size_t>(id) >= outer.size()) return;
+    outer[id].drag.setZero();
+    outer[id].drag_torque = zero<SpinOf<D>>();
+  }
   /// With grains that were added, and by changes of gravity, J.
   double brought_motion = 0, brought_height = 0;
 
@@ -150,13 +170,15 @@ struct EnergyBalance {
     each(self.walls);
     each(self.outer);
     each(self.gone);
+    each(self.frozen);
+    each(self.stopped);
     each(self.brought_motion);
     each(self.brought_height);
   }
   /// `searched`: no grain has come since the last search.
   bool fits(std::size_t pair_count, std::size_t wall_count, std::size_t grains,
             bool searched) const {
-    if (!on) return pairs.empty() && walls.empty() && outer.empty();
+    if (!on) return pairs.empty() && walls.empty() && outer.empty() && frozen.empty();
     return pairs.size() == pair_count && walls.size() == wall_count && outer.size() <= grains &&
            (!searched || outer.size() == grains);
   }
@@ -186,8 +208,10 @@ class CarryAccounts {
     visit_list(world.contacts.walls, balance.walls, [&](int i, int j, const Account<dim>& account) {
       walls_.add(wall_key(ids[i], j), account);
     });
+    for (const auto& f : balance.frozen) frozen_.add(f.key, f.account);
     pairs_.sort();
     walls_.sort();
+    frozen_.sort();
   }
   /// After the new list is there.
   void put_back() {
@@ -196,16 +220,28 @@ class CarryAccounts {
     const auto& ids = world_.grains.ids;
     balance.outer.resize(ids.size());
     fill_list(world_.contacts.pairs, balance.pairs, [&](int i, int j) {
-      const Account<dim>* a = pairs_.find(pair_key(ids[i], ids[j]));
-      return a == nullptr ? Account<dim>{} : turned(*a, ids[i] > ids[j]);
+      return turned(recalled(pairs_, pair_key(ids[i], ids[j])), ids[i] > ids[j]);
     });
-    fill_list(world_.contacts.walls, balance.walls, [&](int i, int j) {
-      const Account<dim>* a = walls_.find(wall_key(ids[i], j));
-      return a == nullptr ? Account<dim>{} : *a;
-    });
+    fill_list(world_.contacts.walls, balance.walls,
+              [&](int i, int j) { return recalled(walls_, wall_key(ids[i], j)); });
+    balance.frozen.clear();
+    for (const Kept<Account<dim>>* kept : {&pairs_, &walls_, &frozen_}) {
+      kept->visit([&](PairKey key, Account<dim> account) {
+        if (!world_.sleepers.frozen.has(key)) return;
+        account.gone = {};
+        balance.frozen.push_back({key, account});
+      });
+    }
+    std::sort(balance.frozen.begin(), balance.frozen.end(),
+              [](const auto& a, const auto& b) { return a.key < b.key; });
   }
 
  private:
+  Account<dim> recalled(const Kept<Account<dim>>& kept, PairKey key) const {
+    const Account<dim>* account = kept.find(key);
+    if (account == nullptr) account = frozen_.find(key);
+    return account == nullptr ? Account<dim>{} : *account;
+  }
   template <class Rows, class Accounts, class Visit>
   static void visit_list(const Rows& rows, const Accounts& accounts, Visit visit) {
     if (accounts.size() < static_cast<std::size_t>(rows.size())) return;
@@ -227,7 +263,7 @@ class CarryAccounts {
   }
 
   World& world_;
-  Kept<Account<dim>> pairs_, walls_;
+  Kept<Account<dim>> pairs_, walls_, frozen_;
 };
 
 }  // namespace grainfield::dem

@@ -38,7 +38,6 @@ std::vector<Contact> with_springs(std::vector<Contact> contacts) {
 
 void check_rolling(const EngineSettings& settings) {
   if (settings.resist_rolling()) {
-    if (settings.sleep.on) refuse_sleep_with_rolling();
     const bool plane = settings.shape.visit([](auto kind) { return kind.dim; }) == 2;
     visit_laws(settings, [&](const auto&, const RollingLaw& rolling) {
       if (!plane || !rolling.twists()) return;
@@ -64,12 +63,6 @@ void refuse_rolling_polygons() {
   throw std::invalid_argument(
       "material.rolling_friction: found above 0, allowed for polygons: 0 (their corners resist "
       "rolling)");
-}
-
-void refuse_sleep_with_rolling() {
-  throw std::invalid_argument(
-      "sleep.on: found true with material.rolling_friction or twisting_friction above 0, allowed: "
-      "false (sleepers keep no moments against rolling)");
 }
 
 double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius) {
@@ -130,9 +123,6 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
     throw std::invalid_argument(
         fmt::format("energy_balance: found motion.integrator \"{}\", allowed: verlet",
                     settings.integrator.name()));
-  }
-  if (settings.energy_balance && settings.sleep.on) {
-    throw std::invalid_argument("energy_balance: found grains that may sleep, allowed: none");
   }
   return settings.shape.visit(
       [&](auto kind) { return engine_of<typename decltype(kind)::Store>(settings); });

@@ -40,7 +40,7 @@ struct EngineSettings : Materials {
   /// periodic edges. In a cell that flows no grain is fixed or sleeps.
   Cell<3> cell;
   /// Every contact accounts for what it loses (Diagnostics::dissipated_energy); steps take longer.
-  /// With verlet, and without sleeping.
+  /// With verlet.
   bool energy_balance = false;
   /// Cundall's alpha in [0, 1): dem/motion/local_damping.h. With verlet.
   double local_damping = 0;
@@ -87,6 +87,7 @@ struct Diagnostics {
   bool energy_followed = false;  ///< EngineSettings::energy_balance; since the start then:
   ContactLosses contact_losses;  ///< by mechanism, with the work of the law
   double damped_energy = 0;      ///< J, by background and local damping
+  double stopped_energy = 0;     ///< J, kinetic, of grains when they fell asleep
   double applied_work = 0;       ///< J, of the applied force
   double brought_energy = 0;     ///< J, kinetic and elastic, with grains that were added
   double gravity_work = 0;       ///< J, on the grains since they were added
@@ -104,8 +105,8 @@ struct Diagnostics {
   /// 0 to second order in the time step (dem/engine/energy_balance.h), to first order in a cell
   /// that flows, J.
   double energy_balance() const {
-    return kinetic_energy + elastic_energy + dissipated_energy() + damped_energy - work() -
-           contact_losses.law;
+    return kinetic_energy + elastic_energy + dissipated_energy() + damped_energy + stopped_energy -
+           work() - contact_losses.law;
   }
 };
 
@@ -214,14 +215,12 @@ double stable_time_step(const EngineSettings& settings, const GrainExtremes& ext
 inline constexpr double kMostOfLimit = 2.5;
 
 /// Throws std::invalid_argument for settings out of range; resistance against rolling of polygons
-/// (their corners resist) or of grains that may sleep; twisting in the plane.
+/// (their corners resist); twisting in the plane.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
 /// What make_engine says of rolling resistance and local damping, before there is a shape. Throws
-/// std::invalid_argument: with grains that may sleep, twisting in the plane, local damping out of
-/// range or with gear.
+/// std::invalid_argument: twisting in the plane, local damping out of range or with gear.
 void check_rolling(const EngineSettings& settings);
-/// Throw std::invalid_argument: the two do not go together.
-[[noreturn]] void refuse_sleep_with_rolling();
+/// Throws std::invalid_argument: the two do not go together.
 [[noreturn]] void refuse_rolling_polygons();
 /// The same, to go on from a snapshot of the shape's dimension, whose grains are numbered 0, 1, 2,
 /// ...: its walls and grains with their materials, mass, moments and velocities (one that never

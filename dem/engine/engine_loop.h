@@ -165,10 +165,6 @@ class EngineLoop final : public Engine {
   Cell<3> cell() const override { return world_.cell.told(); }
   void set_sleep(bool on) override {
     check_rest_in_flow(world_.cell.flows(), false, on);
-    if (on && world_.balance.on) {
-      throw std::invalid_argument("energy_balance: found grains that may sleep, allowed: none");
-    }
-    if (on && world_.rolling.on) refuse_sleep_with_rolling();
     world_.sleep.on = on;
     world_.wake_all();
   }
@@ -258,6 +254,7 @@ class EngineLoop final : public Engine {
       take_rolling(c, rolling);
       if (!rolling.empty()) world_.rolling.told.push_back({frozen.key, seen_from(rolling, turned)});
     }
+    world_.rolling.sort();
     world_.search_needed = true;
   }
 

@@ -83,7 +83,7 @@ class Report {
       force_sum += length_of(f.force);
       d.elastic_energy += rule(i, pair, wall).law.energy(o, pair.memory).total();
       if (world_.rolling.on)
-        d.elastic_energy += rule(i, pair, wall).rolling.energy(rolling(k, wall));
+        d.elastic_energy += rule(i, pair, wall).rolling.energy(rolling(i, k, pair, wall));
       const double radius =
           wall ? bodies[i].radius : std::min(bodies[i].radius, bodies[pair.j].radius);
       d.max_overlap_ratio = std::max(d.max_overlap_ratio, o.depth / radius);
@@ -106,6 +106,7 @@ class Report {
     }
     d.energy_followed = balance.on;
     d.contact_losses = balance.gone_in_contacts();
+    d.stopped_energy = balance.stopped;
     d.brought_energy = balance.brought_motion + d.contact_losses.stored;
     for (const auto& account : balance.outer) {
       d.damped_energy += account.damped;
@@ -228,7 +229,8 @@ class Report {
       s.applied_force = to_three(world_.around.applied_at(world_.time()));
     }
     visit_listed([&](int i, int k, const Pair& pair, const Force& f, bool wall, const Overlap& o) {
-      const RollingMemory<dim> memory = world_.rolling.on ? rolling(k, wall) : RollingMemory<dim>{};
+      const RollingMemory<dim> memory =
+          world_.rolling.on ? rolling(i, k, pair, wall) : RollingMemory<dim>{};
       s.contacts.push_back(contact(i, pair, f, wall, o, memory));
     });
     // Stable: several contacts with one wall stay in their order, the nearest first.
@@ -278,9 +280,11 @@ class Report {
  private:
   static bool pushes(const Force& f) { return !f.force.isZero(0); }
 
-  /// What contact k of a list remembers of rolling; none of them is frozen (make_engine).
-  const RollingMemory<dim>& rolling(int k, bool wall) const {
-    return wall ? world_.rolling.walls[k] : world_.rolling.pairs[k];
+  /// What contact k of a list, or (-1) a frozen one, remembers of rolling.
+  RollingMemory<dim> rolling(int i, int k, const Pair& pair, bool wall) const {
+    if (k >= 0) return wall ? world_.rolling.walls[k] : world_.rolling.pairs[k];
+    const auto& ids = world_.grains.ids;
+    return world_.rolling.told_of(wall ? wall_key(ids[i], pair.j) : pair_key(ids[i], ids[pair.j]));
   }
   /// The moment against rolling that a grain's contact puts on a wall, N m.
   Vec3 rolling_on_wall(const Force& f, const Overlap& o) const {

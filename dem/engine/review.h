@@ -13,9 +13,13 @@
 //          by kLookWay of its diameter (Sleepers::creep): there it sleeps again only with half of
 //          what is out of balance then;
 //          A wall that moves wakes what it will touch before the next review.
-//   sleep  a grain that has moved by less than quiet_move of its diameter during quiet_time, when
-//          it has crept by less than quiet_creep diameters a second since it is quiet and its
-//          forces at zero velocity balance to quiet_force of its load.
+//   sleep  a grain that has moved by less than quiet_move of its diameter during quiet_time against
+//          what it touches, when it has crept there by less than quiet_creep diameters a second,
+//          its forces at zero velocity balance to quiet_force of its load, and it moves with no
+//          more energy than the force that may be hidden so does on the way that may be. What a
+//          grain touches carries it: the place where it is still goes along with the mean of the
+//          rigid motions of its neighbours. So a common swing of the pile, which hardly strains a
+//          contact, keeps nobody awake while it unbalances nobody.
 // A contact between two sleepers, or of a sleeper with a wall at rest, is frozen: it keeps its
 // memory and its force at zero velocity until one of them wakes.
 //
@@ -27,6 +31,7 @@
 #include <vector>
 
 #include "dem/engine/flatten.h"
+#include "dem/engine/report.h"
 #include "dem/engine/search.h"
 #include "dem/engine/world.h"
 
@@ -175,8 +180,28 @@ class Review {
 
   bool is_marked(int i) const { return i < world_.awake && marked_[i] != 0; }
 
-  /// visit(i, j or wall, is a wall, force, memory) for every contact of the awake in which one of
-  /// the marked grains takes part, with the force that it would have at zero velocity.
+  /// A contact as it would be at zero velocity. `j`: of a wall a slot; k: in its list.
+  struct AtRest {
+    int i = 0, j = 0, k = 0;
+    bool wall = false;
+    Memory memory{};
+    RollingMemory<dim> rolled{};
+    SpinOf<dim> moment = zero<SpinOf<dim>>();  // of rolling and twisting
+    ContactForce<dim> force{};
+  };
+  template <class Rule>
+  void act(const Rule& rule, const typename World::Body& a, const typename World::Body& b,
+           const typename World::Overlap& o, AtRest& c) const {
+    c.force = world_.acting.force(rule, a, b, o, 0, c.memory);
+    if constexpr (!World::Shape::outlines) {
+      if (!world_.rolling.on) return;
+      c.rolled = c.wall ? world_.rolling.walls[c.k] : world_.rolling.pairs[c.k];
+      c.moment = world_.acting.roll(rule, a, b, o, 0, c.rolled, c.force);
+    }
+  }
+
+  /// visit(contact, overlap, rule) for every contact of the awake in which one of the marked grains
+  /// takes part.
   template <class Visit>
   GRAINFIELD_FLATTEN void visit_at_rest(Visit visit) {
     const auto& acting = world_.acting;
@@ -201,37 +226,90 @@ class Review {
           b.position += world_.cell.shift(image);
         }
         if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) continue;
-        Memory memory = pair.memory;
-        const ContactForce<dim> f = acting.force(world_.pair_rule(i, pair.j), a, b, o, 0, memory);
-        visit(i, pair.j, false, f, memory);
+        AtRest c{i, pair.j, k, false, pair.memory};
+        const auto& rule = world_.pair_rule(i, pair.j);
+        act(rule, a, b, o, c);
+        visit(c, o, rule);
       }
       if (!marked_[i]) continue;
       const auto a = at_rest(i);
       for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
         const int w = contacts.walls[k].j;
+        const auto& rule = world_.wall_rule(i, w);
         if (!world_.walls.is_plain(w)) {
           visit_wall(world_, i, a, k,
                      [&](int rank, int slot, const auto& overlap, const auto& wall, const auto&) {
-                       Memory memory = contacts.walls[slot].memory;
-                       const ContactForce<dim> f =
-                           acting.force(world_.wall_rule(i, w), a, wall, overlap, 0, memory);
-                       visit(i, w + rank, true, f, memory);
+                       AtRest c{i, w + rank, slot, true, contacts.walls[slot].memory};
+                       act(rule, a, wall, overlap, c);
+                       visit(c, overlap, rule);
                      });
           k += world_.walls.slots_of(world_.walls.wall_of(w)) - 1;
           continue;
         }
         if (!acting.overlap(shapes, i, a, world_.walls.plane(w), o)) continue;
-        Memory memory = contacts.walls[k].memory;
-        const ContactForce<dim> f =
-            acting.force(world_.wall_rule(i, w), a, acting.wall_body(), o, 0, memory);
-        visit(i, w, true, f, memory);
+        AtRest c{i, w, k, true, contacts.walls[k].memory};
+        act(rule, a, acting.wall_body(), o, c);
+        visit(c, o, rule);
       }
     }
+  }
+
+  /// Every awake grain's place goes along with what it touches: by the mean of the rigid motions
+  /// of its neighbours since the last review, where walls and sleepers do not move.
+  GRAINFIELD_FLATTEN void carry_places() {
+    using Step = typename World::Sleepers::Step;
+    const int n = world_.awake;
+    const auto& bodies = world_.grains.bodies;
+    const auto& contacts = world_.contacts;
+    steps_.resize(static_cast<std::size_t>(n));
+    carried_.assign(static_cast<std::size_t>(n), {});
+    for (int i = 0; i < n; ++i) {
+      steps_[i] = world_.sleepers.since_review(i, bodies[i].position, world_.rotation(i));
+    }
+    const auto carry = [&](int i, const Step& by, const typename World::Vector& arm) {
+      auto& c = carried_[i];
+      c.step.way += by.way + velocity_at(by.turn, arm);
+      c.step.turn += by.turn;
+      ++c.touched;
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
+        const int j = contacts.pairs[k].j;
+        if (!touch(i, k)) continue;
+        typename World::Vector arm = bodies[j].position - bodies[i].position;
+        if (world_.cell.is_periodic()) arm += world_.cell.shift(contacts.images[k]);
+        carry(i, j < n ? steps_[j] : Step{}, -arm);
+        if (j < n) carry(j, steps_[i], arm);
+      }
+      for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
+        if (!contacts.walls[k].memory.empty()) ++carried_[i].touched;
+      }
+    }
+    for (int i = 0; i < n; ++i) {
+      auto& c = carried_[i];
+      if (c.touched > 0) {
+        c.step.way /= c.touched;
+        c.step.turn /= c.touched;
+      }
+      world_.sleepers.carry_place(i, c.step, bodies[i].position, world_.rotation(i));
+    }
+  }
+  /// The grains of pair k of row i touch.
+  bool touch(int i, int k) const {
+    const auto& pair = world_.contacts.pairs[k];
+    if (!pair.memory.empty()) return true;
+    const auto& bodies = world_.grains.bodies;
+    const auto image = world_.cell.is_periodic() ? world_.contacts.images[k] : PairImage{};
+    auto feature = pair.feature;
+    typename World::Overlap o;
+    return world_.overlap(i, bodies[i], pair.j, world_.image_of(bodies[pair.j], image), image,
+                          feature, o);
   }
 
   /// Marks the awake that have been quiet for long enough.
   bool find_quiet() {
     bool any = false;
+    carry_places();
     marked_.assign(static_cast<std::size_t>(world_.awake), 0);
     for (int i = 0; i < world_.awake; ++i) {
       const auto& b = world_.grains.bodies[i];
@@ -259,11 +337,13 @@ class Review {
   bool let_sleep() {
     if (!find_quiet()) return false;
     sums_.assign(static_cast<std::size_t>(world_.awake), Sum{});
-    visit_at_rest([&](int i, int j, bool wall, const ContactForce<dim>& f, const Memory&) {
-      add(sums_[i], f);
-      if (!wall && j < world_.awake) add(sums_[j], seen_from(f, true));
+    visit_at_rest([&](const AtRest& c, const auto&, const auto&) {
+      add(sums_[c.i], c.force);
+      if (!c.wall && c.j < world_.awake) add(sums_[c.j], seen_from(c.force, true));
     });
     bool any = false;
+    const auto& ids = world_.grains.ids;
+    if (world_.balance.on) moved_.assign(static_cast<std::size_t>(world_.awake), {});
     for (int i = 0; i < world_.awake; ++i) {
       if (!marked_[i]) continue;
       auto& b = world_.grains.bodies[i];
@@ -273,12 +353,17 @@ class Review {
       sum.force += weight;
       sum.press += weight.norm();
       const double unbalanced = sum.force.norm() + size_of(sum.torque) / b.radius;
-      if (!(touches &&
-            unbalanced <= world_.sleepers.sleeping_share(i, world_.sleep) * sum.load())) {
+      const double energy = Report(world_).kinetic_energy(i);
+      if (!(touches && unbalanced <= world_.sleepers.sleeping_share(i, world_.sleep) * sum.load() &&
+            energy <= world_.sleepers.most_energy(sum.load(), b.radius, world_.sleep))) {
         marked_[i] = 0;
         continue;
       }
       any = true;
+      if (world_.balance.on) {
+        moved_[i] = {b.velocity, b.spin};
+        world_.balance.stop(energy, ids[i]);
+      }
       world_.sleepers.put_to_sleep(i, weight);
       b.velocity.setZero();
       b.spin = zero<SpinOf<dim>>();
@@ -291,22 +376,45 @@ class Review {
     return any;
   }
 
-  /// The contacts of those that have just fallen asleep, with others asleep and with walls.
+  /// The contacts of those that have just fallen asleep, with others asleep and with walls. What
+  /// they remember beside the law, and their accounts, stay in the lists until the search.
   void freeze() {
     const auto& ids = world_.grains.ids;
     auto& sleepers = world_.sleepers;
-    visit_at_rest([&](int i, int j, bool wall, const ContactForce<dim>& f, const Memory& memory) {
-      if (!sleepers.is_asleep(i) || (!wall && !sleepers.is_asleep(j))) return;
-      sleepers.carry(i, f);
-      if (wall) {
-        sleepers.frozen.keep({wall_key(ids[i], j), memory, f});
+    visit_at_rest([&](const AtRest& c, const auto& o, const auto& rule) {
+      if (!sleepers.is_asleep(c.i) || (!c.wall && !sleepers.is_asleep(c.j))) return;
+      if (world_.rolling.on) (c.wall ? world_.rolling.walls : world_.rolling.pairs)[c.k] = c.rolled;
+      if (world_.balance.on) close(c, o, rule);
+      sleepers.carry(c.i, c.force);
+      if (c.wall) {
+        sleepers.frozen.keep({wall_key(ids[c.i], c.j), c.memory, c.force});
         return;
       }
-      sleepers.carry(j, seen_from(f, true));
-      const bool other = ids[j] < ids[i];
+      sleepers.carry(c.j, seen_from(c.force, true));
+      const bool other = ids[c.j] < ids[c.i];
       sleepers.frozen.keep(
-          {pair_key(ids[i], ids[j]), seen_from(memory, other), seen_from(f, other)});
+          {pair_key(ids[c.i], ids[c.j]), seen_from(c.memory, other), seen_from(c.force, other)});
     });
+  }
+
+  /// Into the account of a contact that freezes: the step in which its grains have moved last.
+  template <class Rule>
+  void close(const AtRest& c, const typename World::Overlap& o, const Rule& rule) {
+    const auto moving = [&](int i) {
+      typename World::Body b = world_.grains.bodies[i];
+      if (i < world_.awake) {
+        b.velocity = moved_[i].velocity;
+        b.spin = moved_[i].spin;
+      }
+      return b;
+    };
+    const auto& pair = c.wall ? world_.contacts.walls[c.k] : world_.contacts.pairs[c.k];
+    Acted<dim, Memory> acted{c.force, pair.memory, c.memory, c.moment};
+    if (world_.rolling.on) acted.rolled = &c.rolled;
+    auto& account = c.wall ? world_.balance.walls[c.k] : world_.balance.pairs[c.k];
+    const auto b = c.wall ? world_.acting.wall_body() : moving(c.j);
+    book<World::Acting::central>(account, rule, moving(c.i), b, o, acted, world_.time_step,
+                                 [](ContactForce<dim>&) {});
   }
 
   World& world_;
@@ -314,6 +422,17 @@ class Review {
   // Kept for their memory alone.
   std::vector<unsigned char> marked_;  // of the awake
   std::vector<Sum> sums_;
+  struct Carried {
+    typename World::Sleepers::Step step;
+    int touched = 0;
+  };
+  std::vector<typename World::Sleepers::Step> steps_;  // of the awake, since the last review
+  std::vector<Carried> carried_;                       // by what they touch
+  struct Moved {
+    typename World::Vector velocity = zero<typename World::Vector>();
+    SpinOf<dim> spin = zero<SpinOf<dim>>();
+  };
+  std::vector<Moved> moved_;  // of those that fall asleep, with an energy balance
   std::vector<std::pair<int, typename World::Vector>> passed_;
 };
 

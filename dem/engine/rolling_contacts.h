@@ -1,6 +1,7 @@
 // What contacts remember of rolling and twisting: beside the list of near pairs, only where some
 // pair of materials resists, so that runs without pay nothing for it.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace grainfield::dem {
 template <int D>
 struct RollingContacts {
   using Memory = RollingMemory<D>;
-  /// Of a contact of a snapshot, until the next search; seen from the grain with the lower id.
+  /// Of a frozen contact, or of a snapshot's until the next search; seen from the grain with the
+  /// lower id.
   struct Told {
     PairKey key = 0;
     Memory memory;
@@ -20,7 +22,17 @@ struct RollingContacts {
 
   bool on = false;
   std::vector<Memory> pairs, walls;  ///< as the list of contacts has them
-  std::vector<Told> told;
+  std::vector<Told> told;            ///< by keys, after sort()
+
+  void sort() {
+    std::sort(told.begin(), told.end(), [](const Told& a, const Told& b) { return a.key < b.key; });
+  }
+  /// Of a contact that is in no list; empty when nothing is known of it.
+  Memory told_of(PairKey key) const {
+    const auto it = std::lower_bound(told.begin(), told.end(), key,
+                                     [](const Told& a, PairKey b) { return a.key < b; });
+    return it != told.end() && it->key == key ? it->memory : Memory{};
+  }
 
   template <class Self, class Each>
   static void visit(Self& self, Each each) {
@@ -34,7 +46,8 @@ struct RollingContacts {
   }
 };
 
-/// Takes the memories out of the lists before a search, and puts them back after it.
+/// Takes the memories out of the lists before a search, and puts them back after it; those of
+/// frozen contacts are told from then on.
 template <class World>
 class CarryRolling {
  public:
@@ -63,6 +76,9 @@ class CarryRolling {
     });
     give(world_.contacts.walls, rolling.walls,
          [&](int i, int slot) { return recalled(wall_key(ids[i], slot)); });
+    kept_.visit([&](PairKey key, const Memory& memory) {
+      if (world_.sleepers.frozen.has(key)) rolling.told.push_back({key, memory});
+    });
   }
 
  private:

@@ -64,7 +64,8 @@ struct World {
   Surroundings<dim> around;
   EnergyBalance<dim> balance;
   RollingContacts<dim> rolling;
-  Sleepers<dim, Memory> sleepers;
+  using Sleepers = dem::Sleepers<dim, Memory>;
+  Sleepers sleepers;
   Contacts contacts;
   std::vector<Margin<dim>> margins;  ///< of the awake
   int awake = 0;  ///< bodies [0, awake) move; the others sleep or, with sleeping, are fixed

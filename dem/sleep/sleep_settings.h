@@ -2,8 +2,8 @@
 //
 // The load of a grain is half the sum of the lengths of all forces on it, its weight too; what is
 // out of balance is the length of their resultant and that of their moment over the radius. Ways
-// and speeds are the centroid's and, added to them, the rim's about it. Nothing of it depends on
-// the axes.
+// are the centroid's and, added to them, the rim's about it, against what the grain touches: a pile
+// that swings as a whole strains no contact. Nothing of it depends on the axes.
 #pragma once
 
 namespace grainfield::dem {
@@ -14,7 +14,7 @@ namespace grainfield::dem {
 /// what is left out of balance would have moved it.
 struct SleepSettings {
   bool on = false;
-  double quiet_time = 1e-2;   ///< s that a grain must be quiet; longer: fewer errors, more awake
+  double quiet_time = 5e-3;   ///< s that a grain must be quiet; longer: fewer errors, more awake
   double quiet_move = 8e-4;   ///< quiet: moved less than this share of its diameter in quiet_time
   double quiet_creep = 0.02;  ///< sleeps: has crept more slowly than this, diameters/s, while quiet
   double quiet_force = 0.01;  ///< sleeps: out of balance by less than this share of its load

@@ -10,6 +10,7 @@
 
 #include "dem/sleep/frozen_contacts.h"
 #include "dem/sleep/sleep_settings.h"
+#include "dem/sleep/turns.h"
 #include "dem/space/body.h"
 
 namespace grainfield::dem {
@@ -40,7 +41,7 @@ class Sleepers {
   void add(const Vector& position, const Rotation& rotation, long step, bool asleep) {
     asleep_.push_back(asleep ? 1 : 0);
     stirred_.push_back(0);
-    quiet_.push_back({position, rotation, step});
+    quiet_.push_back({position, rotation, position, rotation, step});
     rests_.push_back({});
     touches_.push_back({});
     hidden_.push_back({});
@@ -85,7 +86,7 @@ class Sleepers {
   bool set_asleep(int i, bool asleep, const Vector& position, const Rotation& rotation, long step) {
     if (is_asleep(i) == asleep) return false;
     asleep_[i] = asleep ? 1 : 0;
-    quiet_[i] = {position, rotation, step};
+    quiet_[i] = {position, rotation, position, rotation, step};
     return true;
   }
   /// Wakes a sleeper for a look: it must be quiet anew, but where it was quiet first, so that what
@@ -99,7 +100,28 @@ class Sleepers {
     return true;
   }
   /// The body goes on at another image of its place.
-  void shift(int i, const Vector& way) { quiet_[i].position += way; }
+  void shift(int i, const Vector& way) {
+    quiet_[i].position += way;
+    quiet_[i].last_position += way;
+  }
+  /// How a body has moved since the last review.
+  struct Step {
+    Vector way = zero<Vector>();         ///< m
+    SpinOf<D> turn = zero<SpinOf<D>>();  ///< rad
+  };
+  Step since_review(int i, const Vector& position, const Rotation& rotation) const {
+    const Quiet& q = quiet_[i];
+    return {position - q.last_position, turn_between<D>(q.last_rotation, rotation)};
+  }
+  /// The place where an awake body is still goes along with what carries it: `carried` since the
+  /// last review, which this one ends.
+  void carry_place(int i, const Step& carried, const Vector& position, const Rotation& rotation) {
+    Quiet& q = quiet_[i];
+    q.position += carried.way;
+    q.rotation = turned_by<D>(q.rotation, carried.turn);
+    q.last_position = position;
+    q.last_rotation = rotation;
+  }
   /// Falls asleep: from now on it carries this weight.
   void put_to_sleep(int i, const Vector& weight) {
     asleep_[i] = 1;
@@ -117,7 +139,7 @@ class Sleepers {
     const double turn = Space<D>::angle_between(rotation, q.rotation) * radius;
     const double way = ((position - q.position).norm() + turn) / (2 * radius);
     if (!(way <= settings.quiet_move)) {
-      q = {position, rotation, step};
+      q = {position, rotation, position, rotation, step};
       return {-1, 0};
     }
     return {step - q.since, way};
@@ -125,6 +147,12 @@ class Sleepers {
   /// Out of balance by at most this share of its load an awake body may fall asleep.
   double sleeping_share(int i, const SleepSettings& settings) const {
     return std::min(settings.quiet_force, quiet_[i].share);
+  }
+
+  /// With more kinetic energy, J, an awake body may not fall asleep: what the force that sleeping
+  /// may hide does on the way that it may. `load`: N.
+  static double most_energy(double load, double radius, const SleepSettings& settings) {
+    return settings.quiet_force * load * settings.quiet_move * 2 * radius;
   }
 
   /// What a sleeper carries: its weight and the frozen contacts.
@@ -202,6 +230,8 @@ class Sleepers {
   struct Quiet {
     Vector position = zero<Vector>();
     Rotation rotation = no_rotation<Rotation>();
+    Vector last_position = zero<Vector>();  // at the last review
+    Rotation last_rotation = no_rotation<Rotation>();
     long since = 0;
     double share = 1;  // after a look: out of balance by at most this share of its load there
   };

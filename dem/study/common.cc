@@ -169,6 +169,7 @@ void add_engine_figures(const Engine& engine, const Diagnostics& state,
   figures["energy.lost_to_friction"] = gone.friction;
   figures["energy.lost_to_rolling"] = gone.rolling;
   figures["energy.lost_to_damping"] = d.damped_energy;
+  figures["energy.lost_to_sleep"] = d.stopped_energy;
   figures["energy.brought"] = d.brought_energy;
   figures["energy.work_of_gravity"] = d.gravity_work;
   figures["energy.work_of_load"] = d.applied_work;

@@ -147,14 +147,8 @@ void check_pile(const PileSetup& s) {
             "0 with source.kind \"line\", whose layers move by source.shift");
   }
   if (RollingLaw::of(s.material).on()) {
-    if (s.sleep.on) refuse_sleep_with_rolling();
     require(s.source.opening == 0, "source.opening", s.source.opening,
             "0 with material.rolling_friction: beside a funnel's plates grains are polygons");
-  }
-  if (s.motion.energy_balance && s.sleep.on) {
-    throw std::invalid_argument(
-        "motion.energy_balance: found true with sleep.on = true, allowed with sleep.on = false (a "
-        "grain that falls asleep loses what it moves with)");
   }
   require_word(s.floor.kind, "floor.kind", {"smooth", "rough"});
   require(s.floor.length > 0, "floor.length", s.floor.length, "above 0");

@@ -51,7 +51,7 @@ struct FloorSetup {
 /// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).
 struct SleepSetup {
   bool on = true;
-  double quiet_time = 1e-2;   ///< s
+  double quiet_time = 5e-3;   ///< s
   double quiet_move = 8e-4;   ///< diameters within quiet_time
   double quiet_creep = 0.02;  ///< diameters/s
   double quiet_force = 0.01;  ///< out of balance over the grain's load

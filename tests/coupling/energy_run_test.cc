@@ -118,9 +118,6 @@ TEST(EnergyRun, WhereItWouldNotHoldItIsRefused) {
   expect_refused(kLayer, "--set load.method=newton",
                  "load.method: found \"newton\" with motion.energy_balance = true, allowed: "
                  "\"damped\"");
-  expect_refused(kPile, "--set sleep.on=true",
-                 "motion.energy_balance: found true with sleep.on = true, allowed with sleep.on = "
-                 "false");
   expect_refused(kPile, "--set change.gravity=[9]",
                  "change.method: found \"newton\" with motion.energy_balance = true");
 }

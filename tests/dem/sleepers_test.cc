@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "dem/laws/contact.h"
+#include "dem/space/space3.h"
 
 namespace grainfield::dem {
 namespace {
 
 using Memory = SpringMemory<2>;
 using Plane2 = Sleepers<2, Memory>;
+using Space3 = Sleepers<3, SpringMemory<3>>;
 
 TEST(Sleepers, ComeBehindTheAwakeAndKeepWhatTheyCarry) {
   Plane2 s;
@@ -54,6 +56,51 @@ TEST(Sleepers, QuietIsWhoStaysInPlace) {
   EXPECT_EQ(s.stillness(0, {0.006, 0.008}, 0.04, 1, 180, settings).steps, -1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(s.stillness(0, {nan, 0}, 0.04, 1, 190, settings).steps, -1);
+}
+
+// What goes along with what carries it, turning too, is still; what slides or rolls there is not.
+TEST(Sleepers, QuietIsMeasuredAgainstWhatCarries) {
+  SleepSettings settings;
+  settings.quiet_move = 0.01;  // of the diameter 2: 0.02
+  const auto still = [&](double share, double turned) {
+    Plane2 s;
+    s.add({0, 0}, 0, 100, false);
+    Eigen::Vector2d place(0, 0);
+    double angle = 0;
+    Plane2::Stillness last;
+    for (int k = 1; k <= 20; ++k) {
+      place += Eigen::Vector2d(0.004, -0.003);
+      angle += 0.01;
+      const auto own = s.since_review(0, place, angle);
+      EXPECT_NEAR(own.way.norm(), 0.005, 1e-15);
+      EXPECT_NEAR(own.turn, 0.01, 1e-15);
+      s.carry_place(0, {share * own.way, turned * own.turn}, place, angle);
+      last = s.stillness(0, place, angle, 1, 100 + 50 * k, settings);
+    }
+    return last;
+  };
+  EXPECT_EQ(still(1, 1).steps, 1000);
+  EXPECT_LT(still(1, 1).way, 1e-15);
+  EXPECT_LT(still(0, 1).steps, 1000);
+  EXPECT_LT(still(1, 0).steps, 1000);
+  EXPECT_EQ(still(0.9, 1).steps, 1000);  // 20 times a tenth of 0.005 is within 0.02
+  EXPECT_NEAR(still(0.9, 1).way, 0.005, 1e-12);
+}
+
+// In space turns compose: a place carried by small turns keeps up with the grain that makes them.
+TEST(Sleepers, PlacesTurnInSpace) {
+  Space3 s;
+  RotationOf<3> angle = RotationOf<3>::Identity();
+  s.add(Eigen::Vector3d::Zero(), angle, 0, false);
+  const Eigen::Vector3d turn(1e-4, -2e-4, 3e-4);
+  for (int k = 0; k < 100; ++k) {
+    angle = turned_by<3>(angle, turn);
+    const auto own = s.since_review(0, Eigen::Vector3d::Zero(), angle);
+    EXPECT_LT((own.turn - turn).norm(), 1e-10);
+    s.carry_place(0, own, Eigen::Vector3d::Zero(), angle);
+  }
+  EXPECT_LT(s.stillness(0, Eigen::Vector3d::Zero(), angle, 1, 10, SleepSettings{}).way, 1e-8);
+  EXPECT_NEAR(angle.angularDistance(RotationOf<3>::Identity()), 100 * turn.norm(), 1e-6);
 }
 
 TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {

@@ -111,10 +111,11 @@ void declare_sleep_keys(SectionKeys s) {
            "a grain must be quiet this long before it sleeps; longer: fewer errors, dearer");
   s.only("sleep.on", {"true"});
   s.number("quiet_move", "-", +IN(double, sleep.quiet_move), {1e-12, 1e3},
-           "quiet: moved less than this share of its diameter in quiet_time");
+           "quiet: moved less than this share of its diameter in quiet_time, against what it "
+           "touches");
   s.only("sleep.on", {"true"});
   s.number("quiet_creep", "1/s", +IN(double, sleep.quiet_creep), {1e-12, 1e6},
-           "sleeps: has crept by less than so many diameters a second since it is quiet");
+           "sleeps: has crept by less than so many diameters a second since it is quiet, likewise");
   s.only("sleep.on", {"true"});
   s.number("quiet_force", "-", +IN(double, sleep.quiet_force), {1e-12, 1e3},
            "sleeps: out of balance by less than this share of its load, half the sum of the "

@@ -1,0 +1,166 @@
+// What sleeping saves on a heap that stands already, while single grains fall on it:
+//   sleep_drop_benchmark GRAINS [DROPS [QUIET_TIME]]
+// Lays so many grains of cases/pile-point-source.toml in rows that narrow upwards, brings them to
+// rest with every grain awake and much damping, and then drops one grain each source.interval from
+// source.height, with sleeping and with every grain awake. Prints the grains awake at every tenth
+// of an interval. It needs no pour: pile_sleep_benchmark times the real one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dem/engine/engine.h"
+#include "dem/heap/grain_family.h"
+#include "dem/random/random.h"
+#include "dem/snapshot/snapshot.h"
+#include "dem/study/common.h"
+#include "dem/study/setup.h"
+
+namespace {
+
+namespace dem = grainfield::dem;
+using dem::PileSetup;
+using dem::ShapedGrain;
+
+constexpr double kSlope = 0.45;         // of the flanks as laid
+constexpr double kEntryDiameters = 10;  // a grain joins so far above the top
+constexpr double kFallDamping = 10, kRestDamping = 60, kFall = 0.3, kRest = 0.6;  // 1/s, s
+constexpr int kSamples = 10;
+
+dem::EngineSettings settings_of(const PileSetup& setup, const std::vector<ShapedGrain>& grains) {
+  dem::EngineSettings s = dem::engine_settings(
+      setup.material, setup.motion, dem::extremes_of(grains, setup.material.density), 1, true);
+  s.shape = dem::ShapeKind::polygon;
+  return s;
+}
+
+/// Rows, the lowest `length` wide, of all grains or as many as they hold.
+std::vector<std::vector<ShapedGrain>> rows_of(const std::vector<ShapedGrain>& grains, double length,
+                                              double high) {
+  std::vector<std::vector<ShapedGrain>> rows;
+  std::size_t next = 0;
+  for (double l = length; l > high && next < grains.size(); l -= 1.7 * high / kSlope) {
+    rows.emplace_back();
+    for (double room = l; next < grains.size() && 2 * grains[next].radius <= room; ++next) {
+      room -= 2 * grains[next].radius;
+      rows.back().push_back(grains[next]);
+    }
+  }
+  return rows;
+}
+
+dem::Snapshot heap_of(const PileSetup& setup, int count, dem::Random& random) {
+  std::vector<ShapedGrain> grains;
+  for (int k = 0; k < count; ++k) grains.push_back(dem::draw_grain(setup.shape, random));
+  const double high = 2 * dem::largest_radius(grains);
+  double length = 10 * high;
+  const auto held = [&] {
+    std::size_t sum = 0;
+    for (const auto& row : rows_of(grains, length, high)) sum += row.size();
+    return sum;
+  };
+  while (held() < grains.size()) length += high;
+  if (length > setup.floor.length) throw std::invalid_argument("floor.length is too small");
+
+  const dem::EngineSettings s = settings_of(setup, grains);
+  const auto engine = dem::make_engine(s);
+  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, setup.material.floor_friction});
+  double l = length, bottom = 0;
+  for (const auto& row : rows_of(grains, length, high)) {
+    for (const auto& g :
+         dem::side_by_side(row, -0.5 * l, 0.5 * l, bottom, setup.material.density, random)) {
+      engine->add(g);
+    }
+    l -= 1.7 * high / kSlope;
+    bottom += high;
+  }
+  engine->set_background_damping(kFallDamping);
+  engine->step(std::lround(kFall / s.time_step));
+  engine->set_background_damping(kRestDamping);
+  engine->step(std::lround(kRest / s.time_step));
+  return engine->snapshot();
+}
+
+struct Drops {
+  double seconds = 0, awake = 0;  // CPU s per grain dropped; mean
+};
+
+Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sleep) {
+  std::vector<ShapedGrain> grains;
+  for (const auto& g : heap.grains) grains.push_back({g.outline, g.radius, g.volume, g.angle});
+  dem::EngineSettings s = settings_of(setup, grains);
+  const auto& k = setup.sleep;
+  s.sleep = {sleep,         k.quiet_time, k.quiet_move, k.quiet_creep,
+             k.quiet_force, k.wake_force, k.wake_speed, k.wake_reach};
+  const auto engine = dem::make_engine(s, heap);
+  double top = 0, axis = 0;
+  for (const auto& g : heap.grains) {
+    if (g.position.y() + g.radius <= top) continue;
+    top = g.position.y() + g.radius;
+    axis = g.position.x();
+  }
+  const double d = 2 * setup.shape.radius, entry = kEntryDiameters * d;
+  const double speed = setup.source.speed;
+  const double fall = std::max(0.0, setup.source.height - top - entry);
+  const long steps = std::lround(setup.source.interval / s.time_step / kSamples);
+  engine->step(kSamples * steps);
+  dem::Random random(7);
+  Drops out;
+  for (int n = 0; n < drops; ++n) {
+    const ShapedGrain shaped = dem::draw_grain(setup.shape, random);
+    dem::NewGrain g =
+        shaped.at(axis + 0.5 * d * random.uniform(-1, 1), top + entry, setup.material.density);
+    g.vy = -std::sqrt(speed * speed + 2 * setup.material.gravity * fall);
+    engine->add(g);
+    fmt::print("{} {:3d}: awake", sleep ? "asleep" : "awake ", n);
+    double seconds = 0;
+    for (int part = 0; part < kSamples; ++part) {
+      const std::clock_t start = std::clock();
+      engine->step(steps);
+      seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+      const int awake = engine->motion().awake;
+      out.awake += static_cast<double>(awake) / (kSamples * drops);
+      fmt::print(" {:4d}", awake);
+    }
+    fmt::print("  {:.2f} CPU s\n", seconds);
+    std::fflush(stdout);
+    out.seconds += seconds / drops;
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "usage: sleep_drop_benchmark GRAINS [DROPS [QUIET_TIME]]\n");
+    return 2;
+  }
+  try {
+    PileSetup setup;
+    setup.material.friction = setup.material.floor_friction = 0.54;
+    setup.motion.time_step_fraction = 2;
+    if (argc > 3) setup.sleep.quiet_time = std::atof(argv[3]);
+    const int drops = argc > 2 ? std::max(1, std::atoi(argv[2])) : 8;
+    dem::Random random(3);
+    const dem::Snapshot heap = heap_of(setup, std::max(100, std::atoi(argv[1])), random);
+    const Drops asleep = drop(setup, heap, drops, true),
+                awake = drop(setup, heap, std::max(1, drops / 4), false);
+    fmt::print(
+        "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake), {:.3f} with all "
+        "awake, ratio {:.2f}\n",
+        heap.grains.size(), asleep.seconds, asleep.awake, awake.seconds,
+        awake.seconds / asleep.seconds);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "sleep_drop_benchmark: {}\n", e.what());
+    return 2;
+  }
+}
