@@ -52,7 +52,7 @@ TEST(Fit, IntervalsCoverTheTruth) {
 
 TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
   expect_coverage(seen(heap_models(two_slopes())), two_sided_truths(), places(15, kLeft, kRight),
-                  21);
+                  21, 20);  // a trial takes more than a second
 }
 
 // Noise as grains have it: components of a point are tied, its size grows with the depth and is
