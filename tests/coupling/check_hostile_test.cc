@@ -266,7 +266,7 @@ TEST(CheckHostile, Grids) {
   EXPECT_THAT(average("100000x100000"),
               HasSubstr("--grid: found 100000x100000, 1e+10 points, allowed: up to 1e+06"));
   EXPECT_THAT(average("99999999999x3"), HasSubstr("points, allowed: up to 1e+06"));
-  for (const char* grid : {"3", "x3", "3x", "3x1", "-3x3", "3x3x3"}) {
+  for (const char* grid : {"3", "x3", "3x", "3x1", "-3x3", "3x3x1", "3x3x", "3x3x3x3"}) {
     EXPECT_THAT(average(grid), HasSubstr("expected COLUMNSxROWS, both 2 or more")) << grid;
   }
 }
