@@ -18,7 +18,7 @@ const std::vector<Room>& rooms() {
       {"strain", {"averaging", "statistics"}},
       {"structure", {"averaging", "statistics"}},
       {"import", {"averaging", "system"}},
-      {"compare", {"averaging"}},
+      {"compare", {"averaging", "statistics"}},
       {"heap", {"averaging", "compare"}},
       {"output", {"compare", "system"}},
       {"reproduce", {"output"}},
