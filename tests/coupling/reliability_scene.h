@@ -1,5 +1,7 @@
 // Every command of the program with inputs that it takes.
 #pragma once
+#include <fmt/format.h>
+
 #include "import_scene.h"
 #include "reliability_cases.h"
 #include "reliability_state.h"
