@@ -37,6 +37,19 @@ std::array<double, 4> orientation_of(const ForeignRow& row,
   return q;
 }
 
+// A fix between two planes has one contact per grain, that with the nearer: else each of its walls
+// would bear it once more.
+bool nearest_of_its_fix(const std::vector<WallChoice>& walls, std::size_t wall,
+                        const dem::Vec3& centre) {
+  const auto distance = [&](const WallChoice& w) { return std::abs(centre[w.axis] - w.position); };
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (k == wall || walls[k].fix != walls[wall].fix) continue;
+    const double other = distance(walls[k]), own = distance(walls[wall]);
+    if (other < own || (other == own && k < wall)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file, line); }
@@ -121,6 +134,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     for (std::size_t w = 0; w < wall_columns.size(); ++w) {
       const auto& c = wall_columns[w];
       if (!c[0] || row.number(c[0]) == 0) continue;
+      if (!nearest_of_its_fix(options_.walls, w, g.position)) continue;
       wall_forces_.push_back(
           {g.id, w, dem::Vec3(row.number(c[1]), row.number(c[2]), row.number(c[3])),
            dem::Vec3(row.number(c[4]), row.number(c[5]), row.number(c[6])), r.source});

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -23,7 +25,7 @@ namespace {
 namespace h5 = dem::hdf5;
 constexpr std::size_t kMostListed = 30;  // names in a message
 constexpr const char* format_version = "1";
-constexpr const char* user_attribute = "attribute.";  // prefix of Field::attributes in the file
+const std::string user_attribute = "attribute.";  // prefix of Field::attributes in the file
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -69,6 +71,15 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+// A number that a text says in full, so that reading gives the same text again.
+std::optional<double> number_in(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!std::isfinite(value) || fmt::format("{}", value) != text) return std::nullopt;
+  return value;
+}
+
 void write_one(hid_t root, const std::string& name, const Field& field) {
   const h5::Handle group = h5::create_group(root, name);
   const int dim = static_cast<int>(field.points.cols());
@@ -86,7 +97,10 @@ void write_one(hid_t root, const std::string& name, const Field& field) {
   if (field.nz > 0) h5::write_attribute(group, "nz", field.nz);
   h5::write_attribute(group, "realizations", field.realizations);
   for (const auto& [key, value] : field.attributes)
-    h5::write_attribute(group, user_attribute + key, value);
+    if (const std::optional<double> number = number_in(value))
+      h5::write_attribute(group, user_attribute + key, *number);
+    else
+      h5::write_attribute(group, user_attribute + key, value);
   std::vector<std::string> names;
   const h5::Handle values = h5::create_group(group, "value");
   const h5::Handle errors = h5::create_group(group, "error");
@@ -181,9 +195,12 @@ Field read_field(const std::string& file, const std::string& name) {
   if (h5::has_attribute(group, "nz")) field.nz = number_of(group, "nz", 0, where);
   field.realizations = number_of(group, "realizations", 1, where);
   for (const std::string& key : h5::text_attributes(group))
-    if (key.rfind(user_attribute, 0) == 0)
-      field.attributes[key.substr(std::string(user_attribute).size())] =
-          h5::read_text_attribute(group, key);
+    if (key.starts_with(user_attribute))
+      field.attributes[key.substr(user_attribute.size())] = h5::read_text_attribute(group, key);
+  for (const std::string& key : h5::number_attributes(group))
+    if (key.starts_with(user_attribute))
+      field.attributes[key.substr(user_attribute.size())] =
+          fmt::format("{}", h5::read_number_attribute(group, key));
   const h5::Handle values = h5::open_group(group, "value");
   const h5::Handle errors = h5::open_group(group, "error");
   std::istringstream names(h5::read_text_attribute(group, "columns"));

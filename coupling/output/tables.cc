@@ -1,6 +1,7 @@
 #include "coupling/output/tables.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
@@ -38,29 +40,58 @@ std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4
 constexpr std::size_t kModelsAcross = 2;      // side by side in a table of LaTeX
 constexpr const char* kModelWidth = "3.6cm";  // of a model's three columns
 
+// The models that tables for reading show, and the labels of those that they leave out.
+struct Shown {
+  std::vector<std::size_t> models;  // indices
+  std::string note;                 // empty: none is left out
+};
+
+Shown shown_models(const Comparison& c) {
+  std::vector<std::size_t> order(c.models.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<std::string>& ranking = c.verdict.ranking;
+  const auto place = [&](std::size_t m) {
+    return std::find(ranking.begin(), ranking.end(), c.models[m].key) - ranking.begin();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  Shown out;
+  std::vector<std::string> aside;
+  for (std::size_t m = 0; m < order.size(); ++m) {
+    if (m < kModelsShown)
+      out.models.push_back(order[m]);
+    else
+      aside.push_back(c.models[order[m]].label);
+  }
+  if (!aside.empty())
+    out.note = fmt::format("The {} nearest of {} models; in profiles.csv also: {}.", kModelsShown,
+                           order.size(), fmt::join(aside, "; "));
+  return out;
+}
+
 struct Style {
   std::string begin, separator, end;  // of a row
 };
 
-// Header and rows of one profile, normalised by its scale.
+// Header and rows of one profile with the models `shown`, normalised by its scale.
 std::vector<std::vector<std::string>> normalised(
-    const Comparison& c, std::size_t k, int rows,
+    const Comparison& c, const std::vector<std::size_t>& shown, std::size_t k, int rows,
     const std::function<std::string(std::string)>& math) {
   const Profile& p = c.profiles[k];
   const double unit = c.load / c.depth;
   std::vector<std::vector<std::string>> table(1);
   table[0] = {math(fmt::format("x/{}", c.scale.length)), "simulation", "standard error"};
-  for (const ModelProfiles& m : c.models) {
-    table[0].push_back(m.label);
+  for (std::size_t m : shown) {
+    table[0].push_back(c.models[m].label);
     table[0].push_back("difference");
     table[0].push_back("difference/error");
   }
   for (Eigen::Index i : chosen(p.x.size(), rows)) {
     std::vector<std::string> row{cell(p.x[i] / c.depth), cell(p.mean[i] / unit),
                                  cell(error_at(p, i) / unit)};
-    for (const ModelProfiles& m : c.models) {
-      const double difference = p.mean[i] - m.values[k][i];
-      row.push_back(cell(m.values[k][i] / unit));
+    for (std::size_t m : shown) {
+      const double value = c.models[m].values[k][i], difference = p.mean[i] - value;
+      row.push_back(cell(value / unit));
       row.push_back(cell(difference / unit));
       row.push_back(cell(difference / error_at(p, i)));
     }
@@ -148,11 +179,13 @@ std::string profiles_csv(const Comparison& c) {
 }
 
 std::string profiles_markdown(const Comparison& c, int rows) {
+  const Shown shown = shown_models(c);
   std::string text = "# Profiles\n\n" + normalisation(c) + "\n";
+  if (!shown.note.empty()) text += "\n" + shown.note + "\n";
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     text += fmt::format("\n## {}\n\n{} in units of {}\n\n", c.profiles[k].name,
                         c.profiles[k].quantity, c.scale.stress);
-    const auto table = normalised(c, k, rows, [](std::string s) { return s; });
+    const auto table = normalised(c, shown.models, k, rows, [](std::string s) { return s; });
     const Style style{"| ", " | ", " |"};
     text += join(table[0], style);
     text += join(std::vector<std::string>(table[0].size(), "---:"), style);
@@ -162,18 +195,21 @@ std::string profiles_markdown(const Comparison& c, int rows) {
 }
 
 std::string profiles_latex(const Comparison& c, int rows) {
+  const Shown shown = shown_models(c);
   std::string text = "% " + normalisation(c) + "\n";
+  if (!shown.note.empty()) text += "% " + shown.note + "\n";
   const Style style{"  ", " & ", " \\\\"};
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    const auto table = normalised(c, k, rows, [](std::string s) { return "$" + s + "$"; });
+    const auto table =
+        normalised(c, shown.models, k, rows, [](std::string s) { return "$" + s + "$"; });
     // A few models per table: more are wider than a page.
-    for (std::size_t from = 0; from == 0 || from < c.models.size(); from += kModelsAcross) {
-      const std::size_t to = std::min(from + kModelsAcross, c.models.size());
+    for (std::size_t from = 0; from == 0 || from < shown.models.size(); from += kModelsAcross) {
+      const std::size_t to = std::min(from + kModelsAcross, shown.models.size());
       std::vector<std::string> models{"", "", ""};
       std::vector<std::string> heads{table[0][0], "simulation", "error"};
       for (std::size_t m = from; m < to; ++m) {
         models.push_back(fmt::format("\\multicolumn{{3}}{{p{{{}}}}}{{\\centering {}}}", kModelWidth,
-                                     escape_latex(c.models[m].label)));
+                                     escape_latex(c.models[shown.models[m]].label)));
         heads.insert(heads.end(), {"model", "diff.", "diff./error"});
       }
       text += fmt::format(

@@ -14,9 +14,12 @@ namespace grainfield::coupling {
 /// units; comment lines (#) before give the scale and the number of realizations. Profiles `beside`
 /// follow, without models (nan).
 std::string profiles_csv(const Comparison& comparison);
-/// The same rows for reading, normalised by the scale, at most `rows` rows per profile.
+/// The same rows for reading, normalised by the scale: at most `rows` rows per profile and the
+/// kModelsShown models nearest to the simulation, nearest first (in the order of the models where
+/// there is no ranking); a line names those left out.
 std::string profiles_markdown(const Comparison& comparison, int rows = 25);
 std::string profiles_latex(const Comparison& comparison, int rows = 25);
+inline constexpr std::size_t kModelsShown = 3;
 /// Writes folder/profiles.csv, .md and .tex, each complete or not at all.
 void write_profiles(const std::string& folder, const Comparison& comparison);
 

@@ -209,18 +209,26 @@ void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot) 
   grid.write(file);
 }
 
-void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot) {
+void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot,
+                      const std::vector<int>& chain_of) {
+  if (chain_of.size() != snapshot.contacts.size())
+    throw std::invalid_argument(fmt::format("{}: {} contacts, chains given for {}", file,
+                                            snapshot.contacts.size(), chain_of.size()));
   double largest = 0;
   for (const dem::Contact& c : snapshot.contacts) largest = std::max(largest, c.normal_force);
   const bool tubes = snapshot.dim == 3;
   Grid grid(tubes);
   std::vector<double> force, width;
-  for (const dem::Contact& c : snapshot.contacts) {
+  std::vector<int> chain;
+  for (std::size_t k = 0; k < chain_of.size(); ++k) {
+    if (chain_of[k] < 0) continue;
+    const dem::Contact& c = snapshot.contacts[k];
     const dem::Grain& gi = grain(snapshot, c.i);
     const dem::Vec3 end = branch_end(snapshot, c), along = end - gi.position;
     if (!(along.norm() > 0) || !(c.normal_force > 0)) continue;
     double radius = gi.radius;
     if (c.j >= 0) radius = std::min(radius, grain(snapshot, c.j).radius);
+    chain.push_back(chain_of[k]);
     force.push_back(c.normal_force);
     width.push_back(radius / 2 * c.normal_force / largest);
     if (tubes) {
@@ -230,6 +238,7 @@ void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot) {
     const dem::Vec3 side = dem::Vec3(-along.y(), along.x(), 0).normalized() * width.back();
     grid.add_cell({gi.position - side, end - side, end + side, gi.position + side}, vtk_quad);
   }
+  grid.add_integer("chain", [&](std::size_t k) { return chain[k]; });
   grid.add_number("normal_force", [&](std::size_t k) { return force[k]; });
   grid.add_number("relative_force", [&](std::size_t k) { return force[k] / largest; });
   if (tubes) grid.add_number("tube_radius", [&](std::size_t k) { return width[k]; });

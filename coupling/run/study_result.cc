@@ -12,6 +12,7 @@
 #include "coupling/output/vtu.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/structure/force_chains.h"
 #include "coupling/version.h"
 
 namespace grainfield::coupling {
@@ -43,7 +44,8 @@ void write_grains(const std::string& folder, const StudyResult& result) {
       write_grains_vtu(fmt::format("{}/grains_{}.vtu", folder, name), state,
                        &state == &first ? nullptr : &first);
       write_contacts_vtu(fmt::format("{}/contacts_{}.vtu", folder, name), state);
-      write_chains_vtu(fmt::format("{}/chains_{}.vtu", folder, name), state);
+      write_chains_vtu(fmt::format("{}/chains_{}.vtu", folder, name), state,
+                       chain_of_contacts(force_chains(state), state.contacts.size()));
     }
   }
 }

@@ -54,6 +54,14 @@ std::vector<Stressed> stresses(const dem::Snapshot& s, const ChainOptions& optio
 
 }  // namespace
 
+std::vector<int> chain_of_contacts(const ForceChains& chains, std::size_t contacts) {
+  std::vector<int> out(contacts, -1);
+  for (std::size_t c = 0; c < chains.chains.size(); ++c)
+    for (const std::int64_t k : chains.chains[c].contacts)
+      out.at(static_cast<std::size_t>(k)) = static_cast<int>(c);
+  return out;
+}
+
 ForceChains force_chains(const dem::Snapshot& s, const ChainOptions& options) {
   if (!(options.largest_turn_deg > 0 && options.largest_turn_deg <= 90))
     throw std::invalid_argument(

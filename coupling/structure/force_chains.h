@@ -11,6 +11,7 @@
 // follows, and it must choose back: chains do not branch, and a grain is in at most one. Fixed
 // grains and walls end chains. 2D and 3D.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct ForceChains {
   double mean_load = 0;    ///< mean greatest compression of the bearing grains, N/m (N/m2)
   double mean_length = 0;  ///< grains per chain; nan without chains
 };
+
+/// Per contact of a snapshot with so many: the index of the chain that it links, or -1.
+std::vector<int> chain_of_contacts(const ForceChains& chains, std::size_t contacts);
 
 /// Throws std::invalid_argument for options out of range.
 ForceChains force_chains(const dem::Snapshot& snapshot, const ChainOptions& options = {});

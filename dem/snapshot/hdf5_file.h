@@ -86,8 +86,10 @@ double read_number_attribute(hid_t object, const std::string& name);
 long long read_integer_attribute(hid_t object, const std::string& name);
 /// Whether it has this text; false when it is missing or of another kind.
 bool attribute_is(hid_t object, const std::string& name, const std::string& value);
-/// Names of all text attributes of the object.
+/// Names of all attributes of the object, and of those that hold one text or one number.
+std::vector<std::string> attributes(hid_t object);
 std::vector<std::string> text_attributes(hid_t object);
+std::vector<std::string> number_attributes(hid_t object);
 /// Names of the groups directly below, without those behind symbolic links.
 std::vector<std::string> groups(hid_t object);
 /// Where the object is in its file: the same for two names of one object.

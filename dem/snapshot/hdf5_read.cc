@@ -89,11 +89,27 @@ OpenAttribute open_attribute(hid_t object, const std::string& name) {
   return {std::move(id), std::move(type), kind, single};
 }
 
+bool is_number(const OpenAttribute& a) {
+  return a.single && (a.kind == H5T_FLOAT || a.kind == H5T_INTEGER);
+}
+
 bool is_text(const OpenAttribute& a) {
-  return a.single && a.kind == H5T_STRING && H5Tis_variable_str(a.type) == 0;
+  return a.single && a.kind == H5T_STRING;
+}
+
+// h5py writes strings of variable length: HDF5 takes memory for them, which goes back to it.
+std::string variable_text_of(hid_t object, const std::string& name, const OpenAttribute& a) {
+  char* text = nullptr;
+  if (H5Aread(a.id, a.type, static_cast<void*>(&text)) < 0) {
+    fail_read(object, attribute_called(name));
+  }
+  std::string value = text == nullptr ? "" : text;
+  H5free_memory(text);
+  return value;
 }
 
 std::string text_of(hid_t object, const std::string& name, const OpenAttribute& a) {
+  if (H5Tis_variable_str(a.type) > 0) return variable_text_of(object, name, a);
   const std::size_t size = H5Tget_size(a.type);
   if (size == 0 || size > file_size(object)) fail_read(object, attribute_called(name));
   std::string value(size, '\0');
@@ -203,7 +219,7 @@ bool has_group(hid_t parent, const std::string& path) {
 
 std::string read_text_attribute(hid_t object, const std::string& name) {
   const OpenAttribute a = open_attribute(object, name);
-  if (!is_text(a)) fail_kind(object, name, "a text of fixed length");
+  if (!is_text(a)) fail_kind(object, name, "a text");
   return text_of(object, name, a);
 }
 
@@ -215,9 +231,7 @@ bool attribute_is(hid_t object, const std::string& name, const std::string& valu
 
 double read_number_attribute(hid_t object, const std::string& name) {
   const OpenAttribute a = open_attribute(object, name);
-  if (!a.single || (a.kind != H5T_FLOAT && a.kind != H5T_INTEGER)) {
-    fail_kind(object, name, "a number");
-  }
+  if (!is_number(a)) fail_kind(object, name, "a number");
   double value = 0;
   if (H5Aread(a.id, H5T_NATIVE_DOUBLE, &value) < 0) {
     fail_read(object, attribute_called(name));
@@ -234,7 +248,7 @@ long long read_integer_attribute(hid_t object, const std::string& name) {
   return static_cast<long long>(value);
 }
 
-std::vector<std::string> text_attributes(hid_t object) {
+std::vector<std::string> attributes(hid_t object) {
   std::vector<std::string> names;
   const herr_t done = H5Aiterate2(
       object, H5_INDEX_NAME, H5_ITER_INC, nullptr,
@@ -244,8 +258,20 @@ std::vector<std::string> text_attributes(hid_t object) {
       },
       &names);
   if (done < 0) fail_read(object, "attributes");
+  return names;
+}
+
+std::vector<std::string> text_attributes(hid_t object) {
+  std::vector<std::string> names = attributes(object);
   std::erase_if(names,
                 [&](const std::string& name) { return !is_text(open_attribute(object, name)); });
+  return names;
+}
+
+std::vector<std::string> number_attributes(hid_t object) {
+  std::vector<std::string> names = attributes(object);
+  std::erase_if(names,
+                [&](const std::string& name) { return !is_number(open_attribute(object, name)); });
   return names;
 }
 

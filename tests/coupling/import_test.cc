@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <sstream>
 
 #include "coupling/averaging/average.h"
@@ -83,6 +84,36 @@ TEST(Import, SaysTheSizesAndDoubtsUnitsThatAreHardlySI) {
   EXPECT_THAT(reduced.err, HasSubstr("mean density 1 kg/m2, where grains have 10 to 30000"));
   const Output large = imported(500, M_PI * 250000 * 5000);
   EXPECT_THAT(large.err, HasSubstr("mean diameter 1e+03 m, where grains have 1e-07 to 100"));
+}
+
+// "fix side all wall/gran ... xplane 0 0.12 contacts": one fix for two walls.
+TEST(Import, OneFixOfTwoWallsIsCountedOnce) {
+  const dem::Snapshot ours = test::overlapping_layer(1);
+  std::string dump = test::dump_grains(ours, 100, true);
+  // Columns of the two walls into those of one fix: of a grain, one of them is zeros.
+  std::istringstream lines(dump);
+  std::string joined;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    const std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
+    if (all.size() < 9 || (all[0] == "ITEM:" && all[1] != "ATOMS")) {
+      joined += line + "\n";
+      continue;
+    }
+    const bool heads = all[0] == "ITEM:";
+    const std::size_t own = (heads ? 2 : 0) + 7, left = own + 7, right = own + 14;
+    const bool at_left = heads || all[left] != "0";
+    for (std::size_t k = 0; k < right; ++k)
+      joined += fmt::format("{} ", k < left || at_left ? all[k] : all[k + 7]);
+    joined += "\n";
+  }
+  const Folder folder;
+  const std::string files = folder.write("l.grains", joined) + " " +
+                            folder.write("l.contacts", test::lammps_contacts(ours, 100));
+  expect_same_fields(
+      ours, import_one(folder, "--from lammps " + files + test::lammps_columns +
+                                   " --wall floor:y=0:fix=f_floor --wall left:x=0:fix=f_left"
+                                   " --wall right:x=0.12:fix=f_left"));
 }
 
 TEST(Import, EveryFormatGivesBackTheStress) {

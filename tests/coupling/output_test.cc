@@ -1,4 +1,5 @@
 // Files: complete or not at all, read back as written, well-formed, and their error texts.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -16,6 +17,7 @@
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
+#include "dem/snapshot/hdf5_file.h"
 #include "heap_scene.h"
 
 namespace grainfield::coupling {
@@ -62,7 +64,9 @@ Field sample(bool grid) {
     f.ny = 2;
   }
   f.realizations = 4;
-  f.attributes = {{"kernel", "lucy"}, {"what", "a <test> & \"more\""}};
+  f.attributes = {{"kernel", "lucy"}, {"what", "a <test> & \"more\""},
+                  {"h", "0.25"},      {"left_deg", "25.5,26"},
+                  {"nothing", "nan"}, {"padded", "0.10"}};
   Column& c = f.add("sigma_yy", "N/m");
   c.value << 1, 2, NAN, 4, 5, 1.0 / 3;
   c.error = Eigen::VectorXd::Constant(6, 0.1);
@@ -161,6 +165,38 @@ TEST_F(Output, FieldsComeBackBitForBit) {
   EXPECT_EQ(f.columns[1].error.size(), 0);
 }
 
+// As h5py writes: texts of variable length.
+TEST_F(Output, TextsOfVariableLengthAreRead) {
+  write_fields(at("f.h5"), {{"map", sample(true)}});
+  namespace h5 = dem::hdf5;
+  {
+    const h5::Handle file = h5::open_for_adding(at("f.h5"));
+    const h5::Handle group = h5::open_group(file, "map");
+    const h5::Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type, H5T_VARIABLE);
+    const h5::Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const auto replace = [&](const char* name, const char* text) {
+      H5Adelete(group, name);
+      const h5::Handle a(H5Acreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+      ASSERT_GE(H5Awrite(a, type, &text), 0);
+    };
+    const std::string columns = h5::read_text_attribute(group, "columns");
+    replace("kind", "field");
+    replace("columns", columns.c_str());
+    replace("attribute.kernel", "from Python");
+  }
+  const Field f = read_field(at("f.h5"), "map");
+  EXPECT_EQ(f.attributes.at("kernel"), "from Python");
+  EXPECT_EQ(f.columns.size(), sample(true).columns.size());
+}
+
+TEST_F(Output, NumbersAmongAttributesAreNumbers) {
+  write_fields(at("f.h5"), {{"map", sample(true)}});
+  const dem::hdf5::Handle file = dem::hdf5::open_for_reading(at("f.h5"));
+  EXPECT_EQ(dem::hdf5::number_attributes(dem::hdf5::open_group(file, "map")),
+            (std::vector<std::string>{"attribute.h", "dim", "nx", "ny", "realizations"}));
+}
+
 TEST_F(Output, FieldReaderNamesWhatIsWrong) {
   const std::string file = at("fields.h5");
   EXPECT_EQ(refusal([&] { read_field(file, "map"); }), file + ": no such file");
@@ -221,11 +257,25 @@ std::size_t count_numbers(const pugi::xml_node& node) {
   return n;
 }
 
+std::vector<double> numbers(const pugi::xml_document& d, const std::string& name) {
+  std::istringstream in(
+      d.select_node(fmt::format("//DataArray[@Name='{}']", name).c_str()).node().text().get());
+  std::vector<double> out;
+  for (double v; in >> v;) out.push_back(v);
+  return out;
+}
+
 TEST_F(Output, VtuFilesAreWellFormedAndConsistent) {
   const dem::Snapshot before = test::layer(1, 5, 3), after = test::layer(1, 5, 3, false, 2);
   write_grains_vtu(at("grains.vtu"), after, &before);
   write_contacts_vtu(at("contacts.vtu"), after);
-  write_chains_vtu(at("chains.vtu"), after);
+  std::vector<int> chain_of(after.contacts.size(), -1);
+  std::vector<std::size_t> pressed;
+  for (std::size_t k = 0; k < after.contacts.size(); ++k)
+    if (after.contacts[k].normal_force > 0) pressed.push_back(k);
+  chain_of[pressed.at(0)] = 0;
+  chain_of[pressed.at(2)] = chain_of[pressed.at(3)] = 1;
+  write_chains_vtu(at("chains.vtu"), after, chain_of);
   EXPECT_EQ(files(), 3u);
   for (const char* name : {"grains.vtu", "contacts.vtu", "chains.vtu"}) {
     pugi::xml_document d;
@@ -248,6 +298,9 @@ TEST_F(Output, VtuFilesAreWellFormedAndConsistent) {
   d.load_file(at("contacts.vtu").c_str());
   EXPECT_EQ(d.select_node("//Piece").node().attribute("NumberOfCells").as_uint(),
             after.contacts.size());
+  d.load_file(at("chains.vtu").c_str());
+  EXPECT_EQ(numbers(d, "chain"), (std::vector<double>{0, 1, 1}));
+  EXPECT_THROW(write_chains_vtu(at("chains.vtu"), after, {0}), std::invalid_argument);
 }
 
 TEST_F(Output, VtuHoldsTheTrueOutlines) {
@@ -320,18 +373,36 @@ TEST_F(Output, LatexTablesOfManyModelsFitAPage) {
   int tables = 0, rows = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.find("\\begin{tabular}{rrrrrrrrr}") == 0) ++tables;
+    if (line.find("\\begin{tabular}{rrrrrr}") == 0) break;
     if (line.find(" \\\\") == std::string::npos) continue;
     const auto cells = 1 + std::count(line.begin(), line.end(), '&');
     const bool heads = line.find("\\multicolumn{3}") != std::string::npos;
     EXPECT_EQ(cells, heads ? 5 : 9) << line;
     ++rows;
   }
-  EXPECT_EQ(tables, 5);
-  EXPECT_EQ(rows, 5 * 5);  // two lines of heads, three points
-  for (int m = 0; m < 10; ++m) {
+  EXPECT_EQ(tables, 1);  // and one of the third model alone
+  EXPECT_EQ(rows, 5);    // two lines of heads, three points
+  for (int m = 0; m < 3; ++m) {
     EXPECT_THAT(tex, HasSubstr("\\centering model " + std::to_string(m) + " (a\\_b)}"));
   }
+  EXPECT_THAT(tex, HasSubstr("% The 3 nearest of 10 models; in profiles.csv also: model 3 (a_b);"));
+  EXPECT_THAT(tex, ::testing::Not(HasSubstr("centering model 3")));
   EXPECT_THAT(tex, HasSubstr("$F/h$, continued}"));
+}
+
+// In the order of the ranking, not of the list.
+TEST_F(Output, MarkdownShowsTheThreeNearestModels) {
+  const Profile p = small().profiles.front();
+  std::vector<ModelProfiles> models;
+  for (const int far : {9, 2, 0, 5, 1})
+    models.push_back({fmt::format("m{}", far),
+                      fmt::format("by {}", far),
+                      "f",
+                      {Eigen::Vector3d(1, 4 + far, 1)}});
+  const std::string text = profiles_markdown(compare({p}, models, 2, 0.5));
+  EXPECT_THAT(text, HasSubstr("| by 0 | difference | difference/error | by 1 | difference | "
+                              "difference/error | by 2 | difference | difference/error |"));
+  EXPECT_THAT(text, HasSubstr("The 3 nearest of 5 models; in profiles.csv also: by 5; by 9."));
 }
 
 TEST_F(Output, LabelsAreNoCommandsOfLatex) {

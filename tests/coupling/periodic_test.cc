@@ -356,7 +356,7 @@ TEST(Periodic, SpheresForParaView) {
   for (dem::Grain& g : later.grains) g.orientation = {0, 0, h, h};
   write_grains_vtu(folder / "g.vtu", later, &s);
   write_contacts_vtu(folder / "c.vtu", later);
-  write_chains_vtu(folder / "n.vtu", later);
+  write_chains_vtu(folder / "n.vtu", later, std::vector<int>(s.contacts.size(), 0));
   const std::size_t n = s.grains.size(), contacts = s.contacts.size();
   pugi::xml_document d;
   ASSERT_TRUE(d.load_file((folder / "g.vtu").c_str()));

@@ -26,7 +26,7 @@ const std::vector<Room>& rooms() {
       {"report", {"averaging", "output", "system"}},
       {"models", {"averaging", "compare", "output"}},
       {"case", {"models", "output", "system"}},
-      {"run", {"averaging", "case", "compare", "output", "report", "system"}},
+      {"run", {"averaging", "case", "compare", "output", "report", "structure", "system"}},
       {"fit",
        {"averaging", "case", "compare", "heap", "import", "models", "output", "report", "run",
         "statistics", "structure"}},
