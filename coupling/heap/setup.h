@@ -8,8 +8,10 @@ namespace grainfield::coupling {
 /// base.
 struct HeapSetup {
   std::vector<double> heights = {0.1, 0.25, 0.5};  ///< horizontal cuts above the base
-  double centre = 0.1;                             ///< dip: |x| of the window under the apex
+  double centre = 0.1;                             ///< |x| of the windows under the apex
   double shoulder_from = 0.15, shoulder_to = 0.4;  ///< dip: |x| of the windows beside it
+  /// Heights of the window on the axis in which the stress is averaged; |x| below `centre`.
+  double axis_from = 0.1, axis_to = 0.6;
 };
 
 }  // namespace grainfield::coupling

@@ -12,9 +12,10 @@
 // it states does by itself (overlap_area), and what a spring gains or loses as its stiffness
 // changes (hertz). It has either sign, and counts as work of the law.
 //
-// A grain that falls asleep stops: its kinetic energy is booked as `stopped`. Its contacts that
-// freeze end that step with the forces that they have at zero velocity, and keep their accounts and
-// what they store. A sleeper that wakes starts from rest: nothing is booked.
+// A grain that falls asleep stops: its kinetic energy is booked as `stopped`. Its contacts end
+// that step with the forces that they have at zero velocity. Those that freeze keep their accounts
+// and what they store; those with grains awake go on, but what the sleeper has brought in that
+// step is in their books (Account::stop). A sleeper that wakes starts from rest: nothing is booked.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -67,10 +68,34 @@ struct Account {
   void begin(const ContactParts<D>& now) {
     if (!empty()) return;
     before = now;
+    before.stiffening = 0;
     gone.stored += now.stored_in_all();
   }
   /// A step in which bodies a and b have moved with their velocities.
   void add(const ContactParts<D>& now, const Body<D>& a, const Body<D>& b, double dt) {
+    const Taken taken = taken_by(now, a, b, dt);
+    const double friction =
+        taken.along - now.stored.tangential + before.stored.tangential + now.stiffening;
+    const double rolling = taken.rolling - now.stored_rolling + before.stored_rolling;
+    const double all = taken.all - now.stored_in_all() + stored();
+    gone += {taken.dashpot, friction, rolling, taken.dashpot + friction + rolling - all, 0};
+    before = now;
+  }
+  /// What one of the two has brought in the step in which it stops, before the contact ends that
+  /// step without it: add() then finds it at rest. a and b: the one that stops moves as it did, the
+  /// other one rests.
+  void stop(const ContactParts<D>& now, const Body<D>& a, const Body<D>& b, double dt) {
+    const Taken taken = taken_by(now, a, b, dt);
+    const double parts = taken.dashpot + taken.along + taken.rolling;
+    gone += {taken.dashpot, taken.along, taken.rolling, parts - taken.all, 0};
+  }
+
+ private:
+  /// J, from bodies in a step: by the parts of the force, and by all of it.
+  struct Taken {
+    double dashpot = 0, along = 0, rolling = 0, all = 0;
+  };
+  Taken taken_by(const ContactParts<D>& now, const Body<D>& a, const Body<D>& b, double dt) const {
     const auto taken = [&](const ContactForce<D>& first, const ContactForce<D>& second) {
       const VectorOf<D> force = first.force + second.force;
       const SpinOf<D> torque_a = first.torque_i + second.torque_i,
@@ -79,15 +104,10 @@ struct Account {
              (force.dot(VectorOf<D>(a.velocity - b.velocity)) + power_of(torque_a, a.spin) +
               power_of(torque_b, b.spin));
     };
-    const double dashpot = taken(before.dashpot, now.dashpot);
-    const double friction = taken(before.along, now.along) - now.stored.tangential +
-                            before.stored.tangential + now.stiffening;
     const double rolling =
-        -0.5 * dt * power_of(SpinOf<D>(before.moment + now.moment), SpinOf<D>(a.spin - b.spin)) -
-        now.stored_rolling + before.stored_rolling;
-    const double all = taken(before.all, now.all) - now.stored_in_all() + stored();
-    gone += {dashpot, friction, rolling, dashpot + friction + rolling - all, 0};
-    before = now;
+        -0.5 * dt * power_of(SpinOf<D>(before.moment + now.moment), SpinOf<D>(a.spin - b.spin));
+    return {taken(before.dashpot, now.dashpot), taken(before.along, now.along), rolling,
+            taken(before.all, now.all)};
   }
 };
 
@@ -100,11 +120,11 @@ struct Acted {
   const RollingMemory<D>* rolled = nullptr;  ///< null: no resistance against it
 };
 
-/// Into the account of bodies a and b that overlap; dt = 0: before their first step. `on_second`:
-/// called with each part of the force, where the torque on b is not that about its centroid.
+/// The parts of what acts between two bodies that overlap. `on_second`: called with each part of
+/// the force, where the torque on the second one is not that about its centroid.
 template <bool central, class Rule, int D, class Memory, class OnSecond>
-void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>& b,
-          const OverlapIn<D>& o, const Acted<D, Memory>& acted, double dt, OnSecond on_second) {
+ContactParts<D> parts_of(const Rule& rule, const OverlapIn<D>& o, const Acted<D, Memory>& acted,
+                         OnSecond on_second) {
   const ContactForce<D>& f = acted.force;
   ContactParts<D> parts;
   parts.all = f;
@@ -116,11 +136,22 @@ void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>
   parts.moment = acted.moment;
   parts.stored = rule.law.energy(o, acted.after);
   if (acted.rolled != nullptr) parts.stored_rolling = rule.rolling.energy(*acted.rolled);
-  if (!(dt > 0)) return account.begin(parts);
   if constexpr (requires { rule.law.stiffening(o, acted.before); }) {
     parts.stiffening = rule.law.stiffening(o, acted.before);
   }
-  account.add(parts, a, b, dt);
+  return parts;
+}
+
+/// Into the account of bodies a and b that overlap; dt = 0: before their first step.
+template <bool central, class Rule, int D, class Memory, class OnSecond>
+void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>& b,
+          const OverlapIn<D>& o, const Acted<D, Memory>& acted, double dt, OnSecond on_second) {
+  const ContactParts<D> parts = parts_of<central>(rule, o, acted, on_second);
+  if (dt > 0) {
+    account.add(parts, a, b, dt);
+  } else {
+    account.begin(parts);
+  }
 }
 
 /// Of the forces from outside on one grain that are no potential's: damping and an applied force.

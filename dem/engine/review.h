@@ -201,9 +201,9 @@ class Review {
   }
 
   /// visit(contact, overlap, rule) for every contact of the awake in which one of the marked grains
-  /// takes part.
-  template <class Visit>
-  GRAINFIELD_FLATTEN void visit_at_rest(Visit visit) {
+  /// takes part, and apart(contact) where the two do not touch.
+  template <class Visit, class Apart>
+  GRAINFIELD_FLATTEN void visit_at_rest(Visit visit, Apart apart) {
     const auto& acting = world_.acting;
     const auto& shapes = world_.grains.shapes;
     auto& contacts = world_.contacts;
@@ -225,8 +225,11 @@ class Review {
           image = contacts.images[k];
           b.position += world_.cell.shift(image);
         }
-        if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) continue;
         AtRest c{i, pair.j, k, false, pair.memory};
+        if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) {
+          apart(c);
+          continue;
+        }
         const auto& rule = world_.pair_rule(i, pair.j);
         act(rule, a, b, o, c);
         visit(c, o, rule);
@@ -237,17 +240,26 @@ class Review {
         const int w = contacts.walls[k].j;
         const auto& rule = world_.wall_rule(i, w);
         if (!world_.walls.is_plain(w)) {
+          unsigned felt = 0;
           visit_wall(world_, i, a, k,
                      [&](int rank, int slot, const auto& overlap, const auto& wall, const auto&) {
+                       felt |= 1U << (slot - k);
                        AtRest c{i, w + rank, slot, true, contacts.walls[slot].memory};
                        act(rule, a, wall, overlap, c);
                        visit(c, overlap, rule);
                      });
-          k += world_.walls.slots_of(world_.walls.wall_of(w)) - 1;
+          const int slots = world_.walls.slots_of(world_.walls.wall_of(w));
+          for (int s = 0; s < slots; ++s) {
+            if ((felt >> s & 1U) == 0) apart(AtRest{i, w + s, k + s, true});
+          }
+          k += slots - 1;
           continue;
         }
-        if (!acting.overlap(shapes, i, a, world_.walls.plane(w), o)) continue;
         AtRest c{i, w, k, true, contacts.walls[k].memory};
+        if (!acting.overlap(shapes, i, a, world_.walls.plane(w), o)) {
+          apart(c);
+          continue;
+        }
         act(rule, a, acting.wall_body(), o, c);
         visit(c, o, rule);
       }
@@ -337,10 +349,12 @@ class Review {
   bool let_sleep() {
     if (!find_quiet()) return false;
     sums_.assign(static_cast<std::size_t>(world_.awake), Sum{});
-    visit_at_rest([&](const AtRest& c, const auto&, const auto&) {
-      add(sums_[c.i], c.force);
-      if (!c.wall && c.j < world_.awake) add(sums_[c.j], seen_from(c.force, true));
-    });
+    visit_at_rest(
+        [&](const AtRest& c, const auto&, const auto&) {
+          add(sums_[c.i], c.force);
+          if (!c.wall && c.j < world_.awake) add(sums_[c.j], seen_from(c.force, true));
+        },
+        [](const AtRest&) {});
     bool any = false;
     const auto& ids = world_.grains.ids;
     if (world_.balance.on) moved_.assign(static_cast<std::size_t>(world_.awake), {});
@@ -362,7 +376,10 @@ class Review {
       any = true;
       if (world_.balance.on) {
         moved_[i] = {b.velocity, b.spin};
-        world_.balance.stop(energy, ids[i]);
+        // With what the forces would have done until the end of this step.
+        const double rest =
+            0.5 * world_.time_step * (sum.force.dot(b.velocity) + power_of(sum.torque, b.spin));
+        world_.balance.stop(energy + rest, ids[i]);
       }
       world_.sleepers.put_to_sleep(i, weight);
       b.velocity.setZero();
@@ -381,26 +398,65 @@ class Review {
   void freeze() {
     const auto& ids = world_.grains.ids;
     auto& sleepers = world_.sleepers;
-    visit_at_rest([&](const AtRest& c, const auto& o, const auto& rule) {
-      if (!sleepers.is_asleep(c.i) || (!c.wall && !sleepers.is_asleep(c.j))) return;
-      if (world_.rolling.on) (c.wall ? world_.rolling.walls : world_.rolling.pairs)[c.k] = c.rolled;
-      if (world_.balance.on) close(c, o, rule);
-      sleepers.carry(c.i, c.force);
-      if (c.wall) {
-        sleepers.frozen.keep({wall_key(ids[c.i], c.j), c.memory, c.force});
-        return;
-      }
-      sleepers.carry(c.j, seen_from(c.force, true));
-      const bool other = ids[c.j] < ids[c.i];
-      sleepers.frozen.keep(
-          {pair_key(ids[c.i], ids[c.j]), seen_from(c.memory, other), seen_from(c.force, other)});
-    });
+    const auto rest = [&](const AtRest& c) {
+      return sleepers.is_asleep(c.i) && (c.wall || sleepers.is_asleep(c.j));
+    };
+    visit_at_rest(
+        [&](const AtRest& c, const auto& o, const auto& rule) {
+          if (world_.balance.on) close(c, rest(c), parts_at_rest(c, o, rule));
+          if (!rest(c)) return;
+          if (world_.rolling.on) rolling_of(c) = c.rolled;
+          sleepers.carry(c.i, c.force);
+          if (c.wall) {
+            sleepers.frozen.keep({wall_key(ids[c.i], c.j), c.memory, c.force});
+            if (world_.contacts.walls[c.k].j != c.j) move_to_rank(c);
+            return;
+          }
+          sleepers.carry(c.j, seen_from(c.force, true));
+          const bool other = ids[c.j] < ids[c.i];
+          sleepers.frozen.keep({pair_key(ids[c.i], ids[c.j]), seen_from(c.memory, other),
+                                seen_from(c.force, other)});
+        },
+        [&](const AtRest& c) {
+          if (world_.balance.on) close(c, rest(c), {});
+          if (world_.rolling.on && rest(c)) rolling_of(c) = {};
+        });
+  }
+  RollingMemory<dim>& rolling_of(const AtRest& c) {
+    return (c.wall ? world_.rolling.walls : world_.rolling.pairs)[c.k];
+  }
+  Account<dim>& account_of(const AtRest& c) {
+    return (c.wall ? world_.balance.walls : world_.balance.pairs)[c.k];
   }
 
-  /// Into the account of a contact that freezes: the step in which its grains have moved last.
+  /// A frozen contact with a wall of several is found again by its rank, not by the slot in which
+  /// it was listed: so what stays in the lists leaves that slot.
+  void move_to_rank(const AtRest& c) {
+    const PairKey key = wall_key(world_.grains.ids[c.i], c.j);
+    if (world_.rolling.on) {
+      world_.rolling.told.push_back({key, c.rolled});
+      rolling_of(c) = {};
+    }
+    if (!world_.balance.on) return;
+    Account<dim>& account = account_of(c);
+    world_.balance.gone += account.gone;
+    account.gone = {};
+    world_.balance.frozen.push_back({key, account});
+    account = {};
+  }
+
   template <class Rule>
-  void close(const AtRest& c, const typename World::Overlap& o, const Rule& rule) {
-    const auto moving = [&](int i) {
+  ContactParts<dim> parts_at_rest(const AtRest& c, const typename World::Overlap& o,
+                                  const Rule& rule) const {
+    const auto& pair = c.wall ? world_.contacts.walls[c.k] : world_.contacts.pairs[c.k];
+    Acted<dim, Memory> acted{c.force, pair.memory, c.memory, c.moment};
+    if (world_.rolling.on) acted.rolled = &c.rolled;
+    return parts_of<World::Acting::central>(rule, o, acted, [](ContactForce<dim>&) {});
+  }
+  /// Into the account of a contact: the step in which those that stop have moved last. `rest`: with
+  /// what they touch there, and the step is over; else the sweep ends it for the other one.
+  void close(const AtRest& c, bool rest, const ContactParts<dim>& now) {
+    const auto moved = [&](int i) {
       typename World::Body b = world_.grains.bodies[i];
       if (i < world_.awake) {
         b.velocity = moved_[i].velocity;
@@ -408,13 +464,12 @@ class Review {
       }
       return b;
     };
-    const auto& pair = c.wall ? world_.contacts.walls[c.k] : world_.contacts.pairs[c.k];
-    Acted<dim, Memory> acted{c.force, pair.memory, c.memory, c.moment};
-    if (world_.rolling.on) acted.rolled = &c.rolled;
-    auto& account = c.wall ? world_.balance.walls[c.k] : world_.balance.pairs[c.k];
-    const auto b = c.wall ? world_.acting.wall_body() : moving(c.j);
-    book<World::Acting::central>(account, rule, moving(c.i), b, o, acted, world_.time_step,
-                                 [](ContactForce<dim>&) {});
+    const auto a = moved(c.i), b = c.wall ? world_.acting.wall_body() : moved(c.j);
+    if (rest) {
+      account_of(c).add(now, a, b, world_.time_step);
+    } else {
+      account_of(c).stop(now, a, b, world_.time_step);
+    }
   }
 
   World& world_;

@@ -3,7 +3,8 @@
 // Lays so many grains of cases/pile-point-source.toml in rows that narrow upwards, brings them to
 // rest with every grain awake and much damping, and then drops one grain each source.interval from
 // source.height, with sleeping and with every grain awake. Prints the grains awake at every tenth
-// of an interval. It needs no pour: pile_sleep_benchmark times the real one.
+// of an interval, and what a snapshot costs, of which a pour makes one for each grain. It needs no
+// pour: pile_sleep_benchmark times the real one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,6 +92,7 @@ dem::Snapshot heap_of(const PileSetup& setup, int count, dem::Random& random) {
 
 struct Drops {
   double seconds = 0, awake = 0;  // CPU s per grain dropped; mean
+  double snapshot = 0;            // CPU s for one
 };
 
 Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sleep) {
@@ -119,11 +121,14 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sl
     dem::NewGrain g =
         shaped.at(axis + 0.5 * d * random.uniform(-1, 1), top + entry, setup.material.density);
     g.vy = -std::sqrt(speed * speed + 2 * setup.material.gravity * fall);
+    std::clock_t start = std::clock();
+    engine->snapshot();
+    out.snapshot += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / drops;
     engine->add(g);
     fmt::print("{} {:3d}: awake", sleep ? "asleep" : "awake ", n);
     double seconds = 0;
     for (int part = 0; part < kSamples; ++part) {
-      const std::clock_t start = std::clock();
+      start = std::clock();
       engine->step(steps);
       seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       const int awake = engine->motion().awake;
@@ -156,9 +161,9 @@ int main(int argc, char** argv) {
                 awake = drop(setup, heap, std::max(1, drops / 4), false);
     fmt::print(
         "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake), {:.3f} with all "
-        "awake, ratio {:.2f}\n",
+        "awake, ratio {:.2f}; a snapshot {:.4f}\n",
         heap.grains.size(), asleep.seconds, asleep.awake, awake.seconds,
-        awake.seconds / asleep.seconds);
+        awake.seconds / asleep.seconds, asleep.snapshot);
   } catch (const std::exception& e) {
     fmt::print(stderr, "sleep_drop_benchmark: {}\n", e.what());
     return 2;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/dem/mesh_scene.h"
 #include "tests/dem/rolling_scene.h"
 
 namespace grainfield::dem {
@@ -145,6 +146,101 @@ TEST(SleepEnergy, FrozenContactsRememberRolling) {
     const Snapshot later = e->snapshot();
     EXPECT_LT((later.grains[0].position - asleep.grains[0].position).norm(), 1e-3 * kRadius);
   }
+}
+
+// A stays awake on B, which stops while both move: what B has brought into their contact in that
+// step counts, and so does what the forces would have done to B until its end. Without either, the
+// step leaves half of dt F v and more.
+TEST(SleepEnergy, TheStepInWhichAGrainStopsIsBooked) {
+  for (const bool space : {false, true}) {
+    EngineSettings s = loose(settings_of(space, {}));
+    s.sleep.on = s.energy_balance = true;
+    (space ? s.gravity_z : s.gravity_y) = -kGravity;
+    const double weight = mass_of(space) * kGravity;
+    const auto engine = on_floor(s, 2 * weight);
+    NewGrain g;
+    g.radius = kRadius;
+    g.density = 2500;
+    const double depth = weight / std::get<LinearLaw>(s.law).normal_stiffness;
+    (space ? g.z : g.y) = 3 * kRadius - 3 * depth;
+    (space ? g.vz : g.vy) = -0.05;
+    engine->apply({engine->add(g)});  // no force, but who is loaded does not sleep
+    double before = 0, most = 0, at_stop = -1;
+    Snapshot moving;
+    for (int step = 0; step < 1000 && at_stop < 0; ++step) {
+      moving = engine->snapshot();
+      before = engine->measure().energy_balance();
+      engine->step(1);
+      const Diagnostics now = engine->measure();
+      const double jump = std::fabs(now.energy_balance() - before);
+      if (now.awake == 1)
+        at_stop = jump;
+      else
+        most = std::max(most, jump);
+    }
+    ASSERT_GE(at_stop, 0) << space;
+    double pressed = 0;
+    for (const Contact& c : moving.contacts) {
+      if (c.j >= 0) pressed = c.force.norm();
+    }
+    const double speed = moving.grains[0].velocity.norm();
+    ASSERT_GT(pressed, weight) << space;
+    ASSERT_GT(speed, 1e-3) << space;
+    EXPECT_LT(at_stop, 0.05 * s.time_step * pressed * speed) << space;
+    RecordProperty(space ? "space" : "plane",
+                   std::to_string(at_stop / (s.time_step * pressed * speed)));
+  }
+}
+
+// A sphere lies in the edge of a mesh until its weight turns and takes it off the floor, the
+// contact listed first: the other one keeps its place in the list. Asleep and awake again it holds
+// what it remembers of rolling, by which it hangs, and its account.
+TEST(SleepEnergy, AContactWithAMeshStaysTheSameAsleep) {
+  EngineSettings s = settings_of(true, {300, 0.1, 0.5});
+  s.gravity_y = -3;
+  s.gravity_z = -kGravity;
+  s.sleep.on = s.energy_balance = true;
+  const auto engine = make_engine(s);
+  Wall box{"box", {0, 0, 0}, {0, 0, 1}, 1, "mesh"};
+  box.triangles = box_mesh({0, 0, 0}, {1, 1, 1}, true);
+  engine->add_wall(box);
+  const double depth = mass_of(true) / 1e4;  // by 1 m/s2
+  NewGrain g;
+  g.radius = kRadius;
+  g.density = 2500;
+  g.x = 0.4;
+  g.y = kRadius - 3 * depth;
+  g.z = kRadius - kGravity * depth;
+  engine->add(g);
+  engine->step(200);
+  ASSERT_EQ(engine->snapshot().contacts.size(), 2U);
+  EXPECT_EQ(engine->snapshot().contacts[0].normal, Vec3(0, 0, -1));  // towards the wall
+  engine->set_gravity(0, -kGravity, 0.5);
+  engine->set_background_damping(50);
+  Diagnostics awake = engine->measure();
+  for (int step = 0; step < 200000 && engine->measure().awake > 0; step += 10) {
+    awake = engine->measure();
+    engine->step(10);
+  }
+  const Snapshot asleep = engine->snapshot();
+  ASSERT_EQ(engine->measure().awake, 0);
+  ASSERT_EQ(asleep.contacts.size(), 1U);
+  EXPECT_EQ(asleep.contacts[0].normal, Vec3(0, -1, 0));
+  // The moment of the weight about the contact, over R, but for what sleeping may hide of the load.
+  const double held = mass_of(true) * 0.5, hidden = s.sleep.quiet_force * mass_of(true) * kGravity;
+  EXPECT_NEAR(asleep.contacts[0].rolling_spring.norm(), held, hidden);
+  const double stored = engine->measure().elastic_energy;
+  EXPECT_NEAR(stored, awake.elastic_energy, 1e-3 * stored);
+  EXPECT_NEAR(engine->measure().energy_balance(), awake.energy_balance(), 1e-3 * stored);
+  engine->set_sleep(false);
+  engine->step(1);
+  EXPECT_LT(
+      (engine->snapshot().contacts.at(0).rolling_spring - asleep.contacts[0].rolling_spring).norm(),
+      1e-3 * held);
+  EXPECT_NEAR(engine->measure().energy_balance(), awake.energy_balance(), 1e-3 * stored);
+  engine->step(20000);
+  EXPECT_LT((engine->snapshot().grains[0].position - asleep.grains[0].position).norm(),
+            1e-3 * kRadius);
 }
 
 TEST(SleepEnergy, GoesOnBitForBit) {

@@ -49,9 +49,14 @@ std::vector<SummaryKey> pile_figures() {
       {"base.largest_at", "h", "its distance from the apex"},
       {"base.smearing_width", "m", "width of the kernel that smears base forces"},
       {"dip.ratio", "-", "centre pressure over largest pressure at the base, ensemble mean"},
-      {"dip.centre", "rho g h", "mean base pressure for |x| below heap.centre half bases"},
+      {"dip.centre", "rho g h",
+       "mean base pressure for |x| below heap.centre half bases, mean over realizations"},
       {"dip.shoulder", "rho g h",
        "mean base pressure from heap.shoulder_from to heap.shoulder_to, both sides"},
+      {"axis.stress_ratio", "-",
+       "sigma_xx over sigma_yy on the axis, both averaged over |x| below heap.centre half bases "
+       "and "
+       "heights from heap.axis_from to heap.axis_to; mean over realizations"},
       {"dip.window_ratio", "-", "dip.centre over dip.shoulder"},
       {"dip.difference", "rho g h", "shoulder - centre, mean over realizations: above 0 is a dip"},
       {"dip.standard_error", "rho g h", "its standard error over realizations"},

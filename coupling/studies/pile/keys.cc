@@ -155,11 +155,15 @@ void declare_heap_keys(SectionKeys s) {
            "added",
            "Roul 3.3");
   s.number("centre", "-", +HEAP(double, centre), {1e-6, 1},
-           "dip: the window under the apex is |x| up to this share of the half base; wider is "
-           "less noisy and blurs a narrow dip");
+           "dip and stress on the axis: their windows under the apex are |x| up to this share of "
+           "the half base; wider is less noisy and blurs a narrow dip");
   s.number("shoulder_from", "-", +HEAP(double, shoulder_from), {0, 1},
            "dip: the windows beside it begin here, shares of the half base");
   s.number("shoulder_to", "-", +HEAP(double, shoulder_to), {1e-6, 1}, "and end here");
+  s.number("axis_from", "-", +HEAP(double, axis_from), {0, 1},
+           "stress on the axis: its window begins here, share of the height above the base");
+  s.number("axis_to", "-", +HEAP(double, axis_to), {1e-6, 1},
+           "and ends here; higher: fewer and fainter contacts under the apex");
 }
 
 }  // namespace grainfield::coupling

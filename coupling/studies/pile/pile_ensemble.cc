@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "coupling/averaging/base.h"
+#include "coupling/heap/axis_stress.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
 
@@ -157,6 +158,9 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   own("pile.half_base_right", frame.half_right);
   own("heap.rho_g_h", unit);
   own("heap.coordination", coordination(pile));
+  own("dip.centre", windows_.back().centre);
+  own("dip.shoulder", windows_.back().shoulder);
+  own("axis.stress_ratio", axis_stress_ratio(pile, frame, value_.get<HeapSetup>()));
   own("pile.volume_fraction_centre", frame.centre_fraction);
   own("pile.volume_fraction_surface", frame.surface_fraction);
   for (const auto& [name, state] : realization.snapshots) {

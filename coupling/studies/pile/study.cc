@@ -47,7 +47,9 @@ class PileAnalysis {
                     {"repose (deg)", "repose.mean_deg", ""},
                     {"left - right (deg)", "repose.left_minus_right_deg", ""},
                     {"volume fraction", "heap.volume_fraction", ""},
-                    {"contacts per grain", "heap.coordination", ""}};
+                    {"contacts per grain", "heap.coordination", ""},
+                    {"centre pressure (rho g h)", "dip.centre", ""},
+                    {"sigma_xx / sigma_yy on the axis", "axis.stress_ratio", ""}};
     return out;
   }
 
@@ -262,8 +264,6 @@ class PileAnalysis {
   }
 
   void add_dip(StudyResult& out, const Dip& dip) const {
-    out.summary["dip.centre"] = dip.centre;
-    out.summary["dip.shoulder"] = dip.shoulder;
     out.summary["dip.window_ratio"] = dip.window_ratio;
     out.summary["dip.difference"] = dip.difference.mean;
     out.summary["dip.standard_error"] = dip.difference.standard_error;
@@ -344,6 +344,8 @@ class PileAnalysis {
                                               "relaxation.level_error_before",
                                               "relaxation.force_change",
                                               "relaxation.mean_displacement",
+                                              "axis.stress_ratio",
+                                              "dip.centre",
                                               "dip.window_ratio",
                                               "dip.difference",
                                               "dip.standard_error",
@@ -381,6 +383,10 @@ void check(const Case& value) {
     throw std::invalid_argument(
         fmt::format("heap.centre: found {:g}, allowed: up to heap.shoulder_from = {:g}", h.centre,
                     h.shoulder_from));
+  }
+  if (h.axis_from >= h.axis_to) {
+    throw std::invalid_argument(fmt::format(
+        "heap.axis_from: found {:g}, allowed: below heap.axis_to = {:g}", h.axis_from, h.axis_to));
   }
 }
 
