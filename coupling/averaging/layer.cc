@@ -94,10 +94,6 @@ Eigen::MatrixXd LayerFrame::to_packing(const Eigen::MatrixXd& model_points) cons
   return model_points.rowwise() + origin_of(*this, model_points.cols());
 }
 
-Eigen::MatrixXd LayerFrame::to_model(const Eigen::MatrixXd& packing_points) const {
-  return packing_points.rowwise() - origin_of(*this, packing_points.cols());
-}
-
 double mean_diameter(const dem::Snapshot& snapshot) {
   double sum = 0;
   int count = 0;

@@ -22,8 +22,6 @@ struct LayerFrame {
   double width() const { return right - left; }
   /// From the models' frame to the packing's axes; n x 2, in space n x 3, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& model_points) const;
-  /// From the packing's axes to the models' frame; likewise.
-  Eigen::MatrixXd to_model(const Eigen::MatrixXd& packing_points) const;
 };
 
 /// Measures the layer. Walls: in the plane those named "left", "right", "floor"; in space planes

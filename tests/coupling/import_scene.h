@@ -34,14 +34,20 @@ inline std::string wall_or_id(const dem::Snapshot& s, std::int64_t j) {
   return fmt::format("{}", s.grains[static_cast<std::size_t>(j)].id);
 }
 
+/// "x1 y1;x2 y2;...", with all digits.
+inline std::string outline_text(const dem::Outline& outline) {
+  std::string text;
+  for (const auto& [x, y] : outline) text += fmt::format("{}{} {}", text.empty() ? "" : ";", x, y);
+  return text;
+}
+
 inline std::string csv_grains(const dem::Snapshot& s) {
   std::string out =
       "# grains, SI\nid,x,y,vx,vy,angle,spin,radius,mass,inertia,volume,fixed,outline\n";
   for (const dem::Grain& g : s.grains)
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", g.id, g.position.x(),
                        g.position.y(), g.velocity.x(), g.velocity.y(), g.angle, g.spin, g.radius,
-                       g.mass, g.inertia, g.volume, g.fixed ? 1 : 0,
-                       coupling::outline_text(g.outline));
+                       g.mass, g.inertia, g.volume, g.fixed ? 1 : 0, outline_text(g.outline));
   return out;
 }
 

@@ -44,6 +44,16 @@ Eigen::VectorXd exponentials(dem::Random& random, int n, double rate = 1) {
   return x;
 }
 
+// Mean of independent numbers with its interval.
+BootstrapInterval bootstrap_mean(const Eigen::VectorXd& numbers, const BootstrapOptions& options) {
+  const auto mean = [&](const std::vector<int>& chosen) {
+    double sum = 0;
+    for (const int r : chosen) sum += numbers[r];
+    return Eigen::VectorXd(Eigen::VectorXd::Constant(1, sum / static_cast<double>(chosen.size())));
+  };
+  return bootstrap(static_cast<int>(numbers.size()), mean, options).front();
+}
+
 TEST(Moments, MeanSpreadError) {
   const Moments m = moments(Eigen::Vector3d(1, 2, 6));
   EXPECT_EQ(m.count, 3);
