@@ -12,7 +12,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/compare/compare.h"
-#include "coupling/fit/heap_data.h"
+#include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/output_folder.h"

@@ -1,4 +1,4 @@
-#include "coupling/fit/heap_data.h"
+// Stresses of heaps from the grains.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
 #include "coupling/import/doubts.h"
 #include "coupling/run/realization_file.h"
@@ -60,9 +59,9 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files) {
           [files](std::size_t k) { return files[k]; }};
 }
 
-HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threads) {
+Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, int threads) {
   const HeapReader heaps = without(all_heaps, setup.leave_out);
-  HeapData out;
+  Observations out;
   DoubtList doubts;
   double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity();
   const auto count = static_cast<double>(heaps.count);
@@ -128,6 +127,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threa
   }
   drop_copies(all, grid, heaps.name, out);
   fill_heap_maps(grid, out.facts, out.width / height, out.maps);
+  set_mean_heap(out);
   keep_rows(setup, points, level, all, out);
   return out;
 }
