@@ -2,6 +2,7 @@
 // at the origin, inside is y < 0 down to y = -depth (in space z for y).
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 
 #include "dem/snapshot/snapshot.h"
 
@@ -29,6 +30,16 @@ struct LayerFrame {
 /// (for load_x, load_y), -1: the snapshot's own. Throws std::invalid_argument if no free grain is
 /// between the sides.
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
+
+/// The loaded layers of an ensemble as one.
+struct MeanLayer {
+  double depth = 0, force = 0, diameter = 0;  ///< means of h, m, F, N, and the grains' diameter, m
+  /// From the load to the nearer side wall, least of the layers, m.
+  double half_width = std::numeric_limits<double>::infinity();
+
+  /// Adds one of `count` layers.
+  void add(const dem::Snapshot& unloaded, const dem::Snapshot& loaded, std::size_t count);
+};
 
 /// Mean diameter of the free grains, m; the unit in which kernel widths are usually chosen.
 double mean_diameter(const dem::Snapshot& snapshot);

@@ -175,7 +175,9 @@ std::string nearest_branch(double slope_deg, double beta_hat_deg) {
   return best;
 }
 
-void add_fits(Summary& summary, const EnsembleFits& fits) {
+namespace {
+
+void add_figures(const EnsembleFits& fits, Summary& summary) {
   const HeapFacts& facts = fits.observed.facts;
   summary["fit.values"] = fits.observed.data.values();
   if (is_heap(fits)) {
@@ -237,6 +239,17 @@ std::string fits_tex(const EnsembleFits& fits) {
     out += '\n' + tex_table(elements_header(), element_rows(fits.elements));
   }
   return out;
+}
+
+}  // namespace
+
+void add_fits(StudyResult& result, const EnsembleFits& fits) {
+  add_figures(fits, result.summary);
+  result.comparison.verdict.best_model = fits.verdict.model;
+  result.comparison.verdict.sentence = fits.verdict.sentence;
+  result.texts = {{"fits.csv", parameters_csv(fits.fits)},
+                  {"fits.md", fits_markdown(fits)},
+                  {"fits.tex", fits_tex(fits)}};
 }
 
 std::vector<Frame> profile_frames(const EnsembleFits& fits, const std::string& component,

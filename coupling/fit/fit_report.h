@@ -4,20 +4,16 @@
 #include <vector>
 
 #include "coupling/fit/fits.h"
-#include "coupling/output/tables.h"
-#include "coupling/report/report.h"
+#include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
 
-/// fit.MODEL.*, fit.*, fe.* and verdict.*: see figures.cc.
-void add_fits(Summary& summary, const EnsembleFits& fits);
+/// The figures fit.MODEL.*, fit.*, fe.* and verdict.* (figures.cc), the verdict, and parameters,
+/// ranking and finite elements as fits.csv, fits.md and fits.tex.
+void add_fits(StudyResult& result, const EnsembleFits& fits);
 
 /// The branch of Cantelaube's theory whose core angle is nearest: "minus", "zero" or "plus".
 std::string nearest_branch(double slope_deg, double beta_hat_deg);
-
-/// Parameters, ranking and finite elements, as a Markdown document and as LaTeX tables.
-std::string fits_markdown(const EnsembleFits& fits);
-std::string fits_tex(const EnsembleFits& fits);
 
 /// Frames of one component along every level: the grains, and of heaps the best models (those of
 /// one field share a line), of layers all in their order. `only`: the levels of these names; empty:

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "continuum/constants.h"
-#include "coupling/compare/significance.h"
 #include "coupling/compare/smooth.h"
 #include "coupling/fit/derived.h"
 #include "coupling/fit/fit_tables.h"
@@ -17,6 +16,7 @@
 #include "coupling/fit/intervals.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/observation_operator.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 

@@ -1,5 +1,16 @@
 // Everything that is fitted to one ensemble of heaps or layers: the one path of studies and
 // commands.
+//
+//   observations.h          places, kernel, values per realization, maps: of grains or of a field
+//   model.h                 a model: parameters that may be free, stress, what the registry has of
+//                           it; models.h (heaps) and layer_models.h (layers) list them
+//   observation_operator.h  the model at the places, through the kernel that averaged the grains
+//   fit.h, selection.h      constants with errors; which models the data support
+//   fits.h                  all of it for one ensemble, and finite elements (finite_elements.h)
+//   fit_report.h            figures, tables and pictures of the result
+//
+// Heaps and layers differ in frame and units, in where they are looked at (heap_*.cc, layer_*.cc),
+// in their models, and in words (Specimen).
 #pragma once
 #include <vector>
 

@@ -16,7 +16,7 @@ namespace {
 Report page_of(const StudyResult& result, const Realization* first, const EnsembleFits& fits,
                const std::function<dem::Snapshot()>& drawn) {
   Report out;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.title = title_of(result.value);
   const HeapFacts& facts = fits.observed.facts;
   out.subtitle = fmt::format("{} pile{}, slope {:.1f} deg", fits.observed.frames.size(),
                              fits.observed.frames.size() == 1 ? "" : "s", facts.slope_deg);
@@ -36,9 +36,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
   } else if (drawn) {
     out.sections.emplace_back(packing("Network of forces", drawn()));
   }
-  Table made{"How it was made", "", {}, {}};
-  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
-  out.sections.emplace_back(std::move(made));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 
@@ -51,12 +49,7 @@ StudyResult heap_result(const Case& value, Observations heaps, int threads,
   const auto fits = std::make_shared<const EnsembleFits>(
       fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
   out.comparison = profiles_of(*fits);
-  add_fits(out.summary, *fits);
-  out.comparison.verdict.best_model = fits->verdict.model;
-  out.comparison.verdict.sentence = fits->verdict.sentence;
-  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
-               {"fits.md", fits_markdown(*fits)},
-               {"fits.tex", fits_tex(*fits)}};
+  add_fits(out, *fits);
   out.overview = {{"best model", "verdict.best_model", ""},
                   {"beta_hat (deg)", "fit.cantelaube.beta_hat_deg", ""},
                   {"b1", "fit.cantelaube.b1", ""},

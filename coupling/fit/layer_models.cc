@@ -19,7 +19,7 @@ using continuum::Settings;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Prediction =
-    std::function<MatrixXd(const VectorXd&)>;  // parameters -> at all points of the sight
+    std::function<MatrixXd(const VectorXd&)>;  // parameters -> at all points of the operator
 
 constexpr double kMostPoisson = 0.499;
 constexpr double kLeastRho = -0.95, kMostRho = 20;  // below, the waves of a layer reach too far
@@ -34,14 +34,14 @@ Settings medium_settings(double rho, double t) {
 
 class List {
  public:
-  explicit List(std::shared_ptr<const ObservationOperator> sight) : sight_(std::move(sight)) {}
+  explicit List(std::shared_ptr<const ObservationOperator> seeing) : seeing_(std::move(seeing)) {}
 
   void add(const std::string& name, const std::string& label, std::vector<FitParameter> parameters,
            std::vector<VectorXd> starts, const Prediction& seen,
            std::vector<RegistryModel> in_registry, const std::string& equations = "elliptic") {
     models.push_back({name, label, std::move(parameters), std::move(starts),
-                      [sight = sight_, seen](const MatrixXd& points, const VectorXd& p) {
-                        return sight->pick(seen(p), points);
+                      [seeing = seeing_, seen](const MatrixXd& points, const VectorXd& p) {
+                        return seeing->pick(seen(p), points);
                       },
                       ""});
     models.back().in_registry = std::move(in_registry);
@@ -61,7 +61,7 @@ class List {
   std::vector<FitModel> models;
 
  private:
-  std::shared_ptr<const ObservationOperator> sight_;
+  std::shared_ptr<const ObservationOperator> seeing_;
 };
 
 // The names that have these settings.
@@ -88,9 +88,9 @@ MatrixXd flamant(const MatrixXd& nodes) {
 
 }  // namespace
 
-std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> sight) {
-  List list(sight);
-  const ObservationOperator* at = sight.get();  // the models hold the sight
+std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> seeing) {
+  List list(seeing);
+  const ObservationOperator* at = seeing.get();  // the models hold it
   const FitParameter nu{"nu", "-", "Poisson's ratio", 0, kMostPoisson};
   const FitParameter rho{"rho", "-", "r/sqrt(t): below 0 two peaks, -1 the hyperbolic limit",
                          kLeastRho, kMostRho};
@@ -193,16 +193,10 @@ std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> si
   return list.models;
 }
 
-const std::vector<std::string>& layer_model_names() {
-  static const std::vector<std::string> names{"flamant",
-                                              "layer_smooth",
-                                              "layer_rough",
-                                              "orthotropic_half_plane",
-                                              "orthotropic_layer_smooth",
-                                              "orthotropic_layer_rough",
-                                              "osl_layer_absorbing",
-                                              "osl_layer_reflecting"};
-  return names;
+std::vector<std::string> layer_model_names() {
+  std::vector<std::string> out;
+  for (const FitModel& model : layer_models(nullptr)) out.push_back(model.name);
+  return out;
 }
 
 Ratio rho_of(const Fit& fit) {

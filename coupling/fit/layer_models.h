@@ -10,7 +10,8 @@
 
 namespace grainfield::coupling {
 
-/// Models of a layer under F = 1 with h = 1, seen at the sight's points:
+/// Models of a layer under F = 1 with h = 1, seen at the operator's points; null: without it their
+/// stress cannot be asked for.
 ///   flamant                     isotropic half plane, no parameter
 ///   layer_smooth                isotropic layer on a smooth base, no parameter
 ///   layer_rough                 on a rough base: nu
@@ -20,9 +21,9 @@ namespace grainfield::coupling {
 ///                               nu_xy/sqrt t; rho = shear - nu_ratio
 ///   osl_layer_absorbing, osl_layer_reflecting   eta, mu, and the width of the load
 /// rho above -1 is elliptic; below 0 there are two peaks; -1 is the hyperbolic limit.
-std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> sight);
-/// Their names, without a sight.
-const std::vector<std::string>& layer_model_names();
+std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> seeing);
+/// Their names.
+std::vector<std::string> layer_model_names();
 
 /// rho of a fit of an orthotropic_* model, with its error; nan of other models.
 struct Ratio {

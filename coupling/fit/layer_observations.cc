@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "coupling/averaging/average.h"
@@ -18,24 +17,11 @@ namespace {
 // Nearer to the surface one grain carries everything; nearer to the base the kernel is cut.
 constexpr double kMapTop = -0.12, kMapBottom = -0.97;
 
-// The layers of all realizations as one: means of h, F and the grains' diameter; the least distance
-// from the load to a side wall.
-struct MeanLayer {
-  double depth = 0, force = 0, diameter = 0;
-  double half_width = std::numeric_limits<double>::infinity();
-};
-
 MeanLayer measure(const std::vector<std::string>& files) {
   MeanLayer out;
-  const auto n = static_cast<double>(files.size());
   for (const std::string& file : files) {
     const Realization r = read_realization(file);
-    const LayerFrame frame = layer_frame(r["unloaded"], r["loaded"].loaded_grain);
-    out.depth += frame.depth() / n;
-    out.diameter += mean_diameter(r["unloaded"]) / n;
-    out.force += -r["loaded"].applied_force.y() / n;
-    out.half_width =
-        std::min({out.half_width, frame.load_x - frame.left, frame.right - frame.load_x});
+    out.add(r["unloaded"], r["loaded"], files.size());
   }
   return out;
 }

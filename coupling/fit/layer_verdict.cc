@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "coupling/compare/significance.h"
 #include "coupling/fit/fit_tables.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -114,7 +114,7 @@ FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selectio
         " No agreement within the errors: chi2/dof {:.3g}, where up to {:.3g} would be chance.",
         simplest->chi2_per_dof, simplest->chance);
   }
-  out.sentence += sign_doubts(fits, supported);
+  out.sentence += sign_warnings(fits, supported);
   return out;
 }
 

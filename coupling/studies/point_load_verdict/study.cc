@@ -81,11 +81,11 @@ ModelEvaluator evaluator_of(const std::shared_ptr<const EnsembleFits>& fits) {
     const auto start = std::chrono::steady_clock::now();
     if (known->empty()) {
       Eigen::Index rows = 0;
-      for (const PointSet& s : sets) rows += s.seen == Seen::exactly ? 0 : s.points.rows();
+      for (const PointSet& s : sets) rows += s.smoothing == Smoothing::none ? 0 : s.points.rows();
       places->resize(rows, 2);
       rows = 0;
       for (const PointSet& s : sets) {
-        if (s.seen == Seen::exactly) continue;
+        if (s.smoothing == Smoothing::none) continue;
         places->middleRows(rows, s.points.rows()) = s.points / facts.height;
         rows += s.points.rows();
       }
@@ -99,7 +99,7 @@ ModelEvaluator evaluator_of(const std::shared_ptr<const EnsembleFits>& fits) {
     Evaluation out;
     Eigen::Index row = 0;
     for (const PointSet& s : sets) {
-      if (s.seen == Seen::exactly) {
+      if (s.smoothing == Smoothing::none) {
         out.stresses.push_back(model->stress(s.points));
         continue;
       }
@@ -115,7 +115,7 @@ ModelEvaluator evaluator_of(const std::shared_ptr<const EnsembleFits>& fits) {
 Report page_of(const StudyResult& result, const Realization* first, const EnsembleFits& fits) {
   Report out;
   const Observations& seen = fits.observed;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.title = title_of(result.value);
   out.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}",
                              seen.unit * seen.height, seen.height, seen.data.realizations(),
                              seen.data.realizations() == 1 ? "" : "s");
@@ -128,19 +128,14 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
     out.sections.emplace_back(contact_angles("Directions of the contacts", loaded));
   }
   for (Section& s : fit_tables(fits)) out.sections.push_back(std::move(s));
-  Table figures{"Figures", "", {}, {}};
-  for (const auto& [key, value] : figure_rows(
-           result.summary,
-           {"dem.grains", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
-            "load.contacts_gained", "load.contacts_lost", "load.newly_sliding",
-            "load.no_rearrangement", "response.total_over_load", "response.peak_over_F_per_h",
-            "response.width", "response.peaks", "average.coarse_graining.balance_rms"})) {
-    figures.rows.push_back({key, value});
-  }
-  out.sections.emplace_back(std::move(figures));
-  Table made{"How it was made", "", {}, {}};
-  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
-  out.sections.emplace_back(std::move(made));
+  add_rows(out, "Figures",
+           figure_rows(
+               result.summary,
+               {"dem.grains", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
+                "load.contacts_gained", "load.contacts_lost", "load.newly_sliding",
+                "load.no_rearrangement", "response.total_over_load", "response.peak_over_F_per_h",
+                "response.width", "response.peaks", "average.coarse_graining.balance_rms"}));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 
@@ -151,12 +146,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   Case with_constants = value;
   with_constants.models = choices(*fits);
   StudyResult out = analyse_point_load(with_constants, files, threads, evaluator_of(fits));
-  add_fits(out.summary, *fits);
-  out.comparison.verdict.best_model = fits->verdict.model;
-  out.comparison.verdict.sentence = fits->verdict.sentence;
-  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
-               {"fits.md", fits_markdown(*fits)},
-               {"fits.tex", fits_tex(*fits)}};
+  add_fits(out, *fits);
   if (!value.get<VerdictSetup>().coverage.empty()) {
     CoverageOptions options;
     options.sizes.assign(value.get<VerdictSetup>().coverage.begin(),
