@@ -5,11 +5,11 @@
 
 #include "continuum/closed/models.h"
 #include "continuum/fe/elastic.h"
-#include "continuum/idle.h"
 #include "continuum/model.h"
 #include "continuum/osl/models.h"
 #include "continuum/settings.h"
 #include "continuum/size.h"
+#include "continuum/without_effect.h"
 
 namespace grainfield::continuum {
 
@@ -54,7 +54,7 @@ int dimension(const ModelInfo& info, const Settings& settings) {
 
 std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings) {
   const ModelInfo& info = find_model(name);
-  if (const auto idle = find_idle(info, settings)) throw BadParameter(idle->refusal);
+  if (const auto found = find_without_effect(info, settings)) throw BadParameter(found->refusal);
   const Settings full = complete(info, settings);
   require_possible(info, full);
   return info.make(full);

@@ -17,8 +17,8 @@
 
 namespace grainfield::coupling {
 
-void warn_of_idle_keys(const Case& value) {
-  for (const std::string& text : value.idle) {
+void warn_of_keys_without_effect(const Case& value) {
+  for (const std::string& text : value.without_effect) {
     note("warning: {}", text);
   }
 }
@@ -35,7 +35,7 @@ void add_check(CLI::App& app, Action& action) {
     action = [=] {
       *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
-      warn_of_idle_keys(value);
+      warn_of_keys_without_effect(value);
       say("{}: ok ({}, {} model{})\n", printable_name(*file), value.study, value.models.size(),
           value.models.size() == 1 ? "" : "s");
       say("{}", outlook_text(value));

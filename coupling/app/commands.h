@@ -30,6 +30,6 @@ void add_info(CLI::App& app, Action& action);
 CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning);
 
 /// One line on standard error for every key of the case that has no effect.
-void warn_of_idle_keys(const Case& value);
+void warn_of_keys_without_effect(const Case& value);
 
 }  // namespace grainfield::coupling

@@ -10,9 +10,9 @@
 #include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
-#include "coupling/import/doubts.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
+#include "coupling/import/packing_warnings.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/file_lock.h"
@@ -135,7 +135,7 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
   if (const std::string text = tension_in(check); !text.empty()) {
     warnings = {text};  // all else follows from it
   } else {
-    warnings = doubts_of(check);
+    warnings = warnings_of(check);
   }
   for (const std::string& text : warnings) warn(text);
 }

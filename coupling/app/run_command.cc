@@ -118,7 +118,7 @@ int run(const Given& given) {
   Case value = read_case(case_file, given.quick, given.sets);
   value.command = command_of(given);
   const Ranks ranks;
-  if (ranks.first()) warn_of_idle_keys(value);
+  if (ranks.first()) warn_of_keys_without_effect(value);
   ProgressLine line(!ranks.first());
   RunOptions options;
   options.case_file = case_file;

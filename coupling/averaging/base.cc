@@ -9,27 +9,21 @@
 namespace grainfield::coupling {
 namespace {
 
-// Calls visit(contact point, force on the layer) for every contact of a free grain with a wall or a
-// fixed grain; `base`: with the floor and fixed grains, otherwise with the other walls.
+// Calls visit(contact point, force on the layer) for every contact of a free grain with the floor
+// or a fixed grain.
 template <class Visit>
-void for_each_support(const dem::Snapshot& snapshot, bool base, Visit&& visit) {
+void for_each_support(const dem::Snapshot& snapshot, Visit&& visit) {
   for (const dem::Contact& contact : snapshot.contacts) {
     const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
     const Eigen::Vector2d point = contact.point.head<2>(), force = contact.force.head<2>();
     if (contact.j < 0) {
       const dem::Wall& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
-      if (!gi.fixed && (wall.name == "floor") == base) visit(point, force);
+      if (!gi.fixed && wall.name == "floor") visit(point, force);
       continue;
     }
     const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
-    if (base && gi.fixed != fixed_j) visit(point, fixed_j ? force : Eigen::Vector2d(-force));
+    if (gi.fixed != fixed_j) visit(point, fixed_j ? force : Eigen::Vector2d(-force));
   }
-}
-
-Eigen::Vector2d support_force(const dem::Snapshot& snapshot, bool base) {
-  Eigen::Vector2d sum(0, 0);
-  for_each_support(snapshot, base, [&](const auto&, const Eigen::Vector2d& f) { sum += f; });
-  return sum;
 }
 
 }  // namespace
@@ -55,7 +49,7 @@ Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, cons
   field.points.col(0) = x;
   field.points.col(1).setConstant(layer_frame(snapshot).floor);
   Eigen::VectorXd yy = Eigen::VectorXd::Zero(x.size()), xy = yy, count = yy;
-  for_each_support(snapshot, true, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
+  for_each_support(snapshot, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
     for (Eigen::Index p = 0; p < x.size(); ++p) {
       const double distance = x[p] - point.x();
       if (std::abs(distance) >= kernel.range()) continue;
@@ -87,16 +81,16 @@ Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
 
 std::vector<BaseContact> base_contacts(const dem::Snapshot& snapshot) {
   std::vector<BaseContact> out;
-  for_each_support(snapshot, true, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
+  for_each_support(snapshot, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
     out.push_back({point, force});
   });
   return out;
 }
 
-Eigen::Vector2d base_force(const dem::Snapshot& snapshot) { return support_force(snapshot, true); }
-
-Eigen::Vector2d side_wall_force(const dem::Snapshot& snapshot) {
-  return support_force(snapshot, false);
+Eigen::Vector2d base_force(const dem::Snapshot& snapshot) {
+  Eigen::Vector2d sum(0, 0);
+  for_each_support(snapshot, [&](const auto&, const Eigen::Vector2d& f) { sum += f; });
+  return sum;
 }
 
 double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {

@@ -35,8 +35,6 @@ std::vector<BaseContact> base_contacts(const dem::Snapshot& snapshot);
 
 /// Force of the base on the grains, N: (horizontal, vertical up).
 Eigen::Vector2d base_force(const dem::Snapshot& snapshot);
-/// The same of every wall but the floor: what the side walls carry.
-Eigen::Vector2d side_wall_force(const dem::Snapshot& snapshot);
 /// (vertical base force loaded - unloaded) / applied vertical force: `response.total_over_load`.
 /// nan without an applied force.
 double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded);

@@ -44,15 +44,6 @@ double Kernel::slope(double r) const {
   return (value(r + step) - value(std::abs(r - step))) / (2 * step);
 }
 
-double Kernel::standard_deviation() const {
-  // Variance along one axis: the mean of r^2 over the number of axes.
-  const auto weight = [&](double r) {
-    const double shell = dim() == 2 ? 1 : 4 * r / 3;
-    return shell * std::numbers::pi * r * r * r * value(r);
-  };
-  return std::sqrt(Gauss::integrate(weight, 0.0, range()));
-}
-
 double Kernel::marginal(double x) const {
   const double d = std::abs(x), half = std::sqrt(std::max(0.0, range() * range() - d * d));
   if (half <= 0) return 0;

@@ -28,8 +28,6 @@ class Kernel {
   /// points on either side of the foot (exact for polynomials in s of degree 59).
   virtual double along_line(double d, double s0, double s1) const;
 
-  /// Standard deviation along one axis, m.
-  double standard_deviation() const;
   /// Weight of the kernel seen from the side: its integral over y (and z) at abscissa x, 1/m. The
   /// kernel with which forces on the floor are smeared along x.
   double marginal(double x) const;

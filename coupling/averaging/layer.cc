@@ -94,8 +94,13 @@ Eigen::MatrixXd LayerFrame::to_packing(const Eigen::MatrixXd& model_points) cons
   return model_points.rowwise() + origin_of(*this, model_points.cols());
 }
 
-Eigen::MatrixXd LayerFrame::to_model(const Eigen::MatrixXd& packing_points) const {
-  return packing_points.rowwise() - origin_of(*this, packing_points.cols());
+void MeanLayer::add(const dem::Snapshot& unloaded, const dem::Snapshot& loaded, std::size_t count) {
+  const auto n = static_cast<double>(count);
+  const LayerFrame frame = layer_frame(unloaded, loaded.loaded_grain);
+  depth += frame.depth() / n;
+  diameter += mean_diameter(unloaded) / n;
+  force += -loaded.applied_force.y() / n;
+  half_width = std::min({half_width, frame.load_x - frame.left, frame.right - frame.load_x});
 }
 
 double mean_diameter(const dem::Snapshot& snapshot) {

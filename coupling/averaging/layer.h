@@ -2,6 +2,7 @@
 // at the origin, inside is y < 0 down to y = -depth (in space z for y).
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 
 #include "dem/snapshot/snapshot.h"
 
@@ -22,8 +23,6 @@ struct LayerFrame {
   double width() const { return right - left; }
   /// From the models' frame to the packing's axes; n x 2, in space n x 3, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& model_points) const;
-  /// From the packing's axes to the models' frame; likewise.
-  Eigen::MatrixXd to_model(const Eigen::MatrixXd& packing_points) const;
 };
 
 /// Measures the layer. Walls: in the plane those named "left", "right", "floor"; in space planes
@@ -31,6 +30,16 @@ struct LayerFrame {
 /// (for load_x, load_y), -1: the snapshot's own. Throws std::invalid_argument if no free grain is
 /// between the sides.
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
+
+/// The loaded layers of an ensemble as one.
+struct MeanLayer {
+  double depth = 0, force = 0, diameter = 0;  ///< means of h, m, F, N, and the grains' diameter, m
+  /// From the load to the nearer side wall, least of the layers, m.
+  double half_width = std::numeric_limits<double>::infinity();
+
+  /// Adds one of `count` layers.
+  void add(const dem::Snapshot& unloaded, const dem::Snapshot& loaded, std::size_t count);
+};
 
 /// Mean diameter of the free grains, m; the unit in which kernel widths are usually chosen.
 double mean_diameter(const dem::Snapshot& snapshot);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "coupling/case/study.h"
 #include "dem/shapes/registry.h"
 
 namespace grainfield::coupling {
@@ -110,6 +111,10 @@ void set(const Key& key, const Assignment& a, Case& value) {
 
 [[noreturn]] void unknown(const Assignment& a) {
   const std::string section = a.path.substr(0, a.path.find('.'));
+  for (const KeySection& known : study_sections()) {
+    if (known.former == nullptr || section != known.former) continue;
+    reject(a, section, fmt::format("found the section's former name, now: {}", known.name));
+  }
   const auto with_keys = sections();
   auto names = with_keys;
   names.insert(names.end(), {"model", "variant", "quick"});

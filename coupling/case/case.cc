@@ -116,9 +116,9 @@ std::string write_case(const Case& value) {
     remark += key.meaning;
     if (!key.choices.empty()) remark = allowed(key) + "; " + remark;
     // A written-out case says what holds: keys without effect are there for those who look.
-    const bool idle = is_idle(key, value);
-    if (idle) remark = fmt::format("only with {}; {}", condition(key), remark);
-    out += fmt::format("# {}\n{}{} = {}\n", remark, idle ? "# " : "", key.name,
+    const bool no_effect = is_without_effect(key, value);
+    if (no_effect) remark = fmt::format("only with {}; {}", condition(key), remark);
+    out += fmt::format("# {}\n{}{} = {}\n", remark, no_effect ? "# " : "", key.name,
                        value_text(key, value));
   }
   for (const auto& model : value.models) {

@@ -54,7 +54,7 @@ struct Case {
   std::vector<ModelChoice> models;  ///< in the order of compare.models
   /// Keys that were written but have no effect with what the case chooses elsewhere, a line each:
   /// "FILE:LINE: KEY: ...".
-  std::vector<std::string> idle;
+  std::vector<std::string> without_effect;
   /// What studies and what they share hold: each part's own type, with its defaults.
   Setups setups;
 

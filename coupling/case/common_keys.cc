@@ -4,30 +4,32 @@
 #include "coupling/case/declare.h"
 #include "coupling/case/study.h"
 
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.MEMBER; }
+#define IN(MEMBER)         \
+  +[](Case & c) -> auto& { \
+    return c.MEMBER;       \
+  }
 
 namespace grainfield::coupling {
 namespace {
 
 using std::string;
 using Words = std::vector<string>;
-using Integer = std::int64_t;
 
 void top(SectionKeys s) {
-  s.word("title", +IN(string, title), {}, "one line for people: what the study shows");
+  s.word("title", IN(title), {}, "one line for people: what the study shows");
   std::vector<string> names;
   string meaning = "kind of study";
   for (const Study& study : studies()) {
     names.push_back(study.name);
     meaning += (names.size() == 1 ? ": " : "; ") + study.name + ": " + study.meaning;
   }
-  s.word("study", +IN(string, study), names, meaning);
+  s.word("study", IN(study), names, meaning);
 }
 
 void ensemble(SectionKeys s) {
-  s.number("realizations", "-", +IN(Integer, ensemble.realizations), {1, 10000},
+  s.number("realizations", "-", IN(ensemble.realizations), {1, 10000},
            "independent packings; the standard error falls with the square root of their number");
-  s.number("seed", "-", +IN(Integer, ensemble.seed), {0, 9007199254740992.0},
+  s.number("seed", "-", IN(ensemble.seed), {0, 9007199254740992.0},
            "every realization derives its own seed from this one and its number");
 }
 
@@ -41,18 +43,18 @@ void compare(SectionKeys s) {
 }
 
 void output(SectionKeys s) {
-  s.flag("snapshots", +IN(bool, output.snapshots), "snapshots.h5: grains and contacts");
-  s.flag("vtu", +IN(bool, output.vtu), "VTU files of the first realization for ParaView");
-  s.flag("fields", +IN(bool, output.fields), "fields.h5 and .xdmf: averaged and modelled fields");
-  s.flag("report", +IN(bool, output.report), "report.html");
+  s.flag("snapshots", IN(output.snapshots), "snapshots.h5: grains and contacts");
+  s.flag("vtu", IN(output.vtu), "VTU files of the first realization for ParaView");
+  s.flag("fields", IN(output.fields), "fields.h5 and .xdmf: averaged and modelled fields");
+  s.flag("report", IN(output.report), "report.html");
 }
 
 void sweep(SectionKeys s) {
   s.word(
-      "key", +IN(string, sweep.key), {},
+      "key", IN(sweep.key), {},
       "the case is run once for every value of this key; empty: no sweep; variant: once for every "
       "named set of keys of tables [variant.NAME.SECTION]");
-  s.word("values", +IN(Words, sweep.values), {}, "values of that key");
+  s.word("values", IN(sweep.values), {}, "values of that key");
   s.or_none();
 }
 

@@ -7,6 +7,12 @@
 #include "coupling/case/keys.h"
 #include "coupling/case/study.h"
 
+/// Binds a key to the member MEMBER of the case's setup SETUP: the default is that member's.
+#define GRAINFIELD_MEMBER(SETUP, MEMBER) \
+  +[](Case & c) -> auto& {               \
+    return c.get<SETUP>().MEMBER;        \
+  }
+
 namespace grainfield::coupling {
 
 struct Range {

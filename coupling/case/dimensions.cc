@@ -34,7 +34,7 @@ void check_word(const Draft& draft, const Key& key) {
   const auto* where = std::get_if<std::string& (*)(Case&)>(&key.where);
   if (wrong.empty() || where == nullptr) return;
   const std::string& word = (*where)(const_cast<Case&>(draft.value));  // only read
-  if (!contains(wrong, word) || is_idle(key, draft.value)) return;
+  if (!contains(wrong, word) || is_without_effect(key, draft.value)) return;
   std::vector<std::string> right;
   for (const std::string& choice : key.choices) {
     if (!contains(wrong, choice)) right.push_back(choice);

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "continuum/idle.h"
 #include "continuum/settings.h"
+#include "continuum/without_effect.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/cost.h"
 #include "coupling/case/dimensions.h"
@@ -92,9 +92,9 @@ std::map<std::string, ModelChoice> read_models(const Draft& draft) {
     }
     // A study that varies the model's settings looks at every combination itself.
     if (!study_of(draft.value).varies_models) {
-      if (const auto idle = continuum::find_idle(*info, choice.settings)) {
-        const Assignment& a = table.at(idle->parameter);
-        reject(a, a.path, idle->refusal);
+      if (const auto found = continuum::find_without_effect(*info, choice.settings)) {
+        const Assignment& a = table.at(found->parameter);
+        reject(a, a.path, found->refusal);
       }
     }
     out.emplace(label, choice);
@@ -240,7 +240,7 @@ std::vector<std::string>& model_names(Case& value) {
 }
 
 void finish(Draft& draft) {
-  draft.value.idle.clear();
+  draft.value.without_effect.clear();
   make_setups(draft.value);
   if (draft.value.variants.size() > kMostEntries) {
     reject(written(draft, "sweep.key"), "variant",
@@ -258,16 +258,16 @@ void finish(Draft& draft) {
   check_sweep(draft);
   for (const auto& [path, a] : draft.last) {
     const Key& key = *find_key(path);
-    if (!is_idle(key, draft.value)) continue;
-    draft.value.idle.push_back(
-        fmt::format("{}: {}: {}", a.origin, path, idle_text(key, draft.value)));
+    if (!is_without_effect(key, draft.value)) continue;
+    draft.value.without_effect.push_back(
+        fmt::format("{}: {}: {}", a.origin, path, without_effect_text(key, draft.value)));
   }
   // Its members differ in nothing but their names.
   const Key* swept = find_key(draft.value.sweep.key);
-  if (swept != nullptr && is_idle(*swept, draft.value)) {
-    draft.value.idle.push_back(fmt::format("{}: sweep.key: {} {}",
-                                           written(draft, "sweep.key").origin, swept->path(),
-                                           idle_text(*swept, draft.value)));
+  if (swept != nullptr && is_without_effect(*swept, draft.value)) {
+    draft.value.without_effect.push_back(
+        fmt::format("{}: sweep.key: {} {}", written(draft, "sweep.key").origin, swept->path(),
+                    without_effect_text(*swept, draft.value)));
   }
 }
 

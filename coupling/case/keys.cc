@@ -116,7 +116,7 @@ bool is_unmet(const Need& need, const Case& value) {
   const Key& other = *find_key(need.key);
   if (!key_applies(other, value.study)) return false;
   if (value.sweep.key == "variant" || value.sweep.key == need.key) return false;
-  if (is_idle(other, value)) return true;
+  if (is_without_effect(other, value)) return true;
   const auto is_needed = [&](const std::string& word) {
     return std::find(need.values.begin(), need.values.end(), word) != need.values.end();
   };
@@ -235,7 +235,7 @@ bool may_be_in_space(const std::string& study) {
   return known != nullptr && known->dimension != nullptr;
 }
 
-bool is_idle(const Key& key, const Case& value) {
+bool is_without_effect(const Key& key, const Case& value) {
   if (key.space && dimension_of(value) == 2) {
     const Study* study = find_study(value.study);
     const bool varied = value.sweep.key == "variant" ||
@@ -262,7 +262,7 @@ std::string condition(const Key& key) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-std::string idle_text(const Key& key, const Case& value) {
+std::string without_effect_text(const Key& key, const Case& value) {
   const Need* need = unmet_need(key, value);
   const Study* study = find_study(value.study);
   const std::string decides =

@@ -56,14 +56,15 @@ bool section_applies(const std::string& section, const std::string& study);
 bool key_applies(const Key& key, const std::string& study);
 /// Whether what the case chooses elsewhere leaves a key without effect (source.height of a line
 /// source). Not when the run varies that choice.
-bool is_idle(const Key& key, const Case& value);
+bool is_without_effect(const Key& key, const Case& value);
 /// The first need that leaves it so; null where none does.
 const Need* unmet_need(const Key& key, const Case& value);
 /// "source.kind = point", "3D"; empty for a key that depends on no other. A need of some of the
 /// key's studies alone says of which: "pair.kind = collision (study pair)".
 std::string condition(const Key& key);
-/// What is said of a key that is idle: "has no effect, only with source.kind = point (now "line")".
-std::string idle_text(const Key& key, const Case& value);
+/// What is said of a key without effect: "has no effect, only with source.kind = point (now
+/// "line")".
+std::string without_effect_text(const Key& key, const Case& value);
 
 /// The number of dimensions of the case's grains (coupling/case/study.h).
 int dimension_of(const Case& value);

@@ -25,6 +25,7 @@ struct KeySection {
   const char* name;
   KeyRole role;
   void (*declare)(SectionKeys);
+  const char* former = nullptr;  ///< its name in older case files, refused with the new one
 };
 
 /// Another need (keys.h) of a key that studies share.

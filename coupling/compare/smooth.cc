@@ -1,35 +1,14 @@
 #include "coupling/compare/smooth.h"
 
-#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
 
+#include "coupling/compare/quadrature.h"
+
 namespace grainfield::coupling {
 namespace {
-
-// The base is at -depth up to this share of the depth inside, so that rounding cannot put a node
-// outside the model's domain.
-constexpr double inside_base = 1e-9;
-// Closer to the load than this many kernel ranges the load's singularity decides the error.
-constexpr double near_load = 1.5;
-
-struct Node {
-  double at, weight;
-};
-
-// Gauss-Legendre on [-1, 1].
-std::vector<Node> gauss_legendre(int n) {
-  std::vector<Node> nodes;
-  for (double zero : boost::math::legendre_p_zeros<double>(n)) {
-    const double slope = boost::math::legendre_p_prime(n, zero);
-    const double weight = 2 / ((1 - zero * zero) * slope * slope);
-    nodes.push_back({zero, weight});
-    if (zero > 0) nodes.push_back({-zero, weight});
-  }
-  return nodes;
-}
 
 void check(const Eigen::MatrixXd& points, int nodes) {
   if (points.cols() != 2) throw std::invalid_argument("smoothing needs points of the plane");
@@ -41,32 +20,6 @@ struct PlaneNode {
   double weight;
 };
 
-// Where the stress is asked for, with the weight it gives to which point.
-class Plan {
- public:
-  void add(Eigen::Index point, const Eigen::RowVector2d& at, double weight) {
-    where_.push_back(at);
-    owner_.push_back(point);
-    weight_.push_back(weight);
-  }
-  // Sums of weight * stress, one row per point.
-  Eigen::MatrixXd evaluate(const StressFunction& stress, Eigen::Index points) const {
-    Eigen::MatrixXd where(static_cast<Eigen::Index>(where_.size()), 2);
-    for (std::size_t k = 0; k < where_.size(); ++k)
-      where.row(static_cast<Eigen::Index>(k)) = where_[k];
-    const Eigen::MatrixXd value = stress(where);
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(points, value.cols());
-    for (std::size_t k = 0; k < where_.size(); ++k)
-      result.row(owner_[k]) += weight_[k] * value.row(static_cast<Eigen::Index>(k));
-    return result;
-  }
-
- private:
-  std::vector<Eigen::RowVector2d> where_;
-  std::vector<Eigen::Index> owner_;
-  std::vector<double> weight_;
-};
-
 void normalise(std::vector<PlaneNode>& nodes) {
   double total = 0;
   for (const PlaneNode& node : nodes) total += node.weight;
@@ -75,7 +28,7 @@ void normalise(std::vector<PlaneNode>& nodes) {
 
 // Near the load the stress grows as 1/distance: polar coordinates about the load take the growth
 // away, and the kernel is what varies over the nodes.
-void add_around_load(Plan& plan, Eigen::Index point, const Eigen::RowVector2d& at,
+void add_around_load(SmoothingPlan& plan, Eigen::Index point, const Eigen::RowVector2d& at,
                      const Kernel& kernel, double depth, int nodes_per_axis) {
   const double distance = at.norm(), range = kernel.range(), pi = std::numbers::pi;
   const double r0 = std::max(0.0, distance - range), r1 = distance + range;
@@ -85,7 +38,7 @@ void add_around_load(Plan& plan, Eigen::Index point, const Eigen::RowVector2d& a
     from = std::max(from, direction - half);
     to = std::min(to, direction + half);
   }
-  const std::vector<Node> nodes = gauss_legendre(nodes_per_axis);
+  const std::vector<Node> nodes = gauss_points(nodes_per_axis);
   for (const Node& radial : nodes)
     for (const Node& angular : nodes) {
       const double r = (r0 + r1) / 2 + (r1 - r0) / 2 * radial.at;
@@ -93,7 +46,7 @@ void add_around_load(Plan& plan, Eigen::Index point, const Eigen::RowVector2d& a
       Eigen::RowVector2d node(r * std::cos(angle), r * std::sin(angle));
       const double value = kernel.value((node - at).norm());
       if (value == 0) continue;
-      if (depth > 0) node.y() = std::max(node.y(), -depth * (1 - inside_base));
+      if (depth > 0) node.y() = std::max(node.y(), -depth * (1 - kInsideBase));
       plan.add(point, node,
                value * r * radial.weight * angular.weight * (r1 - r0) / 2 * (to - from) / 2);
     }
@@ -106,7 +59,7 @@ Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::Matri
   check(points, rings);
   const int directions = 2 * rings + 2;
   std::vector<PlaneNode> nodes;
-  for (const Node& ring : gauss_legendre(rings)) {
+  for (const Node& ring : gauss_points(rings)) {
     const double r = kernel.range() * (1 + ring.at) / 2;
     for (int k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * (k + 0.5) / directions;
@@ -115,17 +68,17 @@ Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::Matri
     }
   }
   normalise(nodes);
-  Plan plan;
+  SmoothingPlan plan(2);
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     const Eigen::RowVector2d point = points.row(p);
-    if (point.norm() < near_load * kernel.range() && point.y() <= 0) {
+    if (point.norm() < kNearLoad * kernel.range() && point.y() <= 0) {
       add_around_load(plan, p, point, kernel, depth, 4 * rings);
       continue;
     }
     for (const PlaneNode& node : nodes) {
       Eigen::RowVector2d at = point + node.offset;
       if (at.y() >= 0) continue;
-      if (depth > 0) at.y() = std::max(at.y(), -depth * (1 - inside_base));
+      if (depth > 0) at.y() = std::max(at.y(), -depth * (1 - kInsideBase));
       plan.add(p, at, node.weight);
     }
   }
@@ -137,14 +90,15 @@ Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::Matrix
   check(points, count);
   std::vector<PlaneNode> nodes;
   // x = R sin(theta) keeps the integrand smooth where the marginal ends steeply.
-  for (const Node& node : gauss_legendre(count)) {
+  for (const Node& node : gauss_points(count)) {
     const double theta = node.at * std::numbers::pi / 2, x = kernel.range() * std::sin(theta);
     nodes.push_back({Eigen::RowVector2d(x, 0), node.weight * kernel.marginal(x) * std::cos(theta)});
   }
   normalise(nodes);
-  Plan plan;
+  SmoothingPlan plan(2);
   for (Eigen::Index p = 0; p < points.rows(); ++p)
-    for (const PlaneNode& node : nodes) plan.add(p, points.row(p) + node.offset, node.weight);
+    for (const PlaneNode& node : nodes)
+      plan.add(p, Eigen::RowVector2d(points.row(p) + node.offset), node.weight);
   return plan.evaluate(stress, points.rows());
 }
 

@@ -2,11 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
+
+#include "coupling/compare/quadrature.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -14,25 +15,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// As in smooth.cc: nodes stay inside the model, and how near the load counts as near.
-constexpr double kInsideBase = 1e-9, kNearLoad = 1.5;
 constexpr double kPi = std::numbers::pi;
-
-struct Weighted {
-  double at, weight;
-};
-
-// Gauss-Legendre on [a, b].
-std::vector<Weighted> gauss_points(int n, double a, double b) {
-  std::vector<Weighted> out;
-  for (const double zero : boost::math::legendre_p_zeros<double>(n)) {
-    const double slope = boost::math::legendre_p_prime(n, zero);
-    const double weight = (b - a) / ((1 - zero * zero) * slope * slope);
-    out.push_back({(a + b) / 2 + (b - a) / 2 * zero, weight});
-    if (zero > 0) out.push_back({(a + b) / 2 - (b - a) / 2 * zero, weight});
-  }
-  return out;
-}
 
 struct SpaceNode {
   Vector3d at;
@@ -44,12 +27,12 @@ template <class Add>
 void each_in_cone(const Vector3d& axis, double angle, double r0, double r1, int n, int round,
                   Add&& add) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis);
-  for (const Weighted& c : gauss_points(n, std::cos(angle), 1)) {
+  for (const Node& c : gauss_points(n, std::cos(angle), 1)) {
     const double s = std::sqrt(std::max(0.0, 1 - c.at * c.at));
     for (int k = 0; k < round; ++k) {
       const double phi = 2 * kPi * (k + 0.5) / round;
       const Vector3d direction = turn * Vector3d(s * std::cos(phi), s * std::sin(phi), c.at);
-      for (const Weighted& r : gauss_points(n, r0, r1))
+      for (const Node& r : gauss_points(n, r0, r1))
         add(r.at * direction, r.at * r.at * r.weight * c.weight * 2 * kPi / round);
     }
   }
@@ -71,15 +54,11 @@ Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::Matri
                  total += ball.back().weight;
                });
   for (SpaceNode& node : ball) node.weight /= total;
-  std::vector<Vector3d> where;
-  std::vector<double> weights;
-  std::vector<Index> owner;
+  SmoothingPlan plan(3);
   const auto add = [&](Index point, Vector3d at, double weight) {
     if (at.z() >= 0 || weight == 0) return;
     if (depth > 0) at.z() = std::max(at.z(), -depth * (1 - kInsideBase));
-    where.push_back(at);
-    weights.push_back(weight);
-    owner.push_back(point);
+    plan.add(point, at.transpose(), weight);
   };
   for (Index p = 0; p < points.rows(); ++p) {
     const Vector3d point = points.row(p).transpose();
@@ -95,14 +74,7 @@ Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::Matri
     }
     for (const SpaceNode& node : ball) add(p, point + node.at, node.weight);
   }
-  Eigen::MatrixXd nodes(static_cast<Index>(where.size()), 3);
-  for (std::size_t k = 0; k < where.size(); ++k)
-    nodes.row(static_cast<Index>(k)) = where[k].transpose();
-  const Eigen::MatrixXd values = stress(nodes);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(points.rows(), values.cols());
-  for (std::size_t k = 0; k < where.size(); ++k)
-    out.row(owner[k]) += weights[k] * values.row(static_cast<Index>(k));
-  return out;
+  return plan.evaluate(stress, points.rows());
 }
 
 }  // namespace grainfield::coupling

@@ -27,12 +27,6 @@ inline BootstrapOptions elastic_bootstrap() {
 }
 
 struct ElasticOptions {
-  /// pooled: every point of every realization is one sample; mean: the mean over the realizations
-  /// at a point is one (noise of the strain, which lowers fitted stiffnesses, averages out first).
-  std::string samples = "pooled";
-  /// Constants as polynomials of this degree around the centre: 0, or 1 (removes the first-order
-  /// bias at an edge of the points).
-  int degree = 0;
   BootstrapOptions bootstrap = elastic_bootstrap();
 };
 
@@ -54,15 +48,8 @@ struct IsotropicConstants {
 /// Least squares of the traces for K and of the deviators (two normal components and twice the
 /// shear) for G over the samples, weighted (Roul 3.15 to 3.19; one sample gives his formulas).
 /// Without change of volume K, E and nu are nan; without shear G, E and nu are. Throws
-/// std::invalid_argument as check_increments() and bootstrap(), and for bad options.
+/// std::invalid_argument as check_increments() and bootstrap().
 IsotropicConstants isotropic_constants(const Increments& increments, const Locality& where,
                                        const ElasticOptions& options);
-
-/// The same around each of the centres (m x 2), as a field with columns bulk, shear, young, poisson
-/// (with error), each also with _low and _high, bulk_share, shear_share, samples. Kernel and width
-/// as locality().
-Field elastic_constants_field(const Increments& increments, const Eigen::MatrixXd& centres,
-                              const std::string& kernel, double width,
-                              const ElasticOptions& options);
 
 }  // namespace grainfield::coupling

@@ -6,28 +6,27 @@
 
 namespace grainfield::coupling {
 
-/// Normal equations of y = 2 e (k_0 + k_x dx + k_y dy): y and e are the traces (k is K) or the
-/// deviators (k is G). Offsets in units of `scale`, so that the equations are well conditioned.
+/// Normal equation of y = 2 e k: y and e are the traces (k is K) or the deviators (k is G).
 struct StiffnessSums {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double strain = 0;  ///< 4 sum of w e^2
+  double right = 0;   ///< 2 sum of w e y
   double stress = 0;  ///< sum of w y^2
 
   void add(const StiffnessSums& other) {
-    matrix += other.matrix;
+    strain += other.strain;
     right += other.right;
     stress += other.stress;
   }
-  /// k_0 with `degree` 0 or 1; nan when the equations are singular. matrix(0, 0) is 4 sum of w e^2.
-  double stiffness(int degree) const;
+  /// k; nan without strain.
+  double stiffness() const;
   /// Share of the stress that the fit explains.
-  double share(int degree) const;
+  double share() const;
 };
 
 struct IsotropicSums {
   StiffnessSums trace, deviator;
 
-  void add(const Sample& sample, double scale);
+  void add(const Sample& sample);
   void add(const IsotropicSums& other) {
     trace.add(other.trace);
     deviator.add(other.deviator);
@@ -35,7 +34,7 @@ struct IsotropicSums {
   bool has_volume_change() const;  ///< of the strain, above rounding
   bool has_shear() const;
   /// K, G, E, nu; nan where undefined.
-  Eigen::Vector4d constants(int degree) const;
+  Eigen::Vector4d constants() const;
 };
 
 }  // namespace grainfield::coupling

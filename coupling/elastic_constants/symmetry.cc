@@ -139,20 +139,12 @@ bool SymmetryFit::isotropy_holds() const {
 
 SymmetryFit fit_symmetry(const Increments& increments, const Locality& where,
                          const ElasticOptions& options) {
-  check_options(options);
-  if (options.degree != 0)
-    throw std::invalid_argument(
-        fmt::format("degree of the fit of symmetry is {}; it must be 0", options.degree));
   const std::vector<Samples> all = gather(increments, where);
   const int realizations = increments.realizations();
-  const bool mean = options.samples == "mean";
   std::vector<int> everyone;
   for (int r = 0; r < realizations; ++r) everyone.push_back(r);
-  std::vector<Sample> samples;
-  if (mean)
-    samples = mean_samples(all, everyone, increments.points.rows());
-  else
-    for (const Samples& one : all) samples.insert(samples.end(), one.list.begin(), one.list.end());
+  Samples samples;
+  for (const Samples& one : all) samples.insert(samples.end(), one.begin(), one.end());
 
   SymmetryFit fit;
   fit.samples = static_cast<int>(samples.size());
@@ -180,7 +172,7 @@ SymmetryFit fit_symmetry(const Increments& increments, const Locality& where,
   // Draws from the sums of the realizations; the value itself from the orthogonal decomposition.
   std::vector<NormalSums> sums(all.size());
   for (std::size_t r = 0; r < all.size(); ++r)
-    for (const Sample& sample : all[r].list) sums[r].add(sample);
+    for (const Sample& sample : all[r]) sums[r].add(sample);
   const Eigen::VectorXd value =
       figures_of(four_known ? Eigen::Vector4d(four.solution)
                             : Eigen::Vector4d(Eigen::Vector4d::Constant(kNan)),
@@ -189,14 +181,9 @@ SymmetryFit fit_symmetry(const Increments& increments, const Locality& where,
   const auto statistic = [&](const std::vector<int>& chosen) {
     if (chosen == everyone) return value;
     NormalSums drawn;
-    if (mean) {
-      for (const Sample& sample : mean_samples(all, chosen, increments.points.rows()))
-        drawn.add(sample);
-    } else {
-      for (const int r : chosen) {
-        drawn.matrix += sums[static_cast<std::size_t>(r)].matrix;
-        drawn.right += sums[static_cast<std::size_t>(r)].right;
-      }
+    for (const int r : chosen) {
+      drawn.matrix += sums[static_cast<std::size_t>(r)].matrix;
+      drawn.right += sums[static_cast<std::size_t>(r)].right;
     }
     return solve(drawn);
   };

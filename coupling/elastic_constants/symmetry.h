@@ -37,10 +37,9 @@ struct SymmetryFit {
   bool isotropy_holds() const;
 };
 
-/// Weighted least squares in the norm of tensors (the shear counts twice); options.degree must be
-/// 0. Strains that do not vary enough to tell the constants apart (no shear; only one normal
-/// component): orthotropic constants and tests are nan, with a note. Throws as
-/// isotropic_constants().
+/// Weighted least squares in the norm of tensors (the shear counts twice). Strains that do not vary
+/// enough to tell the constants apart (no shear; only one normal component): orthotropic constants
+/// and tests are nan, with a note. Throws as isotropic_constants().
 SymmetryFit fit_symmetry(const Increments& increments, const Locality& where,
                          const ElasticOptions& options);
 

@@ -18,7 +18,7 @@
 #include "coupling/averaging/rings.h"
 #include "coupling/files/placement.h"
 #include "coupling/heap/pile_frame.h"
-#include "coupling/import/doubts.h"
+#include "coupling/import/packing_warnings.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -75,52 +75,23 @@ struct Extents {
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
 };
 
-// What makes the averages of states mean nothing, or something else than their user thinks: each
-// doubt once, with the first state that has it.
-class Doubts {
- public:
-  explicit Doubts(const AverageOptions& options) {
-    const auto& wanted = options.quantities;
-    forces_ = wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
+// What makes the averages of states mean nothing, or something else than their user thinks.
+void add_warnings(const SnapshotName& name, const dem::Snapshot& s, PackingWarnings& out) {
+  const std::string packing = name.file + ":" + name.group;
+  if (s.contacts.empty()) {
+    out.add(0, packing, "has no contacts: stress and fabric are 0");
+  } else {
+    out.add(1, packing, tension_in(check_packing(s)));
   }
-
-  void look_at(const SnapshotName& name, const dem::Snapshot& s) {
-    if (!forces_) return;
-    const bool bare = s.contacts.empty();
-    Doubt& doubt = bare ? bare_ : pulls_;
-    const std::string text =
-        bare ? "has no contacts: stress and fabric are 0" : tension_in(check_packing(s));
-    if (text.empty()) return;
-    if (doubt.text.empty()) {
-      doubt.text = fmt::format("{}:{}: {}", name.file, name.group, text);
-    } else {
-      ++doubt.others;
-    }
-  }
-
-  void add_to(std::vector<std::string>& warnings) const {
-    for (const Doubt& doubt : {bare_, pulls_}) {
-      if (doubt.text.empty()) continue;
-      warnings.push_back(doubt.others == 0
-                             ? doubt.text
-                             : fmt::format("{} (likewise {} other{})", doubt.text, doubt.others,
-                                           doubt.others == 1 ? "" : "s"));
-    }
-  }
-
- private:
-  struct Doubt {
-    std::string text;
-    int others = 0;
-  };
-  bool forces_ = true;
-  Doubt bare_, pulls_;
-};
+}
 
 Extents measure(const std::vector<Item>& items, const AverageRequest& request,
                 std::vector<std::string>& warnings) {
   Extents out;
-  Doubts doubts(request.options);
+  PackingWarnings of_forces;
+  const auto& wanted = request.options.quantities;
+  const bool forces =
+      wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
   const auto n = static_cast<double>(items.size());
   for (const auto& item : items) {
     const dem::Snapshot s = read(item.state);
@@ -129,8 +100,8 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
                                               item.state.file, item.state.group, s.dim, out.dim));
     out.dim = s.dim;
     const Placement placed = place(s, request.frame);
-    doubts.look_at(item.state, s);
-    if (request.response) doubts.look_at(item.unloaded, read(item.unloaded));
+    if (forces) add_warnings(item.state, s, of_forces);
+    if (forces && request.response) add_warnings(item.unloaded, read(item.unloaded), of_forces);
     out.depth += placed.depth / n;
     out.least = std::min(out.least, placed.depth);
     out.most = std::max(out.most, placed.depth);
@@ -154,7 +125,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
     }
     out.load = &item == &items.front() || force == out.load ? force : 0;
   }
-  doubts.add_to(warnings);
+  for (std::string& line : of_forces.lines("other")) warnings.push_back(std::move(line));
   if (out.most > kUnlikeHeights * out.least) {
     warnings.push_back(fmt::format(
         "packings {:.3g} to {:.3g} m high in one average{}: are they realizations of one?",

@@ -12,7 +12,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/compare/compare.h"
-#include "coupling/fit/heap_data.h"
+#include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/output_folder.h"
@@ -249,14 +249,14 @@ CompareOutcome compare_field(const CompareRequest& request) {
   const bool heap = scene.scene == Scene::heap;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const FieldLine& line = lines[l];
-    sets.push_back(
-        {line.points, line.base ? Seen::along_x : Seen::in_plane, line.kernel.get(), heap});
+    sets.push_back({line.points, line.base ? Smoothing::marginal : Smoothing::kernel,
+                    line.kernel.get(), heap});
     facts.depth = std::min(facts.depth, line.profile.depth);
     profiles.push_back(line.profile);
     if (line.base) main = l;
   }
   if (heap) facts.depth = facts.height;
-  if (map.nx > 0) sets.push_back({map.points, Seen::exactly, nullptr, heap});
+  if (map.nx > 0) sets.push_back({map.points, Smoothing::none, nullptr, heap});
 
   Summary summary;
   std::vector<ModelProfiles> models;

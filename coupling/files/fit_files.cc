@@ -12,9 +12,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/files/average_files.h"
 #include "coupling/fit/coverage.h"
-#include "coupling/fit/heap_data.h"
-#include "coupling/fit/heap_fits.h"
-#include "coupling/fit/heap_report.h"
+#include "coupling/fit/fits.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/fit/setup.h"
 #include "coupling/output/atomic_file.h"
@@ -138,7 +136,7 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
   return out;
 }
 
-std::string coverage_of_heaps(const FitSetup& setup, const HeapData& heaps,
+std::string coverage_of_heaps(const FitSetup& setup, const Observations& heaps,
                               const FitRequest& request) {
   std::vector<FitModel> models;
   const std::vector<FitModel> known = models_of(setup, heaps);
@@ -185,16 +183,16 @@ FitOutcome fit_files(const FitRequest& request) {
   for (const SnapshotName& heap : chosen.heaps) inputs.push_back(heap.file);
   results.require_other_than(inputs);
   FitOutcome out;
-  HeapData data;
+  Observations data;
   std::function<dem::Snapshot()> drawn;
   if (!chosen.field.empty()) {
     out.packings = {chosen.field_file + ":" + chosen.field};
-    data = heap_data(value.get<FitSetup>(), read_field(chosen.field_file, chosen.field),
-                     out.packings.front());
+    data = observe_heap_field(value.get<FitSetup>(), read_field(chosen.field_file, chosen.field),
+                              out.packings.front());
   } else {
     const HeapReader heaps = reader_of(chosen.heaps);
     for (std::size_t k = 0; k < heaps.count; ++k) out.packings.push_back(heaps.name(k));
-    data = heap_data(value.get<FitSetup>(), heaps, request.threads);
+    data = observe_heaps(value.get<FitSetup>(), heaps, request.threads);
     drawn = [heaps] { return heaps.read(0); };
   }
   value.name = fs::path(request.inputs.front()).stem().string();

@@ -12,6 +12,15 @@ FitData realizations_of(const FitData& data, const std::vector<int>& chosen) {
   return out;
 }
 
+std::vector<int> rows_at(const FitData& data, int component, int level) {
+  std::vector<int> out;
+  for (int k = 0; k < data.values(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (data.component[at] == component && data.level[at] == level) out.push_back(k);
+  }
+  return out;
+}
+
 FitData rows_of(const FitData& data, const std::vector<int>& rows) {
   FitData out;
   out.components = data.components;

@@ -29,6 +29,9 @@ struct FitData {
 /// The realizations named, in this order, with repetitions.
 FitData realizations_of(const FitData& data, const std::vector<int>& chosen);
 
+/// The rows of this component at this level.
+std::vector<int> rows_at(const FitData& data, int component, int level);
+
 /// The rows named; points, components, levels and samples together.
 FitData rows_of(const FitData& data, const std::vector<int>& rows);
 

@@ -1,9 +1,29 @@
 #include "coupling/fit/figures.h"
 
+#include <algorithm>
+
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/models.h"
+
 namespace grainfield::coupling {
+namespace {
+
+// The constants of all models, each name once.
+void add_constants(const std::vector<FitModel>& models, std::vector<SummaryKey>& out) {
+  for (const FitModel& model : models) {
+    for (const FitParameter& p : model.parameters) {
+      const std::string pattern = "fit.*." + p.name;
+      const bool known = std::any_of(out.begin(), out.end(),
+                                     [&](const SummaryKey& key) { return key.pattern == pattern; });
+      if (!known) out.push_back({pattern, p.unit, p.meaning});
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<SummaryKey> figures_of_fits() {
-  return {
+  std::vector<SummaryKey> out{
       {"fit.values", "-", "stress values that are fitted, all components and heights"},
       {"fit.slope_deg", "deg", "mean slope of the piles: the models' slope and friction angle"},
       {"fit.left_deg", "deg", "slope of the left flank, for models that take the flanks apart"},
@@ -32,36 +52,12 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.*.heights_behind_error", "-", "its standard error over the realizations"},
       {"fit.*.supported", "text", "yes: not behind the best by more than chance; no"},
       {"fit.*.branch", "text", "branch of Cantelaube's theory with the nearest core angle"},
-      {"fit.*.beta_hat_deg", "deg", "half tip angle of the elastic core, from the vertical"},
-      {"fit.*.a1", "-", "core: sigma_yy under the axis = (a1 - 1) rho g depth (Roul 4.6)"},
-      {"fit.*.a2", "-", "core: sigma_xx = (a2 - 1) rho g depth"},
-      {"fit.*.b1", "-", "core: kink of sigma_yy at the axis; below 0 a dip"},
-      {"fit.*.a_xx", "-", "flanks: sigma_xx over the weight above (Roul 4.9)"},
-      {"fit.*.a_yy", "-", "flanks: sigma_yy over the weight above"},
-      {"fit.*.a_xy", "-", "flanks: shear over the weight above"},
       {"fit.*.flank_balance_x", "-",
        "flanks: a_xy - a_xx tan(slope), 0 in equilibrium along x; else a description, no field"},
       {"fit.*.flank_balance_y", "-",
        "flanks: a_yy - 1 - a_xy tan(slope), 0 in equilibrium along y"},
-      {"fit.*.eta", "-", "OSL: sigma_xx / sigma_yy without shear"},
-      {"fit.*.mu", "-", "OSL: sigma_xx per shear; below 0 a dip"},
-      {"fit.*.friction_deg", "deg", "two slopes: friction angle"},
-      {"fit.*.yield_ray_deg", "deg",
-       "two slopes: ray on which the core yields, from the downward vertical, positive to the "
-       "right"},
-      {"fit.*.k_left", "-", "two slopes: left flank's sigma_xx over the depth below its slope"},
-      {"fit.*.k_right", "-", "the same on the right"},
-      {"fit.*.ray_deg", "deg",
-       "two slopes: ray of the core's kink, from the downward vertical, positive to the right"},
-      {"fit.*.kink", "-", "two slopes: slope of the kink (rho g); below 0 a dip"},
       {"fit.*.K", "-", "OSL: ratio of the normal stresses on the fixed axes (Roul 4.23)"},
       {"fit.*.tau_deg", "deg", "OSL: angle of the fixed axes (Roul 4.23)"},
-      {"fit.*.nu", "-", "Poisson's ratio of an isotropic layer"},
-      {"fit.*.rho", "-", "r/sqrt(t) of an orthotropic body: below 0 two peaks, -1 hyperbolic"},
-      {"fit.*.t", "-", "E_x/E_y of an orthotropic body"},
-      {"fit.*.shear", "-", "E_x/(2 G sqrt t): rho + nu_xy/sqrt t"},
-      {"fit.*.nu_ratio", "-", "nu_xy/sqrt t of an orthotropic layer on a rough base"},
-      {"fit.*.width", "h", "OSL layer: width over which the load is spread"},
       {"fe.*.constants_of", "text", "fitted model whose constants a finite-element solve took"},
       {"fe.*.note", "text", "why it was not solved; empty: it was"},
       {"fe.*.chi2_per_dof", "-", "of its field, on the fit's points with the fit's weights"},
@@ -71,6 +67,9 @@ std::vector<SummaryKey> figures_of_fits() {
       {"verdict.agrees", "text", "yes: chi2/dof of the best model is what chance allows; no"},
       {"verdict.distinguishable", "text", "yes: one model is supported alone; no"},
   };
+  add_constants(heap_models({}), out);
+  add_constants(layer_models(nullptr), out);
+  return out;
 }
 
 }  // namespace grainfield::coupling

@@ -163,6 +163,7 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
   Fit out;
   out.name = model.name;
   out.label = model.label;
+  out.equations = model.equations;
   std::vector<Eigen::VectorXd> ends;
   const Eigen::VectorXd best = best_parameters(data, mean, weights, model, model.starts,
                                                options.huber, &out.converged, &ends);

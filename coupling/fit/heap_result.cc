@@ -5,59 +5,51 @@
 
 #include <memory>
 
+#include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/heap_elements.h"
-#include "coupling/fit/heap_report.h"
 #include "coupling/fit/setup.h"
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
 namespace {
 
-Report page_of(const StudyResult& result, const Realization* first, const HeapFits& fits,
+Report page_of(const StudyResult& result, const Realization* first, const EnsembleFits& fits,
                const std::function<dem::Snapshot()>& drawn) {
   Report out;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
-  const HeapFacts& facts = fits.heaps.facts;
-  out.subtitle = fmt::format("{} pile{}, slope {:.1f} deg", fits.heaps.frames.size(),
-                             fits.heaps.frames.size() == 1 ? "" : "s", facts.slope_deg);
+  out.title = title_of(result.value);
+  const HeapFacts& facts = fits.observed.facts;
+  out.subtitle = fmt::format("{} pile{}, slope {:.1f} deg", fits.observed.frames.size(),
+                             fits.observed.frames.size() == 1 ? "" : "s", facts.slope_deg);
   if (facts.left_deg > 0) {
     out.subtitle += fmt::format(" ({:.1f} left, {:.1f} right, friction angle {:.1f})",
                                 facts.left_deg, facts.right_deg, facts.friction());
   }
   out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
-  if (!fits.heaps.warnings.empty()) {
+  if (!fits.observed.warnings.empty()) {
     out.sections.emplace_back(
-        Text{"Doubts", fmt::format("{}", fmt::join(fits.heaps.warnings, "\n\n")), false});
+        Text{"Doubts", fmt::format("{}", fmt::join(fits.observed.warnings, "\n\n")), false});
   }
-  for (Section& section : fit_sections(fits)) out.sections.push_back(std::move(section));
+  for (Section& section : fit_pictures(fits)) out.sections.push_back(std::move(section));
+  for (Section& section : fit_tables(fits)) out.sections.push_back(std::move(section));
   if (first != nullptr) {
     out.sections.emplace_back(packing("Network of forces", (*first)["pile"]));
   } else if (drawn) {
     out.sections.emplace_back(packing("Network of forces", drawn()));
   }
-  Table made{"How it was made", "", {}, {}};
-  for (const auto& [key, value] : origin_rows(result)) made.rows.push_back({key, value});
-  out.sections.emplace_back(std::move(made));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 
 }  // namespace
 
-StudyResult heap_result(const Case& value, HeapData heaps, int threads,
+StudyResult heap_result(const Case& value, Observations heaps, int threads,
                         std::function<dem::Snapshot()> drawn) {
   StudyResult out;
   out.value = value;
-  const auto fits =
-      std::make_shared<const HeapFits>(fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
+  const auto fits = std::make_shared<const EnsembleFits>(
+      fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
   out.comparison = profiles_of(*fits);
-  add_fits(out.summary, *fits);
-  out.comparison.verdict.best_model = fits->selection.ranking.front().name;
-  out.comparison.verdict.sentence = fits->selection.sentence;
-  out.summary["verdict.sentence"] = fits->selection.sentence;
-  out.texts = {{"fits.csv", parameters_csv(fits->fits)},
-               {"fits.md", fits_markdown(*fits)},
-               {"fits.tex", fits_tex(*fits)}};
+  add_fits(out, *fits);
   out.overview = {{"best model", "verdict.best_model", ""},
                   {"beta_hat (deg)", "fit.cantelaube.beta_hat_deg", ""},
                   {"b1", "fit.cantelaube.b1", ""},
@@ -66,7 +58,6 @@ StudyResult heap_result(const Case& value, HeapData heaps, int threads,
   out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
     return page_of(result, first, *fits, drawn);
   };
-  add_heap_elements(out, heap_elements(*fits, value.get<FitSetup>().finite_elements));
   return out;
 }
 

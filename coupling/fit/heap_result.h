@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "coupling/fit/heap_data.h"
+#include "coupling/fit/observations.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
@@ -11,7 +11,7 @@ namespace grainfield::coupling {
 /// Fits, tables, summary keys and page. `value`: name, title and fit of the case count. `drawn`: a
 /// heap for the page where no realization is at hand; called while the page is made; may be empty.
 /// Throws as fit_heaps.
-StudyResult heap_result(const Case& value, HeapData heaps, int threads,
+StudyResult heap_result(const Case& value, Observations heaps, int threads,
                         std::function<dem::Snapshot()> drawn = nullptr);
 
 }  // namespace grainfield::coupling

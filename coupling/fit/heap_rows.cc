@@ -8,10 +8,13 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "continuum/constants.h"
+#include "coupling/averaging/points.h"
+
 namespace grainfield::coupling {
 namespace {
 
-constexpr int kLeastRows = 10;
+constexpr int kMapColumns = 101, kMapRows = 33;
 constexpr double kRounding = 1e-9;  // of the largest value
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
 
@@ -125,8 +128,37 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoot
   return out;
 }
 
+double depth_below_flank(const HeapFacts& facts, double x, double y) {
+  return -y - std::fabs(x) * std::tan((x < 0 ? facts.left() : facts.right()) * kDegree);
+}
+
+StressMaps heap_map_grid(const HeapSlopes& slopes) {
+  StressMaps out;
+  out.columns = kMapColumns;
+  out.rows = kMapRows;
+  out.points = grid_points(-1 / slopes.left(), 1 / slopes.right(), kMapColumns, -1, 0, kMapRows);
+  return out;
+}
+
+void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
+                    StressMaps& maps) {
+  average_maps(
+      samples,
+      [&](double x, double y) { return depth_below_flank(facts, x, y) >= 0 && 1 + y >= margin; },
+      maps);
+}
+
+void set_mean_heap(Observations& out) {
+  const double n = static_cast<double>(out.frames.size());
+  out.height = out.unit = 0;
+  for (const PileFrame& f : out.frames) {
+    out.height += f.height / n;
+    out.unit += f.pressure() / n;
+  }
+}
+
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
-                         HeapData& out) {
+                         Observations& out) {
   std::vector<std::string> low;
   for (const double share : heights) {
     if (share * height < width) low.push_back(fmt::format("{:.3g}", share));
@@ -140,7 +172,7 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       std::ceil(100 * width / height) / 100));
 }
 
-void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, HeapData& out) {
+void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, Observations& out) {
   if (out.frames.size() < 2) return;
   std::vector<double> heights;
   for (const PileFrame& frame : out.frames) heights.push_back(frame.height);
@@ -177,7 +209,7 @@ std::vector<std::size_t> kept_realizations(std::size_t count, const std::vector<
   return out;
 }
 
-void warn_of_set_slopes(const FitSetup& setup, HeapData& out) {
+void warn_of_set_slopes(const FitSetup& setup, Observations& out) {
   const auto compare = [&](const char* key, double set, double PileFrame::*member) {
     const double measured = mean_of(out.frames, member);
     if (!(set > 0) || !(std::fabs(set - measured) > kFarSlope)) return;
@@ -191,7 +223,7 @@ void warn_of_set_slopes(const FitSetup& setup, HeapData& out) {
 }
 
 void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
-                 const std::function<std::string(std::size_t)>& name, HeapData& out) {
+                 const std::function<std::string(std::size_t)>& name, Observations& out) {
   std::vector<Eigen::Index> kept;
   std::string first;
   for (Eigen::Index r = 0; r < all.cols(); ++r) {
@@ -218,36 +250,24 @@ void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
 }
 
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
-               const Eigen::MatrixXd& all, HeapData& out) {
+               const Eigen::MatrixXd& all, Observations& out) {
   const Eigen::Index n = points.rows();
-  FitData& data = out.data;
-  data.components = setup.components;
-  std::vector<Eigen::Index> rows;
-  for (std::size_t c = 0; c < setup.components.size(); ++c) {
-    const auto at = std::find(kPlaneStress.begin(), kPlaneStress.end(), setup.components[c]);
-    const Eigen::Index first = (at - kPlaneStress.begin()) * n;
-    for (Eigen::Index p = 0; p < n; ++p) {
-      if (!all.row(first + p).allFinite()) {
-        ++out.left_out;
-        continue;
-      }
-      rows.push_back(first + p);
-      data.component.push_back(static_cast<int>(c));
-      data.level.push_back(level[static_cast<std::size_t>(p)]);
-    }
+  FitData chosen;
+  chosen.components = setup.components;
+  chosen.levels = out.data.levels;
+  const auto count = static_cast<Eigen::Index>(setup.components.size());
+  chosen.points = points.replicate(count, 1);
+  chosen.samples.resize(count * n, all.cols());
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const auto at = std::find(kPlaneStress.begin(), kPlaneStress.end(),
+                              setup.components[static_cast<std::size_t>(c)]);
+    chosen.samples.middleRows(c * n, n) = all.middleRows((at - kPlaneStress.begin()) * n, n);
+    chosen.component.insert(chosen.component.end(), static_cast<std::size_t>(n),
+                            static_cast<int>(c));
+    chosen.level.insert(chosen.level.end(), level.begin(), level.end());
   }
-  if (static_cast<int>(rows.size()) < kLeastRows) {
-    throw std::invalid_argument(fmt::format(
-        "fit.heights: found {} values in the heaps, needed: {} or more; choose lower heights, a "
-        "smaller fit.width_diameters or larger piles",
-        rows.size(), kLeastRows));
-  }
-  data.points.resize(static_cast<Eigen::Index>(rows.size()), 2);
-  data.samples.resize(static_cast<Eigen::Index>(rows.size()), all.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    data.points.row(static_cast<Eigen::Index>(k)) = points.row(rows[k] % n);
-    data.samples.row(static_cast<Eigen::Index>(k)) = all.row(rows[k]);
-  }
+  keep_complete_rows(chosen, "fit.heights",
+                     "choose lower heights, a smaller fit.width_diameters or larger piles", out);
 }
 
 }  // namespace grainfield::coupling

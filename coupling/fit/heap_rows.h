@@ -1,11 +1,11 @@
-// What both sources of heap data share: geometry of the mean heap, lines through it, and the rows
-// that every realization has.
+// What both sources of heaps share: geometry of the mean heap, lines through it, its maps, and the
+// rows that every realization has.
 #pragma once
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "coupling/fit/heap_data.h"
+#include "coupling/fit/observations.h"
 
 namespace grainfield::coupling {
 
@@ -26,33 +26,47 @@ HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames
 /// friction angle below the slopes.
 HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing);
 
+/// Empty maps on a grid over a heap with these slopes, from foot to foot.
+StressMaps heap_map_grid(const HeapSlopes& slopes);
+
+/// average_maps without what is above the mean flanks, and nearer to the floor than `margin` over h
+/// (the averaging width: there the average mixes in what lies below the floor).
+void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
+                    StressMaps& maps);
+
+/// Depth of a point below the mean flank, over h.
+double depth_below_flank(const HeapFacts& facts, double x, double y);
+
+/// Mean height and unit of stress of out.frames.
+void set_mean_heap(Observations& out);
+
 /// Adds a warning for heights nearer to the floor than the averaging width `width`, m, of heaps
 /// that are at least `height` m high: there the average mixes in the stress continued below the
 /// floor, and constants are biased.
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
-                         HeapData& out);
+                         Observations& out);
 
 /// Adds a warning that names every heap whose height differs from the median by more than a
 /// realization's does (kUnlikeHeights): one of another size, or with a stray grain.
-void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, HeapData& out);
+void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, Observations& out);
 
 /// Indices of the realizations that are not among `numbers` (from 1). Throws std::invalid_argument
 /// "fit.leave_out: ..." for a number that there is not, or when none is left.
 std::vector<std::size_t> kept_realizations(std::size_t count, const std::vector<double>& numbers);
 
 /// Adds a warning for slopes of the setup that are more than 5 degrees off the heaps' own.
-void warn_of_set_slopes(const FitSetup& setup, HeapData& out);
+void warn_of_set_slopes(const FitSetup& setup, Observations& out);
 
 /// Drops packings that are copies of an earlier one (all values equal but for rounding), with a
 /// warning: they are no independent realizations. `all`, `grid`: values x packings, and the frames
 /// in `out`; `name` of a packing, for the warning.
 void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
-                 const std::function<std::string(std::size_t)>& name, HeapData& out);
+                 const std::function<std::string(std::size_t)>& name, Observations& out);
 
-/// Chooses the components and drops rows that are not finite in every realization. `all`: values of
-/// sigma_xx on all points, then sigma_yy, sigma_xy; columns realizations. `level`: of each point.
-/// Throws std::invalid_argument when fewer than 10 values are left.
+/// Chooses the components, and of these the complete rows. `all`: values of sigma_xx on all points,
+/// then sigma_yy, sigma_xy; columns realizations. `level`: of each point. Throws as
+/// keep_complete_rows.
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
-               const Eigen::MatrixXd& all, HeapData& out);
+               const Eigen::MatrixXd& all, Observations& out);
 
 }  // namespace grainfield::coupling

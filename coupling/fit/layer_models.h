@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "coupling/fit/fit.h"
-#include "coupling/fit/layer_sight.h"
 #include "coupling/fit/model.h"
-#include "coupling/models/choice.h"
+#include "coupling/fit/observation_operator.h"
 
 namespace grainfield::coupling {
 
-/// Models of a layer under F = 1 with h = 1, seen at the sight's points:
+/// Models of a layer under F = 1 with h = 1, seen at the operator's points; null: without it their
+/// stress cannot be asked for.
 ///   flamant                     isotropic half plane, no parameter
 ///   layer_smooth                isotropic layer on a smooth base, no parameter
 ///   layer_rough                 on a rough base: nu
@@ -21,28 +21,14 @@ namespace grainfield::coupling {
 ///                               nu_xy/sqrt t; rho = shear - nu_ratio
 ///   osl_layer_absorbing, osl_layer_reflecting   eta, mu, and the width of the load
 /// rho above -1 is elliptic; below 0 there are two peaks; -1 is the hyperbolic limit.
-std::vector<FitModel> layer_models(std::shared_ptr<const LayerSight> sight);
-/// Their names, without a sight.
-const std::vector<std::string>& layer_model_names();
-
-/// "elliptic" or "hyperbolic", by the name of the model or of its finite elements.
-std::string type_of_equations(const std::string& model);
+std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> seeing);
+/// Their names.
+std::vector<std::string> layer_model_names();
 
 /// rho of a fit of an orthotropic_* model, with its error; nan of other models.
 struct Ratio {
   double value = 0, error = 0;
 };
 Ratio rho_of(const Fit& fit);
-
-/// The registry's model with the fitted constants, lengths in m of a layer of depth h (F and h are
-/// left to the run); label: the fitted model's name.
-ModelChoice fitted_choice(const Fit& fit, double h);
-/// The finite-element model `name` of the registry with the constants of the best of the fits
-/// (least expected misfit) that it can represent: fe_elastic_half_space of flamant,
-/// fe_elastic_layer of layer_*, fe_orthotropic_layer of orthotropic_layer_*, fe_osl_layer of
-/// osl_layer_absorbing. Null, with the reason in `why`, when there is no such fit.
-std::unique_ptr<ModelChoice> finite_element_choice(const std::string& name,
-                                                   const std::vector<Fit>& fits, double h,
-                                                   std::string& of, std::string& why);
 
 }  // namespace grainfield::coupling

@@ -7,9 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "coupling/compare/significance.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/layer_models.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -23,12 +22,12 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-LayerVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
+FitVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
   std::vector<const Fit*> order;
   for (const Fit& f : fits) order.push_back(&f);
   std::stable_sort(order.begin(), order.end(),
                    [](const Fit* a, const Fit* b) { return a->rel_l2 < b->rel_l2; });
-  LayerVerdict out;
+  FitVerdict out;
   out.model = order.front()->name;
   out.equations = "not distinguishable";
   out.sentence = fmt::format(
@@ -40,9 +39,9 @@ LayerVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
     out.sentence += fmt::format(", then {} ({:.1f} %)", order[1]->name, 100 * order[1]->rel_l2);
   }
   for (const Fit* f : order) {
-    if (type_of_equations(f->name) == type_of_equations(out.model)) continue;
-    out.sentence += fmt::format("; the nearest {} one is {} ({:.1f} %)", type_of_equations(f->name),
-                                f->name, 100 * f->rel_l2);
+    if (f->equations == order.front()->equations) continue;
+    out.sentence += fmt::format("; the nearest {} one is {} ({:.1f} %)", f->equations, f->name,
+                                100 * f->rel_l2);
     break;
   }
   out.sentence += ".";
@@ -59,15 +58,15 @@ bool contains(const std::string& general, const std::string& special) {
          (general == "orthotropic_layer_rough" && special == "layer_rough");
 }
 
-LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
-                           int realizations) {
+FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
+                         int realizations) {
   if (fits.empty() || selection.ranking.empty()) {
     throw std::invalid_argument("verdict: no fitted model");
   }
   if (realizations < least_for_significance || std::isnan(fits.front().chi2_per_dof)) {
     return without_spread(fits, realizations);
   }
-  LayerVerdict out;
+  FitVerdict out;
   std::vector<std::string> supported;
   std::set<std::string> types;
   const Fit* simplest = nullptr;
@@ -75,7 +74,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
     if (!s.supported) continue;
     const Fit& f = fit_named(fits, s.name);
     supported.push_back(s.name);
-    types.insert(type_of_equations(s.name));
+    types.insert(f.equations);
     if (simplest == nullptr || f.parameters.size() < simplest->parameters.size()) simplest = &f;
   }
   out.model = simplest->name;
@@ -103,9 +102,9 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
   } else {
     out.sentence += fmt::format(" The response is {}", out.equations);
     for (const Score& s : selection.ranking) {
-      if (type_of_equations(s.name) == out.equations) continue;
-      out.sentence += fmt::format(": the best {} model, {}, is {}", type_of_equations(s.name),
-                                  s.name, evidence(s));
+      const std::string& equations = fit_named(fits, s.name).equations;
+      if (equations == out.equations) continue;
+      out.sentence += fmt::format(": the best {} model, {}, is {}", equations, s.name, evidence(s));
       break;
     }
     out.sentence += ".";
@@ -115,7 +114,7 @@ LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& select
         " No agreement within the errors: chi2/dof {:.3g}, where up to {:.3g} would be chance.",
         simplest->chi2_per_dof, simplest->chance);
   }
-  out.sentence += sign_doubts(fits, supported);
+  out.sentence += sign_warnings(fits, supported);
   return out;
 }
 

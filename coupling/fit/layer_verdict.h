@@ -1,4 +1,4 @@
-// The verdict on a layer under a point load, in words: which model, elliptic or hyperbolic.
+// The verdict in words: which model; of layers under a point load also elliptic or hyperbolic.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace grainfield::coupling {
 
-struct LayerVerdict {
+/// Of heaps `model` is the first of the ranking, and nothing is said of equations and agreement.
+struct FitVerdict {
   /// The supported model with the fewest free numbers (the best among equals): richer models of
   /// which it is a special case cannot be told from it and do not outbid it.
   std::string model;
@@ -23,7 +24,7 @@ bool contains(const std::string& general, const std::string& special);
 
 /// `fits` and `selection` of the same data and models. Below 3 realizations nothing is
 /// distinguishable: `model` is then the nearest by relative L2.
-LayerVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
-                           int realizations);
+FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
+                         int realizations);
 
 }  // namespace grainfield::coupling

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "continuum/model.h"
+
 namespace grainfield::coupling {
 
 struct FitParameter {
@@ -14,6 +16,13 @@ struct FitParameter {
   std::string meaning;  ///< one line
   double least = 0;     ///< open bounds of the search; infinite: none
   double most = 0;
+};
+
+/// A model of the registry (continuum/registry.h) that is a model of fits with these constants, of
+/// a layer or heap of height h, m.
+struct RegistryModel {
+  std::string name;
+  std::function<continuum::Settings(const Eigen::VectorXd& parameters, double h)> settings;
 };
 
 /// A model with free parameters; without any it is only compared.
@@ -31,6 +40,9 @@ struct FitModel {
   std::function<FitModel(const std::vector<int>&)> measured_on = {};
   /// The same at the points themselves where `stress` is seen through a kernel; else empty.
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> at_point = {};
+  std::string equations = {};  ///< "elliptic" or "hyperbolic"; empty: nothing is said of it
+  /// The same in the registry: the closed form first, where there is one, then finite elements.
+  std::vector<RegistryModel> in_registry = {};
 };
 
 /// The model as these realizations alone have it; itself where it takes nothing from them or where

@@ -143,6 +143,35 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                  {numbers({0.6, 0.0}), numbers({0.75, -0.3}), numbers({0.95, -0.9})},
                  [=](const MatrixXd& points, const VectorXd& p) { return osl(points, p[0], p[1]); },
                  ""});
+  const auto text = [](double v) { return fmt::format("{}", v); };
+  const auto heap = [text, slope = facts.slope_deg](double h) {
+    return continuum::Settings{{"phi_deg", text(slope)}, {"rho_g", "1"}, {"h", text(h)}};
+  };
+  for (FitModel& model : out) {
+    if (model.name == "osl" || model.name == "osl_yield") {
+      const bool both = model.parameters.size() == 2;
+      model.in_registry = {{"fe_osl_wedge", [=](const VectorXd& p, double h) {
+                              continuum::Settings settings = heap(h);
+                              const double of_yield = continuum::eta_at_yield(
+                                  facts.slope_deg * std::numbers::pi / 180, p[p.size() - 1]);
+                              settings["eta"] = text(both ? p[0] : of_yield);
+                              settings["mu"] = text(p[p.size() - 1]);
+                              return settings;
+                            }}};
+    } else if (model.name.starts_with("cantelaube_")) {
+      model.in_registry = {{"fe_mohr_coulomb_wedge", [=](const VectorXd&, double h) {
+                              continuum::Settings settings = heap(h);
+                              // A slope at the friction angle stands without dilation only by luck
+                              // (theory-plasticity.md).
+                              settings.insert(
+                                  {{"dilation_deg", text(std::min(10.0, facts.slope_deg))},
+                                   {"history", "grow"},
+                                   {"layers", "12"},
+                                   {"cells", "24"}});
+                              return settings;
+                            }}};
+    }
+  }
   out.push_back(fixed("fpa", "fixed principal axes",
                       [=](const MatrixXd& points) { return osl(points, 1, -2 * std::tan(phi)); }));
   out.push_back(fixed("bcc", "Bouchaud, Cates and Claudin: mu = 0", [=](const MatrixXd& points) {

@@ -115,7 +115,7 @@ std::string evidence(const Score& s) {
   return out + " (squared, of the signal's)";
 }
 
-std::string sign_doubts(const std::vector<Fit>& fits, const std::vector<std::string>& names) {
+std::string sign_warnings(const std::vector<Fit>& fits, const std::vector<std::string>& names) {
   std::string out;
   for (const Fit& f : fits) {
     if (f.turning_signs.empty() || std::find(names.begin(), names.end(), f.name) == names.end()) {
@@ -216,7 +216,7 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
                       100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
     }
   }
-  out.sentence += doubt(fits[best]) + sign_doubts(fits, names);
+  out.sentence += doubt(fits[best]) + sign_warnings(fits, names);
   return out;
 }
 

@@ -59,7 +59,7 @@ struct Selection {
 std::string evidence(const Score& score);
 
 /// " The sign of osl hangs on single realizations: mu is ..." for the models named; may be empty.
-std::string sign_doubts(const std::vector<Fit>& fits, const std::vector<std::string>& names);
+std::string sign_warnings(const std::vector<Fit>& fits, const std::vector<std::string>& names);
 
 /// Ranks the models. `fits`: of the same data and weights, in the order of `models`. Throws
 /// std::invalid_argument for no model or sizes that differ.

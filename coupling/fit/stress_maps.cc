@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "continuum/constants.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -12,6 +14,24 @@ const char* const kLabels[] = {"-sigma_xx", "-sigma_yy", "sigma_xy"};
 constexpr double kSigns[] = {-1, -1, 1};
 
 }  // namespace
+
+void average_maps(const Eigen::MatrixXd& samples, const std::function<bool(double, double)>& shown,
+                  StressMaps& maps) {
+  const Eigen::Index n = maps.points.rows();
+  const auto count = static_cast<double>(samples.cols());
+  maps.mean = maps.error = Eigen::MatrixXd::Constant(n, 3, kNan);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    if (!shown(maps.points(p, 0), maps.points(p, 1))) continue;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto row = samples.row(c * n + p);
+      maps.mean(p, c) = row.mean();
+      if (count > 1) {
+        maps.error(p, c) =
+            std::sqrt((row.array() - row.mean()).square().sum() / (count - 1) / count);
+      }
+    }
+  }
+}
 
 std::vector<Section> map_sections(const StressMaps& m, const Eigen::MatrixXd& model,
                                   const std::string& name, const MapWords& words) {

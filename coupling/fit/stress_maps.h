@@ -1,6 +1,7 @@
 // Where models fail: grains, model and residual on a grid, of heaps and of layers.
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct StressMaps {
   Eigen::MatrixXd points;       ///< n x 2; no rows: there is no map
   Eigen::MatrixXd mean, error;  ///< n x 3 (xx, yy, xy); error: standard, nan with one realization
 };
+
+/// Mean and standard error of sigma_xx, _yy, _xy on maps.points, nan where `shown` (x, y) is false;
+/// `samples`: 3n x realizations, the components one after the other.
+void average_maps(const Eigen::MatrixXd& samples, const std::function<bool(double, double)>& shown,
+                  StressMaps& maps);
 
 struct MapWords {
   std::string unit;     ///< of the stresses, for gnuplot: "F/h"

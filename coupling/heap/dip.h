@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "coupling/compare/significance.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 

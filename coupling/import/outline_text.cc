@@ -33,10 +33,4 @@ dem::Outline parse_outline(std::string_view text) {
   return outline;
 }
 
-std::string outline_text(const dem::Outline& outline) {
-  std::string text;
-  for (const auto& [x, y] : outline) text += fmt::format("{}{} {}", text.empty() ? "" : ";", x, y);
-  return text;
-}
-
 }  // namespace grainfield::coupling

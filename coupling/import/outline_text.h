@@ -9,7 +9,5 @@ namespace grainfield::coupling {
 
 /// Corners, m. Throws std::invalid_argument saying which corner is no pair of finite numbers.
 dem::Outline parse_outline(std::string_view text);
-/// With all digits.
-std::string outline_text(const dem::Outline& outline);
 
 }  // namespace grainfield::coupling

@@ -11,9 +11,9 @@
 #include <set>
 
 #include "continuum/constants.h"
-#include "continuum/idle.h"
 #include "continuum/settings.h"
 #include "continuum/size.h"
+#include "continuum/without_effect.h"
 #include "coupling/compare/compare.h"
 #include "coupling/compare/smooth.h"
 #include "coupling/compare/smooth_space.h"
@@ -24,15 +24,15 @@ namespace {
 // The smoothing asks for stresses at nodes of its own choice. A first pass notes the nodes, the
 // model is called once, and a second pass hands out what it gave.
 Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, double depth) {
-  if (set.seen == Seen::exactly) return stress(set.points);
+  if (set.smoothing == Smoothing::none) return stress(set.points);
   const StressFunction nodes = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
     if (!set.empty_outside) return stress(points);
     return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
   };
   Eigen::MatrixXd out =
-      set.points.cols() == 3       ? smooth_in_space(nodes, set.points, *set.kernel, depth)
-      : set.seen == Seen::in_plane ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
-                                   : smooth_along_x(nodes, set.points, *set.kernel);
+      set.points.cols() == 3               ? smooth_in_space(nodes, set.points, *set.kernel, depth)
+      : set.smoothing == Smoothing::kernel ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
+                                           : smooth_along_x(nodes, set.points, *set.kernel);
   if (set.empty_outside) {
     const Eigen::MatrixXd here = stress(set.points);
     for (Eigen::Index p = 0; p < here.rows(); ++p) {
@@ -60,8 +60,9 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
     const auto number = facts.numbers.find(parameter.name);
     if (number == facts.numbers.end() || out.count(parameter.name) != 0) continue;
     // What the case sets may leave it without effect, as a map does r and t.
-    if (!continuum::idle_because(choice.name, parameter.name,
-                                 continuum::complete(continuum::find_model(choice.name), out))
+    if (!continuum::without_effect_because(
+             choice.name, parameter.name,
+             continuum::complete(continuum::find_model(choice.name), out))
              .empty())
       continue;
     if (std::isnan(number->second)) {
@@ -87,8 +88,8 @@ void require_models(const std::vector<ModelChoice>& choices, const RunFacts& fac
   for (const ModelChoice& choice : choices) {
     const auto& info = continuum::find_model(choice.name);
     const continuum::Settings settings = filled_settings(choice, facts);
-    if (const auto idle = continuum::find_idle(info, settings)) {
-      throw continuum::BadParameter(idle->refusal);
+    if (const auto found = continuum::find_without_effect(info, settings)) {
+      throw continuum::BadParameter(found->refusal);
     }
     const continuum::Settings full = continuum::complete(info, settings);
     continuum::require_possible(info, full);

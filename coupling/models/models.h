@@ -33,13 +33,15 @@ void require_models(const std::vector<ModelChoice>& choices);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
 
-/// How a model is seen at some points (models' frame).
-enum class Seen { exactly, in_plane, along_x };  // in_plane: of points in space, over space
+/// How a model's stress is averaged at some points (models' frame), as the grains' is: not at all;
+/// with the kernel (over the plane, of points in space over space); along x with the kernel's
+/// marginal.
+enum class Smoothing { none, kernel, marginal };
 
 struct PointSet {
   Eigen::MatrixXd points;
-  Seen seen = Seen::exactly;
-  const Kernel* kernel = nullptr;  ///< for in_plane, along_x
+  Smoothing smoothing = Smoothing::none;
+  const Kernel* kernel = nullptr;  ///< for kernel, marginal
   /// There is nothing where the model gives nan (outside of a heap): the smoothing counts zero
   /// stress there, and points that are themselves outside stay nan.
   bool empty_outside = false;

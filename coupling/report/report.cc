@@ -137,6 +137,14 @@ class Page {
 
 }  // namespace
 
+void add_rows(Report& report, const std::string& title, const ReportRows& rows,
+              const std::string& caption) {
+  if (rows.empty()) return;
+  Table table{title, caption, {}, {}};
+  for (const auto& [name, value] : rows) table.rows.push_back({name, value});
+  report.sections.emplace_back(std::move(table));
+}
+
 std::string ReportResult::complaint() const {
   if (missing == 0) return "";
   const int all = pictures + missing;

@@ -29,6 +29,12 @@ struct Report {
   std::vector<Section> sections;
 };
 
+/// Names and values, for a table of two columns.
+using ReportRows = std::vector<std::pair<std::string, std::string>>;
+/// Adds that table; without rows nothing.
+void add_rows(Report& report, const std::string& title, const ReportRows& rows,
+              const std::string& caption = "");
+
 /// What became of the pictures.
 struct ReportResult {
   int pictures = 0;  ///< drawn

@@ -2,17 +2,12 @@
 #include "coupling/case/declare.h"
 #include "coupling/run/finished_runs.h"
 
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<GrainFiles>().MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(GrainFiles, MEMBER)
 
 namespace grainfield::coupling {
-namespace {
-
-using Words = std::vector<std::string>;
-
-}  // namespace
 
 void declare_grain_files_keys(SectionKeys s) {
-  s.word("files", +IN(Words, files), {},
+  s.word("files", IN(files), {},
          "finished piles, one a realization, in this order: snapshots.h5 of earlier runs of study "
          "pile or pile-fields; only the changes of gravity that they do not hold are computed. "
          "[material] must be that of the piles; [shape], [source] and [floor] are not used. []: "

@@ -121,7 +121,6 @@ std::vector<SummaryKey> model_figure_keys() {
       {"model.*.beta_hat_right_misfit", "-", "the same on the right"},
       {"model.*.map_young", "-",
        "plastic heap with a map: its mean Young's modulus over rho g h, the E of base_stiffness"},
-      {kOtherModelFigure, "-", "further figure of a model's evaluation"},
   };
 }
 

@@ -7,11 +7,11 @@
 #include <cstdint>
 
 #include "coupling/case/study.h"
-#include "coupling/compare/significance.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/vtu.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/statistics/spread.h"
 #include "coupling/structure/force_chains.h"
 #include "coupling/version.h"
 
@@ -53,7 +53,7 @@ void write_grains(const std::string& folder, const StudyResult& result) {
 // Of a study without a page of its own: its sentence and its figures.
 Report plain_page(const StudyResult& result, const Realization*) {
   Report out;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.title = title_of(result.value);
   if (!result.comparison.verdict.sentence.empty()) {
     out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
   }
@@ -63,12 +63,8 @@ Report plain_page(const StudyResult& result, const Realization*) {
                        key.starts_with("memory.") || key == "verdict.sentence";
     if (!aside) keys.push_back(key);
   }
-  for (const auto& [title, rows] : {std::pair{"Figures", figure_rows(result.summary, keys)},
-                                    {"How it was made", origin_rows(result)}}) {
-    Table table{title, "", {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    out.sections.emplace_back(std::move(table));
-  }
+  add_rows(out, "Figures", figure_rows(result.summary, keys));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 
@@ -82,6 +78,8 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
 }
 
 }  // namespace
+
+std::string title_of(const Case& value) { return value.title.empty() ? value.name : value.title; }
 
 std::string shown_with_error(const Summary& summary, const std::string& key) {
   const std::string error = shown(summary, key + ".standard_error");

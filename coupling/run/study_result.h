@@ -59,7 +59,8 @@ struct StudyResult {
   std::function<std::vector<Section>(const std::string&)> sweep_sections, sweep_tables;
 };
 
-using ReportRows = std::vector<std::pair<std::string, std::string>>;
+/// The case's title; its name where it has none.
+std::string title_of(const Case& value);
 /// Those of the figures that the summary holds, with meaning and unit, for a table of the report.
 ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys);
 /// Adds the figures energy.*, which are there with motion.energy_balance.

@@ -23,6 +23,15 @@ bool matches(const char* pattern, const char* text) {
   return *pattern == *text && matches(pattern + 1, text + 1);
 }
 
+// Whether the text is the key of a declared figure and, behind a dot, a member of a sweep.
+bool of_a_member(const std::string& text) {
+  for (std::size_t dot = text.rfind('.'); dot != std::string::npos && dot > 0;
+       dot = text.rfind('.', dot - 1)) {
+    if (find_summary_key(text.substr(0, dot)) != nullptr) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 const std::vector<SummaryKey>& summary_keys() {
@@ -147,7 +156,15 @@ const std::vector<SummaryKey>& summary_keys() {
 
 const SummaryKey* find_summary_key(const std::string& key) {
   for (const auto& entry : summary_keys()) {
-    if (matches(entry.pattern.c_str(), key.c_str())) return &entry;
+    const std::string& pattern = entry.pattern;
+    if (!matches(pattern.c_str(), key.c_str())) continue;
+    // What says something of another figure is declared where that figure is.
+    if (pattern.front() == '*') {
+      if (find_summary_key(key.substr(0, key.size() - pattern.size() + 1)) == nullptr) continue;
+    } else if (pattern.starts_with("sweep.") && pattern.back() == '*') {
+      if (!of_a_member(key.substr(pattern.size() - 1))) continue;
+    }
+    return &entry;
   }
   return nullptr;
 }

@@ -9,13 +9,11 @@
 
 namespace grainfield::coupling {
 
-/// Pattern of a model's figure that has no entry of its own.
-inline constexpr char kOtherModelFigure[] = "model.*.*";
-
 const std::vector<SummaryKey>& summary_keys();
-/// Of these, the figures of a model (model_figure_keys.cc), kOtherModelFigure last.
+/// Of these, the figures of a model (model_figure_keys.cc).
 std::vector<SummaryKey> model_figure_keys();
-/// The declaration of a key, or null.
+/// The declaration of a key, or null. Errors and ranges over realizations (*.least, *.most,
+/// *.standard_error) and differences in a sweep are declared where their figure is.
 const SummaryKey* find_summary_key(const std::string& key);
 /// Throws std::logic_error naming the first key that is not declared.
 void require_documented(const Summary& summary);

@@ -183,7 +183,7 @@ std::string write_sweep(const std::string& folder, const Case& value,
   all["sweep.key"] = value.sweep.key;
   all["sweep.members"] = static_cast<std::int64_t>(members.size());
   Report report;
-  report.title = value.title.empty() ? value.name : value.title;
+  report.title = title_of(value);
   report.subtitle = fmt::format("{} over {} values", value.sweep.key, members.size());
   std::vector<Summary> summaries;
   std::vector<std::string> names;

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "continuum/constants.h"
-#include "coupling/compare/significance.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 namespace {

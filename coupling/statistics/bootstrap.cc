@@ -169,13 +169,4 @@ std::vector<BootstrapInterval> bootstrap(int realizations, const Statistic& stat
                              bootstrap_draws(realizations, statistic, options), options);
 }
 
-BootstrapInterval bootstrap_mean(const Eigen::VectorXd& numbers, const BootstrapOptions& options) {
-  const auto mean = [&](const std::vector<int>& chosen) {
-    double sum = 0;
-    for (const int r : chosen) sum += numbers[r];
-    return Eigen::VectorXd(Eigen::VectorXd::Constant(1, sum / static_cast<double>(chosen.size())));
-  };
-  return bootstrap(static_cast<int>(numbers.size()), mean, options).front();
-}
-
 }  // namespace grainfield::coupling

@@ -55,9 +55,6 @@ std::vector<BootstrapInterval> bootstrap_intervals(int realizations, const Stati
                                                    const Eigen::MatrixXd& draws,
                                                    const BootstrapOptions& options);
 
-/// Mean of independent numbers with its interval.
-BootstrapInterval bootstrap_mean(const Eigen::VectorXd& numbers, const BootstrapOptions& options);
-
 /// Quantile of sorted numbers by linear interpolation, q in [0, 1]; at least one number.
 double sorted_quantile(const std::vector<double>& sorted, double q);
 

@@ -39,8 +39,4 @@ const MeasureEntry& find_measure(const std::string& name) {
   throw std::invalid_argument(unknown_name("strain measure", name, strain_measures()));
 }
 
-const std::string& strain_measure_summary(const std::string& name) {
-  return find_measure(name).summary;
-}
-
 }  // namespace grainfield::coupling

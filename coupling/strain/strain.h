@@ -61,7 +61,5 @@ StrainResult strain(const dem::Snapshot& before, const dem::Snapshot& after,
 
 /// cambou, cundall, liao, derivative, kernel.
 const std::vector<std::string>& strain_measures();
-/// One line on what the measure fits; throws std::invalid_argument for an unknown name.
-const std::string& strain_measure_summary(const std::string& name);
 
 }  // namespace grainfield::coupling

@@ -50,18 +50,4 @@ double size_factor_theory(const Eigen::VectorXd& radii, int dim) {
   return both * static_cast<double>(radii.size()) / (volume * inverse);
 }
 
-Correlation add_fabric_law(Field& field, const BootstrapOptions& options) {
-  for (const char* name : {"volume_fraction", "coordination", "fabric_xx", "fabric_yy"})
-    if (!field.find(name))
-      throw std::invalid_argument(fmt::format("the field has no column {}", name));
-  const Eigen::VectorXd product =
-      field.find("volume_fraction")->value.cwiseProduct(field.find("coordination")->value);
-  Eigen::VectorXd trace = field.find("fabric_xx")->value + field.find("fabric_yy")->value;
-  if (const Column* zz = field.find("fabric_zz")) trace += zz->value;
-  field.add("nu_c", "1").value = product;
-  if (!field.find("fabric_trace")) field.add("fabric_trace", "1").value = trace;
-  field.add("g2", "1").value = trace.cwiseQuotient(product);
-  return correlation(product, trace, options);
-}
-
 }  // namespace grainfield::coupling

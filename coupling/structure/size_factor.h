@@ -10,8 +10,6 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "coupling/field.h"
-#include "coupling/statistics/correlation.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -29,10 +27,5 @@ SizeFactor size_factor(const dem::Snapshot& snapshot);
 
 /// g2 of radii (m) by Madadi et al., sizes drawn from them; dim 2 or 3. At least one radius.
 double size_factor_theory(const Eigen::VectorXd& radii, int dim);
-
-/// The straight line tr F = intercept + slope nu c over the points of a field, from its columns
-/// volume_fraction, coordination, fabric_xx, fabric_yy (Roul fig. 3.21). Adds the columns nu_c,
-/// fabric_trace (when missing) and g2 (1). Throws std::invalid_argument naming a missing column.
-Correlation add_fabric_law(Field& field, const BootstrapOptions& options);
 
 }  // namespace grainfield::coupling

@@ -219,7 +219,7 @@ TEST(Commands, SweepLeavesOneFolderPerValueAndASummary) {
 TEST(Commands, ElasticStudyWithoutGrains) {
   const Folder folder;
   const std::string text = R"(study = "elastic-layer"
-[elastic]
+[problem]
 points = 21
 depths = [0.075, 0.15]
 [compare]

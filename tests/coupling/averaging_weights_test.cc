@@ -285,13 +285,7 @@ TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
   o.quantities.clear();
   EXPECT_EQ(refusal([&] { balance_residual(s, p, o, 0.1, 3); }),
             "differences of order 3 for the balance; known: 2, 4");
-  s.dim = 3;
-  EXPECT_EQ(refusal([&] { heap_frame(s); }), "the snapshot is 3D; a 2D one is needed");
   EXPECT_EQ(refusal([&] { cut_points(0, 1, 3, {}); }), "horizontal cuts without heights");
-  EXPECT_EQ(refusal([&] { segment_points(Eigen::Vector2d(0, 0), Eigen::Vector3d(0, 0, 0), 3); }),
-            "a line from 2 to 3 coordinates; both ends need as many");
-  EXPECT_EQ(refusal([&] { segment_points(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), 0); }),
-            "a line of 0 points; at least 1");
   dem::Snapshot flat = layer(2, 12, 2);
   AverageOptions one;
   one.width = 1;
@@ -299,16 +293,11 @@ TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
             "the packing is nowhere four mean diameters high; too low to compare averagings on");
 }
 
-TEST(Points, LinesCutsAndSegments) {
+TEST(Points, HorizontalCuts) {
   const Eigen::MatrixXd cuts = cut_points(0, 1, 3, {0.5, 2});
   ASSERT_EQ(cuts.rows(), 6);
   EXPECT_EQ(cuts(1, 0), 0.5);
   EXPECT_EQ(cuts(4, 1), 2);
-  const Eigen::MatrixXd line =
-      segment_points(Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(2, 1, 0), 5);
-  EXPECT_EQ(line(1, 0), 0.5);
-  EXPECT_EQ(line(1, 2), 1.5);
-  EXPECT_EQ(segment_points(Eigen::Vector2d(3, 4), Eigen::Vector2d(9, 9), 1)(0, 1), 4);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST(ReadCase, TheWrittenCaseReadsBackToItself) {
   // Every key of the study is spelled out; those without effect as remarks.
   for (const Key& key : keys()) {
     if (!key_applies(key, "point-load") || key.section == "sweep") continue;
-    const std::string start = is_idle(key, value) ? "\n# " : "\n";
+    const std::string start = is_without_effect(key, value) ? "\n# " : "\n";
     EXPECT_THAT(once, HasSubstr(start + key.name + " = ")) << key.path();
   }
 }
@@ -204,8 +204,8 @@ TEST(CaseErrors, BetweenKeys) {
   EXPECT_THAT(complaint("study = \"elastic-layer\"\n[packing]\nrows = 3\n"),
               HasSubstr("x.toml:3: packing.rows: has no meaning for study = \"elastic-layer\""));
   EXPECT_THAT(
-      complaint("study = \"elastic-layer\"\n[elastic]\nheight = 0.1\ndepths = [0.2]\n"),
-      HasSubstr("x.toml:4: elastic.depths: found 0.2, allowed: up to elastic.height = 0.1"));
+      complaint("study = \"elastic-layer\"\n[problem]\nheight = 0.1\ndepths = [0.2]\n"),
+      HasSubstr("x.toml:4: problem.depths: found 0.2, allowed: up to problem.height = 0.1"));
 }
 
 TEST(CaseErrors, TimeStepAboveTheStableLimitNamesTheLimit) {

@@ -1,9 +1,15 @@
 // Isotropic constants: Roul's formulas, exact and noisy data, what is undefined.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
+#include "continuum/elastic_field.h"
 #include "coupling/elastic_constants/constants.h"
+#include "coupling/elastic_constants/elastic_map.h"
 #include "elastic_scene.h"
 
 namespace grainfield::coupling {
@@ -52,26 +58,18 @@ TEST(ElasticConstants, ExactDataComeBackToRoundOff) {
     recipe.c = [&](const Eigen::Vector2d&) { return test::isotropic(k, g); };
     recipe.realizations = 3;
     const Increments data = make_increments(seed, recipe);
-    for (const char* samples : {"pooled", "mean"})
-      for (const int degree : {0, 1}) {
-        ElasticOptions o = few_draws();
-        o.samples = samples;
-        o.degree = degree;
-        const IsotropicConstants c = isotropic_constants(data, everywhere(data.points), o);
-        // The equations of degree 1 have a condition of up to 1e3.
-        const double relative = degree == 0 ? 1e-12 : 1e-11;
-        EXPECT_NEAR(c.bulk.value / k, 1, relative);
-        EXPECT_NEAR(c.shear.value / g, 1, relative);
-        EXPECT_NEAR(c.young.value / (3 * g - g * g / k), 1, 100 * relative);
-        EXPECT_NEAR(c.poisson.value, (1 - g / k) / 2, 10 * relative);
-        EXPECT_NEAR(c.bulk_share, 1, relative);
-        EXPECT_NEAR(c.shear_share, 1, relative);
-        EXPECT_LT(c.bulk.error / k, relative);
-        EXPECT_NEAR(c.bulk.low / k, 1, relative);
-        EXPECT_EQ(c.samples, 36);
-        EXPECT_EQ(c.realizations, 3);
-        EXPECT_EQ(c.note, "");
-      }
+    const IsotropicConstants c = isotropic_constants(data, everywhere(data.points), few_draws());
+    EXPECT_NEAR(c.bulk.value / k, 1, 1e-12);
+    EXPECT_NEAR(c.shear.value / g, 1, 1e-12);
+    EXPECT_NEAR(c.young.value / (3 * g - g * g / k), 1, 1e-10);
+    EXPECT_NEAR(c.poisson.value, (1 - g / k) / 2, 1e-11);
+    EXPECT_NEAR(c.bulk_share, 1, 1e-12);
+    EXPECT_NEAR(c.shear_share, 1, 1e-12);
+    EXPECT_LT(c.bulk.error / k, 1e-12);
+    EXPECT_NEAR(c.bulk.low / k, 1, 1e-12);
+    EXPECT_EQ(c.samples, 36);
+    EXPECT_EQ(c.realizations, 3);
+    EXPECT_EQ(c.note, "");
   }
 }
 
@@ -104,10 +102,9 @@ TEST(ElasticConstants, IntervalsOfNoisyDataHoldTheTruth) {
   }
 }
 
-// Noise of the strain with variance 1/4 of the strain's own: pooled constants fall to 1/(1 + 1/4),
-// those of the mean over 16 realizations of the same strain to 1/(1 + 1/64); K over its share,
-// the fit of strain to stress, is right for noise of the strain alone.
-TEST(ElasticConstants, NoiseOfTheStrainLowersPooledConstants) {
+// Noise of the strain with variance 1/4 of the strain's own: constants fall to 1/(1 + 1/4); K over
+// its share, the fit of strain to stress, is right for noise of the strain alone.
+TEST(ElasticConstants, NoiseOfTheStrainLowersConstants) {
   Recipe recipe;
   recipe.points = grid_points(0, 1, 40, 0, 1, 40);
   Increments exact = make_increments(3, recipe), noisy = exact;
@@ -120,39 +117,13 @@ TEST(ElasticConstants, NoiseOfTheStrainLowersPooledConstants) {
     for (Eigen::Index p = 0; p < exact.points.rows(); ++p)
       noisy.strain.back().row(p) += test::random_tensor(random, 0.5e-4).transpose();
   }
-  ElasticOptions o = few_draws();
-  const Locality all = everywhere(noisy.points);
-  const IsotropicConstants pooled = isotropic_constants(noisy, all, o);
-  o.samples = "mean";
-  const IsotropicConstants mean = isotropic_constants(noisy, all, o);
+  const IsotropicConstants pooled =
+      isotropic_constants(noisy, everywhere(noisy.points), few_draws());
   // 1600 strains: their own spread makes the ratio of variances vary by 1/sqrt(800) = 3.5 %.
   EXPECT_NEAR(pooled.bulk.value / 2e6, 1 / 1.25, 0.02);
   EXPECT_NEAR(pooled.shear.value / 1e6, 1 / 1.25, 0.02);
   EXPECT_NEAR(pooled.bulk_share, 1 / 1.25, 0.02);
   EXPECT_NEAR(pooled.bulk.value / pooled.bulk_share / 2e6, 1, 0.02);
-  EXPECT_NEAR(mean.bulk.value / 2e6, 1 / (1 + 0.25 / 16), 0.01);
-  EXPECT_NEAR(mean.shear.value / 1e6, 1 / (1 + 0.25 / 16), 0.01);
-}
-
-// Constants that grow linearly: degree 1 is exact at an edge of the points, degree 0 is not.
-TEST(ElasticConstants, DegreeOneIsExactForLinearConstants) {
-  Recipe recipe;
-  recipe.points = grid_points(0, 1, 11, 0, 1, 11);
-  recipe.c = [](const Eigen::Vector2d& x) {
-    return test::isotropic(1e6 * (2 + x.x() - 0.5 * x.y()), 1e6 * (1 + 0.3 * x.y()));
-  };
-  const Increments data = make_increments(4, recipe);
-  ElasticOptions o = few_draws();
-  for (const Eigen::Vector2d& centre : {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.43, 0.71)}) {
-    const Locality where = locality(data.points, centre, "lucy", 0.2);
-    o.degree = 1;
-    const IsotropicConstants c = isotropic_constants(data, where, o);
-    EXPECT_NEAR(c.bulk.value / 1e6, 2 + centre.x() - 0.5 * centre.y(), 1e-9);
-    EXPECT_NEAR(c.shear.value / 1e6, 1 + 0.3 * centre.y(), 1e-9);
-    if (centre.x() > 0) continue;
-    o.degree = 0;
-    EXPECT_GT(std::abs(isotropic_constants(data, where, o).bulk.value / 1e6 - 2), 0.01);
-  }
 }
 
 TEST(ElasticConstants, WhatIsUndefinedIsNanWithANote) {
@@ -182,11 +153,6 @@ TEST(ElasticConstants, WhatIsUndefinedIsNanWithANote) {
   EXPECT_EQ(with([](Eigen::MatrixX3d& e) { e = -e; }).note.substr(0, 3), "K -");
   EXPECT_NE(with([](Eigen::MatrixX3d& e) { e = -e; }).note.find("not a stable elastic material"),
             std::string::npos);
-  ElasticOptions linear = few_draws();
-  linear.degree = 1;
-  EXPECT_EQ(isotropic_constants(data, locality(data.points, {0.4, 0.4}, "lucy", 0), linear).note,
-            "the points do not determine constants that vary linearly: use degree 0 or a larger "
-            "width");
   // A nan at one point of one realization takes that sample away, nothing else.
   Increments hole = data;
   hole.strain[0](3, 2) = nan;
@@ -195,27 +161,40 @@ TEST(ElasticConstants, WhatIsUndefinedIsNanWithANote) {
   EXPECT_NEAR(c.bulk.value, 2e6, 1e-5);
 }
 
-TEST(ElasticConstants, FieldAndLocality) {
-  Recipe recipe;
-  recipe.realizations = 4;
-  recipe.stress_noise = 10;
-  const Increments data = make_increments(6, recipe);
-  const Eigen::MatrixXd centres = data.points.topRows(3);
-  const Field f = elastic_constants_field(data, centres, "lucy", 0.3, few_draws());
-  const IsotropicConstants c = isotropic_constants(
-      data, locality(data.points, centres.row(1).transpose(), "lucy", 0.3), few_draws());
-  EXPECT_EQ(f.realizations, 4);
-  EXPECT_EQ(f.find("bulk")->value[1], c.bulk.value);
-  EXPECT_EQ(f.find("young")->error[1], c.young.error);
-  EXPECT_EQ(f.find("shear_low")->value[1], c.shear.low);
-  EXPECT_EQ(f.find("poisson_high")->value[1], c.poisson.high);
-  EXPECT_EQ(f.find("bulk_share")->value[1], c.bulk_share);
-  EXPECT_EQ(f.find("shear_share")->value[1], c.shear_share);
-  EXPECT_EQ(f.find("samples")->value[1], c.samples);
+TEST(ElasticConstants, Localities) {
+  const Increments data = make_increments(6, Recipe());
   const Locality one = locality(data.points, {0.3, 0.01}, "lucy", 0);
   EXPECT_EQ(one.weights.sum(), 1);
   EXPECT_EQ(one.weights[1], 1);
   EXPECT_EQ(locality(data.points, {0, 0}, "gaussian", 0.5).weights[0], 1);
+}
+
+// What a solve is given: the numbers of the field, node by node; unstable nodes have none.
+TEST(ElasticConstants, MapsReachTheSolver) {
+  Field f;
+  f.points = grid_points(-0.3, 0.1, 5, -0.2, 0, 3);
+  f.nx = 5;
+  f.ny = 3;
+  for (const char* name : {"young", "poisson"}) {
+    Column& column = f.add(name, "1");
+    for (Eigen::Index k = 0; k < 15; ++k) {
+      column.value[k] = (name[0] == 'y' ? 1e6 : 0.02) * (1 + static_cast<double>(k) / 3);
+    }
+    if (name[0] == 'p') column.value[7] = 0.5;
+    column.error = 0.1 * column.value;
+  }
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("grainfield_elastic_map_" + std::to_string(::getpid()) + ".csv");
+  std::ofstream(file) << elastic_map_text(f);
+  const continuum::ElasticField map = continuum::read_elastic_field(file);
+  std::filesystem::remove(file);
+  for (const Eigen::Index k : {0, 4, 11, 14}) {
+    const double young = f.find("young")->value[k], poisson = f.find("poisson")->value[k];
+    const Eigen::Matrix3d c = map.at(f.points(k, 0), f.points(k, 1));
+    // Plane strain: C66 = E/(2 (1 + nu)).
+    EXPECT_NEAR(c(2, 2) / (young / (2 * (1 + poisson))), 1, 1e-12) << k;
+  }
+  EXPECT_THAT(elastic_map_text(f), testing::HasSubstr(",nan,nan,nan,nan\n"));
 }
 
 TEST(ElasticConstants, FieldsBecomeIncrements) {
@@ -257,11 +236,6 @@ TEST(ElasticConstants, Refusals) {
         change(d, where, o);
         return refusal_text([&] { isotropic_constants(d, where, o); });
       };
-  EXPECT_EQ(refusal([](auto&, auto&, auto& o) { o.samples = "means"; }),
-            "unknown samples of the elastic fit \"means\"; known: pooled, mean; did you mean "
-            "\"mean\"?");
-  EXPECT_EQ(refusal([](auto&, auto&, auto& o) { o.degree = 2; }),
-            "degree of the elastic fit is 2; it must be 0 or 1");
   EXPECT_EQ(refusal([](auto& d, auto&, auto&) { d = {}; }),
             "elastic constants need at least one realization");
   EXPECT_EQ(refusal([](auto& d, auto&, auto&) { d.strain.clear(); }),
@@ -282,9 +256,6 @@ TEST(ElasticConstants, Refusals) {
               locality(data.points, {0, 0}, "lucy", -1);
             }),
             "kernel width is -1 m; it must be positive and finite");
-  EXPECT_EQ(refusal_text(
-                [&] { elastic_constants_field(data, Eigen::MatrixXd::Zero(1, 3), "lucy", 1, {}); }),
-            "centres have 3 coordinates; elastic constants need 2");
 }
 
 TEST(ElasticConstants, ThreadsDoNotChangeBits) {

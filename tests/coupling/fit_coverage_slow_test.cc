@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/fit/coverage.h"
-#include "coupling/fit/heap_sight.h"
+#include "coupling/fit/observation_operator.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {

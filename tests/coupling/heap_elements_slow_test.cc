@@ -2,19 +2,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/fit/heap_elements.h"
+#include "coupling/fit/fits.h"
 #include "fit_scene.h"
 
 namespace grainfield::coupling {
 namespace {
 
-HeapFits heap_of(const std::string& truth, const Eigen::VectorXd& parameters) {
-  HeapFits out;
-  out.heaps.facts.slope_deg = kSlope;
-  out.heaps.data = places(9);
-  FitData& data = out.heaps.data;
+EnsembleFits heap_of(const std::string& truth, const Eigen::VectorXd& parameters) {
+  EnsembleFits out;
+  out.observed.facts.slope_deg = kSlope;
+  out.observed.data = places(9);
+  FitData& data = out.observed.data;
   data.points /= kHeight;
-  const std::vector<FitModel> known = heap_models(out.heaps.facts);
+  const std::vector<FitModel> known = heap_models(out.observed.facts);
   dem::Random random(3);
   fill(data, predict(data, find_fit_model(known, truth), parameters), 6, 0.02 / (kRhoG * kHeight),
        0.2, random);
@@ -28,9 +28,16 @@ HeapFits heap_of(const std::string& truth, const Eigen::VectorXd& parameters) {
   return out;
 }
 
+std::vector<FiniteElementFit> elements_of(const EnsembleFits& fits,
+                                          const std::vector<std::string>& names) {
+  const FitData& data = fits.observed.data;
+  return solve_elements(names, fits.models, fits.fits, data, fits.weights,
+                        [&](const StressFunction& stress, bool) { return stress(data.points); });
+}
+
 TEST(HeapElements, TakeTheFittedConstants) {
-  const HeapFits fits = heap_of("osl", vector({0.6, -0.1}));
-  const auto elements = heap_elements(fits, {"fe_osl_wedge", "fe_mohr_coulomb_wedge"});
+  const EnsembleFits fits = heap_of("osl", vector({0.6, -0.1}));
+  const auto elements = elements_of(fits, {"fe_osl_wedge", "fe_mohr_coulomb_wedge"});
   ASSERT_EQ(elements.size(), 2U);
   EXPECT_EQ(elements[0].why, "");
   EXPECT_EQ(elements[0].of, "osl");
@@ -45,9 +52,9 @@ TEST(HeapElements, TakeTheFittedConstants) {
 }
 
 TEST(HeapElements, SaysWhenThereIsNoFitForIt) {
-  HeapFits fits = heap_of("osl", vector({0.6, -0.1}));
+  EnsembleFits fits = heap_of("osl", vector({0.6, -0.1}));
   fits.fits.resize(1);
-  const auto elements = heap_elements(fits, {"fe_mohr_coulomb_wedge"});
+  const auto elements = elements_of(fits, {"fe_mohr_coulomb_wedge"});
   EXPECT_EQ(elements[0].why, "no fitted model that it represents");
 }
 

@@ -1,5 +1,4 @@
 // Pictures of heaps' fits: maps, posteriors, models of one field.
-#include "coupling/fit/heap_maps.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +6,9 @@
 #include <cmath>
 
 #include "continuum/closed/osl.h"
+#include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/heap_fits.h"
-#include "coupling/fit/heap_report.h"
+#include "coupling/fit/fits.h"
 #include "coupling/fit/setup.h"
 #include "stressed_heap.h"
 
@@ -21,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kSlope = 28;
 
-HeapFits fits_of(int heaps, std::vector<std::string> models, double noise = 0.05) {
+EnsembleFits fits_of(int heaps, std::vector<std::string> models, double noise = 0.05) {
   FitSetup setup;
   setup.models = std::move(models);
   setup.bootstrap = 4;
@@ -35,7 +34,7 @@ HeapFits fits_of(int heaps, std::vector<std::string> models, double noise = 0.05
                                 [&](double x, double y) { return field.stress(x, y); });
                           },
                           [](std::size_t k) { return "heap " + std::to_string(k); }};
-  return fit_heaps(setup, heap_data(setup, reader, 1), 1);
+  return fit_heaps(setup, observe_heaps(setup, reader, 1), 1);
 }
 
 std::vector<std::string> titles_of(const std::vector<Section>& sections) {
@@ -47,18 +46,18 @@ std::vector<std::string> titles_of(const std::vector<Section>& sections) {
 }
 
 TEST(HeapMaps, TheTrueModelIsTheGrainsWithinTheNoise) {
-  const HeapFits fits = fits_of(4, {"osl", "hydrostatic"});
-  const StressMaps& m = fits.heaps.maps;
+  const EnsembleFits fits = fits_of(4, {"osl", "hydrostatic"});
+  const StressMaps& m = fits.observed.maps;
   ASSERT_EQ(m.points.rows(), m.columns * m.rows);
   const Eigen::MatrixXd osl = model_on_maps(fits, "osl");
   const Eigen::MatrixXd hydrostatic = model_on_maps(fits, "hydrostatic");
   double off = 0, far = 0, all = 0;
   int inside = 0;
-  const double slope = std::tan(fits.heaps.facts.slope_deg * std::numbers::pi / 180);
+  const double slope = std::tan(fits.observed.facts.slope_deg * std::numbers::pi / 180);
   for (Eigen::Index p = 0; p < m.points.rows(); ++p) {
     const double x = m.points(p, 0), y = m.points(p, 1);
     EXPECT_EQ(std::isfinite(osl(p, 0)), m.mean.row(p).allFinite());
-    if (y + std::fabs(x) * slope > 0 || 1 + y < fits.heaps.kernel->range() / 2) {
+    if (y + std::fabs(x) * slope > 0 || 1 + y < fits.observed.kernel->range() / 2) {
       EXPECT_TRUE(m.mean.row(p).array().isNaN().all());
     }
     // Well inside: the kernel's range is 0.15 h, the lattice's steps end at the flanks.
@@ -77,14 +76,14 @@ TEST(HeapMaps, TheTrueModelIsTheGrainsWithinTheNoise) {
 }
 
 TEST(HeapMaps, ThePageHasMapsYieldAndPosteriors) {
-  const auto sections = fit_sections(fits_of(4, {"osl", "hydrostatic"}));
+  const auto sections = fit_pictures(fits_of(4, {"osl", "hydrostatic"}));
   const auto titles = titles_of(sections);
   EXPECT_THAT(titles, Contains("Grains, model and residual"));
   EXPECT_THAT(titles, Contains("Where osl fails"));
   EXPECT_THAT(titles, Contains("Mohr-Coulomb expression"));
   EXPECT_THAT(titles, Contains("What the data say of the constants"));
   // One heap knows no errors: neither residuals in standard errors nor densities.
-  const auto one = titles_of(fit_sections(fits_of(1, {"osl", "hydrostatic"})));
+  const auto one = titles_of(fit_pictures(fits_of(1, {"osl", "hydrostatic"})));
   EXPECT_THAT(one, Contains("Grains, model and residual"));
   EXPECT_THAT(one, ::testing::Not(Contains(HasSubstr("What the data say"))));
   EXPECT_THAT(one, ::testing::Not(Contains(HasSubstr("Where "))));
@@ -92,7 +91,7 @@ TEST(HeapMaps, ThePageHasMapsYieldAndPosteriors) {
 
 TEST(HeapMaps, ModelsOfOneFieldShareALine) {
   const auto sections =
-      fit_sections(fits_of(4, {"osl", "cantelaube_zero", "bcc", "cantelaube_plus", "fpa"}));
+      fit_pictures(fits_of(4, {"osl", "cantelaube_zero", "bcc", "cantelaube_plus", "fpa"}));
   const Picture& picture = std::get<Picture>(sections.front());
   EXPECT_TRUE(picture.program.find("bcc, cantelaube_zero") != std::string::npos ||
               picture.program.find("cantelaube_zero, bcc") != std::string::npos);

@@ -4,7 +4,6 @@
 
 #include <numbers>
 
-#include "coupling/import/outline_text.h"
 
 namespace grainfield::test {
 
@@ -29,6 +28,12 @@ std::string wall_or_id(const dem::Snapshot& s, std::int64_t j) {
   return fmt::format("{}", s.grains[static_cast<std::size_t>(j)].id);
 }
 
+std::string outline_text(const dem::Outline& outline) {
+  std::string text;
+  for (const auto& [x, y] : outline) text += fmt::format("{}{} {}", text.empty() ? "" : ";", x, y);
+  return text;
+}
+
 std::string csv_grains(const dem::Snapshot& s) {
   std::string out =
       "# grains, SI\nid,x,y,vx,vy,angle,spin,radius,mass,inertia,volume,fixed,outline\n";
@@ -36,7 +41,7 @@ std::string csv_grains(const dem::Snapshot& s) {
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", g.id, g.position.x(),
                        g.position.y(), g.velocity.x(), g.velocity.y(), g.angle, g.spin, g.radius,
                        g.mass, g.inertia, g.volume, g.fixed ? 1 : 0,
-                       coupling::outline_text(g.outline));
+                       outline_text(g.outline));
   return out;
 }
 

@@ -15,6 +15,9 @@ dem::Snapshot overlapping_layer(unsigned seed, int columns = 12, int rows = 6, b
 
 std::string wall_or_id(const dem::Snapshot& s, std::int64_t j);
 
+/// "x1 y1;x2 y2;...", with all digits.
+std::string outline_text(const dem::Outline& outline);
+
 std::string csv_grains(const dem::Snapshot& s);
 
 std::string csv_contacts(const dem::Snapshot& s);

@@ -28,12 +28,12 @@ TEST(OslRun, LayerShowsTwoPeaks) {
 
 TEST(OslRun, RefusesWhatDoesNotFit) {
   try {
-    shipped("osl-wedge.toml", {"elastic.depths=[2.0]"});
+    shipped("osl-wedge.toml", {"problem.depths=[2.0]"});
     FAIL();
   } catch (const std::invalid_argument& e) {
     EXPECT_THAT(e.what(),
-                ::testing::HasSubstr("elastic.depths: found 2, allowed: up to elastic.h"));
+                ::testing::HasSubstr("problem.depths: found 2, allowed: up to problem.h"));
   }
   EXPECT_THROW(shipped("osl-layer.toml", {"compare.models=[\"dg\"]"}), std::invalid_argument);
-  EXPECT_THROW(shipped("osl-layer.toml", {"elastic.dim=3"}), std::invalid_argument);
+  EXPECT_THROW(shipped("osl-layer.toml", {"problem.dim=3"}), std::invalid_argument);
 }

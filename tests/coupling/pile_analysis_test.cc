@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "coupling/averaging/base.h"
-#include "coupling/compare/significance.h"
 #include "coupling/heap/dip.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "coupling/studies/pile/study.h"
 #include "dem/study/setup.h"

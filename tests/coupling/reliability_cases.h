@@ -72,7 +72,7 @@ heights = [0.25]
 inline std::string models_alone() {
   return R"(title = "models alone"
 study = "osl-layer"
-[elastic]
+[problem]
 force = 300
 height = 0.15
 half_width = 0.2
@@ -102,7 +102,7 @@ inline const std::vector<TinyStudy>& tiny_studies() {
       {"sweep", small_layer("[sweep]\nkey = \"material.friction\"\nvalues = [0.2, 0.5]\n"),
        "ensemble.seed=2"},
       {"pile", small_pile(), "ensemble.seed=2"},
-      {"models", models_alone(), "elastic.force=200"}};
+      {"models", models_alone(), "problem.force=200"}};
   return all;
 }
 

@@ -9,8 +9,8 @@
 #include "coupling/statistics/correlation.h"
 #include "coupling/statistics/exponential_tail.h"
 #include "coupling/statistics/least_squares.h"
-#include "coupling/statistics/moments.h"
 #include "coupling/statistics/parallel.h"
+#include "coupling/statistics/spread.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling {
@@ -44,16 +44,25 @@ Eigen::VectorXd exponentials(dem::Random& random, int n, double rate = 1) {
   return x;
 }
 
-TEST(Moments, MeanSpreadError) {
-  const Moments m = moments(Eigen::Vector3d(1, 2, 6));
-  EXPECT_EQ(m.count, 3);
-  EXPECT_DOUBLE_EQ(m.mean, 3);
-  EXPECT_DOUBLE_EQ(m.deviation, std::sqrt(7));
-  EXPECT_DOUBLE_EQ(m.error, std::sqrt(7. / 3));
-  EXPECT_TRUE(std::isnan(moments(Eigen::VectorXd(0)).mean));
-  EXPECT_TRUE(std::isnan(moments(Eigen::VectorXd::Constant(1, 5)).error));
-  EXPECT_EQ(moments(Eigen::VectorXd::Constant(1, 5)).mean, 5);
-  EXPECT_TRUE(std::isnan(moments(Eigen::Vector2d(nan, 1)).mean));
+// Mean of independent numbers with its interval.
+BootstrapInterval bootstrap_mean(const Eigen::VectorXd& numbers, const BootstrapOptions& options) {
+  const auto mean = [&](const std::vector<int>& chosen) {
+    double sum = 0;
+    for (const int r : chosen) sum += numbers[r];
+    return Eigen::VectorXd(Eigen::VectorXd::Constant(1, sum / static_cast<double>(chosen.size())));
+  };
+  return bootstrap(static_cast<int>(numbers.size()), mean, options).front();
+}
+
+TEST(Spread, MeanAndStandardError) {
+  const Spread s = spread_of({1, 2, 6});
+  EXPECT_EQ(s.values, 3);
+  EXPECT_DOUBLE_EQ(s.mean, 3);
+  EXPECT_DOUBLE_EQ(s.standard_error, std::sqrt(7. / 3));
+  EXPECT_TRUE(std::isnan(spread_of({}).mean));
+  EXPECT_TRUE(std::isnan(spread_of({5}).standard_error));
+  EXPECT_EQ(spread_of({5}).mean, 5);
+  EXPECT_TRUE(std::isnan(spread_of({nan, 1}).mean));
 }
 
 TEST(Bootstrap, ErrorOfTheMeanIsTheStandardError) {
@@ -62,15 +71,15 @@ TEST(Bootstrap, ErrorOfTheMeanIsTheStandardError) {
   BootstrapOptions o;
   o.resamples = 20000;
   const BootstrapInterval i = bootstrap_mean(x, o);
-  const Moments m = moments(x);
+  const Spread m = spread_of({x.begin(), x.end()});
   EXPECT_DOUBLE_EQ(i.value, m.mean);
   // The bootstrap's divisor is n, not n - 1; its own noise is 1/sqrt(2 x 20000) = 0.5 %.
-  EXPECT_NEAR(i.error, m.error * std::sqrt(39. / 40), 0.02 * m.error);
+  EXPECT_NEAR(i.error, m.standard_error * std::sqrt(39. / 40), 0.02 * m.standard_error);
   // Student's quantile of 39 degrees of freedom is 2.0227; the bootstrap's ends scatter by 2 %.
-  EXPECT_NEAR(i.high - i.low, 2 * 2.0227 * m.error, 0.1 * m.error);
+  EXPECT_NEAR(i.high - i.low, 2 * 2.0227 * m.standard_error, 0.1 * m.standard_error);
   o.widen = false;
   const BootstrapInterval plain = bootstrap_mean(x, o);
-  EXPECT_NEAR(plain.high - plain.low, 2 * 1.96 * i.error, 0.1 * m.error);
+  EXPECT_NEAR(plain.high - plain.low, 2 * 1.96 * i.error, 0.1 * m.standard_error);
   EXPECT_EQ(i.undefined, 0);
 }
 

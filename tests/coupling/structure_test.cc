@@ -214,28 +214,6 @@ TEST(SizeFactor, TheAngleOfTheTheoryIsThatOfAClosedRing) {
   }
 }
 
-TEST(SizeFactor, LineOverAField) {
-  Field field;
-  field.points = Eigen::MatrixXd::Zero(4, 2);
-  const Eigen::Vector4d nu(0.7, 0.75, 0.8, NAN), c(3, 3.5, 4, 4);
-  field.add("volume_fraction", "1").value = nu;
-  field.add("coordination", "1").value = c;
-  field.add("fabric_xx", "1").value = 0.7 * nu.cwiseProduct(c);
-  field.add("fabric_yy", "1").value = 0.345 * nu.cwiseProduct(c);
-  BootstrapOptions options;
-  options.resamples = 20;
-  const Correlation line = add_fabric_law(field, options);
-  EXPECT_EQ(line.pairs, 3);
-  EXPECT_NEAR(line.slope, 1.045, 1e-12);
-  EXPECT_NEAR(line.r, 1, 1e-12);
-  EXPECT_NEAR(field.find("g2")->value[1], 1.045, 1e-14);
-  EXPECT_NEAR(field.find("nu_c")->value[0], 2.1, 1e-15);
-  field.columns.pop_back();
-  field.columns.erase(field.columns.begin());
-  EXPECT_THAT(refusal([&] { add_fabric_law(field, options); }),
-              HasSubstr("no column volume_fraction"));
-}
-
 TEST(BaseForces, CarryTheWeight) {
   for (const bool rough : {false, true}) {
     dem::Snapshot s = test::layer(3, 12, 6, rough);

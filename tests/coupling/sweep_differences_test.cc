@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "coupling/compare/significance.h"
+#include "coupling/statistics/spread.h"
 #include "program.h"
 
 namespace grainfield::coupling {

@@ -3,23 +3,21 @@
 
 #include "coupling/case/declare.h"
 
-// A key bound to the member of the same name: the default is that member's.
-#define IN(TYPE, MEMBER) \
-  [](Case& c) -> TYPE& { return c.get<dem::LatticePileSetup>().lattice.MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(dem::LatticePileSetup, lattice.MEMBER)
 
 namespace grainfield::coupling {
 
 void declare_lattice_keys(SectionKeys s) {
-  s.number("base_grains", "-", +IN(int, base_grains), {3, 2000},
+  s.number("base_grains", "-", IN(base_grains), {3, 2000},
            "disks in the lowest row, and rows of the equilateral pile; the pile is as many times "
            "softer against its own weight",
            "Liffman et al. 1992, fig. 7");
-  s.number("slope_deg", "deg", +IN(double, slope_deg), {1, 60},
+  s.number("slope_deg", "deg", IN(slope_deg), {1, 60},
            "of the outline: rows end under it; 60 is the equilateral pile",
            "Liffman et al. 1992, fig. 13");
-  s.number("radius", "m", +IN(double, radius), kRadius,
+  s.number("radius", "m", IN(radius), kRadius,
            "of the disks; larger: heavier, and a longer time step");
-  s.number("gap", "-", +IN(double, gap), {0, 0.5},
+  s.number("gap", "-", IN(gap), {0, 0.5},
            "between neighbours of a row, in diameters; raises H by 4/3 of it; 0: neighbours touch, "
            "and below 60 degrees carry force along the rows");
 }

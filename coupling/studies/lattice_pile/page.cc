@@ -47,13 +47,8 @@ Report lattice_pile_report(const LatticePileReport& in) {
                               r.overall.largest_in});
   }
   report.sections.emplace_back(std::move(distances));
-  for (const auto& [title, rows] :
-       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
-    if (rows.empty()) continue;
-    Table table{title, "", {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    report.sections.emplace_back(std::move(table));
-  }
+  add_rows(report, "Figures", in.figures);
+  add_rows(report, "How it was made", in.made);
   return report;
 }
 

@@ -17,7 +17,7 @@ struct LatticePileReport {
   double weight = 0;                    ///< m g of a disk, N
   double width = 0;                     ///< base B, m
   double spacing = 0;                   ///< of the base disks, m
-  std::vector<std::pair<std::string, std::string>> figures, made;
+  ReportRows figures, made;
 };
 
 /// Frames of N and H in units of m g over x/B, grains and models.

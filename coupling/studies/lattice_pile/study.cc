@@ -185,7 +185,8 @@ class LatticePileAnalysis {
     const RunFacts known = facts();
     double seconds = 0;
     for (const ModelChoice& choice : value_.models) {
-      const Evaluation e = evaluate_model(choice, known, {{points_, Seen::exactly, nullptr, true}});
+      const Evaluation e =
+          evaluate_model(choice, known, {{points_, Smoothing::none, nullptr, true}});
       seconds += e.seconds;
       const Eigen::MatrixXd& stress = e.stresses.front();
       models.push_back({choice.label,
@@ -230,7 +231,7 @@ class LatticePileAnalysis {
   static Report page(const StudyResult& result, const Realization* first, double weight,
                      double width, double spacing) {
     LatticePileReport in;
-    in.title = result.value.title.empty() ? result.value.name : result.value.title;
+    in.title = title_of(result.value);
     in.subtitle = fmt::format("slope {:g}°, {} base disks, {} law",
                               result.value.get<dem::LatticePileSetup>().lattice.slope_deg,
                               result.value.get<dem::LatticePileSetup>().lattice.base_grains,

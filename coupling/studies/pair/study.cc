@@ -123,7 +123,7 @@ const dem::Snapshot* hardest(const Realization* realization) {
 
 Report page_of(const StudyResult& result, const Realization* first, const PairResults& pair) {
   Report out;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.title = title_of(result.value);
   out.subtitle = pair_subtitle(pair.setup);
   out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
   for (const Chart& chart : pair_charts(pair)) out.sections.emplace_back(chart.picture());
@@ -133,22 +133,16 @@ Report page_of(const StudyResult& result, const Realization* first, const PairRe
   if (Table impacts = pair_impact_table(pair.impacts); !impacts.rows.empty()) {
     out.sections.emplace_back(std::move(impacts));
   }
-  const auto table = [&](const char* title, ReportRows rows) {
-    Table t;
-    t.title = title;
-    for (auto& [name, value] : rows) t.rows.push_back({std::move(name), std::move(value)});
-    out.sections.emplace_back(std::move(t));
-  };
-  table("Figures",
-        figure_rows(result.summary,
-                    {"pair.restitution_normal", "pair.closed_form.restitution_normal",
-                     "pair.restitution_tangential", "pair.closed_form.restitution_tangential",
-                     "pair.duration", "pair.closed_form.duration", "pair.max_depth",
-                     "pair.closed_form.max_depth", "pair.max_force", "pair.energy_lost",
-                     "pair.work", "pair.stored_most", "pair.loops", "pair.loop_work_over_energy",
-                     "pair.loop_work_over_energy_mean", "pair.loops_crossing",
-                     "pair.loops_unsettled", "pair.stable_time_step", "dem.time_step"}));
-  table("How it was made", origin_rows(result));
+  add_rows(out, "Figures",
+           figure_rows(result.summary,
+                       {"pair.restitution_normal", "pair.closed_form.restitution_normal",
+                        "pair.restitution_tangential", "pair.closed_form.restitution_tangential",
+                        "pair.duration", "pair.closed_form.duration", "pair.max_depth",
+                        "pair.closed_form.max_depth", "pair.max_force", "pair.energy_lost",
+                        "pair.work", "pair.stored_most", "pair.loops", "pair.loop_work_over_energy",
+                        "pair.loop_work_over_energy_mean", "pair.loops_crossing",
+                        "pair.loops_unsettled", "pair.stable_time_step", "dem.time_step"}));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 

@@ -141,14 +141,8 @@ void add_tables(Report& report, const PileReport& in) {
     report.sections.emplace_back(std::move(distances));
   }
   if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
-  for (const auto& [title, note, rows] :
-       {std::tuple{"Figures", error_note(c.realizations), in.figures},
-        {"How it was made", std::string(), in.made}}) {
-    if (rows.empty()) continue;
-    Table table{title, note, {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    report.sections.emplace_back(std::move(table));
-  }
+  add_rows(report, "Figures", in.figures, error_note(c.realizations));
+  add_rows(report, "How it was made", in.made);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct PileReport {
   Field map;             ///< scaled to comparison's h and rho g h, heap's frame; may be empty
   std::string averaged;  ///< how, for captions: "coarse graining, lucy kernel, w = 0.0055 m"
   Table changes;         ///< what each changed gravity did; without rows: left out
-  std::vector<std::pair<std::string, std::string>> figures, made;
+  ReportRows figures, made;
 };
 
 Report pile_report(const PileReport& input);

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <map>
 
-#include "coupling/compare/significance.h"
 #include "coupling/heap/setup.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/pile/pile_ensemble.h"
@@ -148,11 +148,11 @@ class PileAnalysis {
     for (const Profile& p : profiles) {
       Eigen::MatrixXd points(p.x.size(), 2);
       points << p.x, Eigen::VectorXd::Constant(p.x.size(), -p.depth);
-      sets.push_back(
-          {points, p.key == "base" ? Seen::along_x : Seen::in_plane, &piles_.kernel(), true});
+      sets.push_back({points, p.key == "base" ? Smoothing::marginal : Smoothing::kernel,
+                      &piles_.kernel(), true});
     }
     const Eigen::MatrixXd grid = piles_.height() * piles_.grid();
-    sets.push_back({grid, Seen::exactly, nullptr, true});
+    sets.push_back({grid, Smoothing::none, nullptr, true});
     const RunFacts known = facts();
     std::vector<ModelProfiles> all;
     double seconds = 0;
@@ -307,7 +307,7 @@ class PileAnalysis {
   static Report page(const StudyResult& result, const Realization* first,
                      const std::string& averaged) {
     PileReport in;
-    in.title = result.value.title.empty() ? result.value.name : result.value.title;
+    in.title = title_of(result.value);
     // What stands, which is not what the case says where piles are taken from files.
     double grains = result.value.get<dem::PileSetup>().source.grains;
     if (const auto standing = result.summary.find("dem.grains"); standing != result.summary.end()) {

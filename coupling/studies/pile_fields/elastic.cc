@@ -141,26 +141,6 @@ Field constants_map(const PileSet& piles, const Fits& fits) {
   return out;
 }
 
-ElasticMap map_for_solvers(const PileSet& piles, const Field& constants) {
-  ElasticMap out;
-  out.nx = piles.columns();
-  out.ny = piles.rows();
-  const Eigen::MatrixXd& at = constants.points;
-  out.x0 = at(0, 0);
-  out.y0 = at(0, 1);
-  out.dx = at(1, 0) - at(0, 0);
-  out.dy = at(piles.columns(), 1) - at(0, 1);
-  out.young = constants.find("young")->value;
-  out.young_error = constants.find("young")->error;
-  out.poisson = constants.find("poisson")->value;
-  out.poisson_error = constants.find("poisson")->error;
-  for (Eigen::Index p = 0; p < out.young.size(); ++p) {
-    if (out.poisson[p] > -1 && out.poisson[p] < 0.5) continue;
-    out.young[p] = out.poisson[p] = out.young_error[p] = out.poisson_error[p] = NAN;
-  }
-  return out;
-}
-
 double pearson(const std::vector<double>& x, const std::vector<double>& y) {
   double n = 0, mx = 0, my = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -386,7 +366,7 @@ TopicResult elastic_constants_of_piles(const PileSet& piles) {
   }
   out.sections.emplace_back(std::move(figures));
   out.sections.emplace_back(piles_table(piles, fits));
-  out.texts.emplace_back("elastic_map.csv", elastic_map_text(map_for_solvers(piles, constants)));
+  out.texts.emplace_back("elastic_map.csv", elastic_map_text(constants));
   out.fields.emplace_back("elastic_constants", constants);
   return out;
 }

@@ -10,7 +10,7 @@
 
 #include "coupling/run/study_result.h"
 #include "coupling/statistics/correlation.h"
-#include "coupling/statistics/moments.h"
+#include "coupling/statistics/spread.h"
 #include "coupling/structure/coordination_counts.h"
 #include "coupling/structure/grain_axes.h"
 #include "coupling/structure/size_factor.h"
@@ -255,8 +255,8 @@ void add_contacts(const PileSet& piles, TopicResult& out) {
     const auto cell = [&](const std::string& key, double factor, const char* unit) {
       const auto at = found.figures.find(prefix + key);
       if (at == found.figures.end()) return std::string("1");
-      const Moments m = moments(vector_of(at->second));
-      return fmt::format("{:.4g} ± {:.2g}{}", factor * m.mean, factor * m.error, unit);
+      const Spread m = spread_of(at->second);
+      return fmt::format("{:.4g} ± {:.2g}{}", factor * m.mean, factor * m.standard_error, unit);
     };
     table.rows.push_back({found.states[s],
                           s == 0 ? "1" : fmt::format("{:.3g}", piles.gravity_ratios()[s - 1]),
@@ -264,9 +264,10 @@ void add_contacts(const PileSet& piles, TopicResult& out) {
                           cell("rattlers", 100, " %"), cell("coordination_ratio", 1, "")});
     Eigen::VectorXd mean(n), error(n);
     for (Eigen::Index k = 0; k < n; ++k) {
-      const Moments m = moments(found.share[s].row(k).transpose());
+      const Eigen::VectorXd shares = found.share[s].row(k);
+      const Spread m = spread_of({shares.begin(), shares.end()});
       mean[k] = m.mean;
-      error[k] = m.error;
+      error[k] = m.standard_error;
     }
     Column& column = field.add("share_" + found.states[s], "1");
     column.value = mean;

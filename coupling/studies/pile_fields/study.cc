@@ -130,7 +130,7 @@ struct Looked {
 Report page_of(const StudyResult& result, const Realization* first, const std::string& change,
                const std::vector<Looked>& looked, const std::string& gaps) {
   Report out;
-  out.title = result.value.title.empty() ? result.value.name : result.value.title;
+  out.title = title_of(result.value);
   const std::size_t piles = result.realizations.size();
   out.subtitle = fmt::format("{} pile{} of {} grains, strains from the change to {}", piles,
                              piles == 1 ? "" : "s",
@@ -156,12 +156,8 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
                        key == "verdict.sentence";
     if (!aside) keys.push_back(key);
   }
-  for (const auto& [title, rows] : {std::pair{"Figures", figure_rows(result.summary, keys)},
-                                    {"How it was made", origin_rows(result)}}) {
-    Table table{title, "", {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    out.sections.emplace_back(std::move(table));
-  }
+  add_rows(out, "Figures", figure_rows(result.summary, keys));
+  add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
 

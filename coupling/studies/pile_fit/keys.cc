@@ -5,15 +5,12 @@
 #include "coupling/fit/models.h"
 #include "coupling/fit/setup.h"
 
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<FitSetup>().MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(FitSetup, MEMBER)
 
 namespace grainfield::coupling {
 namespace {
 
 using std::string;
-using Integer = std::int64_t;
-using Numbers = std::vector<double>;
-using Words = std::vector<string>;
 
 }  // namespace
 
@@ -31,33 +28,33 @@ void declare_fit_keys(SectionKeys s) {
       meaning += ")";
     }
   }
-  s.word("models", +IN(Words, models), names, meaning, "Roul 4.3, 4.4");
+  s.word("models", IN(models), names, meaning, "Roul 4.3, 4.4");
   s.word(
-      "finite_elements", +IN(Words, finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
+      "finite_elements", IN(finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
       "finite-element models that are solved with the measured slope and the fitted constants and "
       "join the tables");
   s.or_none();
-  s.word("components", +IN(Words, components), {"sigma_xx", "sigma_yy", "sigma_xy"},
+  s.word("components", IN(components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
-  s.number("heights", "-", +IN(Numbers, heights), {1e-6, 1},
+  s.number("heights", "-", IN(heights), {1e-6, 1},
            "horizontal lines, shares of the pile's height above the base; all together");
-  s.number("leave_out", "-", +IN(Numbers, leave_out), {1, 1e6},
+  s.number("leave_out", "-", IN(leave_out), {1, 1e6},
            "numbers, from 1, of heaps that are left out (of another size, with a stray grain); "
            "warnings name them");
   s.or_none();
   s.number(
-      "width_diameters", "-", +IN(double, width_diameters), {0.01, 100},
+      "width_diameters", "-", IN(width_diameters), {0.01, 100},
       "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
       "keeps points further from the flanks");
-  s.number("left_deg", "deg", +IN(double, left_deg), {0, 89},
+  s.number("left_deg", "deg", IN(left_deg), {0, 89},
            "slope of the left flank; 0: measured on every heap");
-  s.number("right_deg", "deg", +IN(double, right_deg), {0, 89}, "the same on the right");
-  s.number("friction_deg", "deg", +IN(double, friction_deg), {0, 89},
+  s.number("right_deg", "deg", IN(right_deg), {0, 89}, "the same on the right");
+  s.number("friction_deg", "deg", IN(friction_deg), {0, 89},
            "friction angle of the models that take the flanks apart; 0: the steeper slope");
-  s.number("huber", "-", +IN(double, huber), {0, 1e6},
+  s.number("huber", "-", IN(huber), {0, 1e6},
            "0: least squares; above: values further off than this many errors pull no more than "
            "that (points in the wrong region)");
-  s.number("bootstrap", "-", +IN(Integer, bootstrap), {0, 10000},
+  s.number("bootstrap", "-", IN(bootstrap), {0, 10000},
            "draws of the piles for the bootstrap errors; below 10: none");
 }
 

@@ -3,88 +3,86 @@
 
 #include "coupling/case/declare.h"
 
-// A key bound to the member of the same name: the default is that member's.
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<dem::PointLoadSetup>().MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(dem::PointLoadSetup, MEMBER)
 
 namespace grainfield::coupling {
 namespace {
 
-using std::string;
 constexpr const char* kRoul = "Roul table 5.1";
 
 }  // namespace
 
 void declare_packing_keys(SectionKeys s) {
-  s.word("kind", +IN(string, packing.kind), {"triangular", "sqrt3", "layered"},
+  s.word("kind", IN(packing.kind), {"triangular", "sqrt3", "layered"},
          "how the layer is built: triangular lattice, lattice whose rows are shifted by half a "
          "spacing of sqrt(3) diameters, or rows dropped one after another",
          "Roul 5.2, 5.4");
-  s.word("sizes", +IN(string, packing.sizes), {"mono", "bidisperse", "uniform"},
+  s.word("sizes", IN(packing.sizes), {"mono", "bidisperse", "uniform"},
          "radii: all equal, two sizes, or uniform between radius_min and radius_max", kRoul);
-  s.number("radius", "m", +IN(double, packing.radius), kRadius,
+  s.number("radius", "m", IN(packing.radius), kRadius,
            "radius of mono and of the larger bidisperse grains; larger grains: fewer of them and a "
            "longer time step",
            kRoul);
   s.only("packing.sizes", {"mono", "bidisperse"});
-  s.number("radius_small", "m", +IN(double, packing.radius_small), kRadius,
+  s.number("radius_small", "m", IN(packing.radius_small), kRadius,
            "radius of the smaller bidisperse grains", kRoul);
   s.only("packing.sizes", {"bidisperse"});
-  s.number("fraction_small", "-", +IN(double, packing.fraction_small), {0, 1},
+  s.number("fraction_small", "-", IN(packing.fraction_small), {0, 1},
            "share by number of the smaller bidisperse grains; 0 and 1 are mono-disperse");
   s.only("packing.sizes", {"bidisperse"});
-  s.number("radius_min", "m", +IN(double, packing.radius_min), kRadius,
+  s.number("radius_min", "m", IN(packing.radius_min), kRadius,
            "smallest radius of uniform sizes; it sets the time step", kRoul);
   s.only("packing.sizes", {"uniform"});
-  s.number("radius_max", "m", +IN(double, packing.radius_max), kRadius,
-           "largest radius of uniform sizes", kRoul);
+  s.number("radius_max", "m", IN(packing.radius_max), kRadius, "largest radius of uniform sizes",
+           kRoul);
   s.only("packing.sizes", {"uniform"});
-  s.number("columns", "-", +IN(int, packing.columns), {2, 100000},
+  s.number("columns", "-", IN(packing.columns), {2, 100000},
            "grains in a row; more moves the side walls away from the load", kRoul);
   s.only("packing.kind", {"triangular", "sqrt3"});
-  s.number("rows", "-", +IN(int, packing.rows), {1, 100000},
+  s.number("rows", "-", IN(packing.rows), {1, 100000},
            "rows of grains; more makes the layer deeper", kRoul);
   s.only("packing.kind", {"triangular", "sqrt3"});
-  s.number("spacing", "-", +IN(double, packing.spacing), {0.71, 1},
+  s.number("spacing", "-", IN(packing.spacing), {0.71, 1},
            "distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
            "not touch and a grain has four contacts",
            "Roul 5.4");
   s.only("packing.kind", {"sqrt3"});
-  s.number("width", "m", +IN(double, packing.width), kLength,
+  s.number("width", "m", IN(packing.width), kLength,
            "distance of the side walls; four depths keep their influence small", kRoul);
   s.only("packing.kind", {"layered"});
-  s.number("depth", "m", +IN(double, packing.depth), kLength,
+  s.number("depth", "m", IN(packing.depth), kLength,
            "rows are dropped until the surface is this high", kRoul);
   s.only("packing.kind", {"layered"});
-  s.number("drop_height", "m", +IN(double, packing.drop_height), kLength,
+  s.number("drop_height", "m", IN(packing.drop_height), kLength,
            "height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
   s.only("packing.kind", {"layered"});
-  s.word("shape", +IN(string, packing.shape), {"disk", "irregular"},
+  s.word("shape", IN(packing.shape), {"disk", "irregular"},
          "disks, or irregular pentagons (sizes and radii are not used)", "Roul 5.1");
   s.plane_shapes();
   s.only("packing.kind", {"layered"});
-  s.number("side", "m", +IN(double, packing.side), kRadius, "mean length of a side", "Roul 5.1");
+  s.number("side", "m", IN(packing.side), kRadius, "mean length of a side", "Roul 5.1");
   s.only("packing.shape", {"irregular"});
-  s.word("floor", +IN(string, packing.floor), {"smooth", "rough"},
+  s.word("floor", IN(packing.floor), {"smooth", "rough"},
          "flat wall with friction, or a row of fixed grains", "Roul 5.5");
-  s.number("jitter", "-", +IN(double, packing.jitter), {0, 0.5},
+  s.number("jitter", "-", IN(packing.jitter), {0, 0.5},
            "radii uniform in radius * [1 - 2 jitter, 1]; 0 is the perfect lattice");
   s.only("packing.sizes", {"mono"});
 }
 
 void declare_load_keys(SectionKeys s) {
-  s.number("force", "N", +IN(double, load.force), kForce,
+  s.number("force", "N", IN(load.force), kForce,
            "downwards on one grain of the surface; more rearranges grains", kRoul);
-  s.word("method", +IN(string, load.method), {"damped", "newton"},
+  s.word("method", IN(load.method), {"damped", "newton"},
          "slow damped dynamics, or the quasi-static solver on the contact network (for small "
          "forces: it fails where many contacts rearrange)");
-  s.number("unbalanced_force_ratio", "-", +IN(double, load.unbalanced_force_ratio), kRatioOfForces,
+  s.number("unbalanced_force_ratio", "-", IN(load.unbalanced_force_ratio), kRatioOfForces,
            "mean resultant over mean contact force that Newton's method must reach");
   s.only("load.method", {"newton"});
-  s.number("ramp_time", "s", +IN(double, load.ramp_time), kTime,
+  s.number("ramp_time", "s", IN(load.ramp_time), kTime,
            "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
   s.only("load.method", {"damped"});
-  s.number("position", "-", +IN(double, load.position), {0, 1},
+  s.number("position", "-", IN(load.position), {0, 1},
            "share of the width: the top grain nearest to it carries the force");
 }
 

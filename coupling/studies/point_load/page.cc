@@ -122,13 +122,8 @@ void add_tables(Report& report, const PointLoadReport& in) {
     for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k], exact);
   }
   report.sections.emplace_back(std::move(shapes));
-  for (const auto& [title, rows] :
-       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
-    if (rows.empty()) continue;
-    Table table{title, "", {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    report.sections.emplace_back(std::move(table));
-  }
+  add_rows(report, "Figures", in.figures);
+  add_rows(report, "How it was made", in.made);
 }
 
 }  // namespace
@@ -154,7 +149,7 @@ Report point_load_report(const PointLoadReport& in) {
 
 Report layer_page(const StudyResult& result, const Realization* first) {
   PointLoadReport page;
-  page.title = result.value.title.empty() ? result.value.name : result.value.title;
+  page.title = title_of(result.value);
   if (first != nullptr) {
     page.unloaded = &(*first)["unloaded"];
     page.loaded = &(*first)["loaded"];

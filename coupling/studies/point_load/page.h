@@ -20,8 +20,8 @@ struct PointLoadReport {
   Field base_unloaded;           ///< mean base_profile before loading; may be empty
   Field map;                     ///< mean response on a grid in the models' frame; may be empty
   std::vector<ModelMap> models;  ///< on map.points; the first one's residual is drawn
-  std::vector<std::pair<std::string, std::string>> figures;  ///< results worth a table
-  std::vector<std::pair<std::string, std::string>> made;     ///< case, seed, version, times
+  ReportRows figures;            ///< results worth a table
+  ReportRows made;               ///< case, seed, version, times
 };
 
 Report point_load_report(const PointLoadReport& input);

@@ -25,22 +25,11 @@
 namespace grainfield::coupling {
 namespace {
 
-// The layers of all realizations as one rectangle in the models' frame.
-struct Layer {
-  double depth = 0, half_width = 0, diameter = 0;
-};
-
-Layer measure(const std::vector<std::string>& files) {
-  Layer out;
-  out.half_width = std::numeric_limits<double>::infinity();
-  const auto n = static_cast<double>(files.size());
-  for (const auto& file : files) {
+MeanLayer measure(const std::vector<std::string>& files) {
+  MeanLayer out;
+  for (const std::string& file : files) {
     const Realization r = read_realization(file);
-    const LayerFrame frame = layer_frame(r["unloaded"], r["loaded"].loaded_grain);
-    out.depth += frame.depth() / n;
-    out.diameter += mean_diameter(r["unloaded"]) / n;
-    out.half_width =
-        std::min({out.half_width, frame.load_x - frame.left, frame.right - frame.load_x});
+    out.add(r["unloaded"], r["loaded"], files.size());
   }
   return out;
 }
@@ -219,11 +208,11 @@ class PointLoadAnalysis {
 
   void add_models(StudyResult& out) const {
     std::vector<PointSet> sets;
-    for (const auto& line : lines_) sets.push_back({line, Seen::in_plane, kernel_.get()});
+    for (const auto& line : lines_) sets.push_back({line, Smoothing::kernel, kernel_.get()});
     Eigen::MatrixXd base(x_.size(), 2);
     base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
-    sets.push_back({base, Seen::along_x, kernel_.get()});
-    sets.push_back({grid_, Seen::exactly, nullptr});
+    sets.push_back({base, Smoothing::marginal, kernel_.get()});
+    sets.push_back({grid_, Smoothing::none, nullptr});
 
     const double least_share = *std::min_element(setup_.depths.begin(), setup_.depths.end());
     const RunFacts facts{value_.get<dem::PointLoadSetup>().load.force,
@@ -269,7 +258,7 @@ class PointLoadAnalysis {
   const std::vector<std::string>& files_;
   const ModelEvaluator& evaluate_;
   const AverageSetup& setup_;
-  Layer layer_;
+  MeanLayer layer_;
   Eigen::VectorXd x_;
   std::vector<Eigen::MatrixXd> lines_;
   Eigen::MatrixXd grid_;

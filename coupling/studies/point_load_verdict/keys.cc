@@ -5,36 +5,35 @@
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/setup.h"
 
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<VerdictSetup>().MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(VerdictSetup, MEMBER)
 
 namespace grainfield::coupling {
 namespace {
 
 using std::string;
-using Words = std::vector<string>;
 
 }  // namespace
 
 void declare_verdict_keys(SectionKeys s) {
-  s.word("models", +IN(Words, models), layer_model_names(),
+  s.word("models", IN(models), layer_model_names(),
          "models that are fitted to the response and ranked; free: layer_rough nu; "
          "orthotropic_half_plane, orthotropic_layer_smooth rho, t; orthotropic_layer_rough shear, "
          "t, nu_ratio; osl_layer_* eta, mu, width",
          "Otto et al. 2003; Roul 5.6");
-  s.word("finite_elements", +IN(Words, finite_elements),
+  s.word("finite_elements", IN(finite_elements),
          {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
          "finite-element models that are solved with the fitted constants and join the tables");
   s.or_none();
-  s.word("components", +IN(Words, components), {"sigma_xx", "sigma_yy", "sigma_xy"},
+  s.word("components", IN(components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
-  s.flag("base", +IN(bool, base), "the forces on the base are fitted as well");
-  s.number("coverage", "-", +IN(std::vector<double>, coverage), {3, 1e6},
+  s.flag("base", IN(base), "the forces on the base are fitted as well");
+  s.number("coverage", "-", IN(coverage), {3, 1e6},
            "sizes N: how often intervals from N of the packings hold the constants of the rest "
            "(coverage.md); takes long");
   s.or_none();
-  s.number("coverage_draws", "-", +IN(std::int64_t, coverage_draws), {1, 1e6},
+  s.number("coverage_draws", "-", IN(coverage_draws), {1, 1e6},
            "draws of every size of verdict.coverage");
-  s.number("bootstrap", "-", +IN(std::int64_t, bootstrap), {0, 10000},
+  s.number("bootstrap", "-", IN(bootstrap), {0, 10000},
            "draws of the packings for the bootstrap errors; below 10: none");
 }
 

@@ -6,8 +6,7 @@
 #include "dem/study/sample_grains.h"
 #include "dem/study/sample_setup.h"
 
-// A key bound to the member of the same name: the default is that member's.
-#define IN(TYPE, MEMBER) [](Case& c) -> TYPE& { return c.get<dem::SampleSetup>().plan.MEMBER; }
+#define IN(MEMBER) GRAINFIELD_MEMBER(dem::SampleSetup, plan.MEMBER)
 
 namespace grainfield::coupling {
 namespace {
@@ -21,86 +20,84 @@ std::vector<string> both(std::vector<string> first, const std::vector<string>& s
 }
 
 void grains(SectionKeys& s) {
-  s.number("dim", "-", +IN(int, dim), {2, 3}, "dimensions: disks or polygons, or spheres");
+  s.number("dim", "-", IN(dim), {2, 3}, "dimensions: disks or polygons, or spheres");
   const auto plane = dem::sample_shapes(2), space = dem::sample_shapes(3);
-  s.word("shape", +IN(string, shape), both(plane, space),
+  s.word("shape", IN(shape), both(plane, space),
          "disks, polygons in Roul's way (rand1) or regular ones; spheres");
   s.words_of_dimensions(plane, space);
-  s.number("grains", "-", +IN(int, grains), {1, 1e7},
+  s.number("grains", "-", IN(grains), {1, 1e7},
            "more: less scatter between realizations and weaker boundaries");
-  s.word("sizes", +IN(string, sizes), {"mono", "bidisperse", "uniform"},
+  s.word("sizes", IN(sizes), {"mono", "bidisperse", "uniform"},
          "radii: all equal, two sizes, or uniform in radius (1 -+ polydispersity)");
-  s.number("radius", "m", +IN(double, radius), kRadius,
+  s.number("radius", "m", IN(radius), kRadius,
            "of the circle or sphere that carries a grain, its mean; bidisperse: the larger one");
-  s.number("polydispersity", "-", +IN(double, polydispersity), {0, 0.9},
+  s.number("polydispersity", "-", IN(polydispersity), {0, 0.9},
            "half the width of the radii over their mean; more keeps crystals away");
   s.only("sample.sizes", {"uniform"});
-  s.number("size_ratio", "-", +IN(double, size_ratio), {1, 100},
+  s.number("size_ratio", "-", IN(size_ratio), {1, 100},
            "larger over smaller radius; the smaller one sets the time step");
   s.only("sample.sizes", {"bidisperse"});
-  s.number("fraction_small", "-", +IN(double, fraction_small), {0, 1},
+  s.number("fraction_small", "-", IN(fraction_small), {0, 1},
            "share of the smaller grains, by number");
   s.only("sample.sizes", {"bidisperse"});
-  s.number("corners_min", "-", +IN(int, corners_min), {3, 64}, "fewest corners of a polygon");
+  s.number("corners_min", "-", IN(corners_min), {3, 64}, "fewest corners of a polygon");
   s.only("sample.shape", {"rand1", "regular"});
-  s.number("corners_max", "-", +IN(int, corners_max), {3, 64},
+  s.number("corners_max", "-", IN(corners_max), {3, 64},
            "most corners; the number is drawn between both");
   s.only("sample.shape", {"rand1", "regular"});
 }
 
 void place(SectionKeys& s) {
-  s.word("boundary", +IN(string, boundary), {"periodic", "walls"},
+  s.word("boundary", IN(boundary), {"periodic", "walls"},
          "a cell that repeats itself and flows, or a box of walls that move");
-  s.number("height_ratio", "-", +IN(double, height_ratio), {0.05, 20},
+  s.number("height_ratio", "-", IN(height_ratio), {0.05, 20},
            "edge along the last axis (y, in 3D z) over the others, at the start");
   s.number(
-      "start_fraction", "-", +IN(double, start_fraction), {0.01, dem::kMostLoose2},
+      "start_fraction", "-", IN(start_fraction), {0.01, dem::kMostLoose2},
       "solid fraction of the grains placed at random; lower: a longer compression, less memory "
       "of the places");
 }
 
 void compression(SectionKeys& s) {
-  s.word("compression", +IN(string, compression), {"isotropic", "uniaxial"},
+  s.word("compression", IN(compression), {"isotropic", "uniaxial"},
          "all edges shorten, or the one along the last axis");
-  s.word("compress_to", +IN(string, compress_to), {"pressure", "solid_fraction", "strain"},
+  s.word("compress_to", IN(compress_to), {"pressure", "solid_fraction", "strain"},
          "what ends the compression: the pressure that servos then hold, a solid fraction, or a "
          "strain");
-  s.number("pressure", kStress, +IN(double, pressure), Range{1e-6, 1e15}.with_zero(),
+  s.number("pressure", kStress, IN(pressure), Range{1e-6, 1e15}.with_zero(),
            "held by servos, compression positive; higher: denser, with larger overlaps");
   s.only("sample.compress_to", {"pressure"});
-  s.number("solid_fraction", "-", +IN(double, solid_fraction), {0.01, 1.3},
+  s.number("solid_fraction", "-", IN(solid_fraction), {0.01, 1.3},
            "volume of the grains over that of the box; overlaps count twice");
   s.only("sample.compress_to", {"solid_fraction"});
-  s.number("compression_strain", "-", +IN(double, compression_strain), {0, 0.9},
+  s.number("compression_strain", "-", IN(compression_strain), {0, 0.9},
            "share by which every edge that moves shortens");
   s.only("sample.compress_to", {"strain"});
-  s.number("compression_rate", "1/s", +IN(double, compression_rate), {1e-6, 1e6},
+  s.number("compression_rate", "1/s", IN(compression_rate), {1e-6, 1e6},
            "of an edge, and of servos at most; slower: a calmer start and a longer run");
 }
 
 void deformation(SectionKeys& s) {
-  s.word("deformation", +IN(string, deformation),
-         {"simple_shear", "axial", "uniaxial", "isotropic"},
+  s.word("deformation", IN(deformation), {"simple_shear", "axial", "uniaxial", "isotropic"},
          "the last axis' planes slide along x; the last axis shortens while servos hold the "
          "others' stress; it alone shortens; all shorten alike");
-  s.word("constant", +IN(string, constant), {"volume", "stress"},
+  s.word("constant", IN(constant), {"volume", "stress"},
          "of a simple shear: the volume, or the normal stress across the planes that slide");
   s.only("sample.deformation", {"simple_shear"});
-  s.word("sides", +IN(string, sides), {"tilting", "upright"},
+  s.word("sides", IN(sides), {"tilting", "upright"},
          "of a simple shear between walls: the sides tilt with the lid, or stay upright, which "
          "forbids a uniform shear");
   s.only("sample.boundary", {"walls"});
   s.only("sample.deformation", {"simple_shear"});
-  s.number("strain", "-", +IN(double, strain), {1e-6, 1e3},
+  s.number("strain", "-", IN(strain), {1e-6, 1e3},
            "imposed: tangent of the shear; of an edge its logarithm in a cell, its share between "
            "walls");
-  s.number("strain_rate", "1/s", +IN(double, strain_rate), {1e-6, 1e6},
+  s.number("strain_rate", "1/s", IN(strain_rate), {1e-6, 1e6},
            "of the same; slower: less inertia (sample.inertial_number), a better held stress and a "
            "longer run");
-  s.number("ramp_time", "s", +IN(double, ramp_time), kTime,
-           "from rest to the full rate, between walls");
+  s.number("ramp_time", "s", IN(ramp_time), kTime, "from rest to the full rate, between walls");
   s.only("sample.boundary", {"walls"});
-  s.number("records", "-", +IN(int, records), {1, 999},
+  s.number("records", "-", IN(records), {1, 999},
            "recorded states after the first one, at equal steps of strain; more: finer curves and "
            "larger files");
 }

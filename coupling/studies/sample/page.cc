@@ -76,12 +76,8 @@ Report sample_report(const SampleReport& in) {
           ? "Since the first state. Work + work of the law = elastic + kinetic + lost."
           : "Since the first state.";
   report.sections.emplace_back(std::move(energies));
-  for (const auto& [title, rows] :
-       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
-    Table table{title, "", {}, {}};
-    for (const auto& [key, value] : rows) table.rows.push_back({key, value});
-    report.sections.emplace_back(std::move(table));
-  }
+  add_rows(report, "Figures", in.figures);
+  add_rows(report, "How it was made", in.made);
   return report;
 }
 

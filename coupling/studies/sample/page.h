@@ -27,7 +27,7 @@ struct SampleReport {
   std::vector<SampleCurve> energies;   ///< in one frame, J
   /// Of the realization that is drawn; may be null.
   const dem::Snapshot *first = nullptr, *last = nullptr;
-  std::vector<std::pair<std::string, std::string>> figures, made;
+  ReportRows figures, made;
 };
 
 Report sample_report(const SampleReport& input);

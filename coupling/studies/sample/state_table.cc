@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "coupling/compare/significance.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 namespace {

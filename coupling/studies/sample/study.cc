@@ -45,7 +45,7 @@ std::string label_of(const StateTable& table) {
 SampleReport curves_of(const Case& value, const StateTable& table) {
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   SampleReport out;
-  out.title = value.title.empty() ? value.name : value.title;
+  out.title = title_of(value);
   out.subtitle =
       fmt::format("{} {}s in {}, {} law, {}", plan.grains,
                   plan.dim == 3          ? "sphere"

@@ -23,11 +23,11 @@ Eigen::MatrixXd in_space(const Eigen::MatrixXd& plane, int dim) {
 
 }  // namespace
 
-void require_depths(const ElasticSetup& setup) {
+void require_depths(const ProblemSetup& setup) {
   const double deepest = *std::max_element(setup.depths.begin(), setup.depths.end());
   if (deepest <= setup.height) return;
   throw std::invalid_argument(fmt::format(
-      "elastic.depths: found {:g}, allowed: up to elastic.height = {:g}", deepest, setup.height));
+      "problem.depths: found {:g}, allowed: up to problem.height = {:g}", deepest, setup.height));
 }
 
 StudyResult compare_models(const Case& value, const std::vector<ModelChoice>& choices,

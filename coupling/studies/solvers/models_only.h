@@ -20,7 +20,7 @@ struct ModelsOnly {
 };
 
 /// Throws std::invalid_argument, "KEY: ...", for depths below the base.
-void require_depths(const ElasticSetup& setup);
+void require_depths(const ProblemSetup& setup);
 
 /// Profiles of the vertical pressure at the depths, and a map that leaves out the uppermost tenth.
 /// The first model takes the place of the simulation in the tables, the others are compared with

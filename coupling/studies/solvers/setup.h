@@ -1,4 +1,4 @@
-// Points and load of the studies of solvers: [elastic] of a case.
+// Points and load of the studies of solvers: [problem] of a case.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace grainfield::coupling {
 
-/// Points and load of the studies without grains.
-struct ElasticSetup {
+/// The layer or heap, its load, and where it is looked at.
+struct ProblemSetup {
   double force = 1;      ///< N (2D: N per metre of depth into the page)
   double height = 0.15;  ///< m; elastic-layer
   std::int64_t dim = 2;

@@ -59,7 +59,7 @@ class WedgeAnalysis {
   void find_members();
   /// Takes from the combinations of a heap what they leave without effect, as `layers` from one
   /// that is laid at once. Throws BadParameter for a setting without effect in all of them.
-  void drop_idle(const ModelChoice& choice, std::size_t begin);
+  void drop_without_effect(const ModelChoice& choice, std::size_t begin);
   void evaluate(WedgeMember& member) const;
   void find_slip_lines(WedgeMember& member, const PlaneStress& stress) const;
   void find_nearest(WedgeMember& member) const;

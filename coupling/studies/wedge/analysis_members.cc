@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "continuum/constants.h"
-#include "continuum/idle.h"
 #include "continuum/settings.h"
 #include "continuum/size.h"
+#include "continuum/without_effect.h"
 #include "coupling/studies/wedge/analysis.h"
 #include "coupling/studies/wedge/setup.h"
 #include "dem/snapshot/number.h"
@@ -137,7 +137,7 @@ void WedgeAnalysis::find_members() {
         }
       }
     }
-    drop_idle(choice, begin);
+    drop_without_effect(choice, begin);
   }
   for (const WedgeMember& m : members_) {
     const auto& info = continuum::find_model(m.choice.name);
@@ -156,15 +156,15 @@ void WedgeAnalysis::find_members() {
         fmt::format("compare.models: found no {}, expected one or more", kHeap));
 }
 
-void WedgeAnalysis::drop_idle(const ModelChoice& choice, std::size_t begin) {
+void WedgeAnalysis::drop_without_effect(const ModelChoice& choice, std::size_t begin) {
   const auto& info = continuum::find_model(choice.name);
   std::map<std::string, std::string> refused;  // of the case's settings, by the first combination
   std::set<std::string> used;
   for (std::size_t m = begin; m < members_.size(); ++m) {
     auto& settings = members_[m].choice.settings;
-    while (const auto idle = continuum::find_idle(info, settings)) {
-      refused.emplace(idle->parameter, idle->refusal);
-      settings.erase(idle->parameter);
+    while (const auto found = continuum::find_without_effect(info, settings)) {
+      refused.emplace(found->parameter, found->refusal);
+      settings.erase(found->parameter);
     }
     for (const auto& [name, value] : settings) used.insert(name);
   }

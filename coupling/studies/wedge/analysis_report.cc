@@ -84,7 +84,7 @@ Frame WedgeAnalysis::frame(std::size_t depth, const std::string& title,
 
 WedgeReport WedgeAnalysis::report(const StudyResult& result) const {
   WedgeReport in;
-  in.title = value_.title.empty() ? value_.name : value_.title;
+  in.title = title_of(value_);
   in.subtitle = fmt::format("friction angle {:g}°, slopes {:g}° and {:g}°", setup_.phi_deg,
                             setup_.left_deg, setup_.right_deg);
   in.sentence = result.comparison.verdict.sentence;

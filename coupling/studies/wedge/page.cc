@@ -35,13 +35,8 @@ Report wedge_report(const WedgeReport& in) {
     report.sections.emplace_back(
         curves("Pressure on horizontal cuts", "x / h", "-σ_{yy} / (ρ g h)", in.cuts));
   report.sections.emplace_back(in.heaps);
-  for (const auto& [title, rows] :
-       {std::pair{"Figures", in.figures}, {"How it was made", in.made}}) {
-    if (rows.empty()) continue;
-    Table table{title, "", {}, {}};
-    for (const auto& [key, figure] : rows) table.rows.push_back({key, figure});
-    report.sections.emplace_back(std::move(table));
-  }
+  add_rows(report, "Figures", in.figures);
+  add_rows(report, "How it was made", in.made);
   return report;
 }
 

@@ -14,7 +14,7 @@ struct WedgeReport {
   std::vector<Frame> base, cuts;        ///< pressure over rho g h against x/h
   std::vector<Map> mobilized, plastic;  ///< with slip lines and borders as their lines
   Table heaps;                          ///< one row each
-  std::vector<std::pair<std::string, std::string>> figures, made;
+  ReportRows figures, made;
 };
 
 Report wedge_report(const WedgeReport& input);

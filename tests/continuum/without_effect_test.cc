@@ -1,5 +1,5 @@
 // Settings without effect beside others are refused: model, parameter, what was found, what to do.
-#include "continuum/idle.h"
+#include "continuum/without_effect.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace {
 
 /// One line; "accepted" for settings that all have an effect.
 std::string refusal(const std::string& model, const Settings& given) {
-  const auto idle = find_idle(find_model(model), given);
-  return idle ? idle->parameter + "| " + idle->refusal : "accepted";
+  const auto found = find_without_effect(find_model(model), given);
+  return found ? found->parameter + "| " + found->refusal : "accepted";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "coupling/compare/significance.h"
+#include "coupling/statistics/spread.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>

@@ -1,6 +1,4 @@
-// Data for fits from a field in the heaps' frame.
-#include "coupling/heap/heap_field.h"
-
+// Stresses of heaps from a field in their frame.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,10 +8,9 @@
 #include <stdexcept>
 
 #include "coupling/averaging/kernel.h"
-#include "coupling/fit/heap_data.h"
-#include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
 #include "coupling/heap/field_rows.h"
+#include "coupling/heap/heap_field.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -64,7 +61,8 @@ Field without_realizations(const Field& whole, const std::vector<double>& number
 
 }  // namespace
 
-HeapData heap_data(const FitSetup& setup, const Field& whole, const std::string& where) {
+Observations observe_heap_field(const FitSetup& setup, const Field& whole,
+                                const std::string& where) {
   const Field field = without_realizations(whole, setup.leave_out, where);
   if (field.points.cols() != 2) refuse_field(where, "is 3D; fits of heaps need a 2D field");
   std::vector<std::string> missing;
@@ -83,7 +81,7 @@ HeapData heap_data(const FitSetup& setup, const Field& whole, const std::string&
   }
   const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
   require_compression(field, where);
-  HeapData out;
+  Observations out;
   HeapFieldFacts facts =
       heap_field_facts(whole, single ? static_cast<std::size_t>(whole.realizations) : 1, where);
   if (field.realizations != whole.realizations) {
@@ -180,9 +178,10 @@ HeapData heap_data(const FitSetup& setup, const Field& whole, const std::string&
   warn_of_set_slopes(setup, out);
   warn_of_unlike_heaps(
       [&](std::size_t r) { return fmt::format("realization {} of {}", r + 1, where); }, out);
+  set_mean_heap(out);
   keep_rows(setup, places, level, all, out);
   if (count == 1) {
-    HeapData beside;
+    Observations beside;
     beside.data.levels = out.data.levels;
     // Errors of the same rows: those that have a value but no error end the use of errors.
     for (Eigen::Index row = 0; row < errors.rows(); ++row) {

@@ -1,4 +1,4 @@
-#include "coupling/fit/heap_data.h"
+// Stresses of heaps from the grains.
 
 #include <fmt/format.h>
 
@@ -10,9 +10,8 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/fit/heap_maps.h"
 #include "coupling/fit/heap_rows.h"
-#include "coupling/import/doubts.h"
+#include "coupling/import/packing_warnings.h"
 #include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {
@@ -21,7 +20,7 @@ namespace {
 constexpr double kRange = 2;     // of the Lucy kernel, widths
 constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
 
-PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
+PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warnings) {
   const dem::Snapshot heap = heaps.read(k);  // its messages name the file
   try {
     if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
@@ -35,7 +34,7 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, DoubtList& doubts) {
     if (const std::string text = tension_in(check); !text.empty()) {
       throw std::invalid_argument(text);
     }
-    doubts.add(heaps.name(k), check);
+    warnings.add(heaps.name(k), check);
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
@@ -60,14 +59,14 @@ HeapReader heaps_of_runs(const std::vector<std::string>& files) {
           [files](std::size_t k) { return files[k]; }};
 }
 
-HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threads) {
+Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, int threads) {
   const HeapReader heaps = without(all_heaps, setup.leave_out);
-  HeapData out;
-  DoubtList doubts;
+  Observations out;
+  PackingWarnings warnings;
   double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity();
   const auto count = static_cast<double>(heaps.count);
   for (std::size_t k = 0; k < heaps.count; ++k) {
-    out.frames.push_back(frame_of(heaps, k, doubts));
+    out.frames.push_back(frame_of(heaps, k, warnings));
     if (const std::string& flying = out.frames.back().in_flight; !flying.empty()) {
       out.warnings.push_back(fmt::format("{}: {}", heaps.name(k), flying));
     }
@@ -76,7 +75,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threa
     diameter += out.frames.back().diameter / count;
   }
   const HeapSlopes slopes = slopes_of(setup, out.frames);
-  for (std::string& line : doubts.lines()) out.warnings.push_back(std::move(line));
+  for (std::string& line : warnings.lines()) out.warnings.push_back(std::move(line));
   out.width = setup.width_diameters * diameter;
   warn_of_low_heights(setup.heights, least, out.width, out);
   warn_of_unlike_heaps(heaps.name, out);
@@ -128,6 +127,7 @@ HeapData heap_data(const FitSetup& setup, const HeapReader& all_heaps, int threa
   }
   drop_copies(all, grid, heaps.name, out);
   fill_heap_maps(grid, out.facts, out.width / height, out.maps);
+  set_mean_heap(out);
   keep_rows(setup, points, level, all, out);
   return out;
 }

@@ -9,16 +9,17 @@ namespace grainfield::continuum {
 
 /// Why a parameter of the model has no effect with these settings (as complete() returns them) and
 /// what to do, e.g. "with base = rough; leave it out or set base = elastic"; empty: it has one.
-std::string idle_because(const std::string& model, const std::string& parameter,
-                         const Settings& complete);
+std::string without_effect_because(const std::string& model, const std::string& parameter,
+                                   const Settings& complete);
 
 /// A given setting without effect.
-struct IdleSetting {
+struct SettingWithoutEffect {
   std::string parameter;
   std::string refusal;  ///< "model NAME: PARAMETER = VALUE has no effect ..."
 };
 /// The first of the given settings that has no effect; none: all have one. Throws BadParameter as
 /// complete().
-std::optional<IdleSetting> find_idle(const ModelInfo& info, const Settings& given);
+std::optional<SettingWithoutEffect> find_without_effect(const ModelInfo& info,
+                                                        const Settings& given);
 
 }  // namespace grainfield::continuum

@@ -1,5 +1,7 @@
 // What is wrong with the forces of a packing that was made elsewhere.
 #pragma once
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,7 @@ std::string tension_in(const PackingCheck& check);
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
 /// fixed grains that carry another part of the weight than 0.9 to 1.1, contacts with walls more
 /// than two radii off them. `tension_in` aside.
-std::vector<std::string> doubts_of(const PackingCheck& check);
+std::vector<std::string> warnings_of(const PackingCheck& check);
 
 /// Of the free grains; nan without one.
 struct GrainSizes {
@@ -29,18 +31,23 @@ GrainSizes grain_sizes(const dem::Snapshot& packing);
 /// neither.
 std::string strange_units(const dem::Snapshot& packing);
 
-/// The doubts of several packings as one list: the first that has each, and how many others do.
-class DoubtList {
+/// The warnings of several packings as one list: of each kind the first packing that has it, and
+/// how many others do.
+class PackingWarnings {
  public:
-  void add(const std::string& name, const PackingCheck& check);
-  std::vector<std::string> lines() const;
+  /// Nothing where the text is empty.
+  void add(std::size_t kind, const std::string& packing, const std::string& text);
+  /// All of warnings_of, kinds from 0.
+  void add(const std::string& packing, const PackingCheck& check);
+  /// In the order of their kinds; `noun`: of the others.
+  std::vector<std::string> lines(const std::string& noun = "other packing") const;
 
  private:
   struct Entry {
     std::string first;
     int others = 0;
   };
-  std::vector<Entry> entries_{3};  // in the order of doubts_of
+  std::map<std::size_t, Entry> entries_;
 };
 
 }  // namespace grainfield::coupling

@@ -1,4 +1,4 @@
-#include "coupling/import/doubts.h"
+#include "coupling/import/packing_warnings.h"
 
 #include <fmt/format.h>
 
@@ -82,7 +82,7 @@ std::string tension_in(const PackingCheck& check) {
       all, remedy);
 }
 
-std::vector<std::string> doubts_of(const PackingCheck& check) {
+std::vector<std::string> warnings_of(const PackingCheck& check) {
   std::vector<std::string> out;
   for (std::string text : {unbalanced(check), unsupported(check), off_walls(check)}) {
     if (!text.empty()) out.push_back(std::move(text));
@@ -107,26 +107,30 @@ std::string strange_units(const dem::Snapshot& packing) {
   return "";
 }
 
-void DoubtList::add(const std::string& name, const PackingCheck& check) {
-  const std::string texts[] = {unbalanced(check), unsupported(check), off_walls(check)};
-  for (std::size_t k = 0; k < entries_.size(); ++k) {
-    if (texts[k].empty()) continue;
-    if (entries_[k].first.empty()) {
-      entries_[k].first = name + ": " + texts[k];
-    } else {
-      ++entries_[k].others;
-    }
+void PackingWarnings::add(std::size_t kind, const std::string& packing, const std::string& text) {
+  if (text.empty()) return;
+  Entry& entry = entries_[kind];
+  if (entry.first.empty()) {
+    entry.first = packing + ": " + text;
+  } else {
+    ++entry.others;
   }
 }
 
-std::vector<std::string> DoubtList::lines() const {
+void PackingWarnings::add(const std::string& packing, const PackingCheck& check) {
+  std::size_t kind = 0;
+  for (const std::string& text : {unbalanced(check), unsupported(check), off_walls(check)}) {
+    add(kind++, packing, text);
+  }
+}
+
+std::vector<std::string> PackingWarnings::lines(const std::string& noun) const {
   std::vector<std::string> out;
-  for (const Entry& entry : entries_) {
-    if (entry.first.empty()) continue;
+  for (const auto& [kind, entry] : entries_) {
     out.push_back(entry.first);
     if (entry.others > 0) {
       out.back() +=
-          fmt::format(" (likewise {} other packing{})", entry.others, entry.others == 1 ? "" : "s");
+          fmt::format(" (likewise {} {}{})", entry.others, noun, entry.others == 1 ? "" : "s");
     }
   }
   return out;

@@ -1,21 +1,26 @@
-#include "coupling/fit/heap_fits.h"
+#include "coupling/fit/fits.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <stdexcept>
 
-#include "coupling/compare/significance.h"
+#include "continuum/constants.h"
+#include "coupling/compare/smooth.h"
 #include "coupling/fit/derived.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/heap_rows.h"
-#include "coupling/fit/heap_sight.h"
 #include "coupling/fit/intervals.h"
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/observation_operator.h"
+#include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 
-std::vector<FitModel> models_of(const FitSetup& setup, const HeapData& heaps) {
+std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
   std::vector<FitModel> out;
   for (FitModel& model : heap_models(heaps.facts)) {
     out.push_back(seen_through_kernel(std::move(model), heaps.facts.smoothing));
@@ -68,24 +73,12 @@ std::string imbalance(const Fit& fit, double slope_deg, int realizations) {
 
 }  // namespace
 
-HeapFits fit_heaps(const FitSetup& setup, HeapData heaps, int threads) {
-  HeapFits out;
-  out.heaps = std::move(heaps);
-  const FitData& data = out.heaps.data;
+namespace {
+
+void fit_all(const std::vector<FitModel>& known, const std::vector<std::string>& names,
+             const FitOptions& options, EnsembleFits& out) {
+  const FitData& data = out.observed.data;
   out.weights = weights_of(data);
-  const std::vector<FitModel> known = models_of(setup, out.heaps);
-  FitOptions options;
-  options.huber = setup.huber;
-  options.bootstrap = static_cast<int>(setup.bootstrap);
-  options.threads = threads;
-  std::vector<std::string> names = setup.models;
-  // Beside constants that are free of equilibrium and yield stands the fit that is bound to both.
-  const auto named = [&](const char* name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  if (named("cantelaube") && !named("cantelaube_continuous")) {
-    names.push_back("cantelaube_continuous");
-  }
   for (const std::string& name : names) {
     const FitModel& model = find_fit_model(known, name);
     if (!model.absent.empty()) {
@@ -100,26 +93,102 @@ HeapFits fit_heaps(const FitSetup& setup, HeapData heaps, int threads) {
                                             out.absent.front().name, out.absent.front().absent));
   }
   SelectionOptions selection;
-  selection.huber = setup.huber;
+  selection.huber = options.huber;
   out.selection = select(data, out.weights, out.models, out.fits, selection);
+}
+
+// Each place once: components share them.
+Eigen::MatrixXd places_of(const FitData& data) {
+  std::vector<int> once;
+  std::set<std::pair<double, double>> seen;
+  for (int k = 0; k < data.values(); ++k) {
+    if (seen.emplace(data.points(k, 0), data.points(k, 1)).second) once.push_back(k);
+  }
+  return rows_of(data, once).points;
+}
+
+}  // namespace
+
+EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
+  EnsembleFits out;
+  out.observed = std::move(heaps);
+  FitOptions options;
+  options.huber = setup.huber;
+  options.bootstrap = static_cast<int>(setup.bootstrap);
+  options.threads = threads;
+  std::vector<std::string> names = setup.models;
+  // Beside constants that are free of equilibrium and yield stands the fit that is bound to both.
+  const auto named = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (named("cantelaube") && !named("cantelaube_continuous")) {
+    names.push_back("cantelaube_continuous");
+  }
+  fit_all(models_of(setup, out.observed), names, options, out);
+  const Score& first = out.selection.ranking.front();
   for (Fit& f : out.fits) {
-    const std::string off = imbalance(f, out.heaps.facts.slope_deg, data.realizations());
+    const std::string off =
+        imbalance(f, out.observed.facts.slope_deg, out.observed.data.realizations());
     if (off.empty()) continue;
     f.note += (f.note.empty() ? "" : "; ") + off;
-    const Score& first = out.selection.ranking.front();
     if (first.name == f.name) out.selection.sentence += fmt::format(" {}: {}.", f.name, off);
+  }
+  out.verdict.model = first.name;
+  out.verdict.alone = out.selection.distinguishable;
+  out.verdict.sentence = out.selection.sentence;
+  out.elements = solve_elements(
+      setup.finite_elements, out.models, out.fits, out.observed.data, out.weights,
+      [&](const StressFunction& stress, bool) { return stress(out.observed.data.points); });
+  return out;
+}
+
+EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int threads) {
+  EnsembleFits out;
+  out.observed = std::move(layers);
+  const FitData& data = out.observed.data;
+  FitOptions options;
+  options.bootstrap = static_cast<int>(setup.bootstrap);
+  options.threads = threads;
+  const auto seen =
+      std::make_shared<const ObservationOperator>(places_of(data), *out.observed.kernel);
+  fit_all(layer_models(seen), setup.models, options, out);
+  out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
+  out.elements = solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
+                                [&](const StressFunction& stress, bool half_plane) {
+                                  return seen->pick(seen->seen(stress, half_plane), data.points);
+                                });
+  return out;
+}
+
+Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name) {
+  const StressMaps& m = fits.observed.maps;
+  const Eigen::VectorXd parameters = parameters_of(fit_named(fits.fits, name));
+  const Kernel& kernel = *fits.observed.kernel;
+  if (fits.observed.specimen == Specimen::layer) {
+    const auto seen = std::make_shared<const ObservationOperator>(m.points, kernel);
+    return find_fit_model(layer_models(seen), name).stress(m.points, parameters);
+  }
+  const FitModel& model = find_fit_model(fits.models, name);
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index p = 0; p < m.points.rows(); ++p) {
+    if (m.mean.row(p).allFinite()) inside.push_back(p);
+  }
+  // There is nothing outside of the heap.
+  const StressFunction stress = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
+    const auto& exact = model.at_point ? model.at_point : model.stress;
+    return exact(points, parameters).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
+  };
+  const Eigen::MatrixXd seen = smooth_in_plane(stress, m.points(inside, Eigen::all), kernel, 1);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    out.row(inside[k]) = seen.row(static_cast<Eigen::Index>(k));
   }
   return out;
 }
 
-Comparison profiles_of(const HeapFits& fits) {
-  const FitData& data = fits.heaps.data;
-  double h = 0, unit = 0;
-  const double n = static_cast<double>(fits.heaps.frames.size());
-  for (const PileFrame& f : fits.heaps.frames) {
-    h += f.height / n;
-    unit += f.pressure() / n;
-  }
+Comparison profiles_of(const EnsembleFits& fits) {
+  const FitData& data = fits.observed.data;
+  const double h = fits.observed.height, unit = fits.observed.unit;
   std::vector<Profile> profiles;
   std::vector<ModelProfiles> models;
   for (const FitModel& m : fits.models) models.push_back({m.name, m.label, m.name, {}});
@@ -127,13 +196,7 @@ Comparison profiles_of(const HeapFits& fits) {
     const std::string& name = data.components[static_cast<std::size_t>(c)];
     const double sign = name == "sigma_xy" ? 1 : -1;
     for (int level = 0; level < static_cast<int>(data.levels.size()); ++level) {
-      std::vector<int> rows;
-      for (int k = 0; k < data.values(); ++k) {
-        if (data.component[static_cast<std::size_t>(k)] == c &&
-            data.level[static_cast<std::size_t>(k)] == level) {
-          rows.push_back(k);
-        }
-      }
+      const std::vector<int> rows = rows_at(data, c, level);
       if (rows.size() < 3) continue;
       const FitData part = rows_of(data, rows);
       Profile p;
@@ -149,7 +212,7 @@ Comparison profiles_of(const HeapFits& fits) {
         const Eigen::VectorXd row = p.samples.row(k);
         p.error[k] = spread_of({row.begin(), row.end()}).standard_error;
       }
-      p.independent_length = fits.heaps.kernel->independent_length() * h;
+      p.independent_length = fits.observed.kernel->independent_length() * h;
       for (std::size_t m = 0; m < models.size(); ++m) {
         Eigen::VectorXd values(static_cast<Eigen::Index>(rows.size()));
         for (std::size_t k = 0; k < rows.size(); ++k) {

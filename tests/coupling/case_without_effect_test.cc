@@ -108,7 +108,7 @@ TEST(IdleKeys, DependOnKeysAndValuesThatExist) {
   }
 }
 
-// With the choice that makes it idle the grains come to the same bits, whatever the key says.
+// With the choice that leaves it without effect the grains come to the same bits, whatever the key says.
 TEST(IdleKeys, ChangeNothing) {
   const Words of_grains{"shape", "source", "packing", "material", "motion", "sleep", "change"};
   std::map<std::string, std::vector<double>> baselines;
@@ -129,7 +129,7 @@ TEST(IdleKeys, ChangeNothing) {
     if (pile && key.section == "material") set.push_back("shape.kind=disk");
     if (key.section == "change") set.push_back("change.gravity=[9.5]");
     const Case without = read(text, set);
-    EXPECT_TRUE(is_idle(key, without)) << key.path();
+    EXPECT_TRUE(is_without_effect(key, without)) << key.path();
     set.push_back(changed(key));
     Case with;
     try {
@@ -138,7 +138,7 @@ TEST(IdleKeys, ChangeNothing) {
       EXPECT_THAT(e.what(), HasSubstr("allowed"));  // refused, which says it too
       continue;
     }
-    ASSERT_THAT(with.idle, ::testing::Contains(HasSubstr("--set: " + key.path()))) << key.path();
+    ASSERT_THAT(with.without_effect, ::testing::Contains(HasSubstr("--set: " + key.path()))) << key.path();
     const std::string baseline =
         fmt::format("{} {}", pile, fmt::join(set.begin(), set.end() - 1, " "));
     if (baselines.count(baseline) == 0) baselines[baseline] = outcome(without);
@@ -150,25 +150,25 @@ TEST(IdleKeys, ChangeNothing) {
 
 TEST(IdleKeys, AreNamedWithLineAndRemedy) {
   const std::string text = "study = \"pile\"\n[source]\nkind = \"line\"\nheight = 0.4\n";
-  EXPECT_THAT(read(text).idle,
+  EXPECT_THAT(read(text).without_effect,
               ElementsAre(HasSubstr("x.toml:4: source.height: has no effect, only with "
                                     "source.kind = point (now \"line\")")));
-  EXPECT_THAT(read(text, {"source.kind=point"}).idle, IsEmpty());
+  EXPECT_THAT(read(text, {"source.kind=point"}).without_effect, IsEmpty());
   // Of a list one of the values is enough; a key of a key without effect has none either.
-  EXPECT_THAT(read(testing::tiny_case(), {"average.kernel=gaussian"}).idle, IsEmpty());
+  EXPECT_THAT(read(testing::tiny_case(), {"average.kernel=gaussian"}).without_effect, IsEmpty());
   EXPECT_THAT(
       read(testing::tiny_case(), {"average.methods=[\"area_exact\"]", "average.kernel=gaussian"})
-          .idle,
+          .without_effect,
       ElementsAre(HasSubstr("--set: average.kernel: has no effect, only with "
                             "average.methods = coarse_graining (now [\"area_exact\"])")));
-  EXPECT_THAT(read(testing::tiny_case(), {"packing.side=0.01"}).idle,
+  EXPECT_THAT(read(testing::tiny_case(), {"packing.side=0.01"}).without_effect,
               ElementsAre(HasSubstr("packing.side")));
 }
 
 TEST(IdleKeys, AreNotWhatARunVaries) {
   const std::string text = "study = \"pile\"\n[source]\nheight = 0.4\nlength = 0.9\n";
-  EXPECT_THAT(read(text).idle, ElementsAre(HasSubstr("source.length")));
-  EXPECT_THAT(read(text + "[sweep]\nkey = \"source.kind\"\nvalues = [\"line\", \"point\"]\n").idle,
+  EXPECT_THAT(read(text).without_effect, ElementsAre(HasSubstr("source.length")));
+  EXPECT_THAT(read(text + "[sweep]\nkey = \"source.kind\"\nvalues = [\"line\", \"point\"]\n").without_effect,
               IsEmpty());
 }
 
@@ -184,33 +184,33 @@ law = "linear"
 normal_damping = 4000
 )";
 
-// Each of its needs leaves a key idle, and the message says which.
+// Each of its needs leaves a key without effect, and the message says which.
 TEST(IdleKeys, MayHaveSeveralNeeds) {
   const std::string only =
       "only with sample.boundary = walls, sample.deformation = simple_shear (now ";
-  EXPECT_THAT(read(kTinySample, {"sample.sides=upright"}).idle,
+  EXPECT_THAT(read(kTinySample, {"sample.sides=upright"}).without_effect,
               ElementsAre("--set: sample.sides: has no effect, " + only + "\"periodic\")"));
   EXPECT_THAT(read(kTinySample,
                    {"sample.sides=upright", "sample.boundary=walls", "sample.deformation=axial"})
-                  .idle,
+                  .without_effect,
               ElementsAre("--set: sample.sides: has no effect, " + only + "\"axial\")"));
-  EXPECT_THAT(read(kTinySample, {"sample.sides=upright", "sample.boundary=walls"}).idle, IsEmpty());
+  EXPECT_THAT(read(kTinySample, {"sample.sides=upright", "sample.boundary=walls"}).without_effect, IsEmpty());
 }
 
 TEST(IdleKeys, OfSamplesChangeNothing) {
   const auto periodic = outcome(read(kTinySample));
   const Case rough = read(kTinySample, {"material.wall_friction=0.7"});
-  EXPECT_THAT(rough.idle, ElementsAre(HasSubstr("material.wall_friction: has no effect, only with "
+  EXPECT_THAT(rough.without_effect, ElementsAre(HasSubstr("material.wall_friction: has no effect, only with "
                                                 "sample.boundary = walls (study sample) (now ")));
   EXPECT_EQ(outcome(rough), periodic);
-  EXPECT_THAT(read(kTinySample, {"material.wall_friction=0.7", "sample.boundary=walls"}).idle,
+  EXPECT_THAT(read(kTinySample, {"material.wall_friction=0.7", "sample.boundary=walls"}).without_effect,
               IsEmpty());
   const Overrides axial{"sample.boundary=walls", "sample.deformation=axial"};
   Overrides upright = axial;
   upright.emplace_back("sample.sides=upright");
   EXPECT_EQ(outcome(read(kTinySample, upright)), outcome(read(kTinySample, axial)));
   // Other studies always have walls.
-  EXPECT_THAT(read(testing::tiny_case(), {"material.wall_friction=0.7"}).idle, IsEmpty());
+  EXPECT_THAT(read(testing::tiny_case(), {"material.wall_friction=0.7"}).without_effect, IsEmpty());
 }
 
 TEST(IdleKeys, OfPathsAreTheTimeStepAndItsIntegrator) {
@@ -219,11 +219,11 @@ TEST(IdleKeys, OfPathsAreTheTimeStepAndItsIntegrator) {
   for (const char* set :
        {"motion.time_step=1.0", "motion.time_step_fraction=0.5", "motion.integrator=gear"}) {
     const Case other = read(path, {set});
-    EXPECT_THAT(other.idle, ElementsAre(HasSubstr("only with pair.kind = collision"))) << set;
+    EXPECT_THAT(other.without_effect, ElementsAre(HasSubstr("only with pair.kind = collision"))) << set;
     EXPECT_EQ(outcome(other), outcome(usual)) << set;
   }
-  EXPECT_THAT(read("study = \"pair\"\n", {"motion.integrator=gear"}).idle, IsEmpty());
-  EXPECT_THAT(read(testing::tiny_case(), {"motion.integrator=gear"}).idle, IsEmpty());
+  EXPECT_THAT(read("study = \"pair\"\n", {"motion.integrator=gear"}).without_effect, IsEmpty());
+  EXPECT_THAT(read(testing::tiny_case(), {"motion.integrator=gear"}).without_effect, IsEmpty());
   const Folder folder;
   const auto check = [&](const std::string& text) {
     return testing::program("check " + folder.write("x.toml", text)).out;
@@ -235,10 +235,10 @@ TEST(IdleKeys, OfPathsAreTheTimeStepAndItsIntegrator) {
 TEST(IdleKeys, ASweptOneIsWarnedOf) {
   const std::string pile = "study = \"pile\"\n[source]\n";
   const std::string sweep = "[sweep]\nkey = \"source.height\"\nvalues = [\"0.5\", \"0.4\"]\n";
-  EXPECT_THAT(read(pile + "kind = \"line\"\n" + sweep).idle,
+  EXPECT_THAT(read(pile + "kind = \"line\"\n" + sweep).without_effect,
               ElementsAre(HasSubstr("x.toml:5: sweep.key: source.height has no effect, only with "
                                     "source.kind = point (now \"line\")")));
-  EXPECT_THAT(read(pile + "kind = \"point\"\n" + sweep).idle, IsEmpty());
+  EXPECT_THAT(read(pile + "kind = \"point\"\n" + sweep).without_effect, IsEmpty());
 }
 
 TEST(IdleKeys, AWrittenOutCaseHasNone) {
@@ -246,14 +246,14 @@ TEST(IdleKeys, AWrittenOutCaseHasNone) {
   EXPECT_THAT(text, HasSubstr("# length = 0.03"));
   EXPECT_THAT(text, HasSubstr("# only with source.kind = line; m; "));
   const Case again = read(text);
-  EXPECT_THAT(again.idle, IsEmpty());
+  EXPECT_THAT(again.without_effect, IsEmpty());
 }
 
 TEST(IdleKeys, OfShippedCasesAreNone) {
   for (const auto& entry : std::filesystem::directory_iterator(GRAINFIELD_CASES)) {
     if (entry.path().extension() != ".toml") continue;
     for (const bool quick : {false, true}) {
-      EXPECT_THAT(read_case(entry.path().string(), quick, {}).idle, IsEmpty()) << entry.path();
+      EXPECT_THAT(read_case(entry.path().string(), quick, {}).without_effect, IsEmpty()) << entry.path();
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "coupling/fit/layer_sight.h"
+#include "coupling/fit/observation_operator.h"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -30,7 +30,8 @@ void add_panel(double from, double to, std::vector<std::pair<double, double>>& o
 
 }  // namespace
 
-LayerSight::LayerSight(const Eigen::MatrixXd& points, const Kernel& kernel) : points_(points) {
+ObservationOperator::ObservationOperator(const Eigen::MatrixXd& points, const Kernel& kernel)
+    : points_(points) {
   for (Eigen::Index k = 0; k < points.rows(); ++k) row_[{points(k, 0), points(k, 1)}] = k;
   layer_ = nodes_of(kernel, 1);
   half_plane_ = nodes_of(kernel, 0);
@@ -38,7 +39,7 @@ LayerSight::LayerSight(const Eigen::MatrixXd& points, const Kernel& kernel) : po
 }
 
 // The smoothing is linear: the identity as "stress" at a point's nodes gives their weights.
-LayerSight::Nodes LayerSight::nodes_of(const Kernel& kernel, double depth) const {
+ObservationOperator::Nodes ObservationOperator::nodes_of(const Kernel& kernel, double depth) const {
   std::vector<Eigen::MatrixXd> parts;
   std::vector<Eigen::Triplet<double>> weights;
   Eigen::Index total = 0;
@@ -73,7 +74,7 @@ LayerSight::Nodes LayerSight::nodes_of(const Kernel& kernel, double depth) const
 // A kernel w(|r|) at the depth d weighs the depth d + e with the transform of its profile across,
 //   Int w(sqrt(z^2 + e^2)) cos(k z) dz,
 // and on the base with that of its marginal.
-void LayerSight::make_levels(const Kernel& kernel) {
+void ObservationOperator::make_levels(const Kernel& kernel) {
   const double reach = kernel.range();
   const double step = 2 * std::numbers::pi / (2 * points_.col(0).cwiseAbs().maxCoeff() + kFarther);
   const auto n = static_cast<Eigen::Index>(kMostWave / step) + 1;
@@ -129,12 +130,12 @@ void LayerSight::make_levels(const Kernel& kernel) {
   shares_ = Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
 }
 
-Eigen::MatrixXd LayerSight::seen(const StressFunction& stress, bool half_plane) const {
+Eigen::MatrixXd ObservationOperator::seen(const StressFunction& stress, bool half_plane) const {
   const Nodes& nodes = half_plane ? half_plane_ : layer_;
   return nodes.weight * stress(nodes.at);
 }
 
-Eigen::MatrixXd LayerSight::seen(const continuum::OrthotropicWaves& waves) const {
+Eigen::MatrixXd ObservationOperator::seen(const continuum::OrthotropicWaves& waves) const {
   const auto n = waves_.size();
   std::vector<Eigen::MatrixX3d> spectra(levels_.size(), Eigen::MatrixX3d(n, 3));
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -156,16 +157,37 @@ Eigen::MatrixXd LayerSight::seen(const continuum::OrthotropicWaves& waves) const
   return out;
 }
 
-Eigen::MatrixXd LayerSight::pick(const Eigen::MatrixXd& values,
-                                 const Eigen::MatrixXd& points) const {
+Eigen::MatrixXd ObservationOperator::pick(const Eigen::MatrixXd& values,
+                                          const Eigen::MatrixXd& points) const {
   if (points.rows() == points_.rows() && points == points_) return values;
   Eigen::MatrixXd out(points.rows(), values.cols());
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const auto at = row_.find({points(k, 0), points(k, 1)});
-    if (at == row_.end()) throw std::logic_error("LayerSight: a point that it does not know");
+    if (at == row_.end())
+      throw std::logic_error("ObservationOperator: a point that it does not know");
     out.row(k) = values.row(at->second);
   }
   return out;
+}
+
+FitModel seen_through_kernel(FitModel model, double smoothing) {
+  if (!(smoothing > 0) || model.name == "cantelaube") return model;
+  model.at_point = model.stress;
+  model.stress = [exact = model.stress, smoothing](const Eigen::MatrixXd& points,
+                                                   const Eigen::VectorXd& parameters) {
+    const Eigen::MatrixXd centre = exact(points, parameters);
+    Eigen::MatrixXd out = centre / 2;
+    for (int k = 0; k < 6; ++k) {
+      const double angle = k * std::numbers::pi / 3;
+      Eigen::MatrixXd moved = points;
+      moved.col(0).array() += 2 * smoothing * std::cos(angle);
+      moved.col(1).array() += 2 * smoothing * std::sin(angle);
+      out +=
+          exact(moved, parameters).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v / 12; });
+    }
+    return out;  // nan where the centre is
+  };
+  return model;
 }
 
 }  // namespace grainfield::coupling

@@ -1,4 +1,4 @@
-#include "continuum/idle.h"
+#include "continuum/without_effect.h"
 
 #include <fmt/format.h>
 
@@ -119,8 +119,8 @@ std::string wedge(const std::string& parameter, const Settings& s) {
 
 }  // namespace
 
-std::string idle_because(const std::string& model, const std::string& parameter,
-                         const Settings& complete) {
+std::string without_effect_because(const std::string& model, const std::string& parameter,
+                                   const Settings& complete) {
   if (model == "cantelaube") return cantelaube(parameter, complete);
   if (model == "cantelaube_asymmetric") return cantelaube_asymmetric(parameter, complete);
   if (model == "liffman") return liffman(parameter, complete);
@@ -135,13 +135,14 @@ std::string idle_because(const std::string& model, const std::string& parameter,
   return {};
 }
 
-std::optional<IdleSetting> find_idle(const ModelInfo& info, const Settings& given) {
+std::optional<SettingWithoutEffect> find_without_effect(const ModelInfo& info,
+                                                        const Settings& given) {
   const Settings all = complete(info, given);
   for (const auto& [parameter, value] : given) {
-    const std::string because = idle_because(info.name, parameter, all);
+    const std::string because = without_effect_because(info.name, parameter, all);
     if (!because.empty())
-      return IdleSetting{parameter, fmt::format("model {}: {} = {} has no effect {}", info.name,
-                                                parameter, value, because)};
+      return SettingWithoutEffect{parameter, fmt::format("model {}: {} = {} has no effect {}",
+                                                         info.name, parameter, value, because)};
   }
   return std::nullopt;
 }

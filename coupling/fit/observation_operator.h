@@ -1,6 +1,5 @@
-// How models of a layer under a point load are seen at the points of the data: through the kernel
-// of the averaging in the plane, through its marginal on the base. Lengths in units of the depth h,
-// stresses of F/h; load at (0, 0), y up, base y = -1.
+// How models are seen at the points of the observations: through the kernel of the averaging, as
+// the grains are. Lengths in units of h.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -11,15 +10,17 @@
 #include "continuum/closed/orthotropic_layer.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/compare/smooth.h"
+#include "coupling/fit/model.h"
 
 namespace grainfield::coupling {
 
-/// Everything that depends on the points and the kernel alone is worked out once, so that a fit
-/// can ask for many parameters.
-class LayerSight {
+/// Of a layer under a point load: through the kernel in the plane, through its marginal on the
+/// base. Stresses of F/h; load at (0, 0), y up, base y = -1. Everything that depends on the points
+/// and the kernel alone is worked out once, so that a fit can ask for many parameters.
+class ObservationOperator {
  public:
   /// `points`: n x 2, -1 <= y < 0; those with y = -1 are on the base. `kernel`: its width over h.
-  LayerSight(const Eigen::MatrixXd& points, const Kernel& kernel);
+  ObservationOperator(const Eigen::MatrixXd& points, const Kernel& kernel);
 
   /// The model smoothed at the points, n x 3. `half_plane`: it goes on below the base; otherwise
   /// nodes below the base take its value at the base. One call of `stress`.
@@ -53,5 +54,13 @@ class LayerSight {
   Eigen::VectorXd shares_, waves_, measure_;  // depths, u, its weight du/pi
   Eigen::MatrixXd cosine_, sine_;             // points x wave numbers
 };
+
+/// Of a heap: the model smoothed over a kernel of the standard deviation `smoothing` along a line:
+/// the mean of its point (half of the weight) and six around it at twice that distance, which have
+/// the kernel's second moments. Outside the heap there is nothing, 0; where the point itself is
+/// outside: nan. Kinks are judged as the grains show them, and the misfit is smooth where one
+/// crosses a point. `at_point` of the result is the model as it was. `cantelaube` passes from core
+/// to flank over the same width by itself and stays as it is.
+FitModel seen_through_kernel(FitModel model, double smoothing);
 
 }  // namespace grainfield::coupling

@@ -1,0 +1,54 @@
+// Everything that is fitted to one ensemble of heaps or layers: the one path of studies and
+// commands.
+//
+//   observations.h          places, kernel, values per realization, maps: of grains or of a field
+//   model.h                 a model: parameters that may be free, stress, what the registry has of
+//                           it; models.h (heaps) and layer_models.h (layers) list them
+//   observation_operator.h  the model at the places, through the kernel that averaged the grains
+//   fit.h, selection.h      constants with errors; which models the data support
+//   fits.h                  all of it for one ensemble, and finite elements (finite_elements.h)
+//   fit_report.h            figures, tables and pictures of the result
+//
+// Heaps and layers differ in frame and units, in where they are looked at (heap_*.cc, layer_*.cc),
+// in their models, and in words (Specimen).
+#pragma once
+#include <vector>
+
+#include "coupling/compare/compare.h"
+#include "coupling/fit/finite_elements.h"
+#include "coupling/fit/layer_verdict.h"
+#include "coupling/fit/observations.h"
+#include "coupling/fit/selection.h"
+
+namespace grainfield::coupling {
+
+struct EnsembleFits {
+  Observations observed;
+  Weights weights;
+  std::vector<FitModel> models;
+  std::vector<Fit> fits;  ///< in the order of models
+  Selection selection;
+  std::vector<FitModel> absent;  ///< asked for, but there is no such field for this heap
+  FitVerdict verdict;
+  std::vector<FiniteElementFit> elements;
+};
+
+/// The models of the heaps, with slopes that a part of the realizations has alone where these are
+/// measured: their spread is part of the constants' errors.
+std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps);
+
+/// Weights, one fit per setup.models, their ranking, and the finite elements asked for. The bits do
+/// not depend on threads. Throws std::invalid_argument for unknown models and what data and models
+/// throw.
+EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads);
+EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int threads);
+
+/// A fitted model on the maps' points seen through the averaging's kernel; n x 3, nan where the
+/// maps are.
+Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name);
+
+/// Grains and fitted models along every height and component of heaps, in m and N/m of the mean
+/// heap, with their distances: for profiles.*.
+Comparison profiles_of(const EnsembleFits& fits);
+
+}  // namespace grainfield::coupling
