@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/reproduce/dips.h"
 #include "coupling/reproduce/fit_figures.h"
 
 namespace grainfield::coupling {
@@ -55,33 +56,27 @@ SourceFigure number(const char* source, const char* what, const char* unit, cons
 SourceFigure dip(const char* source, const char* what, const char* study, const char* theirs,
                  std::vector<std::string> words) {
   const std::string name = study;
-  return {source,
-          what,
-          "",
-          study,
-          theirs,
-          0,
-          0,
-          std::move(words),
-          nullptr,
-          [name](const Results& r) -> std::optional<std::string> {
-            const auto verdict = r.text(name, "dip.verdict");
-            const auto difference = r.number(name, "dip.difference");
-            const auto p = r.plain(name, "dip.p_value");
-            const auto centre = r.plain(name, "dip.ratio");
-            if (!verdict || !difference || !p || !centre) return std::nullopt;
-            // Judged anew: two-sided, whatever the rule when it was recorded.
-            const double both = 2 * std::min(*p, 1 - *p);
-            const std::string judged = std::isnan(both) ? *verdict
-                                       : both >= 0.05   ? "neither"
-                                       : *p < 0.5       ? "dip"
-                                                        : "peak";
-            return fmt::format(
-                "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} (two-sided) if there were "
-                "none; centre over largest {:.2f}",
-                judged, difference->value, difference->error, both, *centre);
-          },
-          0};
+  return {
+      source,
+      what,
+      "",
+      study,
+      theirs,
+      0,
+      0,
+      std::move(words),
+      nullptr,
+      [name](const Results& r) -> std::optional<std::string> {
+        const auto dip = recorded_dip(r, name);
+        const auto centre = r.plain(name, "dip.ratio");
+        if (!dip || !centre) return std::nullopt;
+        return fmt::format(
+            "{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, p = {:.2g} if there were none ({:.2g} "
+            "over all pours); centre over largest {:.2f}",
+            dip->word, dip->difference.value, dip->difference.error, dip->p_value, dip->p_holm,
+            *centre);
+      },
+      0};
 }
 
 // A word with the number that supports it.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "coupling/reproduce/dips.h"
 #include "coupling/reproduce/figures.h"
 #include "coupling/reproduce/misprints.h"
 
@@ -65,10 +66,35 @@ std::string verdicts(const Results& results, const std::vector<std::string>& stu
     if (sentence && judged) out += fmt::format("- `{}`: {}\n", study, *sentence);
   }
   if (out.empty()) return out;
-  return "\n## Which theory the grains support\n\n" + out +
+  return "\n## Which theory the grains support\n\n"
+         "As each study said when it was run, by itself and by the rules of its version.\n\n" +
+         out +
          "\nLayers under a point load: [verdict over all "
          "packings](cases/point-load-verdict.md); lattice piles: "
          "[Liffman](cases/liffman-lattice.md).\n";
+}
+
+// All ensembles' dips, also those that disagree.
+std::string dips(const Results& results) {
+  const std::vector<RecordedDip> all = recorded_dips(results);
+  if (all.empty()) return "";
+  std::string out = fmt::format(
+      "\n## Dips and peaks of all pours\n\n"
+      "Mean base pressure beside the apex minus that under it, over ρ g h of each pile; p: chance "
+      "of "
+      "so large a difference either way if there were none (Student's t over realizations), and "
+      "the "
+      "same corrected for all {} pours of this table (Holm). The last column counts.\n\n"
+      "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
+      "|---|---|---|---|---|---|\n",
+      all.size());
+  for (const RecordedDip& dip : all) {
+    out +=
+        fmt::format("| `{}` | {} | {:.3f} ± {:.3f} | {:.2g} | {:.2g} | {} |\n", dip.study,
+                    optional_number(results, dip.study, "ensemble.realizations", "{:g}"),
+                    dip.difference.value, dip.difference.error, dip.p_value, dip.p_holm, dip.word);
+  }
+  return out;
 }
 
 // Links to the profiles and the pictures themselves, of the studies that have them.
@@ -115,8 +141,8 @@ std::string reproduction_page(const Results& results) {
       "the "
       "covariance's and the bootstrap's over piles; a fit is beyond the errors when its χ²/dof "
       "exceeds what a true model's does by chance (1.35 of 1000). A "
-      "dip or peak is one at 5 % (two-sided, Student's t over realizations: mean base pressure "
-      "beside the apex minus that under it); a peak meets \"no dip\" too; neither is "
+      "dip or peak is one at 5 % over [all pours together](#dips-and-peaks-of-all-pours); a peak "
+      "meets \"no dip\" too; neither is "
       "uninformative: it agrees with a dip as with none. Nothing was tuned to agree.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"
       "|---|---|---|---|---|---|---|\n",
@@ -135,6 +161,7 @@ std::string reproduction_page(const Results& results) {
       studies.push_back(figure.study);
     }
   }
+  out += dips(results);
   out += verdicts(results, studies);
   out += profiles_and_maps(results, studies);
   out +=

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "continuum/constants.h"
+#include "coupling/statistics/holm.h"
 #include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
@@ -24,19 +24,11 @@ double figure_in(const Summary& summary, const std::string& key) {
   return count == nullptr ? kNan : static_cast<double>(*count);
 }
 
-// Holm's step-down: the k-th smallest of m is multiplied by m - k, and none is below an earlier
-// one.
 void correct(std::vector<SweepDifference>& all) {
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return all[a].p_value < all[b].p_value; });
-  double least = 0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    SweepDifference& d = all[order[k]];
-    least = std::max(least, std::min(1.0, static_cast<double>(order.size() - k) * d.p_value));
-    d.p_holm = least;
-  }
+  std::vector<double> p_values;
+  for (const SweepDifference& d : all) p_values.push_back(d.p_value);
+  const std::vector<double> corrected = holm(p_values);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].p_holm = corrected[k];
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The page of the sources' figures.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,13 +80,13 @@ TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
               HasSubstr("| Roul 3.1 | angle of repose, point source | 28 deg | 28.4 ± 0.3 deg "
                         "| agrees | 8 | `pile-point-source` |"));
   EXPECT_THAT(page, HasSubstr("| 24.0 ± 0.5 deg | differs by 2 deg (4.0 standard errors) |"));
-  EXPECT_THAT(page, HasSubstr("| dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.002 (two-sided) "
-                              "if there were none; centre "
-                              "over largest 0.80 | agrees |"));
+  EXPECT_THAT(page, HasSubstr("| dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.002 if "
+                              "there were none (0.004 over all pours); centre over largest 0.80 | "
+                              "agrees |"));
   // A line source with a dip is a difference.
-  EXPECT_THAT(
-      page,
-      HasSubstr("p = 0.002 (two-sided) if there were none; centre over largest 0.80 | differs |"));
+  EXPECT_THAT(page, HasSubstr("none (0.004 over all pours); centre over largest 0.80 | differs |"));
+  EXPECT_THAT(page, HasSubstr("| `pile-point-source` | 8 | 0.100 ± 0.020 | 0.002 | 0.004 | dip |"));
+  EXPECT_THAT(page, HasSubstr("| `pile-elliptic` |  | 0.220 ± 0.200 | nan | nan | undecided |"));
   EXPECT_THAT(page, HasSubstr("| too few realizations to tell |"));
   // The ratio of 0.22 +- 0.2 and 0.1 +- 0.02.
   EXPECT_THAT(page, HasSubstr("| about 2 | 2.200 ± 2.048 | spread too wide to tell |"));
@@ -98,6 +99,26 @@ TEST(Reproduce, SummariesGiveNumbersWithErrorsAndWords) {
   // No command is made up where none was stored.
   EXPECT_THAT(page, ::testing::Not(HasSubstr("grainfield run cases/pile-point-source.toml")));
   EXPECT_THAT(page, HasSubstr("run before commands were stored"));
+}
+
+// One of three pours at p = 0.04 is what chance alone makes of three; a study that the sources do
+// not have counts too.
+TEST(Reproduce, DipsAreJudgedOverAllPours) {
+  const auto pour = [](double difference, double p) {
+    return fmt::format(
+        R"({{"dip.difference": {}, "dip.standard_error": 0.02, "dip.p_value": {}, "dip.ratio": 0.8}})",
+        difference, p);
+  };
+  const Folder folder;
+  folder.write("pile-point-source.json", pour(0.05, 0.02));
+  folder.write("pile-line-source.json", pour(-0.01, 0.7));
+  folder.write("another.json", pour(-0.3, 0.999));
+  const std::string page = reproduction_page(Results(folder.path()));
+  EXPECT_THAT(page,
+              HasSubstr("| `pile-point-source` |  | 0.050 ± 0.020 | 0.04 | 0.08 | neither |"));
+  EXPECT_THAT(page, HasSubstr("| `another` |  | -0.300 ± 0.020 | 0.002 | 0.006 | peak |"));
+  EXPECT_THAT(page,
+              HasSubstr("| Roul 3.3 | base pressure, point source | dip | neither: shoulder"));
 }
 
 // -0.04 +- 0.03 over 0.05 +- 0.02 against 1.5: -0.115 off with an error of 0.03 sqrt 2.

@@ -21,7 +21,7 @@ const std::vector<Room>& rooms() {
       {"compare", {"averaging", "statistics"}},
       {"heap", {"averaging", "statistics"}},
       {"output", {"compare", "system"}},
-      {"reproduce", {"output"}},
+      {"reproduce", {"output", "statistics"}},
       {"elastic_constants", {"averaging", "output", "statistics", "system"}},
       {"report", {"averaging", "output", "system"}},
       {"models", {"averaging", "compare", "output"}},

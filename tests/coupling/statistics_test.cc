@@ -8,6 +8,7 @@
 #include "coupling/statistics/bootstrap.h"
 #include "coupling/statistics/correlation.h"
 #include "coupling/statistics/exponential_tail.h"
+#include "coupling/statistics/holm.h"
 #include "coupling/statistics/least_squares.h"
 #include "coupling/statistics/parallel.h"
 #include "coupling/statistics/spread.h"
@@ -335,6 +336,32 @@ TEST(ExponentialTailTest, RateIntervalAndGoodness) {
   EXPECT_LE(held, 199);
   EXPECT_GE(rejected, 2);  // 5 % of 200 = 10
   EXPECT_LE(rejected, 20);
+}
+
+// Holm 1979: by hand, with a tie, a step down that stops at 1 and a nan.
+TEST(Holm, CorrectsForAllComparisons) {
+  const std::vector<double> p = holm({0.01, 0.04, nan, 0.03, 0.005, 0.04});
+  const std::vector<double> expected{0.04, 0.09, nan, 0.09, 0.025, 0.09};
+  for (std::size_t k = 0; k < p.size(); ++k)
+    EXPECT_TRUE(std::isnan(expected[k]) ? std::isnan(p[k]) : std::abs(p[k] - expected[k]) < 1e-15);
+  EXPECT_EQ(holm({0.6, 0.7}), (std::vector<double>{1, 1}));
+  EXPECT_TRUE(holm({}).empty());
+}
+
+// Under independent nulls at least one of eight is rejected in 5 % of the tables.
+TEST(Holm, KeepsTheRateOfTables) {
+  dem::Random random(3);
+  int rejected = 0;
+  for (int table = 0; table < 2000; ++table) {
+    std::vector<double> p(8);
+    for (double& v : p) v = random.uniform(0, 1);
+    for (const double v : holm(p))
+      if (v < 0.05) {
+        ++rejected;
+        break;
+      }
+  }
+  EXPECT_NEAR(rejected, 98, 30);  // 1 - (1 - 0.05/8)^8 = 4.9 % of 2000, standard deviation 10
 }
 
 TEST(ExponentialTailTest, SeesWhatIsNotExponential) {
