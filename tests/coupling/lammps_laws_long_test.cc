@@ -72,9 +72,10 @@ TEST(LammpsTenThousand, HertzHistory) {
   if (!is_there()) GTEST_SKIP() << "lmp not found: the Debian package lammps has it";
   compare("gran/hertz/history", hertz_history());
 }
-// The law of gran/hertz/history in the style whose levers are radii less half the depth, as ours,
-// with rolling. It differs by 1.2e-5 of the stress, up to 4.5 standard deviations of theirs: levers
-// within the slip and the turning of springs differ by the depth over the radius (1e-4).
+// The law of gran/hertz/history in the style whose levers between spheres are radii less half the
+// depth, as ours, with rolling. It differs by 1.2e-5 of the stress, up to 4.5 standard deviations
+// of theirs: at walls its levers are whole radii, ours end at the plane
+// (LammpsLaws.WallsWithFrictionMakeTheDifference).
 TEST(LammpsTenThousand, GranularMindlin) {
   if (!is_there()) GTEST_SKIP() << "lmp not found: the Debian package lammps has it";
   compare("granular, mindlin, rolling sds", granular("mindlin"), 3e-5);

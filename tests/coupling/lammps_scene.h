@@ -32,6 +32,7 @@ struct Law {
   double friction = 0.5;
   dem::RollingLaw
       rolling{};  ///< between spheres; walls show none of its springs, so they have none
+  double wall_friction = 0.5;
 };
 
 inline bool is_there() { return std::system("command -v lmp > /dev/null") == 0; }
@@ -237,7 +238,7 @@ class Scene {
     settings.shape = dem::ShapeKind::sphere;
     settings.materials = {"grain", "wall"};
     settings.material_pairs = {{"grain", "grain", law_.law, law_.friction, law_.rolling},
-                               {"grain", "wall", law_.law, law_.friction}};
+                               {"grain", "wall", law_.law, law_.wall_friction}};
     settings.time_step = time_step;
     return dem::make_engine(settings, start);
   }
@@ -288,7 +289,7 @@ inline Law hertz_history() {
 }
 
 /// granular with rolling sds; `memory`: mindlin (displacement) or mindlin_rescale/force (force).
-inline Law granular(const std::string& memory) {
+inline Law granular(const std::string& memory, double wall_friction = 0.5) {
   const dem::RollingLaw rolling{2e3, 0.5, 0.1};
   const auto contact = [&](bool damps, double mu) {
     return fmt::format("hertz/material {} {} {} tangential {} NULL 0.5 {}", kYoung,
@@ -300,16 +301,17 @@ inline Law granular(const std::string& memory) {
   };
   const dem::HertzLaw ours{kYoung, kPoisson, 0, memory == "mindlin", true, kNormal, kTangential};
   // With hertz/material a wall would have E/(2 (1 - nu)) for E*, apart from pairs.
-  const std::string wall =
-      fmt::format("granular hertz {:.17g} {} tangential {} {:.17g} 0.5 0.5 damping viscoelastic",
-                  4.0 / 3 * ours.effective_young(), kNormal, memory, 8 * ours.effective_shear());
+  const std::string wall = fmt::format(
+      "granular hertz {:.17g} {} tangential {} {:.17g} 0.5 {} damping viscoelastic",
+      4.0 / 3 * ours.effective_young(), kNormal, memory, 8 * ours.effective_shear(), wall_friction);
   return {"pair_style granular\n" + pair(true, 0.5, rolling.friction),
           pair(false, 10000, 10000),
           wall,
           true,
           ours,
           0.5,
-          rolling};
+          rolling,
+          wall_friction};
 }
 
 }  // namespace grainfield::coupling::lammps
