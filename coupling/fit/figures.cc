@@ -8,16 +8,24 @@
 namespace grainfield::coupling {
 namespace {
 
-// The constants of all models, each name once.
-void add_constants(const std::vector<FitModel>& models, std::vector<SummaryKey>& out) {
+// The constants of all models, each name once, with the models that have it.
+std::vector<SummaryKey> constants() {
+  std::vector<FitModel> models = heap_models({});
+  for (FitModel& model : layer_models(nullptr)) models.push_back(std::move(model));
+  std::vector<SummaryKey> out;
   for (const FitModel& model : models) {
     for (const FitParameter& p : model.parameters) {
       const std::string pattern = "fit.*." + p.name;
-      const bool known = std::any_of(out.begin(), out.end(),
-                                     [&](const SummaryKey& key) { return key.pattern == pattern; });
-      if (!known) out.push_back({pattern, p.unit, p.meaning});
+      const auto known = std::find_if(
+          out.begin(), out.end(), [&](const SummaryKey& key) { return key.pattern == pattern; });
+      if (known != out.end()) {
+        known->meaning += ", " + model.name;
+      } else {
+        out.push_back({pattern, p.unit, p.meaning + "; of " + model.name});
+      }
     }
   }
+  return out;
 }
 
 }  // namespace
@@ -67,8 +75,7 @@ std::vector<SummaryKey> figures_of_fits() {
       {"verdict.agrees", "text", "yes: chi2/dof of the best model is what chance allows; no"},
       {"verdict.distinguishable", "text", "yes: one model is supported alone; no"},
   };
-  add_constants(heap_models({}), out);
-  add_constants(layer_models(nullptr), out);
+  for (SummaryKey& key : constants()) out.push_back(std::move(key));
   return out;
 }
 

@@ -203,6 +203,10 @@ TEST(CaseErrors, BetweenKeys) {
             "x.toml:2: packing.radius_min: found 0.01, allowed: up to packing.radius_max = 0.0054");
   EXPECT_THAT(complaint("study = \"elastic-layer\"\n[packing]\nrows = 3\n"),
               HasSubstr("x.toml:3: packing.rows: has no meaning for study = \"elastic-layer\""));
+  for (const char* key : {"height = 0.1", "force = 2"}) {
+    EXPECT_THAT(complaint(std::string("study = \"osl-layer\"\n[elastic]\n") + key + "\n"),
+                HasSubstr("x.toml:3: elastic: found the section's former name, now: problem"));
+  }
   EXPECT_THAT(
       complaint("study = \"elastic-layer\"\n[problem]\nheight = 0.1\ndepths = [0.2]\n"),
       HasSubstr("x.toml:4: problem.depths: found 0.2, allowed: up to problem.height = 0.1"));
