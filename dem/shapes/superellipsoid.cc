@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "dem/space/elementary.h"
@@ -14,6 +15,8 @@ namespace {
 // |r_k n_k| counts as at least this share of the greatest of them, so that powers stay finite. Even
 // at e = 0.1 it is less than 0.1 % of a semi-axis from the middle of a face.
 constexpr double kLeastShare = 1e-60;
+// On edges, where weights underflow; far below what any law takes for a radius.
+constexpr double kLeastWeight = 1e-80;
 
 /// (a^P + b^P)^(1/P) of a, b > 0, and its derivatives.
 struct Norm {
@@ -123,6 +126,15 @@ double nearest_of(const Superellipsoid& body) {
   return std::sqrt(nearest_pair(nearest_pair(q[0], q[1], e1), q[2], e2));
 }
 
+FeltMass felt_mass(const Superellipsoid& body, double density) {
+  const Solid<3> solid = solid_of(body);
+  const double nearest = nearest_of(body), mass = density * solid.volume;
+  const double lever2 = std::max(solid.radius * solid.radius - nearest * nearest, 0.0);
+  const double moment = density * solid.moments.minCoeff();
+  return {1 / (1 / mass + lever2 / moment),
+          cube_root(solid.volume / (4.0 / 3 * std::numbers::pi))};
+}
+
 double height_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   const Eigen::Vector3d a = scaled(body, n);
   return norm_size(norm_size(a[0], a[1], body.level), a[2], body.upright);
@@ -185,6 +197,20 @@ Principal principal_of(const Eigen::Vector3d& n, const Square* squares, int coun
                                        : Eigen::Vector3d(slant * x + straight * y);
   if (way.squaredNorm() > 0) out.along = way.normalized();
   return out;
+}
+
+Principal relative_curvatures(const Eigen::Vector3d& n, const Square* squares, int count) {
+  // The inverse of c1 u1 u1' + c2 u2 u2' across n has 1/(c2 v^2) for n x u1 and 1/(c1 v^2) for
+  // n x u2, v = n.(u1 x u2).
+  std::array<Square, 4> inverse;
+  for (int k = 0; k < count; k += 2) {
+    const Square &one = squares[k], &two = squares[k + 1];
+    const double across = n.dot(one.along.cross(two.along));
+    const double half = 0.5 / (across * across);
+    inverse[k] = {half / std::max(two.weight, kLeastWeight), n.cross(one.along)};
+    inverse[k + 1] = {half / std::max(one.weight, kLeastWeight), n.cross(two.along)};
+  }
+  return principal_of(n, inverse.data(), count);
 }
 
 }  // namespace grainfield::dem

@@ -49,6 +49,14 @@ Solid<3> solid_of(const Superellipsoid& body);
 double farthest_of(const Superellipsoid& body);
 double nearest_of(const Superellipsoid& body);
 
+/// What of a grain bounds the time step: the mass that a force along a normal feels at least, kg,
+/// for its lever may be up to sqrt(farthest^2 - nearest^2); and the radius of the sphere of equal
+/// volume, m.
+struct FeltMass {
+  double mass = 0, radius = 0;
+};
+FeltMass felt_mass(const Superellipsoid& body, double density);
+
 /// A square c u u' of a tensor across a normal.
 struct Square {
   double weight = 0;
@@ -73,6 +81,11 @@ struct Principal {
   Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< unit, across n
 };
 Principal principal_of(const Eigen::Vector3d& n, const Square* squares, int count);
+
+/// The relative curvatures A <= B, 1/m, of surfaces with these Hessians (pairs of squares, one pair
+/// for each body), and the direction of B: of half the sum of both curvature tensors, which is what
+/// Wellmann's eqs. 9 and 10 say without angles.
+Principal relative_curvatures(const Eigen::Vector3d& n, const Square* squares, int count);
 
 /// Principal radii of curvature, m, and the direction of the greater one.
 inline Principal radii_of(const Eigen::Vector3d& n, const Support& support) {
