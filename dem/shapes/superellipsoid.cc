@@ -128,11 +128,26 @@ double nearest_of(const Superellipsoid& body) {
 
 FeltMass felt_mass(const Superellipsoid& body, double density) {
   const Solid<3> solid = solid_of(body);
-  const double nearest = nearest_of(body), mass = density * solid.volume;
-  const double lever2 = std::max(solid.radius * solid.radius - nearest * nearest, 0.0);
-  const double moment = density * solid.moments.minCoeff();
-  return {1 / (1 / mass + lever2 / moment),
-          cube_root(solid.volume / (4.0 / 3 * std::numbers::pi))};
+  const auto [e1, e2] = body.exponents;
+  // Barr's angles, by their squared cosines: points go by e, normals by 2 - e.
+  const auto power = [](double square, double e) { return exponential(0.5 * e * natural_log(square)); };
+  double most = 0;
+  constexpr int kPoints = 12;
+  for (int k = 0; k < kPoints; ++k) {
+    for (int l = 0; l < kPoints; ++l) {
+      const double u = (k + 0.5) / kPoints, v = (l + 0.5) / kPoints;
+      const Eigen::Vector3d x = body.axes.cwiseProduct(
+          Eigen::Vector3d(power(u, e1) * power(v, e2), power(1 - u, e1) * power(v, e2), power(1 - v, e2)));
+      const double f1 = 2 - e1, f2 = 2 - e2;
+      const Eigen::Vector3d n =
+          Eigen::Vector3d(power(u, f1) * power(v, f2), power(1 - u, f1) * power(v, f2), power(1 - v, f2))
+              .cwiseQuotient(body.axes)
+              .normalized();
+      const Eigen::Vector3d lever = x.cross(n);
+      most = std::max(most, lever.cwiseProduct(lever).cwiseQuotient(solid.moments).sum());
+    }
+  }
+  return {density / (1 / solid.volume + most), cube_root(solid.volume / (4.0 / 3 * std::numbers::pi))};
 }
 
 double height_of(const Superellipsoid& body, const Eigen::Vector3d& n) {

@@ -50,8 +50,8 @@ double farthest_of(const Superellipsoid& body);
 double nearest_of(const Superellipsoid& body);
 
 /// What of a grain bounds the time step: the mass that a force along a normal feels at least, kg,
-/// for its lever may be up to sqrt(farthest^2 - nearest^2); and the radius of the sphere of equal
-/// volume, m.
+/// because it also turns the grain, 1/m + (x cross n)' I^-1 (x cross n) looked at on a grid of the
+/// surface; and the radius of the sphere of equal volume, m.
 struct FeltMass {
   double mass = 0, radius = 0;
 };
