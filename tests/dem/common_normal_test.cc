@@ -97,7 +97,7 @@ Global search_all(const Body& i, const Body& j, const Vector3d& across, Random& 
 
 struct Score {
   int pairs = 0, unsettled = 0, beside = 0;  // beside: not the least that there is
-  double gap = 0, normal = 0, points = 0;
+  double gap = 0, normal = 0, points = 0, middle = 0;
 };
 /// `pairs` that overlap by up to `depth`, against the search.
 Score score(std::uint64_t seed, double least, double most, double depth, int pairs) {
@@ -117,10 +117,11 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
       continue;
     }
     out.gap = std::max(out.gap, found.at.depth - global.depth);
-    // Where the surfaces bend least, the search's normal is known best.
+    // Where the surfaces bend least, the search's normal is known best; across a flat face it may
+    // have stopped short.
     const Principal radii = principal_of(found.at.normal, found.at.bend.data(), 4);
     const double off = found.at.normal.cross(global.normal).norm();
-    if (found.at.settled) {
+    if (found.at.settled && global.depth - found.at.depth < 1e-10) {
       out.normal = std::max(out.normal, off * std::sqrt(std::max(radii.lesser - depth, 0.0)));
     }
     // The nearest points lie across each other by d n, the acting one in their middle.
@@ -131,7 +132,8 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
     const double bend = 1 / (1 + radii.greater);
     out.points = std::max(out.points,
                           bend * (on_i - on_j - found.at.depth * found.at.normal).norm());
-    EXPECT_NEAR(found.at.point.dot(found.at.normal), 0.5 * (on_i + on_j).dot(found.at.normal), 1e-9);
+    const double middle = 0.5 * (on_i + on_j).dot(found.at.normal);
+    out.middle = std::max(out.middle, std::fabs(found.at.point.dot(found.at.normal) - middle));
   }
   return out;
 }
@@ -147,6 +149,7 @@ TEST(CommonNormal, IsTheLeastOfAGlobalSearch) {
     EXPECT_LT(s.gap, 1e-10);
     EXPECT_LT(s.normal, 2e-5);
     EXPECT_LT(s.points, 1e-5);
+    EXPECT_LT(s.middle, 1e-9);
   }
 }
 
@@ -201,11 +204,11 @@ TEST(CommonNormal, OfSpheresIsTheLineOfCentres) {
     const Body i{superellipsoid({0.7, 0.7, 0.7}, {1, 1}), random_rotation(random).toRotationMatrix()};
     const Body j{superellipsoid({0.4, 0.4, 0.4}, {1, 1}), random_rotation(random).toRotationMatrix()};
     const Vector3d way = random_direction(random);
-    const Found found = contact(i, j, 1.07 * way);
+    const Found found = contact(i, j, 1.09 * way);
     ASSERT_TRUE(found.touches);
-    EXPECT_NEAR(found.at.depth, 0.03, 1e-14);
+    EXPECT_NEAR(found.at.depth, 0.01, 1e-14);
     EXPECT_NEAR((found.at.normal - way).norm(), 0, 1e-8);
-    EXPECT_NEAR((found.at.point - 0.685 * way).norm(), 0, 1e-8);
+    EXPECT_NEAR((found.at.point - 0.695 * way).norm(), 0, 1e-8);
     EXPECT_EQ(found.at.evaluations, 1);
   }
 }
@@ -347,7 +350,11 @@ TEST(CommonNormal, OfFacesThatLieOnEachOther) {
     // Aligned, with and without an offset, of different sizes; the normal is that of the faces.
     for (const Vector3d& offset : {Vector3d(0, 0, 0), Vector3d(0.3, 0.1, 0), Vector3d(0.9, 0, 0)}) {
       const Found found = contact(box(e), box(e, 1, 0.7, 0.5), offset + Vector3d(0, 0, 1.499));
-      ASSERT_TRUE(found.touches);
+      if (e > 0.2 && offset.x() > 0.5) {  // so far out they have bent away from each other
+        EXPECT_FALSE(found.touches);
+        continue;
+      }
+      ASSERT_TRUE(found.touches) << e << " " << offset.transpose();
       // Rounded faces offset by s lie on each other where both have the same slope.
       EXPECT_LE(found.at.depth, 1e-3 + 1e-15) << e << " " << offset.transpose();
       if (offset.isZero(0)) {

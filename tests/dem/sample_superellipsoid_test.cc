@@ -15,7 +15,7 @@ SampleSetup setup_of(const std::string& law, const std::string& boundary) {
   SampleSetup s;
   s.plan.dim = 3;
   s.plan.shape = "superellipsoid";
-  s.plan.grains = 40;
+  s.plan.grains = 100;
   s.plan.radius = 1;
   s.plan.start_fraction = 0.1;
   s.plan.boundary = boundary;
