@@ -15,7 +15,7 @@ namespace grainfield::coupling {
 namespace {
 
 // VTK's cell types.
-constexpr int vtk_vertex = 1, vtk_line = 3, vtk_polygon = 7, vtk_quad = 9;
+constexpr int vtk_vertex = 1, vtk_line = 3, vtk_strip = 6, vtk_polygon = 7, vtk_quad = 9;
 
 /// An unstructured grid in the making: cells that share no points. Its data are of the cells, or
 /// the same at every point of one: glyphs and tubes take them from there.
@@ -124,6 +124,30 @@ std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides) {
   return corners;
 }
 
+std::vector<dem::Vec3> surface_strip(const dem::Grain& grain, int bands) {
+  const auto& q = grain.orientation;
+  const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
+  const auto power = [](double x, double e) { return std::copysign(std::pow(std::fabs(x), e), x); };
+  const auto at = [&](int band, int side) {
+    const double up = std::numbers::pi * (static_cast<double>(band) / bands - 0.5);
+    const double around = std::numbers::pi * side / bands;
+    // At the poles the cosine is not quite 0.
+    const double level = band == 0 || band == bands ? 0 : power(std::cos(up), grain.exponents[1]);
+    const dem::Vec3 x(level * power(std::cos(around), grain.exponents[0]),
+                      level * power(std::sin(around), grain.exponents[0]),
+                      power(std::sin(up), grain.exponents[1]));
+    return dem::Vec3(grain.position + turn * grain.axes.cwiseProduct(x));
+  };
+  std::vector<dem::Vec3> points;
+  for (int band = 0; band < bands; ++band) {
+    for (int side = 0; side <= 2 * bands; ++side) {
+      points.push_back(at(band + 1, side));
+      points.push_back(at(band, side));
+    }
+  }
+  return points;
+}
+
 void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
                       const dem::Snapshot* reference) {
   const std::vector<dem::Grain>& grains = snapshot.grains;
@@ -145,9 +169,13 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     if (c.j >= 0) add(c.j, c.point - dem::second_place(snapshot, c), -c.force);
   }
   const bool spheres = snapshot.dim == 3;
-  Grid grid(spheres);
+  const bool surfaces =
+      std::any_of(grains.begin(), grains.end(), [](const auto& g) { return !g.axes.isZero(0); });
+  Grid grid(spheres && !surfaces);
   for (const dem::Grain& g : grains) {
-    if (spheres)
+    if (surfaces)
+      grid.add_cell(surface_strip(g), vtk_strip);
+    else if (spheres)
       grid.add_cell({g.position}, vtk_vertex);
     else
       grid.add_cell(outline(g), vtk_polygon);

@@ -11,6 +11,9 @@ namespace grainfield::coupling {
 /// The outline of a grain where it is, as a closed polygon (without repeating the first corner), m:
 /// its own corners, or `sides` points on a disk.
 std::vector<dem::Vec3> outline(const dem::Grain& grain, int sides = 32);
+/// The surface of a superellipsoid as one strip of triangles from pole to pole, m: `bands` of twice
+/// as many sides.
+std::vector<dem::Vec3> surface_strip(const dem::Grain& grain, int bands = 10);
 
 /// In 2D one polygon per grain. Cell data: id, radius, mass, fixed, coordination, force (sum of
 /// contact forces), pressure and stress (sum x F / V, tension positive), velocity, angle; with

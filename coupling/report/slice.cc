@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "coupling/averaging/extent.h"
 #include "coupling/report/picture.h"
+#include "dem/shapes/superellipsoid.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -22,6 +25,40 @@ double middle_of(const dem::Snapshot& s) {
   return 0.5 * (least + most);
 }
 
+// What the plane `away` above a superellipsoid's centre cuts out of it, as a polygon in x and z about
+// a point of it; false: nothing. The point lies towards the one where the surface is highest, the
+// corners on rays from it where the body's equation says.
+bool cut_superellipsoid(const dem::Grain& g, double away, dem::Grain& flat) {
+  const dem::RotationOf<3> turn(g.orientation[0], g.orientation[1], g.orientation[2],
+                                g.orientation[3]);
+  const dem::Superellipsoid body =
+      dem::superellipsoid({g.axes.x(), g.axes.y(), g.axes.z()}, g.exponents);
+  const dem::Vec3 up(0, away < 0 ? -1 : 1, 0);
+  const dem::Support top = dem::support_of(body, turn.conjugate() * up);
+  if (std::fabs(away) >= top.height) return false;
+  const dem::Vec3 inside = std::fabs(away) / top.height * (turn * top.point);
+  const auto is_inside = [&](const dem::Vec3& at) {
+    const dem::Vec3 x = (turn.conjugate() * at).cwiseQuotient(g.axes).cwiseAbs();
+    const double p = 2 / g.exponents[0], q = 2 / g.exponents[1];
+    return std::pow(std::pow(x[0], p) + std::pow(x[1], p), q / p) + std::pow(x[2], q) < 1;
+  };
+  flat.position = {g.position.x() + inside.x(), g.position.z() + inside.z(), 0};
+  flat.radius = 0;
+  constexpr int kCorners = 40;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kCorners;
+    const dem::Vec3 way(std::cos(angle), 0, std::sin(angle));
+    double low = 0, high = 2 * g.radius;
+    for (int n = 0; n < 40; ++n) {
+      const double middle = 0.5 * (low + high);
+      (is_inside(inside + middle * way) ? low : high) = middle;
+    }
+    flat.outline.push_back({low * way.x(), low * way.z()});
+    flat.radius = std::max(flat.radius, low);
+  }
+  return flat.radius > 0;
+}
+
 // The disks that the plane cuts out of the spheres, as a packing in the plane of x and z.
 dem::Snapshot cut(const dem::Snapshot& s, double y) {
   dem::Snapshot out;
@@ -36,8 +73,12 @@ dem::Snapshot cut(const dem::Snapshot& s, double y) {
     dem::Grain g = s.grains[k];
     const double away = g.position.y() - y;
     if (std::fabs(away) >= g.radius) continue;
-    g.position = {g.position.x(), g.position.z(), 0};
-    g.radius = std::sqrt(g.radius * g.radius - away * away);
+    if (!g.axes.isZero(0)) {
+      if (!cut_superellipsoid(s.grains[k], -away, g)) continue;
+    } else {
+      g.position = {g.position.x(), g.position.z(), 0};
+      g.radius = std::sqrt(g.radius * g.radius - away * away);
+    }
     place[k] = static_cast<std::int64_t>(out.grains.size());
     out.grains.push_back(g);
   }
@@ -60,11 +101,12 @@ dem::Snapshot cut(const dem::Snapshot& s, double y) {
 Picture slice(const std::string& title, const dem::Snapshot& snapshot) {
   const double y = middle_of(snapshot);
   Picture picture = packing(title, cut(snapshot, y), nullptr, "z");
+  const bool spheres = std::all_of(snapshot.grains.begin(), snapshot.grains.end(),
+                                   [](const dem::Grain& g) { return g.axes.isZero(0); });
   picture.caption = fmt::format(
-      "The disks that the plane y = {:.4g} m cuts out of the spheres, and the normal forces "
-      "between "
-      "spheres that it cuts both. {}",
-      y, picture.caption);
+      "The {0} that the plane y = {1:.4g} m cuts out of the {2}, and the normal forces between {2} "
+      "that it cuts both. {3}",
+      spheres ? "disks" : "sections", y, spheres ? "spheres" : "superellipsoids", picture.caption);
   return picture;
 }
 

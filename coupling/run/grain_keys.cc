@@ -49,8 +49,9 @@ dem::RestSetup& rest_of(Case& c) {
 void declare_material_keys(SectionKeys s) {
   s.word("law", +MATERIAL(string, law), dem::words_of<dem::AnyLaw>(),
          "contact law: elastic force from the overlap area, the same as the gradient of an energy, "
-         "linear spring and dashpot, or Hertz' contact of spheres with Mindlin's tangential "
-         "stiffness",
+         "linear spring and dashpot, Hertz' contact of spheres with Mindlin's tangential "
+         "stiffness, linear spring with its critical dashpot, or Hertz' contact of two curvatures "
+         "with Mindlin's two compliances",
          "Roul 2.3");
   const auto plane = dem::laws_in<2>(), space = dem::laws_in<3>();
   s.words_of_dimensions(only_in(plane, space), only_in(space, plane));
@@ -60,19 +61,31 @@ void declare_material_keys(SectionKeys s) {
            "Young's modulus of the grains; stiffer: smaller overlaps and a shorter "
            "time step",
            kBoth);
-  s.only("material.law", {"overlap_area", "energy", "hertz"});
-  s.number("poisson", "-", +MATERIAL(double, poisson), {0, 0.5},
+  s.only("material.law", {"overlap_area", "energy", "hertz", "hertz_elliptic"});
+  s.number("poisson", "-", +MATERIAL(double, poisson), {-0.99, 0.5},
            "Poisson's ratio of the grains; more: stiffer across the contact, softer along it",
            "Thornton et al. 2013");
   s.space();
-  s.only("material.law", {"hertz"});
+  s.only("material.law", {"hertz", "hertz_elliptic"});
+  s.number("least_radius", "-", +MATERIAL(double, least_radius), {1e-6, 1},
+           "least radius of curvature of a contact, 1/(2B), over that of the spheres of equal "
+           "volume: at edges; smaller: softer there",
+           "Wellmann 9-13");
+  s.space();
+  s.only("material.law", {"hertz_elliptic"});
+  s.number("most_radius", "-", +MATERIAL(double, most_radius), {1, 1e6},
+           "largest radius of curvature of a contact, 1/(2A), likewise: on flat faces; larger: "
+           "stiffer there, and a shorter time step",
+           "Wellmann 9-13");
+  s.space();
+  s.only("material.law", {"hertz_elliptic"});
   s.word("tangential_memory", +MATERIAL(string, tangential_memory), {"force", "displacement"},
          "what the spring of friction keeps as the contact's radius changes: its force, which "
          "shrinks with the radius while the contact unloads, or its displacement, as LAMMPS' "
          "gran/hertz/history, which makes energy where a sheared contact is pressed together",
          "Thornton et al. 2013");
   s.space();
-  s.only("material.law", {"hertz"});
+  s.only("material.law", {"hertz", "hertz_elliptic"});
   s.word("damping_model", +MATERIAL(string, damping_model), {"critical", "viscoelastic"},
          "dashpots of the share material.damping of the critical one, or, as LAMMPS' "
          "gran/hertz/history, of normal_damping and tangential_damping times the contact's radius");
@@ -80,9 +93,9 @@ void declare_material_keys(SectionKeys s) {
   s.only("material.law", {"hertz"});
   s.number("damping", "-", +MATERIAL(double, damping), {0, 1000},
            "gamma of the normal dashpot; hertz with damping_model \"critical\": of both dashpots, "
-           "1 is critical; more dissipates faster",
+           "penalty and hertz_elliptic: of the normal one, 1 is critical; more dissipates faster",
            kBoth);
-  s.only("material.law", {"overlap_area", "energy", "hertz"});
+  s.only("material.law", {"overlap_area", "energy", "hertz", "penalty", "hertz_elliptic"});
   s.number("tangential_ratio", "-", +MATERIAL(double, tangential_ratio), {0, 1000},
            "tangential spring over young; Roul's formula as printed amounts to about 38 times 2/7");
   s.only("material.law", {"overlap_area", "energy"});
@@ -97,11 +110,11 @@ void declare_material_keys(SectionKeys s) {
   s.only("material.energy", {"power"});
   s.number("normal_stiffness", "N/m", +MATERIAL(double, normal_stiffness), kStiffness,
            "normal spring");
-  s.only("material.law", {"linear"});
+  s.only("material.law", {"linear", "penalty"});
   s.number("tangential_stiffness", "N/m", +MATERIAL(double, tangential_stiffness), {0, 1e15},
            "tangential spring; 2/7 of the normal one for spheres, 1/3 for disks, makes both swing "
            "in step");
-  s.only("material.law", {"linear"});
+  s.only("material.law", {"linear", "penalty"});
   s.number("normal_damping", "1/s (hertz: 1/(m s))", +MATERIAL(double, normal_damping), kRate,
            "normal force of the dashpot per reduced mass and approach velocity; hertz: and per "
            "radius of the contact, with damping_model \"viscoelastic\"");

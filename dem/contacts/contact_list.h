@@ -68,6 +68,21 @@ struct ContactList {
     kept.sort();
     return kept;
   }
+  /// What pairs remember for their shapes' sake, by ids, where that is carried on (shape.h).
+  Kept<Shape> kept_features(const std::vector<std::int64_t>& ids) const {
+    Kept<Shape> kept;
+    if constexpr (requires(const Shape& feature) { feature.reversed(); }) {
+      for (int i = 0; i < pairs.rows(); ++i) {
+        for (int k = pairs.first(i); k < pairs.last(i); ++k) {
+          const Pair& pair = pairs[k];
+          if (pair.feature.empty()) continue;
+          kept.add(pair_key(ids[i], ids[pair.j]), seen_from(pair.feature, ids[i] > ids[pair.j]));
+        }
+      }
+      kept.sort();
+    }
+    return kept;
+  }
   /// Directions of contacts with walls that have a memory: remembers(k).
   template <class Remembers>
   Kept<VectorOf<D>> kept_normals(const std::vector<std::int64_t>& ids, Remembers remembers) const {

@@ -25,7 +25,10 @@ std::unique_ptr<Engine> engine_of(const EngineSettings& settings) {
         fmt::format("{}: found \"{}\", allowed for grains of this shape: {}", key, found,
                     fmt::join(allowed, ", ")));
   };
-  if (Store::outlines && settings.resist_rolling()) refuse_rolling_polygons();
+  if (!Store::central && settings.resist_rolling()) {
+    if (Store::outlines) refuse_rolling_polygons();
+    refuse_rolling_superellipsoids();
+  }
   const AnyLaw& any =
       settings.material_pairs.empty() ? settings.law : settings.material_pairs.front().law;
   std::unique_ptr<Engine> engine;

@@ -65,6 +65,12 @@ void refuse_rolling_polygons() {
       "rolling)");
 }
 
+void refuse_rolling_superellipsoids() {
+  throw std::invalid_argument(
+      "material.rolling_friction: found above 0, allowed for superellipsoids: 0 (their shapes "
+      "resist rolling)");
+}
+
 double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius) {
   const double viscous_limit =
       settings.integrator.visit([](auto kind) { return kind.viscous_limit; });
@@ -157,6 +163,8 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapsh
     grain.rotates = g.rotates;
     grain.material = g.material;
     grain.outline = g.outline;
+    grain.axes = {g.axes.x(), g.axes.y(), g.axes.z()};
+    grain.exponents = {g.exponents[0], g.exponents[1]};
     grain.z = g.position.z();
     grain.vz = g.velocity.z();
     grain.spin_x = g.angular_velocity.x();

@@ -59,6 +59,8 @@ struct NewGrain {
   double z = 0, vz = 0, spin_x = 0, spin_y = 0;
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
   std::array<int, 3> image{0, 0, 0};              ///< as Grain::image, to count on from
+  std::array<double, 3> axes{};                   ///< of a superellipsoid: r1, r2, r3, m
+  std::array<double, 2> exponents{1, 1};          ///< likewise: e1, e2 (dem/shapes/superellipsoid.h)
   double mass = 0;                                ///< kg; 0: density times what the shape fills
   std::array<double, 3> moments{};  ///< principal, in 2D the third, kg m2; 0: of the shape
 };
@@ -215,13 +217,15 @@ double stable_time_step(const EngineSettings& settings, const GrainExtremes& ext
 inline constexpr double kMostOfLimit = 2.5;
 
 /// Throws std::invalid_argument for settings out of range; resistance against rolling of polygons
-/// (their corners resist); twisting in the plane.
+/// (their corners resist) and superellipsoids; twisting in the plane.
 std::unique_ptr<Engine> make_engine(const EngineSettings& settings);
 /// What make_engine says of rolling resistance and local damping, before there is a shape. Throws
 /// std::invalid_argument: twisting in the plane, local damping out of range or with gear.
 void check_rolling(const EngineSettings& settings);
 /// Throws std::invalid_argument: the two do not go together.
 [[noreturn]] void refuse_rolling_polygons();
+/// The same for superellipsoids, whose shapes resist.
+[[noreturn]] void refuse_rolling_superellipsoids();
 /// The same, to go on from a snapshot of the shape's dimension, whose grains are numbered 0, 1, 2,
 /// ...: its walls and grains with their materials, mass, moments and velocities (one that never
 /// turns goes on so), the contacts' springs, and the applied force as it is. A spring that another

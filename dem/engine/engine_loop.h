@@ -52,10 +52,11 @@ class EngineLoop final : public Engine {
     const int kind = material_index(materials_, "grain", g.material);
     world_.acting.add_grain(kind);
     check_rest_in_flow(world_.cell.flows(), g.fixed, false);
-    const double radius = g.outline.empty() ? g.radius : circumradius_of(g.outline);
+    const ShapeInput shape{g.radius, g.outline, g.axes, g.exponents};
+    const double radius = reach_of(shape);
     if (!holds(world_.cell, radius)) refuse_small_cell(world_.cell.shortest(), radius);
     largest_ = std::max(largest_, radius);
-    const Solid<dim> solid = grains.shapes.add({g.radius, g.outline});
+    const Solid<dim> solid = grains.shapes.add(shape);
     typename State::Body b;
     b.position = in_space<dim>({g.x, g.y, g.z});
     b.radius = solid.radius;
@@ -94,9 +95,10 @@ class EngineLoop final : public Engine {
     check_wall(world_.cell.told(), wall, dim);
     check_wall_motion(world_.cell.told(), wall, {wall.velocity, wall.angular_velocity});
     const int kind = material.empty() ? -1 : material_index(materials_, wall.name, material);
-    if (State::Shape::outlines && wall.shape != "plane") {
+    if (!State::Shape::central && wall.shape != "plane") {
       throw std::invalid_argument(fmt::format(
-          "wall {}: shape: found \"{}\", allowed for polygons: plane", wall.name, wall.shape));
+          "wall {}: shape: found \"{}\", allowed for {}: plane", wall.name, wall.shape,
+          State::Shape::outlines ? "polygons" : "superellipsoids"));
     }
     auto surface = surface_of<dim>(wall);
     for (int slot = 0; slot < surface->slots(); ++slot) {
@@ -292,6 +294,12 @@ class EngineLoop final : public Engine {
     world.around.gravity =
         in_space<dim>({settings.gravity_x, settings.gravity_y, settings.gravity_z});
     return world;
+  }
+
+  /// From the centroid to the farthest point, m.
+  static double reach_of(const ShapeInput& shape) {
+    if constexpr (requires { Shape::reach(shape); }) return Shape::reach(shape);
+    return shape.outline.empty() ? shape.radius : circumradius_of(shape.outline);
   }
 
   void search(bool by_motion) {

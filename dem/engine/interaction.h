@@ -17,7 +17,7 @@ template <class Shape, class Law>
 class Interaction {
  public:
   static constexpr int dim = Shape::dim;
-  static constexpr bool central = !Shape::outlines;
+  static constexpr bool central = Shape::central;
   using Body = dem::Body<dim>;
   using Overlap = typename Shape::Overlap;
   using Feature = typename Shape::Feature;

@@ -12,6 +12,7 @@
 #include "dem/shapes/disk_store.h"
 #include "dem/shapes/polygon_store.h"
 #include "dem/shapes/sphere_store.h"
+#include "dem/shapes/superellipsoid_store.h"
 #include "dem/space/kinematics3.h"
 
 namespace grainfield::dem {
@@ -84,6 +85,7 @@ class ProbeOf final : public PairProbe {
   void forget() override {
     memory_ = {};
     rolling_ = {};
+    feature_ = {};
   }
   std::string image() const override {
     ImageWriter w;
@@ -102,12 +104,14 @@ class ProbeOf final : public PairProbe {
   int add(const EngineSettings& settings, const NewGrain& g) {
     const int kind = material_index(settings, "grain", g.material);
     acting_.add_grain(kind);
-    const Solid<dim> solid = shapes_.add({g.radius, g.outline});
+    const Solid<dim> solid = shapes_.add({g.radius, g.outline, g.axes, g.exponents});
     Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
     if (g.mass > 0) inertia.mass = g.mass;
     take_moments(g, inertia);
-    Body<dim>& b = bodies_[count_++];
+    const int number = count_++;
+    Body<dim>& b = bodies_[number];
     b.radius = solid.radius;
+    if constexpr (dim == 3) shapes_.place(number, b, rotation_told(g, inertia));
     if (g.fixed) return kind;
     b.inverse_mass = 1 / inertia.mass;
     if (g.rotates) take_turning(g, inertia, b);
@@ -170,6 +174,9 @@ std::unique_ptr<PairProbe> make(const EngineSettings& settings, const NewGrain& 
   check_materials(settings);
   check_rolling(settings);
   if (settings.resist_rolling() && settings.shape == ShapeKind::polygon) refuse_rolling_polygons();
+  if (settings.resist_rolling() && settings.shape == ShapeKind::superellipsoid) {
+    refuse_rolling_superellipsoids();
+  }
   return settings.shape.visit([&](auto kind) {
     return probe_of<typename decltype(kind)::Store>(settings, first, second, wall);
   });

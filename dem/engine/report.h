@@ -40,7 +40,7 @@ class Report {
     for (int i = 0; i < contacts.pairs.rows(); ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
         const Force& f = contacts.pair_forces[k];
-        if (pushes(f) && overlap(i, contacts.pairs[k].j, false, o)) {
+        if (pushes(f) && overlap(i, contacts.pairs[k].j, false, o, contacts.pairs[k].feature)) {
           visit(i, k, contacts.pairs[k], f, false, o);
         }
       }
@@ -299,7 +299,9 @@ class Report {
   }
 
   /// `j`: of a wall the slot, or, where it has several, the rank of the contact behind the first.
-  bool overlap(int i, int j, bool wall, Overlap& o) const {
+  /// `feature`: where a pair's contact is looked for first.
+  bool overlap(int i, int j, bool wall, Overlap& o,
+               typename World::Shape::Feature feature = {}) const {
     const auto& grains = world_.grains;
     if (wall && !world_.walls.is_plain(j)) {
       const int w = world_.walls.wall_of(j), rank = j - world_.walls.first_slot(w);
@@ -311,7 +313,6 @@ class Report {
     if (wall) {
       return world_.acting.overlap(grains.shapes, i, grains.bodies[i], world_.walls.plane(j), o);
     }
-    typename World::Shape::Feature feature;
     const PairImage image = image_at(i, j);
     const typename World::Body other = world_.image_of(grains.bodies[j], image);
     return world_.overlap(i, grains.bodies[i], j, other, image, feature, o);
@@ -345,6 +346,10 @@ class Report {
     g.material = world_.acting.material(world_.grains.kinds[i]);
     tell_turning(b, world_.rotation(i), inertia, g);
     g.outline = world_.grains.shapes.outline(i);
+    if constexpr (requires { world_.grains.shapes.superellipsoid(i); }) {
+      g.axes = world_.grains.shapes.superellipsoid(i).axes;
+      g.exponents = world_.grains.shapes.superellipsoid(i).exponents;
+    }
     if (!world_.cell.is_periodic()) return;
     // Since the last search it may have gone out of the cell.
     const auto home = world_.cell.home(b.position);

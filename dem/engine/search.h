@@ -19,6 +19,7 @@ class Search {
   static constexpr int dim = World::dim;
   using Pair = typename World::Pair;
   using Memory = typename World::Memory;
+  using Feature = typename World::Acting::Feature;
 
   /// `skin`: given, m, or 0 for one that adapts itself to the motion.
   Search(World& world, double skin, int threads)
@@ -34,6 +35,7 @@ class Search {
     const auto kept = contacts.kept_pairs(world_.grains.ids, [&](int i, int j) {
       return sleepers.is_asleep(i) && sleepers.is_asleep(j);
     });
+    features_ = contacts.kept_features(world_.grains.ids);
     const auto wall_kept =
         contacts.kept_walls(world_.grains.ids, [&](int i) { return sleepers.is_asleep(i); });
     const auto wall_normals =
@@ -295,6 +297,10 @@ class Search {
     pair.j = j;
     const typename World::Frozen before = recalled(pair_key(ids[i], ids[j]), kept);
     pair.memory = seen_from(before.memory, ids[i] > ids[j]);
+    if constexpr (requires(const Feature& feature) { feature.reversed(); }) {
+      const Feature* feature = features_.find(pair_key(ids[i], ids[j]));
+      if (feature != nullptr) pair.feature = seen_from(*feature, ids[i] > ids[j]);
+    }
     // A sleeper feels what was frozen anew from now on.
     if (j >= world_.awake) world_.sleepers.release(j, seen_from(before.force, ids[j] > ids[i]));
     return pair;
@@ -319,6 +325,7 @@ class Search {
   double farthest_sleeper_ = 0;      // largest reach of those in the grid
   std::vector<Reach<dim>> reaches_;  // of the awake
   std::vector<Crossing> crossing_;
+  Kept<Feature> features_;  // of the pairs before, within run()
   std::vector<BoundingRectangle> bounds_;  // while some grain is slender
 };
 

@@ -158,7 +158,7 @@ class Sweep {
           } else {
             begin(i, moved);
           }
-        } else if constexpr (World::Shape::outlines && World::Integrator::end_moves) {
+        } else if constexpr (World::Shape::keeps_places && World::Integrator::end_moves) {
           grains.shapes.place(i, b, grains.memory[i].rotation);
         }
       }
@@ -225,7 +225,7 @@ class Sweep {
     auto& memory = grains.memory[i];
     integrator_.begin(b, memory, grains.inertias[i]);
     constexpr bool outlines = World::Shape::outlines;
-    if constexpr (outlines) grains.shapes.place(i, b, memory.rotation);
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
     moved |= world_.margins[i].template is_left<outlines>(b.position, memory.rotation);
   }
   /// True when the grain may have left its margin.
@@ -237,7 +237,7 @@ class Sweep {
     b.velocity += cell.kick(b.position);
     integrator_.begin(b, memory, grains.inertias[i]);
     constexpr bool outlines = World::Shape::outlines;
-    if constexpr (outlines) grains.shapes.place(i, b, memory.rotation);
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
     const auto& margin = world_.margins[i];
     return margin.template is_left_in_flow<outlines>(
         b.position, memory.rotation, cell.carried(margin.position), cell.strain(), b.radius);

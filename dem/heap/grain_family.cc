@@ -133,6 +133,9 @@ NewGrain ShapedGrain::at(double x, double y, double density) const {
   g.radius = radius;
   g.density = density;
   g.outline = outline;
+  g.axes = axes;
+  g.exponents = exponents;
+  g.orientation = orientation;
   return g;
 }
 

@@ -1,5 +1,6 @@
 // Grains of a family: sizes and outlines drawn from a seed.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct ShapedGrain {
   double radius = 0;  ///< from the centroid to the farthest corner, m
   double area = 0;    ///< m2
   double angle = 0;   ///< rotation to start with, rad; 0 for disks
+  /// Of superellipsoids (engine.h: NewGrain); the radius is from the centre to the farthest point.
+  std::array<double, 3> axes{};
+  std::array<double, 2> exponents{1, 1};
+  std::array<double, 4> orientation{1, 0, 0, 0};
 
   /// The grain at rest with its centroid at (x, y).
   NewGrain at(double x, double y, double density) const;

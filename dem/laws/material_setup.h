@@ -26,6 +26,8 @@ struct MaterialSetup {
   double gravity = 9.81;                    ///< m/s2, downwards
   std::string tangential_memory = "force";  ///< of hertz: force | displacement
   std::string damping_model = "critical";   ///< of hertz: critical | viscoelastic
+  double least_radius = 0.1;                ///< of hertz_elliptic: radii of curvature over R, -
+  double most_radius = 10;                  ///< likewise
   double rolling_stiffness = 0;             ///< N/m; rolling and twisting: rolling.h
   double rolling_damping = 0;               ///< kg/s
   double rolling_friction = 0;              ///< -; 0: none
@@ -37,7 +39,7 @@ struct MaterialSetup {
     return std::tie(law, density, young, damping, tangential_ratio, energy, linear_share, poisson,
                     normal_stiffness, tangential_stiffness, normal_damping, tangential_damping,
                     friction, floor_friction, wall_friction, gravity, tangential_memory,
-                    damping_model, rolling_stiffness, rolling_damping, rolling_friction,
+                    damping_model, least_radius, most_radius, rolling_stiffness, rolling_damping, rolling_friction,
                     twisting_stiffness, twisting_damping, twisting_friction);
   }
 };

@@ -4,14 +4,16 @@
 
 #include "dem/laws/energy.h"
 #include "dem/laws/hertz.h"
+#include "dem/laws/hertz_elliptic.h"
 #include "dem/laws/law.h"
 #include "dem/laws/linear.h"
 #include "dem/laws/overlap_area.h"
+#include "dem/laws/penalty.h"
 #include "dem/words/choice.h"
 
 namespace grainfield::dem {
 
-using AnyLaw = std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw>;
+using AnyLaw = std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw, PenaltyLaw, HertzEllipticLaw>;
 
 /// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
 /// material.law.

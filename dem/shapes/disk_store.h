@@ -16,7 +16,11 @@ class DiskStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = false;
-  static constexpr bool offers(Measures m) { return m != Measures::curvature; }
+  static constexpr bool central = true;
+  static constexpr bool keeps_places = false;
+  static constexpr bool offers(Measures m) {
+    return m != Measures::curvature && m != Measures::curvatures;
+  }
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 

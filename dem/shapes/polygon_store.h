@@ -20,7 +20,11 @@ class PolygonStore {
  public:
   static constexpr int dim = 2;
   static constexpr bool outlines = true;
-  static constexpr bool offers(Measures m) { return m != Measures::curvature; }
+  static constexpr bool central = false;
+  static constexpr bool keeps_places = true;
+  static constexpr bool offers(Measures m) {
+    return m != Measures::curvature && m != Measures::curvatures;
+  }
   using Overlap = dem::Overlap;
   using Feature = PairFeature;
 

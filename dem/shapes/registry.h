@@ -8,6 +8,7 @@ namespace grainfield::dem {
 class DiskStore;
 class PolygonStore;
 class SphereStore;
+class SuperellipsoidStore;
 
 struct Disks {
   static constexpr const char* name = "disk";
@@ -27,14 +28,21 @@ struct Spheres {
   using Store = SphereStore;
 };
 
-using AnyShape = std::variant<Disks, Polygons, Spheres>;
+struct Superellipsoids {
+  static constexpr const char* name = "superellipsoid";
+  static constexpr int dim = 3;
+  using Store = SuperellipsoidStore;
+};
+
+using AnyShape = std::variant<Disks, Polygons, Spheres, Superellipsoids>;
 
 struct ShapeKind : Choice<AnyShape> {
   using Choice::Choice;
-  static const ShapeKind disk, polygon, sphere;
+  static const ShapeKind disk, polygon, sphere, superellipsoid;
 };
 inline constexpr ShapeKind ShapeKind::disk{AnyShape(Disks{})};
 inline constexpr ShapeKind ShapeKind::polygon{AnyShape(Polygons{})};
 inline constexpr ShapeKind ShapeKind::sphere{AnyShape(Spheres{})};
+inline constexpr ShapeKind ShapeKind::superellipsoid{AnyShape(Superellipsoids{})};
 
 }  // namespace grainfield::dem

@@ -2,7 +2,8 @@
 //
 // The store answers by index, in the order of the bodies: how heavy a grain is, where its points
 // are, and how two of them, or one and a half space, overlap. What a pair remembers for the shapes'
-// own sake is its Feature, which must not change a result, only its cost.
+// own sake is its Feature, which must not change a result, only its cost; where it may (of several
+// normals the remembered one), it can be told from nothing by empty(), and is carried on by ids.
 #pragma once
 #include <concepts>
 #include <vector>
@@ -18,7 +19,8 @@ namespace grainfield::dem {
 /// A shape that keeps places of its own beside the bodies' also has overlap_image
 /// (polygon_store.h): a body that is an image of j tells nothing of them.
 ///
-/// `outlines`: has corners, may be slender, and its contact points lie beside the line of centres.
+/// `outlines`: has corners and may be slender. `central`: its contact points lie on the line of
+/// centres. `keeps_places`: it keeps places of its own, or how grains are turned.
 /// `offers(measures)`: that laws may read these of its overlaps. overlap and overlap_plane get the
 /// measures wanted (here those without any cost) at compile time.
 template <class S>
@@ -28,6 +30,8 @@ concept Shape = std::default_initializable<typename S::Feature> && std::default_
              const std::vector<int>& order, typename S::Feature& feature,
              typename S::Overlap& overlap, ImageWriter& writer, ImageReader& reader) {
   { S::outlines } -> std::convertible_to<bool>;
+  { S::central } -> std::convertible_to<bool>;
+  { S::keeps_places } -> std::convertible_to<bool>;
   { S::offers(Measures::depth) } -> std::same_as<bool>;
   requires std::same_as<typename S::Overlap, OverlapIn<S::dim>>;
   { store.add(input) } -> std::same_as<Solid<S::dim>>;  // throws std::invalid_argument

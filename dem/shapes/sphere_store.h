@@ -20,8 +20,10 @@ class SphereStore {
  public:
   static constexpr int dim = 3;
   static constexpr bool outlines = false;
+  static constexpr bool central = true;
+  static constexpr bool keeps_places = false;
   static constexpr bool offers(Measures m) {
-    return m == Measures::depth || m == Measures::curvature;
+    return m == Measures::depth || m == Measures::curvature || m == Measures::curvatures;
   }
   using Overlap = Overlap3;
   struct Feature {};
@@ -36,7 +38,7 @@ class SphereStore {
   void sort(const std::vector<int>&) {}
   Outline outline(int) const { return {}; }
 
-  template <Measures>
+  template <Measures measures>
   bool overlap(int, const Body<3>& a, int, const Body<3>& b, Feature&, Overlap& o) const {
     const Eigen::Vector3d across = b.position - a.position;
     const double squared = across.squaredNorm(), reach = a.radius + b.radius;
@@ -54,9 +56,10 @@ class SphereStore {
     }
     o.arm_i = arm_i * o.normal;
     o.arm_j = (arm_i - distance) * o.normal;
+    if constexpr (measures == Measures::curvatures) set_curvatures(o);
     return true;
   }
-  template <Measures>
+  template <Measures measures>
   bool overlap_plane(int, const Body<3>& a, const Plane<3>& plane, Overlap& o) const {
     const double height = plane.height(a.position);
     if (height >= a.radius) return false;
@@ -65,11 +68,18 @@ class SphereStore {
     o.radius = a.radius;
     o.arm_i = -height * plane.normal;
     o.arm_j = Eigen::Vector3d::Zero();  // a wall does not turn
+    if constexpr (measures == Measures::curvatures) set_curvatures(o);
     return true;
   }
 
   void write(ImageWriter&) const {}
   void read(ImageReader&, std::size_t) {}
+
+ private:
+  static void set_curvatures(Overlap& o) {
+    o.lesser_curvature = o.greater_curvature = 0.5 / o.radius;
+    o.major = o.normal.unitOrthogonal();
+  }
 };
 
 }  // namespace grainfield::dem

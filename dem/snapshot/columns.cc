@@ -20,6 +20,8 @@ std::vector<Column<Grain>> grain_columns(int dim) {
       {"material", "1", &Grain::material, Presence::where_used},
       {"rotates", "1", &Grain::rotates, Presence::where_used},
       {"image", "1", &Grain::image, Presence::where_used},
+      {"axes", "m", &Grain::axes, Presence::where_used},
+      {"exponents", "1", &Grain::exponents, Presence::where_used},
   };
 }
 

@@ -30,7 +30,8 @@ template <class Row>
 struct Column {
   using Member =
       std::variant<double Row::*, std::int64_t Row::*, bool Row::*, Vec3 Row::*,
-                   std::array<double, 4> Row::*, std::array<int, 3> Row::*, std::string Row::*>;
+                   std::array<double, 2> Row::*, std::array<double, 4> Row::*,
+                   std::array<int, 3> Row::*, std::string Row::*>;
   const char* name;
   const char* unit;
   Member member;

@@ -13,6 +13,7 @@ enum class Measures {
              ///< a length that stays: l0 = R_i R_j/(R_i + R_j), R of the circle of equal area (at a
              ///< wall R_i)
   curvature,  ///< relative radius of curvature
+  curvatures,  ///< both relative principal curvatures and their directions
 };
 
 /// Geometry of one contact in the plane. With the tangent t = (-ny, nx) and the contact point s:
@@ -34,7 +35,12 @@ struct Overlap3 {
   double depth = 0;                                  ///< penetration along the normal, m
   Eigen::Vector3d arm_i = Eigen::Vector3d::Zero();   ///< from the centroids to the contact point, m
   Eigen::Vector3d arm_j = Eigen::Vector3d::Zero();
-  double radius = 0;  ///< relative radius of curvature: R_i R_j/(R_i + R_j) of spheres, m
+  /// Relative radius of curvature: R_i R_j/(R_i + R_j) of spheres, m. With curvatures that of the
+  /// spheres of equal volume, which the curvatures are measured by.
+  double radius = 0;
+  double lesser_curvature = 0;   ///< A, 1/m: 1/(2 radius) of spheres (only when asked for)
+  double greater_curvature = 0;  ///< B, 1/m
+  Eigen::Vector3d major = Eigen::Vector3d::UnitX();  ///< unit: the direction of A
 };
 
 template <int D>

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/packing/loose.h"
+#include "dem/shapes/superellipsoid.h"
 #include "dem/space/moving_cell.h"
 #include "dem/study/common.h"
 #include "dem/study/sample.h"
@@ -39,6 +39,31 @@ bool holds(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+// Ranges that are ranges, a law that they offer their curvatures to, no resistance against rolling.
+void check_superellipsoids(const SampleSetup& s) {
+  const SamplePlan& p = s.plan;
+  if (p.axis_max < p.axis_min) {
+    refuse("axis_max", fmt::format("found {:g}, allowed: at least sample.axis_min = {:g}",
+                                   p.axis_max, p.axis_min));
+  }
+  if (p.exponent_max < p.exponent_min) {
+    refuse("exponent_max", fmt::format("found {:g}, allowed: at least sample.exponent_min = {:g}",
+                                       p.exponent_max, p.exponent_min));
+  }
+  for (const double e : {p.exponent_min, p.exponent_max}) {
+    superellipsoid({p.axis_min, p.axis_min, p.axis_min}, {e, e});
+  }
+  const auto laws = words_where<AnyLaw>([]<class L>() {
+    return ContactLaw<L, 3> && L::measures != Measures::curvature;
+  });
+  if (!holds(laws, s.material.law)) {
+    throw std::invalid_argument(
+        fmt::format("material.law: found \"{}\", allowed for superellipsoids: {}", s.material.law,
+                    fmt::join(laws, ", ")));
+  }
+  if (RollingLaw::of(s.material).on()) refuse_rolling_superellipsoids();
+}
+
 void check_dimension(const SampleSetup& s) {
   const SamplePlan& p = s.plan;
   const auto& shapes = sample_shapes(p.dim);
@@ -59,11 +84,16 @@ void check_dimension(const SampleSetup& s) {
         fmt::format("motion.integrator: found \"{}\", allowed with sample.dim = 3: verlet",
                     s.motion.integrator));
   }
-  const double most = p.dim == 2 ? kMostLoose2 : kMostLoose3;
+  if (p.shape == "superellipsoid") check_superellipsoids(s);
+  const double most = most_start_fraction(p);
   if (p.start_fraction > most) {
-    refuse("start_fraction", fmt::format("found {:g}, allowed with sample.dim = {}: up to {:g}, "
+    refuse("start_fraction", fmt::format("found {:g}, allowed with {}: up to {:g}, "
                                          "at which random places without overlap become rare",
-                                         p.start_fraction, p.dim, most));
+                                         p.start_fraction,
+                                         p.shape == "superellipsoid"
+                                             ? "superellipsoids of these axes"
+                                             : fmt::format("sample.dim = {}", p.dim),
+                                         p.shape == "superellipsoid" ? round_down(most) : most));
   }
   if (p.corners_max < p.corners_min) {
     refuse("corners_max", fmt::format("found {}, allowed: at least sample.corners_min = {}",
@@ -213,7 +243,8 @@ void check_sample(const SampleSetup& s) {
 SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, double reserve) {
   const SamplePlan& p = s.plan;
   SampleFrame out;
-  const ShapeKind shape = p.dim == 3          ? ShapeKind::sphere
+  const ShapeKind shape = p.shape == "superellipsoid" ? ShapeKind::superellipsoid
+                          : p.dim == 3          ? ShapeKind::sphere
                           : p.shape == "disk" ? ShapeKind::disk
                                               : ShapeKind::polygon;
   out.settings =
@@ -274,7 +305,7 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
     out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
                                                                    : "sample.strain_rate";
   };
-  // Polygons are drawn, as many as allowed; of round grains the extremes are known.
+  // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are known.
   if (p.shape == "disk" || p.shape == "sphere") {
     judge({}, 1);
     return out;

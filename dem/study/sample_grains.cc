@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "dem/packing/loose.h"
+#include "dem/shapes/superellipsoid.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
@@ -12,12 +13,47 @@ namespace {
 
 bool is_round(const SamplePlan& plan) { return plan.shape == "disk" || plan.shape == "sphere"; }
 
+bool is_superellipsoid(const SamplePlan& plan) { return plan.shape == "superellipsoid"; }
+
 double volume_of(double radius, int dim) {
   return dim == 2 ? std::numbers::pi * radius * radius
                   : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
 }
 
+// Semi-axes and exponents uniform, the orientation too (Shoemake 1992).
+ShapedGrain draw_superellipsoid(const SamplePlan& plan, Random& random) {
+  ShapedGrain out;
+  for (double& r : out.axes) r = plan.radius * random.uniform(plan.axis_min, plan.axis_max);
+  for (double& e : out.exponents) e = random.uniform(plan.exponent_min, plan.exponent_max);
+  const Solid<3> solid = solid_of(superellipsoid(out.axes, out.exponents));
+  out.radius = solid.radius;
+  out.area = solid.volume;
+  const double part = random.uniform(), rest = std::sqrt(1 - part), root = std::sqrt(part);
+  const Rotation a = rotation_of(2 * std::numbers::pi * random.uniform());
+  const Rotation b = rotation_of(2 * std::numbers::pi * random.uniform());
+  out.orientation = {rest * a.sine, rest * a.cosine, root * b.sine, root * b.cosine};
+  return out;
+}
+
+// Expected volume of a superellipsoid: the axes are independent, the rest is a mean over both
+// exponents (midpoints).
+double mean_superellipsoid(const SamplePlan& plan) {
+  constexpr int kPoints = 8;
+  const double axis = 0.5 * (plan.axis_min + plan.axis_max) * plan.radius;
+  const auto at = [&](int k) {
+    return plan.exponent_min + (plan.exponent_max - plan.exponent_min) * (k + 0.5) / kPoints;
+  };
+  double sum = 0;
+  for (int k = 0; k < kPoints; ++k) {
+    for (int l = 0; l < kPoints; ++l) {
+      sum += solid_of(superellipsoid({axis, axis, axis}, {at(k), at(l)})).volume;
+    }
+  }
+  return sum / (kPoints * kPoints);
+}
+
 ShapedGrain draw(const SamplePlan& plan, double radius, Random& random) {
+  if (is_superellipsoid(plan)) return draw_superellipsoid(plan, random);
   if (is_round(plan)) {
     ShapedGrain grain;
     grain.radius = radius;
@@ -41,12 +77,20 @@ int small_ones(const SamplePlan& plan) {
 }  // namespace
 
 const std::vector<std::string>& sample_shapes(int dim) {
-  static const std::vector<std::string> plane{"disk", "rand1", "regular"}, space{"sphere"};
+  static const std::vector<std::string> plane{"disk", "rand1", "regular"}, space{"sphere", "superellipsoid"};
   return dim == 2 ? plane : space;
 }
 
 SampleRadii sample_radii(const SamplePlan& p) {
   const double r = p.radius;
+  if (is_superellipsoid(p)) {
+    // The exponents' ends give the extremes: edges are nearest, corners of boxes farthest.
+    const double low = r * p.axis_min, high = r * p.axis_max;
+    const double most = p.exponent_max, least = p.exponent_min;
+    return {nearest_of(superellipsoid({low, low, low}, {most, most})),
+            cube_root(mean_superellipsoid(p) / (4.0 / 3 * std::numbers::pi)),
+            farthest_of(superellipsoid({high, high, high}, {least, least}))};
+  }
   if (p.sizes == "uniform") return {r * (1 - p.polydispersity), r, r * (1 + p.polydispersity)};
   if (p.sizes == "mono") return {r, r, r};
   const int few = small_ones(p);
@@ -56,6 +100,7 @@ SampleRadii sample_radii(const SamplePlan& p) {
 
 double mean_volume(const SamplePlan& p) {
   const double one = volume_of(p.radius, p.dim), n = p.grains;
+  if (is_superellipsoid(p)) return n * mean_superellipsoid(p);
   if (p.sizes == "uniform") {
     // Second and third moments of a size uniform in 1 -+ d: 1 + d^2/3 and 1 + d^2.
     const double d2 = p.polydispersity * p.polydispersity;
@@ -78,8 +123,34 @@ std::vector<ShapedGrain> draw_sample(const SamplePlan& p, Random& random) {
   return grains;
 }
 
+double most_start_fraction(const SamplePlan& p) {
+  if (!is_superellipsoid(p)) return p.dim == 2 ? kMostLoose2 : kMostLoose3;
+  constexpr int kDraws = 500;
+  Random random(1);
+  double solid = 0, balls = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const ShapedGrain grain = draw_superellipsoid(p, random);
+    solid += grain.area;
+    balls += volume_of(grain.radius, 3);
+  }
+  return kMostLoose3 * solid / balls;
+}
+
 GrainExtremes sample_extremes(const SamplePlan& p, double density,
                               const std::vector<ShapedGrain>& grains) {
+  if (is_superellipsoid(p)) {
+    GrainExtremes extremes;
+    for (const ShapedGrain& grain : grains) {
+      const FeltMass felt = felt_mass(superellipsoid(grain.axes, grain.exponents), density);
+      // Of Hertz' laws the stiffness goes by the radius.
+      const bool first = extremes.least_radius == 0;
+      if (first || felt.mass * extremes.least_radius < extremes.least_mass * felt.radius) {
+        extremes.least_mass = felt.mass;
+        extremes.least_radius = felt.radius;
+      }
+    }
+    return extremes;
+  }
   if (!is_round(p)) return extremes_of(grains, density);
   const double least = sample_radii(p).least;
   GrainExtremes extremes;

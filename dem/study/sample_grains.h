@@ -15,18 +15,25 @@ namespace grainfield::dem {
 const std::vector<std::string>& sample_shapes(int dim);
 
 /// Radii of the circles (spheres) that carry the grains, m: smallest, mean and largest that can be
-/// drawn. A polygon's own circle, about its centroid, may be a little larger.
+/// drawn. A polygon's own circle, about its centroid, may be a little larger. Of superellipsoids:
+/// the least extent, the radius of the sphere of mean volume, and the farthest point.
 struct SampleRadii {
   double least = 0, mean = 0, most = 0;
 };
 SampleRadii sample_radii(const SamplePlan& plan);
-/// Of all grains together, m3 (m2), as expected: of the circles (spheres) that carry them.
+/// Of all grains together, m3 (m2), as expected: of the circles (spheres) that carry them; of
+/// superellipsoids of themselves.
 double mean_volume(const SamplePlan& plan);
 
 /// In the order of their ids; of spheres `area` is the volume, m3.
 std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random);
 
-/// What bounds the time step. Round grains: of the smallest that can be drawn; polygons: of these.
+/// Solid fraction that grains placed at random without overlap may have at most, about: of
+/// superellipsoids that of the spheres about them.
+double most_start_fraction(const SamplePlan& plan);
+
+/// What bounds the time step. Round grains: of the smallest that can be drawn; others: of these.
+/// Of superellipsoids the one that a push moves most easily.
 GrainExtremes sample_extremes(const SamplePlan& plan, double density,
                               const std::vector<ShapedGrain>& grains);
 

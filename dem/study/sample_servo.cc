@@ -37,6 +37,7 @@ ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, 
   double touching = 2 * r;
   EngineSettings bare = settings;
   bare.rolling = {};
+  if (bare.shape == ShapeKind::superellipsoid) bare.shape = ShapeKind::sphere;
   NewGrain grain;
   grain.radius = r;
   grain.density = density;

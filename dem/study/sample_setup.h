@@ -14,7 +14,7 @@ namespace grainfield::dem {
 struct SamplePlan {
   // -- grains
   int dim = 2;
-  std::string shape = "disk";  ///< disk | rand1 | regular (2D), sphere (3D)
+  std::string shape = "disk";  ///< disk | rand1 | regular (2D), sphere | superellipsoid (3D)
   int grains = 500;
   std::string sizes = "uniform";         ///< mono | bidisperse | uniform
   double radius = 0.0045;                ///< m; the larger one of bidisperse sizes
@@ -22,6 +22,8 @@ struct SamplePlan {
   double size_ratio = 1.4;               ///< bidisperse: larger over smaller radius
   double fraction_small = 0.5;           ///< bidisperse: share of the smaller ones, by number
   int corners_min = 6, corners_max = 8;  ///< rand1, regular
+  double axis_min = 0.5, axis_max = 1.5;          ///< superellipsoid: semi-axes over the radius
+  double exponent_min = 0.7, exponent_max = 1.3;  ///< superellipsoid
 
   // -- where they are
   std::string boundary = "periodic";  ///< periodic | walls
@@ -46,7 +48,8 @@ struct SamplePlan {
 
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
-                    corners_min, corners_max, boundary, height_ratio, start_fraction, compression,
+                    corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
+                    boundary, height_ratio, start_fraction, compression,
                     compress_to, pressure, solid_fraction, compression_strain, compression_rate,
                     deformation, constant, sides, strain, strain_rate, ramp_time, records);
   }

@@ -70,5 +70,37 @@ TEST(Elementary, LogarithmIsThatOfTheLibrary) {
   EXPECT_EQ(natural_log(1), 0);
 }
 
+TEST(Elementary, ExponentialIsThatOfTheLibrary) {
+  Random random(6);
+  double worst = 0;
+  const auto look = [&](double x) {
+    const double exact = static_cast<double>(std::exp(static_cast<long double>(x)));
+    worst = std::max(worst, std::fabs(exponential(x) / exact - 1));
+  };
+  for (const double x : {0.0, 1e-300, -1e-17, 0.5 * std::numbers::ln2, 709.0, -707.9}) look(x);
+  for (int k = 0; k < 200000; ++k) {
+    look(random.uniform(-700, 700));
+    look(random.uniform(-2, 2));
+  }
+  EXPECT_LT(worst, 5e-16);
+  EXPECT_EQ(exponential(0), 1);
+  EXPECT_EQ(exponential(-1e9), 0);
+  EXPECT_EQ(exponential(1e9), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(exponential(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(Elementary, LogGammaIsThatOfTheLibrary) {
+  Random random(7);
+  double worst = 0;
+  const auto look = [&](double x) {
+    const double exact = static_cast<double>(std::lgamma(static_cast<long double>(x)));
+    worst = std::max(worst, std::fabs(log_gamma(x) - exact) / std::max(1.0, std::fabs(exact)));
+  };
+  for (const double x : {1e-9, 0.05, 0.5, 1.0, 1.5, 2.0, 12.0, 1e6}) look(x);
+  for (int k = 0; k < 100000; ++k) look(random.uniform(0, 40));
+  EXPECT_LT(worst, 1.2e-14);  // terms of up to 20 cancel
+  EXPECT_NEAR(beta(2, 3), 1.0 / 12, 1e-15);
+}
+
 }  // namespace
 }  // namespace grainfield::dem

@@ -30,8 +30,8 @@ const std::vector<Room>& rooms() {
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"engine", "image", "laws", "motion", "heap", "packing", "quasistatic", "random", "snapshot",
-        "space", "walls"}},
+       {"engine", "image", "laws", "motion", "heap", "packing", "quasistatic", "random", "shapes",
+        "snapshot", "space", "walls"}},
   };
   return kRooms;
 }

@@ -68,6 +68,10 @@ inline Snapshot full_snapshot(int dim) {
     g.orientation = {q[0], q[1], q[2], q[3]};
     g.angular_velocity = vector();
     g.moments = vector();
+    if (g.id % 2 == 0) {
+      g.axes = vector();
+      g.exponents = {some(), some()};
+    }
   }
   for (Contact& c : s.contacts) {
     for (Vec3* v : {&c.point, &c.normal, &c.force}) *v = vector();
@@ -109,7 +113,7 @@ void visit_values(const Snapshot& s, Each each) {
   for (const Grain& g : s.grains) {
     all(g.id, g.position, g.velocity, g.angle, g.spin, g.radius, g.mass, g.inertia, g.volume,
         g.fixed, g.orientation, g.angular_velocity, g.moments, g.material, g.rotates, g.image,
-        g.outline.size());
+        g.axes, g.exponents, g.outline.size());
     for (const auto& corner : g.outline) all(corner);
   }
   for (const Contact& c : s.contacts) {

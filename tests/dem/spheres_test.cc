@@ -341,12 +341,12 @@ TEST(Spheres, WhatDoesNotFitIsRefused) {
   s.law = OverlapAreaLaw{};
   EXPECT_EQ(refusal(s),
             "material.law: found \"overlap_area\", allowed for grains of this shape: "
-            "linear, hertz");
+            "linear, hertz, penalty, hertz_elliptic");
   s.law = HertzLaw{};
   s.shape = ShapeKind::disk;
   EXPECT_EQ(refusal(s),
             "material.law: found \"hertz\", allowed for grains of this shape: "
-            "overlap_area, energy, linear");
+            "overlap_area, energy, linear, penalty");
 }
 
 }  // namespace

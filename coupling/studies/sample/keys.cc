@@ -3,6 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "dem/packing/loose.h"
+#include "dem/shapes/superellipsoid.h"
 #include "dem/study/sample_grains.h"
 #include "dem/study/sample_setup.h"
 
@@ -20,17 +21,19 @@ std::vector<string> both(std::vector<string> first, const std::vector<string>& s
 }
 
 void grains(SectionKeys& s) {
-  s.number("dim", "-", IN(dim), {2, 3}, "dimensions: disks or polygons, or spheres");
+  s.number("dim", "-", IN(dim), {2, 3},
+           "dimensions: disks or polygons, or spheres or superellipsoids");
   const auto plane = dem::sample_shapes(2), space = dem::sample_shapes(3);
   s.word("shape", IN(shape), both(plane, space),
-         "disks, polygons in Roul's way (rand1) or regular ones; spheres");
+         "disks, polygons in Roul's way (rand1) or regular ones; spheres or superellipsoids");
   s.words_of_dimensions(plane, space);
   s.number("grains", "-", IN(grains), {1, 1e7},
            "more: less scatter between realizations and weaker boundaries");
   s.word("sizes", IN(sizes), {"mono", "bidisperse", "uniform"},
          "radii: all equal, two sizes, or uniform in radius (1 -+ polydispersity)");
   s.number("radius", "m", IN(radius), kRadius,
-           "of the circle or sphere that carries a grain, its mean; bidisperse: the larger one");
+           "of the circle or sphere that carries a grain, its mean; bidisperse: the larger one; "
+           "superellipsoids: the unit of their semi-axes");
   s.number("polydispersity", "-", IN(polydispersity), {0, 0.9},
            "half the width of the radii over their mean; more keeps crystals away");
   s.only("sample.sizes", {"uniform"});
@@ -45,6 +48,21 @@ void grains(SectionKeys& s) {
   s.number("corners_max", "-", IN(corners_max), {3, 64},
            "most corners; the number is drawn between both");
   s.only("sample.shape", {"rand1", "regular"});
+  constexpr const char* kWellmann = "Wellmann 25, 26";
+  const auto superellipsoid = [&] { s.only("sample.shape", {"superellipsoid"}); };
+  s.number("axis_min", "-", IN(axis_min), {0.05, 20},
+           "least semi-axis of a superellipsoid over the radius", kWellmann);
+  superellipsoid();
+  s.number("axis_max", "-", IN(axis_max), {0.05, 20},
+           "largest one; each of the three is uniform between both", kWellmann);
+  superellipsoid();
+  s.number("exponent_min", "-", IN(exponent_min), {dem::kLeastExponent, dem::kMostExponent},
+           "least exponent: 1 is an ellipsoid, below it faces are flat", kWellmann);
+  superellipsoid();
+  s.number("exponent_max", "-", IN(exponent_max), {dem::kLeastExponent, dem::kMostExponent},
+           "largest one: above 1 there are edges; both of a grain are uniform between these",
+           kWellmann);
+  superellipsoid();
 }
 
 void place(SectionKeys& s) {

@@ -48,7 +48,7 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   out.title = title_of(value);
   out.subtitle =
       fmt::format("{} {}s in {}, {} law, {}", plan.grains,
-                  plan.dim == 3          ? "sphere"
+                  plan.dim == 3          ? plan.shape.c_str()
                   : plan.shape == "disk" ? "disk"
                                          : "polygon",
                   plan.boundary == "periodic" ? "a periodic cell" : "a box of walls",

@@ -1,0 +1,13 @@
+// The engine for superellipsoids.
+#include "dem/engine/turning3.h"
+#include "dem/motion/verlet3.h"
+#include "dem/shapes/superellipsoid_store.h"
+#include "dem/space/kinematics3.h"
+// After what it combines: three dimensions add overloads that it must see.
+#include "dem/engine/combine.h"
+
+namespace grainfield::dem {
+
+template std::unique_ptr<Engine> engine_of<SuperellipsoidStore>(const EngineSettings& settings);
+
+}  // namespace grainfield::dem
