@@ -22,7 +22,8 @@ std::vector<string> both(std::vector<string> first, const std::vector<string>& s
 }
 
 void grains(SectionKeys& s) {
-  s.number("dim", "-", +IN(int, dim), {2, 3}, "dimensions: disks or polygons, or spheres or superellipsoids");
+  s.number("dim", "-", +IN(int, dim), {2, 3},
+           "dimensions: disks or polygons, or spheres or superellipsoids");
   const auto plane = dem::sample_shapes(2), space = dem::sample_shapes(3);
   s.word("shape", +IN(string, shape), both(plane, space),
          "disks, polygons in Roul's way (rand1) or regular ones; spheres or superellipsoids");
@@ -60,10 +61,9 @@ void grains(SectionKeys& s) {
            {dem::kLeastExponent, dem::kMostExponent},
            "least exponent: 1 is an ellipsoid, below it faces are flat", kWellmann);
   superellipsoid();
-  s.number("exponent_max", "-", +IN(double, exponent_max),
-           {dem::kLeastExponent, dem::kMostExponent},
-           "largest one: above 1 there are edges; both of a grain are uniform between these",
-           kWellmann);
+  s.number(
+      "exponent_max", "-", +IN(double, exponent_max), {dem::kLeastExponent, dem::kMostExponent},
+      "largest one: above 1 there are edges; both of a grain are uniform between these", kWellmann);
   superellipsoid();
 }
 
