@@ -25,9 +25,9 @@ double middle_of(const dem::Snapshot& s) {
   return 0.5 * (least + most);
 }
 
-// What the plane `away` above a superellipsoid's centre cuts out of it, as a polygon in x and z about
-// a point of it; false: nothing. The point lies towards the one where the surface is highest, the
-// corners on rays from it where the body's equation says.
+// What the plane `away` above a superellipsoid's centre cuts out of it, as a polygon in x and z
+// about a point of it; false: nothing. The point lies towards the one where the surface is highest,
+// the corners on rays from it where the body's equation says.
 bool cut_superellipsoid(const dem::Grain& g, double away, dem::Grain& flat) {
   const dem::RotationOf<3> turn(g.orientation[0], g.orientation[1], g.orientation[2],
                                 g.orientation[3]);

@@ -96,9 +96,9 @@ class EngineLoop final : public Engine {
     check_wall_motion(world_.cell.told(), wall, {wall.velocity, wall.angular_velocity});
     const int kind = material.empty() ? -1 : material_index(materials_, wall.name, material);
     if (!State::Shape::central && wall.shape != "plane") {
-      throw std::invalid_argument(fmt::format(
-          "wall {}: shape: found \"{}\", allowed for {}: plane", wall.name, wall.shape,
-          State::Shape::outlines ? "polygons" : "superellipsoids"));
+      throw std::invalid_argument(
+          fmt::format("wall {}: shape: found \"{}\", allowed for {}: plane", wall.name, wall.shape,
+                      State::Shape::outlines ? "polygons" : "superellipsoids"));
     }
     auto surface = surface_of<dim>(wall);
     for (int slot = 0; slot < surface->slots(); ++slot) {

@@ -325,7 +325,7 @@ class Search {
   double farthest_sleeper_ = 0;      // largest reach of those in the grid
   std::vector<Reach<dim>> reaches_;  // of the awake
   std::vector<Crossing> crossing_;
-  Kept<Feature> features_;  // of the pairs before, within run()
+  Kept<Feature> features_;                 // of the pairs before, within run()
   std::vector<BoundingRectangle> bounds_;  // while some grain is slender
 };
 

@@ -80,8 +80,7 @@ inline EllipticContact elliptic_contact(double lesser, double greater) {
   out.shape = ellipse_ratio(greater / lesser);
   const auto& [kappa, integrals] = out.shape;
   const double k = integrals.k, e = k - (1 - 1 / (kappa * kappa)) * integrals.d;
-  out.gamma =
-      2.0 / 3 * std::numbers::pi * kappa * std::sqrt(e / (k * k * k * (lesser + greater)));
+  out.gamma = 2.0 / 3 * std::numbers::pi * kappa * std::sqrt(e / (k * k * k * (lesser + greater)));
   out.axis = std::sqrt(integrals.d / (lesser * k));
   return out;
 }

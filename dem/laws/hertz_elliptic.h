@@ -38,12 +38,12 @@ struct HertzEllipticLaw {
   template <int D>
   using Memory = HertzMemory<D>;
 
-  double young = 1e7;          ///< E, Pa
-  double poisson = 0.3;        ///< nu, -
-  double damping = 1;          ///< zeta, -; 1 is critical
-  bool displacement = false;   ///< tangential_memory
-  double least_radius = 0.1;   ///< of 1/(2B) over R, -
-  double most_radius = 10;     ///< of 1/(2A) over R, -
+  double young = 1e7;         ///< E, Pa
+  double poisson = 0.3;       ///< nu, -
+  double damping = 1;         ///< zeta, -; 1 is critical
+  bool displacement = false;  ///< tangential_memory
+  double least_radius = 0.1;  ///< of 1/(2B) over R, -
+  double most_radius = 10;    ///< of 1/(2A) over R, -
 
   /// Throws std::invalid_argument naming material.tangential_memory, material.poisson or the bounds
   /// of the radii.
@@ -51,7 +51,7 @@ struct HertzEllipticLaw {
     check_word("material.tangential_memory", m.tangential_memory, {"force", "displacement"});
     check_poisson(m.poisson);
     check_radii(m.least_radius, m.most_radius);
-    return {m.young,      m.poisson, m.damping, m.tangential_memory == "displacement",
+    return {m.young,        m.poisson,    m.damping, m.tangential_memory == "displacement",
             m.least_radius, m.most_radius};
   }
 
@@ -92,8 +92,7 @@ struct HertzEllipticLaw {
     const EllipticContact ellipse = this->ellipse(o);
     const double stiffness = 1.5 * ellipse.gamma * effective_young() * root;
     const double dashpot = 2 * damping * std::sqrt(stiffness * mass);
-    const double normal =
-        std::max(stiffness * (2.0 / 3) * o.depth + dashpot * m.approach, 0.0);
+    const double normal = std::max(stiffness * (2.0 / 3) * o.depth + dashpot * m.approach, 0.0);
     if (dt > 0) {
       const double a = ellipse.axis * root, before = memory.contact_radius;
       if (a < before || (displacement && before > 0)) memory.spring *= a / before;

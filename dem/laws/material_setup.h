@@ -39,8 +39,8 @@ struct MaterialSetup {
     return std::tie(law, density, young, damping, tangential_ratio, energy, linear_share, poisson,
                     normal_stiffness, tangential_stiffness, normal_damping, tangential_damping,
                     friction, floor_friction, wall_friction, gravity, tangential_memory,
-                    damping_model, least_radius, most_radius, rolling_stiffness, rolling_damping, rolling_friction,
-                    twisting_stiffness, twisting_damping, twisting_friction);
+                    damping_model, least_radius, most_radius, rolling_stiffness, rolling_damping,
+                    rolling_friction, twisting_stiffness, twisting_damping, twisting_friction);
   }
 };
 

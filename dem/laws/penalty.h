@@ -16,9 +16,9 @@ struct PenaltyLaw {
   static constexpr EdgeMeasure edges = EdgeMeasure::none;
   template <int D>
   using Memory = SpringMemory<D>;
-  double normal_stiffness = 1e7;      ///< c_N, N/m
+  double normal_stiffness = 1e7;       ///< c_N, N/m
   double tangential_stiffness_ = 1e7;  ///< c_T, N/m
-  double damping = 1;                 ///< zeta, -; 1 is critical
+  double damping = 1;                  ///< zeta, -; 1 is critical
 
   static PenaltyLaw of(const MaterialSetup& m) {
     return {m.normal_stiffness, m.tangential_stiffness, m.damping};

@@ -13,7 +13,8 @@
 
 namespace grainfield::dem {
 
-using AnyLaw = std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw, PenaltyLaw, HertzEllipticLaw>;
+using AnyLaw =
+    std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw, PenaltyLaw, HertzEllipticLaw>;
 
 /// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
 /// material.law.

@@ -200,8 +200,7 @@ View stepped(const TurnedBody& i, const TurnedBody& j, const View& from, const L
   const double on_a = first.changed();
   const double on_b = second.body >= 0 ? second.changed() : b.dot(by);
   const double same = a.dot(b), apart = 1 - same * same;
-  const Vector3d within =
-      ((on_a - on_b * same) / apart) * a + ((on_b - on_a * same) / apart) * b;
+  const Vector3d within = ((on_a - on_b * same) / apart) * a + ((on_b - on_a * same) / apart) * b;
   const double rest = 1 - within.squaredNorm();
   if (!(rest > kLeastRest)) return straight;
   const Vector3d across = a.cross(b) / std::sqrt(apart);

@@ -12,8 +12,8 @@ namespace grainfield::dem {
 struct ShapeInput {
   double radius = 0;       ///< m; of a polygon: not used
   const Outline& outline;  ///< body frame; empty: round
-  std::array<double, 3> axes{};             ///< of a superellipsoid: semi-axes, m
-  std::array<double, 2> exponents{1, 1};    ///< of a superellipsoid: e1, e2
+  std::array<double, 3> axes{};           ///< of a superellipsoid: semi-axes, m
+  std::array<double, 2> exponents{1, 1};  ///< of a superellipsoid: e1, e2
 };
 
 /// Bounding radius, volume and moments at density 1.

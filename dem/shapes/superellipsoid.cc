@@ -23,7 +23,7 @@ struct Norm {
   double size = 0;
   double a = 0, b = 0;            // over the size
   double pull_a = 0, pull_b = 0;  // d size/da, d size/db
-  double bend = 0;  // Hessian: bend/size (b, -a)(b, -a)'
+  double bend = 0;                // Hessian: bend/size (b, -a)(b, -a)'
 };
 
 double norm_size(double a, double b, double power) {
@@ -66,8 +66,8 @@ Eigen::Vector3d scaled(const Superellipsoid& body, const Eigen::Vector3d& n) {
 }
 
 /// Squared distance of the farthest and of the nearest point of a superellipse, of squared
-/// semi-axes: by Hoelder's inequality their norm of the power p/(p - 2) = 1/(1 - e) where e is below
-/// (above) 1.
+/// semi-axes: by Hoelder's inequality their norm of the power p/(p - 2) = 1/(1 - e) where e is
+/// below (above) 1.
 double farthest_pair(double a, double b, double exponent) {
   return exponent < 1 ? norm_size(a, b, 1 / (1 - exponent)) : std::max(a, b);
 }
@@ -100,11 +100,11 @@ Superellipsoid superellipsoid(const std::array<double, 3>& axes,
 // second moments of superellipses are Beta functions, too.
 Solid<3> solid_of(const Superellipsoid& body) {
   const auto [e1, e2] = body.exponents;
-  const double area = 2 * e1 * beta(0.5 * e1, 0.5 * e1 + 1);        // of the slice, r1 = r2 = 1
-  const double moment = 2 * e1 * beta(1.5 * e1, 0.5 * e1 + 1);      // of x1^2
-  const double slices = e2 * beta(0.5 * e2, e2 + 1);                // integral of size^2
-  const double level = e2 * beta(0.5 * e2, 2 * e2 + 1);             // of size^4
-  const double upright = e2 * beta(1.5 * e2, e2 + 1);               // of z^2 size^2
+  const double area = 2 * e1 * beta(0.5 * e1, 0.5 * e1 + 1);    // of the slice, r1 = r2 = 1
+  const double moment = 2 * e1 * beta(1.5 * e1, 0.5 * e1 + 1);  // of x1^2
+  const double slices = e2 * beta(0.5 * e2, e2 + 1);            // integral of size^2
+  const double level = e2 * beta(0.5 * e2, 2 * e2 + 1);         // of size^4
+  const double upright = e2 * beta(1.5 * e2, e2 + 1);           // of z^2 size^2
   const Eigen::Vector3d squares = body.axes.cwiseProduct(body.axes);
   const double block = body.axes.prod();
   const double x = block * squares[0] * moment * level;
@@ -130,24 +130,27 @@ FeltMass felt_mass(const Superellipsoid& body, double density) {
   const Solid<3> solid = solid_of(body);
   const auto [e1, e2] = body.exponents;
   // Barr's angles, by their squared cosines: points go by e, normals by 2 - e.
-  const auto power = [](double square, double e) { return exponential(0.5 * e * natural_log(square)); };
+  const auto power = [](double square, double e) {
+    return exponential(0.5 * e * natural_log(square));
+  };
   double most = 0;
   constexpr int kPoints = 12;
   for (int k = 0; k < kPoints; ++k) {
     for (int l = 0; l < kPoints; ++l) {
       const double u = (k + 0.5) / kPoints, v = (l + 0.5) / kPoints;
-      const Eigen::Vector3d x = body.axes.cwiseProduct(
-          Eigen::Vector3d(power(u, e1) * power(v, e2), power(1 - u, e1) * power(v, e2), power(1 - v, e2)));
+      const Eigen::Vector3d x = body.axes.cwiseProduct(Eigen::Vector3d(
+          power(u, e1) * power(v, e2), power(1 - u, e1) * power(v, e2), power(1 - v, e2)));
       const double f1 = 2 - e1, f2 = 2 - e2;
-      const Eigen::Vector3d n =
-          Eigen::Vector3d(power(u, f1) * power(v, f2), power(1 - u, f1) * power(v, f2), power(1 - v, f2))
-              .cwiseQuotient(body.axes)
-              .normalized();
+      const Eigen::Vector3d n = Eigen::Vector3d(power(u, f1) * power(v, f2),
+                                                power(1 - u, f1) * power(v, f2), power(1 - v, f2))
+                                    .cwiseQuotient(body.axes)
+                                    .normalized();
       const Eigen::Vector3d lever = x.cross(n);
       most = std::max(most, lever.cwiseProduct(lever).cwiseQuotient(solid.moments).sum());
     }
   }
-  return {density / (1 / solid.volume + most), cube_root(solid.volume / (4.0 / 3 * std::numbers::pi))};
+  return {density / (1 / solid.volume + most),
+          cube_root(solid.volume / (4.0 / 3 * std::numbers::pi))};
 }
 
 double height_of(const Superellipsoid& body, const Eigen::Vector3d& n) {

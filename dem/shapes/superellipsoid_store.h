@@ -65,9 +65,9 @@ class SuperellipsoidStore {
     o.arm_i = contact.point;
     o.arm_j = contact.point - across;
     if constexpr (measures == Measures::curvatures) {
-      set_curvatures(first.equal_radius * second.equal_radius /
-                         (first.equal_radius + second.equal_radius),
-                     relative_curvatures(contact.normal, contact.bend.data(), 4), o);
+      set_curvatures(
+          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius),
+          relative_curvatures(contact.normal, contact.bend.data(), 4), o);
     }
     return true;
   }

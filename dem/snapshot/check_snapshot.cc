@@ -34,9 +34,10 @@ void check_grains(const Snapshot& s, const std::string& where) {
                                 g.id, g.moments.x(), g.moments.y(), g.moments.z()));
     if (g.axes.isZero(0)) continue;
     if (!(g.axes.minCoeff() > 0))
-      refuse(where, fmt::format("axes of grain {} are {:g}, {:g}, {:g} m; those of a superellipsoid "
-                                "must be above 0",
-                                g.id, g.axes.x(), g.axes.y(), g.axes.z()));
+      refuse(where,
+             fmt::format("axes of grain {} are {:g}, {:g}, {:g} m; those of a superellipsoid "
+                         "must be above 0",
+                         g.id, g.axes.x(), g.axes.y(), g.axes.z()));
     if (!(g.exponents[0] > 0 && g.exponents[0] < 2 && g.exponents[1] > 0 && g.exponents[1] < 2))
       refuse(where, fmt::format("exponents of grain {} are {:g}, {:g}; those of a superellipsoid "
                                 "must be between 0 and 2",

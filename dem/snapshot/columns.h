@@ -28,10 +28,9 @@ enum class Presence {
 /// attribute NAME_names, or -1 for "".
 template <class Row>
 struct Column {
-  using Member =
-      std::variant<double Row::*, std::int64_t Row::*, bool Row::*, Vec3 Row::*,
-                   std::array<double, 2> Row::*, std::array<double, 4> Row::*,
-                   std::array<int, 3> Row::*, std::string Row::*>;
+  using Member = std::variant<double Row::*, std::int64_t Row::*, bool Row::*, Vec3 Row::*,
+                              std::array<double, 2> Row::*, std::array<double, 4> Row::*,
+                              std::array<int, 3> Row::*, std::string Row::*>;
   const char* name;
   const char* unit;
   Member member;

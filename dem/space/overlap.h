@@ -12,7 +12,7 @@ enum class Measures {
   gradient,  ///< area, chord, normal and contact point that are exactly the area's derivatives, and
              ///< a length that stays: l0 = R_i R_j/(R_i + R_j), R of the circle of equal area (at a
              ///< wall R_i)
-  curvature,  ///< relative radius of curvature
+  curvature,   ///< relative radius of curvature
   curvatures,  ///< both relative principal curvatures and their directions
 };
 

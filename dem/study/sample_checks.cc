@@ -53,9 +53,8 @@ void check_superellipsoids(const SampleSetup& s) {
   for (const double e : {p.exponent_min, p.exponent_max}) {
     superellipsoid({p.axis_min, p.axis_min, p.axis_min}, {e, e});
   }
-  const auto laws = words_where<AnyLaw>([]<class L>() {
-    return ContactLaw<L, 3> && L::measures != Measures::curvature;
-  });
+  const auto laws = words_where<AnyLaw>(
+      []<class L>() { return ContactLaw<L, 3> && L::measures != Measures::curvature; });
   if (!holds(laws, s.material.law)) {
     throw std::invalid_argument(
         fmt::format("material.law: found \"{}\", allowed for superellipsoids: {}", s.material.law,
@@ -87,13 +86,13 @@ void check_dimension(const SampleSetup& s) {
   if (p.shape == "superellipsoid") check_superellipsoids(s);
   const double most = most_start_fraction(p);
   if (p.start_fraction > most) {
-    refuse("start_fraction", fmt::format("found {:g}, allowed with {}: up to {:g}, "
-                                         "at which random places without overlap become rare",
-                                         p.start_fraction,
-                                         p.shape == "superellipsoid"
-                                             ? "superellipsoids of these axes"
-                                             : fmt::format("sample.dim = {}", p.dim),
-                                         p.shape == "superellipsoid" ? round_down(most) : most));
+    refuse("start_fraction",
+           fmt::format("found {:g}, allowed with {}: up to {:g}, "
+                       "at which random places without overlap become rare",
+                       p.start_fraction,
+                       p.shape == "superellipsoid" ? "superellipsoids of these axes"
+                                                   : fmt::format("sample.dim = {}", p.dim),
+                       p.shape == "superellipsoid" ? round_down(most) : most));
   }
   if (p.corners_max < p.corners_min) {
     refuse("corners_max", fmt::format("found {}, allowed: at least sample.corners_min = {}",
@@ -244,9 +243,9 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   const SamplePlan& p = s.plan;
   SampleFrame out;
   const ShapeKind shape = p.shape == "superellipsoid" ? ShapeKind::superellipsoid
-                          : p.dim == 3          ? ShapeKind::sphere
-                          : p.shape == "disk" ? ShapeKind::disk
-                                              : ShapeKind::polygon;
+                          : p.dim == 3                ? ShapeKind::sphere
+                          : p.shape == "disk"         ? ShapeKind::disk
+                                                      : ShapeKind::polygon;
   out.settings =
       engine_settings(s.material, s.motion, extremes, 1, p.shape == "rand1", reserve, shape);
   out.settings.gravity_x = out.settings.gravity_y = out.settings.gravity_z = 0;
@@ -305,7 +304,8 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
     out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
                                                                    : "sample.strain_rate";
   };
-  // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are known.
+  // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are
+  // known.
   if (p.shape == "disk" || p.shape == "sphere") {
     judge({}, 1);
     return out;

@@ -77,7 +77,8 @@ int small_ones(const SamplePlan& plan) {
 }  // namespace
 
 const std::vector<std::string>& sample_shapes(int dim) {
-  static const std::vector<std::string> plane{"disk", "rand1", "regular"}, space{"sphere", "superellipsoid"};
+  static const std::vector<std::string> plane{"disk", "rand1", "regular"},
+      space{"sphere", "superellipsoid"};
   return dim == 2 ? plane : space;
 }
 

@@ -49,9 +49,9 @@ struct SamplePlan {
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
                     corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
-                    boundary, height_ratio, start_fraction, compression,
-                    compress_to, pressure, solid_fraction, compression_strain, compression_rate,
-                    deformation, constant, sides, strain, strain_rate, ramp_time, records);
+                    boundary, height_ratio, start_fraction, compression, compress_to, pressure,
+                    solid_fraction, compression_strain, compression_rate, deformation, constant,
+                    sides, strain, strain_rate, ramp_time, records);
   }
 };
 

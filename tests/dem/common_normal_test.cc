@@ -64,7 +64,8 @@ Global search_all(const Body& i, const Body& j, const Vector3d& across, Random& 
     const double f = thickness(a, b, across, n);
     if (f >= best[2].depth) return;
     best[2] = {f, n};
-    for (int k = 2; k > 0 && best[k].depth < best[k - 1].depth; --k) std::swap(best[k], best[k - 1]);
+    for (int k = 2; k > 0 && best[k].depth < best[k - 1].depth; --k)
+      std::swap(best[k], best[k - 1]);
   };
   for (int k = 0; k < 300; ++k) {
     const Vector3d n = random_direction(random);
@@ -130,8 +131,8 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
     const Vector3d on_j =
         across - b.turn * support_of(j.shape, b.turn.transpose() * found.at.normal).point;
     const double bend = 1 / (1 + radii.greater);
-    out.points = std::max(out.points,
-                          bend * (on_i - on_j - found.at.depth * found.at.normal).norm());
+    out.points =
+        std::max(out.points, bend * (on_i - on_j - found.at.depth * found.at.normal).norm());
     const double middle = 0.5 * (on_i + on_j).dot(found.at.normal);
     out.middle = std::max(out.middle, std::fabs(found.at.point.dot(found.at.normal) - middle));
   }
@@ -201,8 +202,10 @@ TEST(CommonNormal, EllipsoidsTouchWhereTheirContactConditionSays) {
 TEST(CommonNormal, OfSpheresIsTheLineOfCentres) {
   Random random(4);
   for (int k = 0; k < 100; ++k) {
-    const Body i{superellipsoid({0.7, 0.7, 0.7}, {1, 1}), random_rotation(random).toRotationMatrix()};
-    const Body j{superellipsoid({0.4, 0.4, 0.4}, {1, 1}), random_rotation(random).toRotationMatrix()};
+    const Body i{superellipsoid({0.7, 0.7, 0.7}, {1, 1}),
+                 random_rotation(random).toRotationMatrix()};
+    const Body j{superellipsoid({0.4, 0.4, 0.4}, {1, 1}),
+                 random_rotation(random).toRotationMatrix()};
     const Vector3d way = random_direction(random);
     const Found found = contact(i, j, 1.09 * way);
     ASSERT_TRUE(found.touches);
@@ -385,7 +388,8 @@ TEST(CommonNormal, OfFacesThatLieOnEachOther) {
 TEST(CommonNormal, OfEdgesAndCorners) {
   // An edge across a face, an edge across an edge, a corner on a face: of boxes whose edges are
   // rounded, and of bodies whose edges are sharp.
-  const Matrix3d edge_up = quaternion_of(Vector3d(0.25 * std::numbers::pi, 0, 0)).toRotationMatrix();
+  const Matrix3d edge_up =
+      quaternion_of(Vector3d(0.25 * std::numbers::pi, 0, 0)).toRotationMatrix();
   const Matrix3d quarter = quaternion_of(Vector3d(0, 0, 0.5 * std::numbers::pi)).toRotationMatrix();
   Body on_edge = box(0.2);
   on_edge.turn = edge_up;
@@ -416,7 +420,8 @@ TEST(CommonNormal, OfBodiesInsideEachOther) {
   Random random(9);
   for (int k = 0; k < 300; ++k) {
     const Body i = random_body(random, 0.1, 1.9), j = random_body(random, 0.1, 1.9);
-    const Vector3d across = k % 3 == 0 ? Vector3d(0, 0, 0) : Vector3d(0.1 * random_direction(random));
+    const Vector3d across =
+        k % 3 == 0 ? Vector3d(0, 0, 0) : Vector3d(0.1 * random_direction(random));
     const Found found = contact(i, j, across);
     ASSERT_TRUE(found.touches);
     EXPECT_NEAR(found.at.normal.norm(), 1, 1e-12);

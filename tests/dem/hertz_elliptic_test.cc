@@ -65,8 +65,8 @@ TEST(HertzElliptic, EllipseIsJohnsons) {
     const Number semi = sqrt(exact.d / (exact.k * Number(a)));  // at d = 1
     axis = std::max(axis, off(found.axis, semi));
     const Number p0 = 1 / (semi / exact.kappa * exact.k);
-    const Number force = Number(2) / 3 * p0 * boost::math::constants::pi<Number>() * semi * semi /
-                         exact.kappa;
+    const Number force =
+        Number(2) / 3 * p0 * boost::math::constants::pi<Number>() * semi * semi / exact.kappa;
     gamma = std::max(gamma, off(found.gamma, force));
   }
   EXPECT_LT(kappa, 1e-12);
@@ -205,7 +205,8 @@ TEST(HertzElliptic, RadiiAreBounded) {
     EXPECT_GT(now, 0.6 * before);
     before = now;
   }
-  EXPECT_TRUE(std::isfinite(force(overlap_of(0, std::numeric_limits<double>::infinity(), 1), 0.1, 10)));
+  EXPECT_TRUE(
+      std::isfinite(force(overlap_of(0, std::numeric_limits<double>::infinity(), 1), 0.1, 10)));
 }
 
 TEST(HertzElliptic, NumbersOutOfRangeAreRefused) {
@@ -250,7 +251,8 @@ TEST(Penalty, CriticalDampingLetsAPairCreepApart) {
   double depth = 0, speed = 1;
   SpringMemory<3> memory;
   for (int k = 0; k < 100000 && (k < 10 || depth > 0); ++k) {
-    const double f = law(overlap_of(1, 1, depth), motion(speed, Vector3d::Zero()), 0, dt, memory).normal;
+    const double f =
+        law(overlap_of(1, 1, depth), motion(speed, Vector3d::Zero()), 0, dt, memory).normal;
     if (k > 10 && f == 0) break;
     speed -= dt * f / mass;
     depth += dt * speed;

@@ -72,8 +72,8 @@ double energy_of(const Engine& engine) {
 
 // Round superellipsoids are spheres: the same motion under all laws of both, to round-off's growth.
 TEST(SuperellipsoidEngine, RoundOnesMoveAsSpheresDo) {
-  for (const AnyLaw& law : {AnyLaw(PenaltyLaw{1e3, 500, 0.2}),
-                            AnyLaw(HertzEllipticLaw{1e4, 0.3, 0.2})}) {
+  for (const AnyLaw& law :
+       {AnyLaw(PenaltyLaw{1e3, 500, 0.2}), AnyLaw(HertzEllipticLaw{1e4, 0.3, 0.2})}) {
     const auto run = [&](ShapeKind shape) {
       EngineSettings s = settings_of(law, 2e-4);
       s.shape = shape;
@@ -171,8 +171,8 @@ TEST(SuperellipsoidEngine, HertzGasDrifts) {
 }
 
 TEST(SuperellipsoidEngine, MomentumAndAngularMomentumStay) {
-  for (const AnyLaw& law : {AnyLaw(PenaltyLaw{1e4, 5e3, 0.5}),
-                            AnyLaw(HertzEllipticLaw{1e5, 0.3, 0.5})}) {
+  for (const AnyLaw& law :
+       {AnyLaw(PenaltyLaw{1e4, 5e3, 0.5}), AnyLaw(HertzEllipticLaw{1e5, 0.3, 0.5})}) {
     EngineSettings s = settings_of(law, 2e-4);
     s.friction = 0.5;
     const auto engine = make_engine(s);

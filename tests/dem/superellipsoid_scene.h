@@ -27,8 +27,8 @@ inline Eigen::Vector3d random_direction(Random& random) {
 inline RotationOf<3> random_rotation(Random& random) {
   const double u = random.uniform(), a = random.uniform(0, 2 * std::numbers::pi),
                b = random.uniform(0, 2 * std::numbers::pi);
-  return {std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b),
-          std::sqrt(u) * std::cos(b)};
+  return {std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+          std::sqrt(u) * std::sin(b), std::sqrt(u) * std::cos(b)};
 }
 
 }  // namespace grainfield::dem

@@ -25,8 +25,8 @@ struct Angle {
   Number cosine2, sine2;
 };
 
-/// A point of the surface by Barr's angles: x1 = r1 c1^e1 c2^e2, x2 = r2 s1^e1 c2^e2, x3 = r3 s2^e2;
-/// the normal has 2 - e for e and 1/r for r.
+/// A point of the surface by Barr's angles: x1 = r1 c1^e1 c2^e2, x2 = r2 s1^e1 c2^e2, x3 = r3
+/// s2^e2; the normal has 2 - e for e and 1/r for r.
 struct Reference {
   Three point, normal;
   Number height;
@@ -74,8 +74,8 @@ Curvatures curvatures_of(const Superellipsoid& body, const Three& x, const Vecto
   const Number g2 = f1 * f1 + f2 * f2 + f3 * f3, g = sqrt(g2);
   const Number form = f1 * f1 * f11 + 2 * f1 * f2 * f12 + f2 * f2 * f22 + f3 * f3 * f33;
   const Number minor = f11 * f22 - f12 * f12;
-  const Number adjugate = f3 * f3 * minor +
-                          f33 * (f1 * f1 * f22 - 2 * f1 * f2 * f12 + f2 * f2 * f11);
+  const Number adjugate =
+      f3 * f3 * minor + f33 * (f1 * f1 * f22 - 2 * f1 * f2 * f12 + f2 * f2 * f11);
   Curvatures out{((f11 + f22 + f33) * g2 - form) / (g2 * g), adjugate / (g2 * g2)};
   const Number u(way[0]), v(way[1]), w(way[2]);
   out.along = (u * u * f11 + 2 * u * v * f12 + v * v * f22 + w * w * f33) / g;
@@ -133,9 +133,9 @@ TEST(Superellipsoid, SurfaceNearItsEdgesAndFacesIsThatOfHundredDigits) {
   Errors worst;
   for (int k = 0; k < 2000; ++k) {
     const auto end = [&] { return random.uniform() < 0.5 ? kLeastExponent : kMostExponent; };
-    const Superellipsoid body =
-        superellipsoid({random.uniform(0.5, 1.5), random.uniform(0.5, 1.5), random.uniform(0.5, 1.5)},
-                       {end(), end()});
+    const Superellipsoid body = superellipsoid(
+        {random.uniform(0.5, 1.5), random.uniform(0.5, 1.5), random.uniform(0.5, 1.5)},
+        {end(), end()});
     const auto near = [&] {
       const double small = std::pow(10, random.uniform(-30, -1));
       const Angle at = angle(small);
@@ -199,13 +199,14 @@ TEST(Superellipsoid, VolumeAndMomentsAreThoseOfHundredDigits) {
     const Number a(body.axes[0]), b(body.axes[1]), c(body.axes[2]);
     using boost::math::beta;
     // Jaklic, Leonardis and Solina 2000, eqs 2.60 and after, with their exponents exchanged.
-    const Number volume =
-        2 * a * b * c * e1 * e2 * beta(Number(e2 / 2 + 1), e2) * beta(Number(e1 / 2), Number(e1 / 2));
+    const Number volume = 2 * a * b * c * e1 * e2 * beta(Number(e2 / 2 + 1), e2) *
+                          beta(Number(e1 / 2), Number(e1 / 2));
     const auto level = [&](const Number& r) {
-      return r * r * beta(Number(3 * e1 / 2), Number(e1 / 2)) * beta(Number(e2 / 2), Number(2 * e2 + 1));
+      return r * r * beta(Number(3 * e1 / 2), Number(e1 / 2)) *
+             beta(Number(e2 / 2), Number(2 * e2 + 1));
     };
-    const Number upright =
-        4 * c * c * beta(Number(e1 / 2), Number(e1 / 2 + 1)) * beta(Number(3 * e2 / 2), Number(e2 + 1));
+    const Number upright = 4 * c * c * beta(Number(e1 / 2), Number(e1 / 2 + 1)) *
+                           beta(Number(3 * e2 / 2), Number(e2 + 1));
     const Number half = a * b * c * e1 * e2 / 2;
     const Solid<3> solid = solid_of(body);
     EXPECT_LT(off(Number(solid.volume), volume), 1e-13);
