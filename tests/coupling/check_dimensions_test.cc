@@ -11,13 +11,16 @@ using ::testing::HasSubstr;
 TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
   const std::string layer = testing::small_case("point-load");
   ASSERT_EQ(complaint(layer), "");
-  EXPECT_THAT(complaint(layer, {"material.law=hertz"}),
-              HasSubstr("material.law: found \"hertz\", allowed: overlap_area | energy | linear; "
-                        "only in three dimensions: hertz; the grains of study = \"point-load\" are "
-                        "in 2D"));
-  EXPECT_THAT(complaint(layer, {"material.poisson=0.3"}),
-              HasSubstr("material.poisson: found 0.3, allowed: only in three dimensions: 0 to 0.5; "
-                        "the grains of study = \"point-load\" are in 2D"));
+  EXPECT_THAT(
+      complaint(layer, {"material.law=hertz"}),
+      HasSubstr("material.law: found \"hertz\", allowed: overlap_area | energy | linear | penalty; "
+                "only in three dimensions: hertz, hertz_elliptic; the grains of study = "
+                "\"point-load\" are "
+                "in 2D"));
+  EXPECT_THAT(
+      complaint(layer, {"material.poisson=0.3"}),
+      HasSubstr("material.poisson: found 0.3, allowed: only in three dimensions: -0.99 to 0.5; "
+                "the grains of study = \"point-load\" are in 2D"));
   EXPECT_THAT(complaint(layer, {"material.damping_model=critical"}),
               HasSubstr("material.damping_model: found \"critical\", allowed: only in three "
                         "dimensions: critical | viscoelastic; the grains of"));

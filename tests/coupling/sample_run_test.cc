@@ -428,10 +428,12 @@ TEST(SampleRun, Mistakes) {
   EXPECT_EQ(complaint(kBox), "");
   EXPECT_EQ(complaint(kSpheres), "");
   says(kDisks, {"material.law=hertz"},
-       "material.law: found \"hertz\", allowed: overlap_area | energy | linear; only in three "
-       "dimensions: hertz");
+       "material.law: found \"hertz\", allowed: overlap_area | energy | linear | penalty; only in "
+       "three "
+       "dimensions: hertz, hertz_elliptic");
   says(kSpheres, {"material.law=energy"},
-       "material.law: found \"energy\", allowed: linear | hertz; only in two dimensions: "
+       "material.law: found \"energy\", allowed: linear | hertz | penalty | hertz_elliptic; only "
+       "in two dimensions: "
        "overlap_area, energy; the grains of study = \"sample\" are in 3D with sample.dim = 3");
   says(kDisks, {"sample.shape=sphere"}, "sample.shape: found \"sphere\", allowed: disk");
   says(kSpheres, {"sample.shape=disk"}, "sample.shape: found \"disk\", allowed: sphere");
