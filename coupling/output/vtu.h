@@ -28,9 +28,9 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
 /// (ids of the two grains; j is -1 for a wall), force (on grain i), normal_force, tangential_force,
 /// sliding, wall (-1: a pair).
 void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot);
-/// One quadrilateral per contact of a force chain, along the branch; its width grows with the normal
-/// force (that of the packing's largest force is the smaller grain's radius). `chain_of`: per
-/// contact, its chain or -1 (structure/force_chains.h). Cell data: chain, normal_force,
+/// One quadrilateral per contact of a force chain, along the branch; its width grows with the
+/// normal force (that of the packing's largest force is the smaller grain's radius). `chain_of`:
+/// per contact, its chain or -1 (structure/force_chains.h). Cell data: chain, normal_force,
 /// relative_force. In 3D lines for tubes: the same as point data, with tube_radius (m). Throws
 /// std::invalid_argument where the sizes differ.
 void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot,

@@ -61,8 +61,8 @@ struct NewGrain {
   std::array<int, 3> image{0, 0, 0};              ///< as Grain::image, to count on from
   std::array<double, 3> axes{};                   ///< of a superellipsoid: r1, r2, r3, m
   std::array<double, 2> exponents{1, 1};  ///< likewise: e1, e2 (dem/shapes/superellipsoid.h)
-  double mass = 0;                                ///< kg; 0: density times what the shape fills
-  std::array<double, 3> moments{};  ///< principal, in 2D the third, kg m2; 0: of the shape
+  double mass = 0;                        ///< kg; 0: density times what the shape fills
+  std::array<double, 3> moments{};        ///< principal, in 2D the third, kg m2; 0: of the shape
 };
 
 /// State of rest and energy, from the forces of the last step.

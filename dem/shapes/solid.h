@@ -10,8 +10,8 @@ namespace grainfield::dem {
 
 /// What is given of a grain's shape.
 struct ShapeInput {
-  double radius = 0;       ///< m; of a polygon: not used
-  const Outline& outline;  ///< body frame; empty: round
+  double radius = 0;                      ///< m; of a polygon: not used
+  const Outline& outline;                 ///< body frame; empty: round
   std::array<double, 3> axes{};           ///< of a superellipsoid: semi-axes, m
   std::array<double, 2> exponents{1, 1};  ///< of a superellipsoid: e1, e2
 };

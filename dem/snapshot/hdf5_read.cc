@@ -93,9 +93,7 @@ bool is_number(const OpenAttribute& a) {
   return a.single && (a.kind == H5T_FLOAT || a.kind == H5T_INTEGER);
 }
 
-bool is_text(const OpenAttribute& a) {
-  return a.single && a.kind == H5T_STRING;
-}
+bool is_text(const OpenAttribute& a) { return a.single && a.kind == H5T_STRING; }
 
 // h5py writes strings of variable length: HDF5 takes memory for them, which goes back to it.
 std::string variable_text_of(hid_t object, const std::string& name, const OpenAttribute& a) {

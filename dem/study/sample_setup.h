@@ -16,13 +16,13 @@ struct SamplePlan {
   int dim = 2;
   std::string shape = "disk";  ///< disk | rand1 | regular (2D), sphere | superellipsoid (3D)
   int grains = 500;
-  std::string sizes = "uniform";         ///< mono | bidisperse | uniform
-  double radius = 0.0045;                ///< m; the larger one of bidisperse sizes
-  double polydispersity = 0.2;           ///< uniform: radii in radius (1 -+ this)
-  double size_ratio = 1.4;               ///< bidisperse: larger over smaller radius
-  double fraction_small = 0.5;           ///< bidisperse: share of the smaller ones, by number
-  int corners_min = 6, corners_max = 8;  ///< rand1, regular
-  double axis_min = 0.5, axis_max = 1.5;          ///< superellipsoid: semi-axes over the radius
+  std::string sizes = "uniform";          ///< mono | bidisperse | uniform
+  double radius = 0.0045;                 ///< m; the larger one of bidisperse sizes
+  double polydispersity = 0.2;            ///< uniform: radii in radius (1 -+ this)
+  double size_ratio = 1.4;                ///< bidisperse: larger over smaller radius
+  double fraction_small = 0.5;            ///< bidisperse: share of the smaller ones, by number
+  int corners_min = 6, corners_max = 8;   ///< rand1, regular
+  double axis_min = 0.5, axis_max = 1.5;  ///< superellipsoid: semi-axes over the radius
   double exponent_min = 0.7, exponent_max = 1.3;  ///< superellipsoid
 
   // -- where they are
