@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace grainfield::coupling {
 
@@ -73,6 +75,15 @@ void check(const FitData& data) {
   if (data.scale.size() > 0 && !(data.scale.allFinite() && data.scale.minCoeff() > 0)) {
     throw std::invalid_argument("data to fit: a working unit is not above 0");
   }
+}
+
+Eigen::MatrixXd places_of(const FitData& data) {
+  std::vector<int> once;
+  std::set<std::pair<double, double>> seen;
+  for (int k = 0; k < data.values(); ++k) {
+    if (seen.emplace(data.points(k, 0), data.points(k, 1)).second) once.push_back(k);
+  }
+  return data.points(once, Eigen::all);
 }
 
 }  // namespace grainfield::coupling

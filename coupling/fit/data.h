@@ -35,6 +35,9 @@ std::vector<int> rows_at(const FitData& data, int component, int level);
 /// The rows named; points, components, levels and samples together.
 FitData rows_of(const FitData& data, const std::vector<int>& rows);
 
+/// Its points, each place once: components share them.
+Eigen::MatrixXd places_of(const FitData& data);
+
 /// Throws std::invalid_argument when sizes differ, a component is none of sigma_xx, sigma_yy,
 /// sigma_xy, or a number is not finite.
 void check(const FitData& data);

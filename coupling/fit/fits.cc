@@ -20,13 +20,22 @@
 
 namespace grainfield::coupling {
 
+namespace {
+
+std::vector<FitModel> through(const std::shared_ptr<const ObservationOperator>& seeing,
+                              std::vector<FitModel> models) {
+  for (FitModel& model : models) model = seen_through(std::move(model), seeing);
+  return models;
+}
+
+}  // namespace
+
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
-  std::vector<FitModel> out;
-  for (FitModel& model : heap_models(heaps.facts)) {
-    out.push_back(seen_through_kernel(std::move(model), heaps.facts.smoothing));
-  }
+  const auto seeing = std::make_shared<const ObservationOperator>(
+      ObservationOperator::of_heap(places_of(heaps.data), *heaps.kernel));
+  std::vector<FitModel> out = through(seeing, heap_models(heaps.facts));
   if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
-  const auto of_part = [setup, frames = heaps.frames, all = heaps.facts](
+  const auto of_part = [setup, seeing, frames = heaps.frames, all = heaps.facts](
                            const std::string& name, const std::vector<int>& chosen) {
     std::vector<PileFrame> part;
     for (const int k : chosen) part.push_back(frames[static_cast<std::size_t>(k)]);
@@ -40,7 +49,7 @@ std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps
     if (facts.friction_deg > 0) {
       facts.friction_deg = std::max({facts.friction_deg, facts.left(), facts.right()});
     }
-    return seen_through_kernel(find_fit_model(heap_models(facts), name), facts.smoothing);
+    return seen_through(find_fit_model(heap_models(facts), name), seeing);
   };
   for (FitModel& model : out) {
     model.measured_on = [of_part, name = model.name](const std::vector<int>& chosen) {
@@ -97,16 +106,6 @@ void fit_all(const std::vector<FitModel>& known, const std::vector<std::string>&
   out.selection = select(data, out.weights, out.models, out.fits, selection);
 }
 
-// Each place once: components share them.
-Eigen::MatrixXd places_of(const FitData& data) {
-  std::vector<int> once;
-  std::set<std::pair<double, double>> seen;
-  for (int k = 0; k < data.values(); ++k) {
-    if (seen.emplace(data.points(k, 0), data.points(k, 1)).second) once.push_back(k);
-  }
-  return rows_of(data, once).points;
-}
-
 }  // namespace
 
 EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
@@ -161,24 +160,21 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
 }
 
 Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name) {
-  const StressMaps& m = fits.observed.maps;
-  const Eigen::VectorXd parameters = parameters_of(fit_named(fits.fits, name));
-  const Kernel& kernel = *fits.observed.kernel;
-  if (fits.observed.specimen == Specimen::layer) {
-    const auto seen = std::make_shared<const ObservationOperator>(m.points, kernel);
-    return find_fit_model(layer_models(seen), name).stress(m.points, parameters);
-  }
-  const FitModel& model = find_fit_model(fits.models, name);
+  const Observations& observed = fits.observed;
+  const StressMaps& m = observed.maps;
   std::vector<Eigen::Index> inside;
   for (Eigen::Index p = 0; p < m.points.rows(); ++p) {
     if (m.mean.row(p).allFinite()) inside.push_back(p);
   }
-  // There is nothing outside of the heap.
-  const StressFunction stress = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
-    const auto& exact = model.at_point ? model.at_point : model.stress;
-    return exact(points, parameters).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
-  };
-  const Eigen::MatrixXd seen = smooth_in_plane(stress, m.points(inside, Eigen::all), kernel, 1);
+  const Eigen::MatrixXd points = m.points(inside, Eigen::all);
+  const bool layer = observed.specimen == Specimen::layer;
+  const auto seeing = std::make_shared<const ObservationOperator>(
+      layer ? ObservationOperator(points, *observed.kernel)
+            : ObservationOperator::of_heap(points, *observed.kernel));
+  const std::vector<FitModel> models =
+      layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
+  const Eigen::MatrixXd seen = find_fit_model(models, name)
+                                   .stress(points, parameters_of(fit_named(fits.fits, name)));
   Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
   for (std::size_t k = 0; k < inside.size(); ++k) {
     out.row(inside[k]) = seen.row(static_cast<Eigen::Index>(k));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "coupling/averaging/kernel.h"
@@ -109,7 +108,7 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
   const auto kernel = make_kernel(kernel_name(field, where), out.width);
   out.kernel = make_kernel(kernel->name(), out.width / height);
   const double length = kernel->independent_length();
-  out.facts = facts_of(setup, slope, length / (2 * std::sqrt(std::numbers::pi)) / height);
+  out.facts = facts_of(setup, slope, *out.kernel);
   const Eigen::MatrixXd points = field.points / (facts.in_metres ? height : 1.0);
   const std::vector<FieldRow> rows = horizontal_rows(points, kSameRow);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "coupling/averaging/average.h"
@@ -89,7 +88,7 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
   const auto kernel = make_kernel(options.kernel, out.width);
   out.kernel = make_kernel(options.kernel, out.width / height);
   const double length = kernel->independent_length();
-  out.facts = facts_of(setup, slopes, length / (2 * std::sqrt(std::numbers::pi)) / height);
+  out.facts = facts_of(setup, slopes, *out.kernel);
 
   std::vector<Eigen::Vector2d> places;
   std::vector<int> level;

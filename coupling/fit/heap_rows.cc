@@ -109,8 +109,9 @@ HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames
   return out;
 }
 
-HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, double smoothing) {
-  HeapFacts out{slopes.mean_deg, 1, 1, smoothing};
+HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, const Kernel& kernel) {
+  const double deviation = kernel.independent_length() / (2 * std::sqrt(std::numbers::pi));
+  HeapFacts out{slopes.mean_deg, 1, 1, deviation};
   if (slopes.apart) {
     out.left_deg = slopes.left_deg;
     out.right_deg = slopes.right_deg;

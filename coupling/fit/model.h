@@ -38,8 +38,6 @@ struct FitModel {
   /// The model with what it takes from the packings (slopes) measured on these realizations alone,
   /// with repetitions; empty: it takes nothing from them.
   std::function<FitModel(const std::vector<int>&)> measured_on = {};
-  /// The same at the points themselves where `stress` is seen through a kernel; else empty.
-  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> at_point = {};
   std::string equations = {};  ///< "elliptic" or "hyperbolic"; empty: nothing is said of it
   /// The same in the registry: the closed form first, where there is one, then finite elements.
   std::vector<RegistryModel> in_registry = {};

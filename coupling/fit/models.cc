@@ -45,10 +45,10 @@ FitParameter beta_hat(double phi) {
 
 // Roul 4.6, 4.9 with seven free numbers: inside |x| < Y tan(beta_hat), Y = -y,
 //   (xx, yy, xy) = rho g ((a2 - 1) Y, (a1 - 1) Y + b1 |x|, a1 x)           y up: xy changes sign
-// outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over the width of the averaging:
-// free constants jump on the core's boundary, and averaged data do not.
+// outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over `blend`: free constants jump
+// on the core's boundary, and the quadrature of a kernel would make steps of it.
 MatrixXd cantelaube_free(const MatrixXd& points, const VectorXd& p, double slope, double rho_g,
-                         double smoothing) {
+                         double blend) {
   const double a1 = p[0], a2 = p[1], b1 = p[2], axx = p[3], ayy = p[4], axy = p[5];
   const double sine = std::sin(p[6] * kDegree), cosine = std::cos(p[6] * kDegree);
   MatrixXd out = nothing(points);
@@ -56,7 +56,7 @@ MatrixXd cantelaube_free(const MatrixXd& points, const VectorXd& p, double slope
     const double x = points(k, 0), y = -points(k, 1), off = std::fabs(x);
     const double cover = off * std::tan(slope) - y;
     if (cover > 0) continue;
-    const double beyond = (off * cosine - y * sine) / smoothing;  // of the core's boundary
+    const double beyond = (off * cosine - y * sine) / blend;  // of the core's boundary
     const double flank = 0.5 * std::erfc(-beyond / std::numbers::sqrt2);
     const Eigen::RowVector3d core((a2 - 1) * y, (a1 - 1) * y + b1 * off, a1 * x);
     const Eigen::RowVector3d side(axx * cover, ayy * cover, -axy * cover * (x < 0 ? -1 : 1));
@@ -117,7 +117,7 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                   coefficient("a_xy", "flanks: shear over the weight above"), beta_hat(phi)},
                  starts,
                  [=](const MatrixXd& points, const VectorXd& p) {
-                   return cantelaube_free(points, p, phi, rho_g, facts.smoothing);
+                   return cantelaube_free(points, p, phi, rho_g, facts.blend);
                  },
                  ""});
   // c1 < cot(phi) and eta > 0, nan elsewhere.

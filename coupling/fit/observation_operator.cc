@@ -13,6 +13,7 @@ constexpr double kMostWave = 100;    // u: what is beyond is smoothed away
 constexpr double kLeastWave = 1e-3;  // instead of u = 0, where the base's conditions degenerate
 constexpr double kFarther = 24;      // distance of the periodic images from the points, in h
 constexpr double kOnBase = 1e-9;
+constexpr int kHeapRings = 3;  // of the quadrature; heaps have kinks, no singularity
 
 using Across = boost::math::quadrature::gauss<double, 48>;
 using Down = boost::math::quadrature::gauss<double, 10>;
@@ -30,28 +31,46 @@ void add_panel(double from, double to, std::vector<std::pair<double, double>>& o
 
 }  // namespace
 
-ObservationOperator::ObservationOperator(const Eigen::MatrixXd& points, const Kernel& kernel)
-    : points_(points) {
+ObservationOperator::ObservationOperator(const Eigen::MatrixXd& points) : points_(points) {
   for (Eigen::Index k = 0; k < points.rows(); ++k) row_[{points(k, 0), points(k, 1)}] = k;
-  layer_ = nodes_of(kernel, 1);
-  half_plane_ = nodes_of(kernel, 0);
+}
+
+ObservationOperator::ObservationOperator(const Eigen::MatrixXd& points, const Kernel& kernel)
+    : ObservationOperator(points) {
+  layer_ = layer_nodes(kernel, 1);
+  half_plane_ = layer_nodes(kernel, 0);
   make_levels(kernel);
 }
 
+ObservationOperator ObservationOperator::of_heap(const Eigen::MatrixXd& points,
+                                                 const Kernel& kernel, double depth) {
+  ObservationOperator out(points);
+  out.layer_ = out.nodes_of([&](const StressFunction& stress, const Eigen::MatrixXd& here) {
+    return smooth_in_plane(stress, here, kernel, depth, kHeapRings);
+  });
+  return out;
+}
+
+ObservationOperator::Nodes ObservationOperator::layer_nodes(const Kernel& kernel,
+                                                            double depth) const {
+  return nodes_of([&](const StressFunction& stress, const Eigen::MatrixXd& here) {
+    const bool base = std::fabs(here(0, 1) + 1) < kOnBase;
+    return base ? smooth_along_x(stress, here, kernel)
+                : smooth_in_plane(stress, here, kernel, depth);
+  });
+}
+
 // The smoothing is linear: the identity as "stress" at a point's nodes gives their weights.
-ObservationOperator::Nodes ObservationOperator::nodes_of(const Kernel& kernel, double depth) const {
+ObservationOperator::Nodes ObservationOperator::nodes_of(const Smoothing& smooth) const {
   std::vector<Eigen::MatrixXd> parts;
   std::vector<Eigen::Triplet<double>> weights;
   Eigen::Index total = 0;
   for (Eigen::Index p = 0; p < points_.rows(); ++p) {
-    const Eigen::MatrixXd here = points_.row(p);
     const StressFunction identity = [&](const Eigen::MatrixXd& nodes) -> Eigen::MatrixXd {
       parts.push_back(nodes);
       return Eigen::MatrixXd::Identity(nodes.rows(), nodes.rows());
     };
-    const bool base = std::fabs(here(0, 1) + 1) < kOnBase;
-    const Eigen::MatrixXd row = base ? smooth_along_x(identity, here, kernel)
-                                     : smooth_in_plane(identity, here, kernel, depth);
+    const Eigen::MatrixXd row = smooth(identity, points_.row(p));
     for (Eigen::Index k = 0; k < row.cols(); ++k) {
       if (row(0, k) != 0) {
         weights.emplace_back(static_cast<int>(p), static_cast<int>(total + k), row(0, k));
@@ -135,6 +154,17 @@ Eigen::MatrixXd ObservationOperator::seen(const StressFunction& stress, bool hal
   return nodes.weight * stress(nodes.at);
 }
 
+Eigen::MatrixXd ObservationOperator::seen_in_heap(const StressFunction& stress) const {
+  const Eigen::MatrixXd exact = stress(points_);
+  Eigen::MatrixXd out =
+      layer_.weight *
+      stress(layer_.at).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
+  for (Eigen::Index p = 0; p < out.rows(); ++p) {
+    if (!exact.row(p).allFinite()) out.row(p).setConstant(std::nan(""));
+  }
+  return out;
+}
+
 Eigen::MatrixXd ObservationOperator::seen(const continuum::OrthotropicWaves& waves) const {
   const auto n = waves_.size();
   std::vector<Eigen::MatrixX3d> spectra(levels_.size(), Eigen::MatrixX3d(n, 3));
@@ -170,22 +200,13 @@ Eigen::MatrixXd ObservationOperator::pick(const Eigen::MatrixXd& values,
   return out;
 }
 
-FitModel seen_through_kernel(FitModel model, double smoothing) {
-  if (!(smoothing > 0) || model.name == "cantelaube") return model;
-  model.at_point = model.stress;
-  model.stress = [exact = model.stress, smoothing](const Eigen::MatrixXd& points,
-                                                   const Eigen::VectorXd& parameters) {
-    const Eigen::MatrixXd centre = exact(points, parameters);
-    Eigen::MatrixXd out = centre / 2;
-    for (int k = 0; k < 6; ++k) {
-      const double angle = k * std::numbers::pi / 3;
-      Eigen::MatrixXd moved = points;
-      moved.col(0).array() += 2 * smoothing * std::cos(angle);
-      moved.col(1).array() += 2 * smoothing * std::sin(angle);
-      out +=
-          exact(moved, parameters).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v / 12; });
-    }
-    return out;  // nan where the centre is
+FitModel seen_through(FitModel model, std::shared_ptr<const ObservationOperator> seeing) {
+  model.stress = [exact = std::move(model.stress), seeing = std::move(seeing)](
+                     const Eigen::MatrixXd& points, const Eigen::VectorXd& parameters) {
+    const StressFunction stress = [&](const Eigen::MatrixXd& nodes) {
+      return exact(nodes, parameters);
+    };
+    return seeing->pick(seeing->seen_in_heap(stress), points);
   };
   return model;
 }

@@ -3,7 +3,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,16 +17,24 @@
 namespace grainfield::coupling {
 
 /// Of a layer under a point load: through the kernel in the plane, through its marginal on the
-/// base. Stresses of F/h; load at (0, 0), y up, base y = -1. Everything that depends on the points
-/// and the kernel alone is worked out once, so that a fit can ask for many parameters.
+/// base. Stresses of F/h; load at (0, 0), y up, base y = -1. Of a heap: through the kernel in the
+/// plane, apex at (0, 0). Everything that depends on the points and the kernel alone is worked out
+/// once, so that a fit can ask for many parameters.
 class ObservationOperator {
  public:
-  /// `points`: n x 2, -1 <= y < 0; those with y = -1 are on the base. `kernel`: its width over h.
+  /// Of a layer. `points`: n x 2, -1 <= y < 0; those with y = -1 are on the base. `kernel`: its
+  /// width over h.
   ObservationOperator(const Eigen::MatrixXd& points, const Kernel& kernel);
+  /// Of a heap with its base at y = -depth; lengths of points and kernel in the same unit.
+  static ObservationOperator of_heap(const Eigen::MatrixXd& points, const Kernel& kernel,
+                                     double depth = 1);
 
-  /// The model smoothed at the points, n x 3. `half_plane`: it goes on below the base; otherwise
-  /// nodes below the base take its value at the base. One call of `stress`.
+  /// The model smoothed at the points, n x 3. `half_plane`: a layer's model goes on below the base;
+  /// otherwise nodes below the base take its value at the base. One call of `stress`.
   Eigen::MatrixXd seen(const StressFunction& stress, bool half_plane) const;
+  /// The same of a heap's model: where it is nan there is nothing, 0; where the point itself is
+  /// outside, or the model has no value anywhere, nan. Two calls of `stress`.
+  Eigen::MatrixXd seen_in_heap(const StressFunction& stress) const;
   /// The same of an orthotropic layer under F = 1 with h = 1, by its transform: the smoothing is a
   /// product there.
   Eigen::MatrixXd seen(const continuum::OrthotropicWaves& waves) const;
@@ -44,7 +54,10 @@ class ObservationOperator {
     Eigen::Index first = 0, count = 0;  // of its depths in shares_
     Eigen::MatrixXd weight;             // wave numbers x depths
   };
-  Nodes nodes_of(const Kernel& kernel, double depth) const;
+  explicit ObservationOperator(const Eigen::MatrixXd& points);
+  using Smoothing = std::function<Eigen::MatrixXd(const StressFunction&, const Eigen::MatrixXd&)>;
+  Nodes nodes_of(const Smoothing& smooth) const;
+  Nodes layer_nodes(const Kernel& kernel, double depth) const;
   void make_levels(const Kernel& kernel);
 
   Eigen::MatrixXd points_;
@@ -55,12 +68,7 @@ class ObservationOperator {
   Eigen::MatrixXd cosine_, sine_;             // points x wave numbers
 };
 
-/// Of a heap: the model smoothed over a kernel of the standard deviation `smoothing` along a line:
-/// the mean of its point (half of the weight) and six around it at twice that distance, which have
-/// the kernel's second moments. Outside the heap there is nothing, 0; where the point itself is
-/// outside: nan. Kinks are judged as the grains show them, and the misfit is smooth where one
-/// crosses a point. `at_point` of the result is the model as it was. `cantelaube` passes from core
-/// to flank over the same width by itself and stays as it is.
-FitModel seen_through_kernel(FitModel model, double smoothing);
+/// The model of a heap through the operator, at the operator's points alone.
+FitModel seen_through(FitModel model, std::shared_ptr<const ObservationOperator> seeing);
 
 }  // namespace grainfield::coupling

@@ -9,13 +9,14 @@
 namespace grainfield::coupling {
 namespace {
 
-// The averaging's kernel: points lie about half an independent length apart, 1.8 of its standard
-// deviation, m.
-constexpr double kSmoothing = 0.011;
+// Width of the averaging's kernel, m: points lie about half an independent length apart.
+constexpr double kWidth = 0.018;
 
-std::vector<FitModel> seen(const std::vector<FitModel>& models) {
+std::vector<FitModel> seen(const std::vector<FitModel>& models, const FitData& data) {
+  const auto seeing = std::make_shared<const ObservationOperator>(
+      ObservationOperator::of_heap(places_of(data), *make_kernel("lucy", kWidth), kHeight));
   std::vector<FitModel> out;
-  for (const FitModel& model : models) out.push_back(seen_through_kernel(model, kSmoothing));
+  for (const FitModel& model : models) out.push_back(seen_through(model, seeing));
   return out;
 }
 
@@ -50,12 +51,12 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
 }
 
 TEST(Fit, IntervalsCoverTheTruth) {
-  expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight})), truths(), places(15), 11);
+  expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight}), places(15)), truths(), places(15), 11);
 }
 
 TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
-  expect_coverage(seen(heap_models(two_slopes())), two_sided_truths(), places(15, kLeft, kRight),
-                  21, 20);  // a trial takes more than a second
+  const FitData data = places(15, kLeft, kRight);
+  expect_coverage(seen(heap_models(two_slopes()), data), two_sided_truths(), data, 21, 20);  // a trial takes more than a second
 }
 
 // Noise as grains have it: components of a point are tied, its size grows with the depth and is
@@ -80,8 +81,8 @@ void fill_as_grains(FitData& data, const Eigen::VectorXd& truth, int realization
 // none holds; intervals of few hold the constants of the rest, and hardly any verdict names another
 // model than the rest do.
 TEST(Fit, CoverageOfModelsThatDoNotHold) {
-  const auto known = seen(heap_models({kSlope, kRhoG, kHeight}));
   FitData data = places(15);
+  const auto known = seen(heap_models({kSlope, kRhoG, kHeight}), data);
   const FitModel& free = find_fit_model(known, "cantelaube");
   const Eigen::VectorXd truth =
       0.5 * predict(data, free, vector({0.34, 0.49, -0.2, 0.78, 1.23, 0.38, 35})) +
