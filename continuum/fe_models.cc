@@ -112,6 +112,26 @@ std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> part
   return all;
 }
 
+// Of the elastic solver, and with adaptive refinement.
+std::vector<Figure> solver_figures(std::vector<Figure> own, bool refined = true) {
+  std::vector<Figure> all{
+      {"unknowns", "-", "unknowns of the last mesh"},
+      {"cells", "-", "cells of the last mesh"},
+      {"solves", "-", "linear solves, all meshes and iterations"},
+      {"cg_iterations", "-", "iterations of conjugate gradients in the last solve"},
+      {"residual", "-", "largest residual of the linear equations over the load's"},
+      {"assemble_s", "s", "wall time of assembling, all solves"},
+      {"solve_s", "s", "wall time of solving"}};
+  if (refined) {
+    all.push_back({"refinement_cycles", "-", "cycles of adaptive refinement"});
+    all.push_back({"change", "-",
+                   "largest change of the stress by the last of them, over the model's scale of "
+                   "stress (parameter tolerance)"});
+  }
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
 }  // namespace
 
 void solve_on(Ranks ranks) { g_ranks = ranks; }
@@ -123,10 +143,13 @@ std::unique_ptr<Model> make_in_fe_library(const char* name, const Settings& sett
 }
 
 ModelInfo fe_elastic_layer_info() {
-  return {layer_name, "elastic layer on a rigid base under a point load, finite elements", 0,
+  return {layer_name,
+          "elastic layer on a rigid base under a point load, finite elements",
+          0,
           joined({common_parameters(), layer_parameters(),
                   numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
-          make_in_plugin<layer_name>};
+          make_in_plugin<layer_name>,
+          solver_figures({})};
 }
 
 ModelInfo fe_orthotropic_layer_info() {
@@ -158,13 +181,21 @@ ModelInfo fe_orthotropic_layer_info() {
                  "elastic constants")},
            layer_parameters(),
            numerical_parameters("over F/h; 0: 2e-4", 8)}),
-      make_in_plugin<orthotropic_name>};
+      make_in_plugin<orthotropic_name>,
+      solver_figures(
+          {{"r", "-", "(E_x/G - 2 nu_xy)/2; of a map: at the load"},
+           {"t", "-", "E_x/E_y; of a map: at the load"},
+           {"nu_xy", "-", "-eps_yy/eps_xx under sigma_xx, where it is set or a map gives it"},
+           {"map_share", "-",
+            "part of the layer for which the map has constants of its own; elsewhere those of its "
+            "nearest node"}})};
 }
 
 ModelInfo fe_elastic_half_space_info() {
   return {
       half_space_name,
-      "elastic half plane or half space under a small loaded patch, finite elements", 0,
+      "elastic half plane or half space under a small loaded patch, finite elements",
+      0,
       joined(
           {common_parameters(),
            {number("depth", "m", "depth of interest, to which the mesh is fitted", "numerics", 0.15,
@@ -180,7 +211,9 @@ ModelInfo fe_elastic_half_space_info() {
                    "numerics", 0, 0, 100)},
            numerical_parameters(
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
-      make_in_plugin<half_space_name>};
+      make_in_plugin<half_space_name>,
+      solver_figures({{"truncation_radius", "m", "half width and depth of the mesh"},
+                      {"patch_width", "m", "width of the loaded strip or square"}})};
 }
 
 ModelInfo fe_cantelaube_core_info() {
@@ -221,7 +254,27 @@ ModelInfo fe_cantelaube_core_info() {
                     2000, 1, 100000),
        whole_number("axis_iterations", "most solves for a yielding axis on a mesh", "numerics", 100,
                     1, 10000)},
-      make_in_plugin<core_name>};
+      make_in_plugin<core_name>,
+      solver_figures(
+          {{"beta_hat_deg", "deg", "half tip angle of the elastic core, from the vertical"},
+           {"axis_iterations", "-",
+            "solves on the last mesh until a yielding axis meets its condition"},
+           {"axis_misfit", "-",
+            "largest misfit of sigma_xx = K sigma_yy on a yielding axis over rho g h"},
+           {"axis_ratio", "-", "sigma_xx/sigma_yy on the axis at half depth"},
+           {"flank_jump", "-",
+            "largest jump of the normal stress along the core's border, between 5 and 95 % of the "
+            "depth, over rho g h: 0 is the closed form's core"},
+           {"closed_form_error", "-",
+            "largest difference of a stress component from the closed form with this beta_hat, "
+            "samples on border, base and axis, over rho g h"},
+           {"mobilised_sine_ratio", "-",
+            "largest sin(mobilised friction angle)/sin(phi), of samples on the core's border, base "
+            "and axis below 5 % of the height"},
+           {"base_centre", "-", "pressure on the base at x = 0 over rho g h"},
+           {"base_largest", "-", "largest pressure on the core's base over rho g h"},
+           {"dip_ratio", "-", "base_centre over base_largest"}},
+          false)};
 }
 
 ModelInfo fe_mohr_coulomb_wedge_info() {
@@ -287,7 +340,34 @@ ModelInfo fe_mohr_coulomb_wedge_info() {
                     "most Newton iterations for the heap's or a layer's weight, failed steps and "
                     "viscoplastic time included: then there is no equilibrium to be found",
                     "numerics", 1000, 1, 1000000)},
-      make_in_plugin<wedge_name>};
+      make_in_plugin<wedge_name>,
+      {{"unknowns", "-", "unknowns of the last mesh"},
+       {"load_steps", "-", "steps of the load, all layers"},
+       {"newton_iterations", "-", "iterations of Newton's method, failed steps included"},
+       {"largest_residual", "-", "largest residual of a node at a step's end over a cell's weight"},
+       {"viscous_steps", "-", "steps of viscoplastic time, where Newton's method alone failed"},
+       {"largest_overstress", "-", "overstress left at rest in viscoplastic time, over rho g h"},
+       {"stress_error", "-",
+        "estimated error of the stress over the stress, 2-norms over the heap (Zienkiewicz and Zhu "
+        "1987)"},
+       {"weight_ratio", "-", "vertical force of the ground over the weight"},
+       {"thrust_ratio", "-", "horizontal force of the ground over the weight; 0 in equilibrium"},
+       {"core_share", "-",
+        "part of the depths from 0.3 to 0.9 h, both sides, at which the plastic flank has an inner "
+        "border"},
+       {"axis_mobilized", "-", "mobilized strength on the axis, mean over the same depths"},
+       {"plastic_share", "-", "part that yielded in the last load step"},
+       {"beta_hat_left_deg", "deg",
+        "angle from the vertical of the line from the apex that has half of the left flank's inner "
+        "border on either side"},
+       {"beta_hat_right_deg", "deg", "the same on the right"},
+       {"beta_hat_left_misfit", "-", "median distance of the border from that line over the depth"},
+       {"beta_hat_right_misfit", "-", "the same on the right"},
+       {"map_share", "-",
+        "part of the heap for which the map has constants of its own; elsewhere those of its "
+        "nearest node"},
+       {"map_young", "-",
+        "with a map: its mean Young's modulus over rho g h, the E of base_stiffness"}}};
 }
 
 }  // namespace grainfield::continuum

@@ -74,6 +74,14 @@ class Model {
   virtual std::map<std::string, double> figures() const { return {}; }
 };
 
+/// A figure of a model's evaluation, declared once: documentation and the check that there is no
+/// other come from it.
+struct Figure {
+  std::string name;  ///< as in Model::figures(); '*' stands for a number
+  std::string unit;  ///< "-" for pure numbers
+  std::string meaning;
+};
+
 /// What the registry knows of a model before its parameters are set.
 struct ModelInfo {
   std::string name;     ///< as in `grainfield model NAME`
@@ -81,6 +89,7 @@ struct ModelInfo {
   int dim = 2;          ///< of the points: 2, 3, or 0 = decided by parameter "dim"
   std::vector<Parameter> parameters;
   std::unique_ptr<Model> (*make)(const Settings&);  ///< throws BadParameter
+  std::vector<Figure> figures = {};                 ///< all that Model::figures() may hold
 };
 
 /// Every model, in the order of the documentation.

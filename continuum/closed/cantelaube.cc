@@ -97,7 +97,13 @@ ModelInfo cantelaube_info() {
            optional_number("beta_hat_deg", "deg",
                            "half tip angle of the core, instead of a branch; below 90 - phi_deg",
                            "Roul 4.8", kNarrowest, 90)},
-          make};
+          make,
+          heap_figures(
+              {{"beta_hat_deg", "deg", "half tip angle of the elastic core, from the vertical"},
+               {"a1", "-", "core: sigma_yy under the axis = (a1 - 1) rho g depth (Roul 4.6)"},
+               {"a2", "-", "core: sigma_xx = (a2 - 1) rho g depth"},
+               {"b1", "-", "core: kink of sigma_yy at the axis; below 0 a dip"},
+               yield_figure("flanks and a yielding axis")})};
 }
 
 }  // namespace grainfield::continuum

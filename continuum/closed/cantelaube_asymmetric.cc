@@ -340,7 +340,10 @@ ModelInfo cantelaube_asymmetric_info() {
               "Mohr-Coulomb", {"active", "passive"}),
        choice("right_root", "which root the right flank takes", "Mohr-Coulomb",
               {"active", "passive"})},
-      make};
+      make,
+      heap_figures({{"core_left_deg", "deg", "ray between core and left flank, from the vertical"},
+                    {"core_right_deg", "deg", "ray between core and right flank"},
+                    yield_figure("flanks and a yielding inner ray")})};
 }
 
 }  // namespace grainfield::continuum

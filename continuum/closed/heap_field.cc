@@ -161,4 +161,21 @@ HeapModel::HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, dou
   }
 }
 
+Figure yield_figure(const std::string& where) {
+  return {
+      "yield_residual", "-",
+      "largest |sin(mobilised friction angle)/sin(phi) - 1| where the field is to yield: " + where};
+}
+
+std::vector<Figure> heap_figures(std::vector<Figure> own) {
+  own.push_back({"equilibrium_residual", "-",
+                 "largest |div sigma - (0, rho g)| over rho g, of samples inside the heap"});
+  own.push_back({"mobilised_sine_ratio", "-",
+                 "largest sin(mobilised friction angle)/sin(phi): above 1 the limit of friction is "
+                 "exceeded somewhere, inf: the heap pulls somewhere"});
+  own.push_back(
+      {"ray_*_deg", "deg", "ray between two regions, counted from the left, from the vertical"});
+  return own;
+}
+
 }  // namespace grainfield::continuum

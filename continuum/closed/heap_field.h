@@ -111,4 +111,9 @@ class HeapModel : public Model {
   std::map<std::string, double> figures_;
 };
 
+/// The declaration of `yield_residual`; `where` the field is to yield.
+Figure yield_figure(const std::string& where);
+/// The figures of a HeapModel: `own` and those that all have.
+std::vector<Figure> heap_figures(std::vector<Figure> own);
+
 }  // namespace grainfield::continuum

@@ -56,7 +56,9 @@ ModelInfo hydrostatic_info() {
         return std::make_unique<Hydrostatic>(HydrostaticSetup{
             number_of(s, "rho_g"), number_of(s, "level"), number_of(s, "left_deg") * kDegree,
             number_of(s, "right_deg") * kDegree});
-      }};
+      },
+      {{"equilibrium_residual", "-",
+        "largest |div sigma - (0, rho g)| over rho g: the tangent of the steeper slope"}}};
 }
 
 }  // namespace grainfield::continuum

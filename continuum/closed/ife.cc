@@ -268,7 +268,8 @@ ModelInfo ife_info() {
                                                     number_of(s, "rho_g"));
             std::map<std::string, double> figures{{"yield_residual", field->off_yield({0, 1}, {})}};
             return std::make_unique<HeapModel>(std::move(field), std::move(figures));
-          }};
+          },
+          heap_figures({yield_figure("everywhere")})};
 }
 
 }  // namespace grainfield::continuum

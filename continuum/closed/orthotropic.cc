@@ -128,7 +128,11 @@ ModelInfo orthotropic_half_plane_info() {
            optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
            number("nu_xy", "-", "-eps_yy/eps_xx under sigma_xx; counts with E_x, E_y, G only",
                   source, 0.3, -kUnbounded, kUnbounded)},
-          make};
+          make,
+          {{"r", "-", "(E_x/G - 2 nu_xy)/2"},
+           {"t", "-", "E_x/E_y"},
+           {"peaks", "-", "peaks of the pressure at any depth"},
+           {"peak_at_over_depth", "-", "their distance from the axis over the depth"}}};
 }
 
 }  // namespace grainfield::continuum

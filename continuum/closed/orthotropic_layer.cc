@@ -226,7 +226,8 @@ ModelInfo orthotropic_layer_info() {
               "rough base only",
               source, 0.3, -kUnbounded, kUnbounded),
        choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
-      make};
+      make,
+      {{"r", "-", "(E_x/G - 2 nu_xy)/2"}, {"t", "-", "E_x/E_y"}}};
 }
 
 }  // namespace grainfield::continuum

@@ -75,6 +75,18 @@ std::unique_ptr<Model> model_of(double phi, const Closure& closure, double rho_g
   return std::make_unique<HeapModel>(std::move(field), std::move(figures));
 }
 
+std::vector<Figure> figures() {
+  return heap_figures(
+      {{"eta", "-", "sigma_xx/sigma_yy without shear"},
+       {"mu", "-", "sigma_xx per shear; below 0 a dip"},
+       {"eta_at_yield", "-", "the eta with which the slope yields, with this mu"},
+       {"K", "-", "ratio of the normal stresses on the fixed axes (Roul 4.23)"},
+       {"tau_deg", "deg", "angle of the fixed axes (Roul 4.23)"},
+       {"closure_residual", "-",
+        "largest |sigma_xx - eta sigma_yy - mu sign(x) sigma_xy| (compression positive, y down) "
+        "over rho g h"}});
+}
+
 std::unique_ptr<Model> make(const Settings& s) {
   const double phi = number_of(s, "phi_deg") * kDegree;
   const Closure closure = chosen(s, phi);
@@ -160,7 +172,8 @@ ModelInfo osl_info() {
                            "Roul 4.23", kAboveZero, kUnbounded),
            optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n",
                            "Roul 4.23", -180, 180)},
-          make};
+          make,
+          figures()};
 }
 
 ModelInfo fpa_info() {
@@ -171,7 +184,8 @@ ModelInfo fpa_info() {
           [](const Settings& s) {
             const double phi = number_of(s, "phi_deg") * kDegree;
             return model_of(phi, {1, -2 * std::tan(phi)}, number_of(s, "rho_g"));
-          }};
+          },
+          figures()};
 }
 
 ModelInfo bcc_info() {
@@ -183,7 +197,8 @@ ModelInfo bcc_info() {
           [](const Settings& s) {
             const double phi = number_of(s, "phi_deg") * kDegree;
             return model_of(phi, {eta_at_yield(phi, 0), 0}, number_of(s, "rho_g"));
-          }};
+          },
+          figures()};
 }
 
 }  // namespace grainfield::continuum

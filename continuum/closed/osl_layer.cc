@@ -119,7 +119,9 @@ ModelInfo osl_layer_info() {
               "hyperbolic layer", {"absorbing", "reflecting"}),
        whole_number("returns", "reflecting base: how often pulses come back from it",
                     "hyperbolic layer", 1, 1, 1000)},
-      make};
+      make,
+      {{"c1", "-", "dx/d(depth) of the characteristic to the right"},
+       {"c2", "-", "dx/d(depth) of the characteristic to the left"}}};
 }
 
 }  // namespace grainfield::continuum

@@ -239,10 +239,33 @@ Eigen::RowVector3d in_project_axes(const Task& task, const State& u, double x, d
 
 }  // namespace osl
 
+namespace {
+
+// Of finite elements and of marching.
+std::vector<Figure> osl_figures() {
+  return {{"c1", "-", "dx/d(depth) of the characteristic to the right"},
+          {"c2", "-", "dx/d(depth) of the characteristic to the left"},
+          {"half_width", "m", "half the width of the solved body at its base"},
+          {"unknowns", "-", "unknowns of the last mesh"},
+          {"cells", "-", "cells of the last mesh"},
+          {"steps", "-", "by marching: steps in depth"},
+          {"residual", "-", "largest residual of the linear equations over the load's"},
+          {"base_force", "N", "vertical force on the base"},
+          {"side_force", "N", "vertical force on the sides"},
+          {"weight", "N", "weight of the body"},
+          {"load", "N", "vertical load on the surface"},
+          {"force_balance", "-",
+           "what base_force + side_force differ from weight + load by, over the largest of them"},
+          {"solve_s", "s", "wall time of solving"}};
+}
+
+}  // namespace
+
 ModelInfo fe_osl_wedge_info() {
   return {
       osl::wedge_name,
-      "heap with oriented stress linearity as a field problem: finite elements or marching", 2,
+      "heap with oriented stress linearity as a field problem: finite elements or marching",
+      2,
       osl::with_numerics(
           {friction_angle(), weight(),
            number("h", "m", "height of the heap", "Roul 4.2", 1, kLeastScale, kMostScale),
@@ -257,13 +280,15 @@ ModelInfo fe_osl_wedge_info() {
           2, 16, 16, "columns on either side of the axis",
           "; of eta and mu the one that is left open is as the yielding slope asks for with the "
           "map's other one"),
-      osl::make<osl::wedge_name>};
+      osl::make<osl::wedge_name>,
+      osl_figures()};
 }
 
 ModelInfo fe_osl_layer_info() {
   return {
       osl::layer_name,
-      "layer with oriented stress linearity as a field problem: finite elements or marching", 2,
+      "layer with oriented stress linearity as a field problem: finite elements or marching",
+      2,
       osl::with_numerics(
           {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kMostScale, kMostScale),
            number("h", "m", "depth of the layer", "Roul 5.6", 1, kLeastScale, kMostScale),
@@ -287,7 +312,8 @@ ModelInfo fe_osl_layer_info() {
            number("wall_friction", "-", "|sigma_xy| / sigma_xx at walls, down; 0: smooth",
                   "Janssen", 0, 0, 100)},
           3, 40, 40, "columns over a length of one depth", ""),
-      osl::make<osl::layer_name>};
+      osl::make<osl::layer_name>,
+      osl_figures()};
 }
 
 }  // namespace grainfield::continuum

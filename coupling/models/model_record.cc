@@ -1,6 +1,11 @@
 #include "coupling/models/model_record.h"
 
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 namespace grainfield::coupling {
@@ -29,7 +34,16 @@ void add_model(Summary& summary, const ModelChoice& choice,
                const std::map<std::string, double>& figures, double seconds) {
   const std::string prefix = "model." + choice.label + ".";
   summary[prefix + "name"] = choice.name;
-  for (const auto& [name, figure] : figures) summary[prefix + name] = figure;
+  const auto& declared = continuum::find_model(choice.name).figures;
+  for (const auto& [name, figure] : figures) {
+    if (std::none_of(declared.begin(), declared.end(), [&name = name](const auto& f) {
+          return fnmatch(f.name.c_str(), name.c_str(), 0) == 0;
+        })) {
+      throw std::logic_error(fmt::format("model {}: the figure {} is not declared in its ModelInfo",
+                                         choice.name, name));
+    }
+    summary[prefix + name] = figure;
+  }
   summary["time.model." + choice.label + "_s"] = seconds;
 }
 

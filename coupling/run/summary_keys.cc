@@ -1,11 +1,13 @@
 #include "coupling/run/summary_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <stdexcept>
 
+#include "continuum/model.h"
 #include "coupling/case/study.h"
 
 namespace grainfield::coupling {
@@ -30,6 +32,41 @@ bool of_a_member(const std::string& text) {
     if (find_summary_key(text.substr(0, dot)) != nullptr) return true;
   }
   return false;
+}
+
+// What models declare, a line for each figure with the models that have it. Which model has which
+// figure is looked at where they are taken (models/model_record.cc).
+std::vector<SummaryKey> model_figures() {
+  struct Line {
+    std::string name, unit, meaning;
+    std::vector<std::string> models;
+  };
+  std::vector<Line> lines;
+  for (const continuum::ModelInfo& info : continuum::registry()) {
+    for (const continuum::Figure& f : info.figures) {
+      const auto same = std::find_if(lines.begin(), lines.end(), [&](const Line& line) {
+        return line.name == f.name && line.meaning == f.meaning;
+      });
+      if (same == lines.end()) {
+        lines.push_back({f.name, f.unit, f.meaning, {info.name}});
+      } else {
+        same->models.push_back(info.name);
+      }
+    }
+  }
+  std::vector<SummaryKey> out{{"model.*.name", "text", "registry name of a compared model"}};
+  for (const Line& line : lines) {
+    const std::string pattern = "model.*." + line.name;
+    const std::string text = fmt::format("{} ({})", line.meaning, fmt::join(line.models, ", "));
+    const auto there = std::find_if(out.begin(), out.end(),
+                                    [&](const SummaryKey& key) { return key.pattern == pattern; });
+    if (there == out.end()) {
+      out.push_back({pattern, line.unit, text});
+    } else {
+      there->meaning += "; " + text;
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -147,7 +184,7 @@ const std::vector<SummaryKey>& summary_keys() {
     for (const Study& study : studies()) {
       for (const auto figures : study.figures) add(figures());
     }
-    add(model_figure_keys());
+    add(model_figures());
     add(of_all);
     return joined;
   }();

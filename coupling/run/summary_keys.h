@@ -10,8 +10,6 @@
 namespace grainfield::coupling {
 
 const std::vector<SummaryKey>& summary_keys();
-/// Of these, the figures of a model (model_figure_keys.cc).
-std::vector<SummaryKey> model_figure_keys();
 /// The declaration of a key, or null. Errors and ranges over realizations (*.least, *.most,
 /// *.standard_error) and differences in a sweep are declared where their figure is.
 const SummaryKey* find_summary_key(const std::string& key);

@@ -116,7 +116,7 @@ TEST(SummaryKeys, EveryFigureOfAClosedModelHasAnEntry) {
     for (const auto& [name, value] : model->figures()) {
       ++figures;
       EXPECT_NE(find_summary_key("model.some_label." + name), nullptr)
-          << info.name << ": " << name << " in run/model_figure_keys.cc";
+          << info.name << ": " << name << " in its ModelInfo";
     }
   }
   EXPECT_GT(figures, 30);
