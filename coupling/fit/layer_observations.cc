@@ -17,15 +17,6 @@ namespace {
 // Nearer to the surface one grain carries everything; nearer to the base the kernel is cut.
 constexpr double kMapTop = -0.12, kMapBottom = -0.97;
 
-MeanLayer measure(const std::vector<std::string>& files) {
-  MeanLayer out;
-  for (const std::string& file : files) {
-    const Realization r = read_realization(file);
-    out.add(r["unloaded"], r["loaded"], files.size());
-  }
-  return out;
-}
-
 // The response on a grid as wide as the lines' complete rows.
 void add_maps(const AverageSetup& setup, const std::vector<std::string>& files,
               const MeanLayer& layer, const AverageOptions& options, Observations& out) {
@@ -55,7 +46,7 @@ void add_maps(const AverageSetup& setup, const std::vector<std::string>& files,
 Observations observe_layers(const Case& value, const std::vector<std::string>& files, int threads) {
   Observations out;
   out.specimen = Specimen::layer;
-  const MeanLayer layer = measure(files);
+  const MeanLayer layer = mean_layer(files);
   out.height = layer.depth;
   out.unit = layer.force / layer.depth;
   const AverageSetup& setup = value.get<AverageSetup>();

@@ -122,7 +122,9 @@ void require_models(const std::vector<ModelChoice>& choices) {
 std::string model_label(const ModelChoice& choice) {
   std::vector<std::string> items;
   for (const auto& [name, value] : choice.settings) items.push_back(name + "=" + value);
-  return items.empty() ? choice.name : fmt::format("{} ({})", choice.name, fmt::join(items, ", "));
+  const std::string name =
+      choice.label == choice.name ? choice.name : choice.label + "=" + choice.name;
+  return items.empty() ? name : fmt::format("{} ({})", name, fmt::join(items, ", "));
 }
 
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,

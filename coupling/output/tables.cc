@@ -22,11 +22,16 @@ double error_at(const Profile& p, Eigen::Index k) {
   return p.error.size() ? p.error[k] : std::nan("");
 }
 
-// Indices of at most `rows` evenly chosen points.
-std::vector<Eigen::Index> chosen(Eigen::Index points, int rows) {
+// Indices of at most `rows` evenly chosen points, from the first to the last that has a value.
+std::vector<Eigen::Index> chosen(const Eigen::VectorXd& values, int rows) {
+  Eigen::Index first = 0, end = values.size();
+  while (first < end && std::isnan(values[first])) ++first;
+  while (end > first && std::isnan(values[end - 1])) --end;
   std::vector<Eigen::Index> all;
-  const Eigen::Index n = std::min<Eigen::Index>(points, std::max(rows, 2));
-  for (Eigen::Index k = 0; k < n; ++k) all.push_back(n == 1 ? 0 : k * (points - 1) / (n - 1));
+  const Eigen::Index n = std::min<Eigen::Index>(end - first, std::max(rows, 2));
+  for (Eigen::Index k = 0; k < n; ++k) {
+    all.push_back(first + (n == 1 ? 0 : k * (end - first - 1) / (n - 1)));
+  }
   return all;
 }
 
@@ -86,7 +91,7 @@ std::vector<std::vector<std::string>> normalised(
     table[0].push_back("difference");
     table[0].push_back("difference/error");
   }
-  for (Eigen::Index i : chosen(p.x.size(), rows)) {
+  for (Eigen::Index i : chosen(p.mean, rows)) {
     std::vector<std::string> row{cell(p.x[i] / c.depth), cell(p.mean[i] / unit),
                                  cell(error_at(p, i) / unit)};
     for (std::size_t m : shown) {

@@ -91,4 +91,13 @@ Realization read_realization(const std::string& file) {
   return out;
 }
 
+MeanLayer mean_layer(const std::vector<std::string>& files) {
+  MeanLayer out;
+  for (const std::string& file : files) {
+    const Realization r = read_realization(file);
+    out.add(r["unloaded"], r["loaded"], files.size());
+  }
+  return out;
+}
+
 }  // namespace grainfield::coupling

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/averaging/layer.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/study/run.h"
 
@@ -27,5 +28,8 @@ struct Realization {
 void write_realization(const std::string& file, const dem::RunResult& result);
 /// Throws std::invalid_argument naming the file when it is broken.
 Realization read_realization(const std::string& file);
+
+/// The mean of the layers in these files, which hold the states "unloaded" and "loaded".
+MeanLayer mean_layer(const std::vector<std::string>& files);
 
 }  // namespace grainfield::coupling

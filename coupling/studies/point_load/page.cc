@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "continuum/constants.h"
@@ -53,6 +54,14 @@ void add_profiles(Report& report, const Comparison& c) {
   add("Response on the base", base);
 }
 
+// Of the model that the verdict names; the first where it names none.
+const ModelMap& nearest(const std::vector<ModelMap>& maps, const Comparison& c) {
+  for (std::size_t m = 0; m < std::min(maps.size(), c.models.size()); ++m) {
+    if (c.models[m].key == c.verdict.best_model) return maps[m];
+  }
+  return maps.front();
+}
+
 void add_maps(Report& report, const PointLoadReport& in) {
   const Column* column = in.map.find("sigma_yy");
   if (!column || in.map.nx < 2 || in.map.ny < 2) return;
@@ -63,9 +72,10 @@ void add_maps(Report& report, const PointLoadReport& in) {
   };
   std::vector<Map> all{map("grains", simulation)};
   if (!in.models.empty()) {
-    const Eigen::VectorXd model = -in.models.front().sigma_yy / unit;
-    all.push_back(map(in.models.front().label, model));
-    all.push_back(map("grains - " + in.models.front().label, simulation - model));
+    const ModelMap& best = nearest(in.models, in.comparison);
+    const Eigen::VectorXd model = -best.sigma_yy / unit;
+    all.push_back(map(best.label, model));
+    all.push_back(map("grains - " + best.label, simulation - model));
   }
   Picture picture = maps("Maps of the response", "x / h", "y / h", "-σ_{yy}  (F/h)", all);
   picture.caption =

@@ -25,15 +25,6 @@
 namespace grainfield::coupling {
 namespace {
 
-MeanLayer measure(const std::vector<std::string>& files) {
-  MeanLayer out;
-  for (const std::string& file : files) {
-    const Realization r = read_realization(file);
-    out.add(r["unloaded"], r["loaded"], files.size());
-  }
-  return out;
-}
-
 // One averaging method over the ensemble.
 struct Averaged {
   std::string method;
@@ -71,7 +62,7 @@ class PointLoadAnalysis {
         files_(files),
         evaluate_(evaluate),
         setup_(value.get<AverageSetup>()),
-        layer_(measure(files)) {
+        layer_(mean_layer(files)) {
     const double half =
         setup_.half_width > 0 ? std::min(setup_.half_width, layer_.half_width) : layer_.half_width;
     x_ = Eigen::VectorXd::LinSpaced(setup_.points, -half, half);
