@@ -4,7 +4,8 @@
 // rest with every grain awake and much damping, and then drops one grain each source.interval from
 // source.height, with sleeping and with every grain awake. Prints the grains awake at every tenth
 // of an interval, and what a snapshot costs, of which a pour makes one for each grain. It needs no
-// pour: pile_sleep_benchmark times the real one.
+// pour: pile_sleep_benchmark times the real one. A third time every grain is awake, and at the end
+// of each interval Newton's method is to carry the heap to rest.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +19,10 @@
 #include <utility>
 #include <vector>
 
+#include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
 #include "dem/heap/grain_family.h"
+#include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
 #include "dem/study/common.h"
@@ -35,6 +38,7 @@ constexpr double kSlope = 0.45;         // of the flanks as laid
 constexpr double kEntryDiameters = 10;  // a grain joins so far above the top
 constexpr double kFallDamping = 10, kRestDamping = 60, kFall = 0.3, kRest = 0.6;  // 1/s, s
 constexpr int kSamples = 10;
+constexpr double kNewtonRatio = 1e-3;  // unbalanced force at which Newton ends
 
 dem::EngineSettings settings_of(const PileSetup& setup, const std::vector<ShapedGrain>& grains) {
   dem::EngineSettings s = dem::engine_settings(
@@ -90,19 +94,50 @@ dem::Snapshot heap_of(const PileSetup& setup, int count, dem::Random& random) {
   return engine->snapshot();
 }
 
+enum class Mode { sleep, awake, newton };
+
 struct Drops {
   double seconds = 0, awake = 0;  // CPU s per grain dropped; mean
   double snapshot = 0;            // CPU s for one
+  double newton = 0;              // CPU s of the relaxations per grain dropped
+  int failed = 0;                 // of them
 };
 
-Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sleep) {
+// The heap at rest, or as it was when there is no rest to be found.
+dem::Snapshot relaxed(const dem::Snapshot& heap, const dem::EngineSettings& settings, Drops& out) {
+  dem::QuasistaticSettings to_rest;
+  to_rest.unbalanced_force_ratio = kNewtonRatio;
+  const std::clock_t start = std::clock();
+  dem::Snapshot state = heap;
+  try {
+    dem::QuasistaticResult r = dem::relax(heap, settings, heap.gravity, {}, to_rest);
+    double moved = 0;
+    for (std::size_t k = 0; k < heap.grains.size(); ++k) {
+      moved = std::max(moved, (r.state.grains[k].position - heap.grains[k].position).norm() /
+                                  heap.grains[k].radius);
+    }
+    fmt::print(
+        "  newton: {} iterations, {} contacts gained, {} lost, a grain moves by {:.3f} radii",
+        r.iterations, r.contacts_gained, r.contacts_lost, moved);
+    state = std::move(r.state);
+  } catch (const dem::ComputationFailed& failure) {
+    fmt::print("  newton: {}", failure.what());
+    ++out.failed;
+  }
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  fmt::print(", {:.2f} CPU s\n", seconds);
+  out.newton += seconds;
+  return state;
+}
+
+Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mode) {
   std::vector<ShapedGrain> grains;
   for (const auto& g : heap.grains) grains.push_back({g.outline, g.radius, g.volume, g.angle});
   dem::EngineSettings s = settings_of(setup, grains);
   const auto& k = setup.sleep;
-  s.sleep = {sleep,         k.quiet_time, k.quiet_move, k.quiet_creep,
-             k.quiet_force, k.wake_force, k.wake_speed, k.wake_reach};
-  const auto engine = dem::make_engine(s, heap);
+  s.sleep = {mode == Mode::sleep, k.quiet_time, k.quiet_move, k.quiet_creep,
+             k.quiet_force,       k.wake_force, k.wake_speed, k.wake_reach};
+  auto engine = dem::make_engine(s, heap);
   double top = 0, axis = 0;
   for (const auto& g : heap.grains) {
     if (g.position.y() + g.radius <= top) continue;
@@ -125,7 +160,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sl
     engine->snapshot();
     out.snapshot += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / drops;
     engine->add(g);
-    fmt::print("{} {:3d}: awake", sleep ? "asleep" : "awake ", n);
+    fmt::print("{} {:3d}: awake", mode == Mode::sleep ? "asleep" : "awake ", n);
     double seconds = 0;
     for (int part = 0; part < kSamples; ++part) {
       start = std::clock();
@@ -138,7 +173,9 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, bool sl
     fmt::print("  {:.2f} CPU s\n", seconds);
     std::fflush(stdout);
     out.seconds += seconds / drops;
+    if (mode == Mode::newton) engine = dem::make_engine(s, relaxed(engine->snapshot(), s, out));
   }
+  out.newton /= drops;
   return out;
 }
 
@@ -157,13 +194,18 @@ int main(int argc, char** argv) {
     const int drops = argc > 2 ? std::max(1, std::atoi(argv[2])) : 8;
     dem::Random random(3);
     const dem::Snapshot heap = heap_of(setup, std::max(100, std::atoi(argv[1])), random);
-    const Drops asleep = drop(setup, heap, drops, true),
-                awake = drop(setup, heap, std::max(1, drops / 4), false);
+    const Drops asleep = drop(setup, heap, drops, Mode::sleep),
+                awake = drop(setup, heap, std::max(1, drops / 4), Mode::awake),
+                newton = drop(setup, heap, std::max(1, drops / 4), Mode::newton);
     fmt::print(
         "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake), {:.3f} with all "
         "awake, ratio {:.2f}; a snapshot {:.4f}\n",
         heap.grains.size(), asleep.seconds, asleep.awake, awake.seconds,
         awake.seconds / asleep.seconds, asleep.snapshot);
+    fmt::print(
+        "with Newton's method to {:g} after each grain: {:.3f} and {:.3f} more for it; {} of "
+        "{} found no rest\n",
+        kNewtonRatio, newton.seconds, newton.newton, newton.failed, std::max(1, drops / 4));
   } catch (const std::exception& e) {
     fmt::print(stderr, "sleep_drop_benchmark: {}\n", e.what());
     return 2;

@@ -19,6 +19,7 @@ const LayerScene& scene() {
 TEST(LayerFit, IntervalsCoverTheTruth) {
   FitOptions options;
   options.bootstrap = 0;
+  options.profile = false;  // looked at by fit_test.cc
   for (const LayerTruth& truth : layer_truths()) {
     if (truth.parameters.size() == 0) continue;
     const FitModel& model = find_fit_model(scene().models, truth.model);
@@ -49,6 +50,7 @@ Count verdicts(const LayerTruth& truth, double noise, int trials, bool among_all
   dem::Random random(7);
   FitOptions options;
   options.bootstrap = 0;
+  options.profile = false;  // looked at by fit_test.cc
   // Two starts of the search are enough, the truth among them; the orthotropic layers, which take
   // longest, compete only in the runs by hand.
   std::vector<FitModel> models;
