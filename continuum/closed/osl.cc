@@ -14,7 +14,7 @@ namespace grainfield::continuum {
 namespace {
 
 // eta and mu as the user chose them, whichever way.
-Closure chosen(const Settings& s, double phi) {
+Closure chosen(const std::string& model, const Settings& s, double phi) {
   const double eta = number_of(s, "eta"), mu = number_of(s, "mu"), K = number_of(s, "K"),
                tau = number_of(s, "tau_deg");
   const bool has_eta = !std::isnan(eta), has_mu = !std::isnan(mu);
@@ -25,7 +25,7 @@ Closure chosen(const Settings& s, double phi) {
       if (!std::isnan(number_of(s, name))) found.emplace_back(name);
     }
     throw BadParameter(
-        fmt::format("model osl: found {}; allowed: eta, mu, eta with mu, or K with tau_deg",
+        fmt::format("model {}: found {}; allowed: eta, mu, eta with mu, or K with tau_deg", model,
                     fmt::join(found, " with ")));
   }
   if (has_K) return closure_of({K, tau * kDegree});
@@ -35,20 +35,20 @@ Closure chosen(const Settings& s, double phi) {
   return {eta_at_yield(phi, free), free};
 }
 
-void check(const Settings& s, double phi, const Closure& closure) {
+void check(const std::string& model, const Settings& s, double phi, const Closure& closure) {
   const double c = 1 / std::tan(phi);
   const std::string found = fmt::format("eta = {:.6g}, mu = {:.6g}", closure.eta, closure.mu);
   if (!(closure.mu < c) || !std::isfinite(closure.eta))
     throw BadParameter(
-        fmt::format("model osl: {} has no characteristic inside the heap; allowed: mu below "
+        fmt::format("model {}: {} has no characteristic inside the heap; allowed: mu below "
                     "cot(phi) = {:.6g} at phi_deg = {}",
-                    found, c, s.at("phi_deg")));
+                    model, found, c, s.at("phi_deg")));
   const double most = c * (c - closure.mu);
   if (!(closure.eta > 0 && closure.eta < most))
     throw BadParameter(fmt::format(
-        "model osl: {} is outside the hyperbolic range of a heap; allowed: eta above 0 and below "
+        "model {}: {} is outside the hyperbolic range of a heap; allowed: eta above 0 and below "
         "cot(phi) (cot(phi) - mu) = {:.6g} at phi_deg = {}",
-        found, most, s.at("phi_deg")));
+        model, found, most, s.at("phi_deg")));
 }
 
 // Largest |closure_residual| over rho g h, of samples at a depth h = 1.
@@ -89,12 +89,31 @@ std::vector<Figure> figures() {
 
 std::unique_ptr<Model> make(const Settings& s) {
   const double phi = number_of(s, "phi_deg") * kDegree;
-  const Closure closure = chosen(s, phi);
-  check(s, phi, closure);
-  return model_of(phi, closure, number_of(s, "rho_g"));
+  return model_of(phi, chosen_closure("osl", s, phi), number_of(s, "rho_g"));
 }
 
 }  // namespace
+
+Closure chosen_closure(const std::string& model, const Settings& s, double phi) {
+  const Closure closure = chosen(model, s, phi);
+  check(model, s, phi, closure);
+  return closure;
+}
+
+std::vector<Parameter> closure_parameters() {
+  return {friction_angle(),
+          weight(),
+          optional_number("eta", "-",
+                          "unset: as the yielding slope asks for with this mu; both unset: mu = "
+                          "-tan(phi), half way between bcc and fpa",
+                          "Roul 4.22, 4.24", kAboveZero, kUnbounded),
+          optional_number("mu", "-", "unset: as the yielding slope asks for with this eta",
+                          "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+          optional_number("K", "-", "with tau_deg instead of eta and mu: sigma_nn = K sigma_mm",
+                          "Roul 4.23", kAboveZero, kUnbounded),
+          optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n", "Roul 4.23",
+                          -180, 180)};
+}
 
 double Closure::c1() const {
   const double root = std::sqrt(mu * mu + 4 * eta);
@@ -158,22 +177,10 @@ SectorField osl_field(double phi, const Closure& closure, double rho_g) {
 }
 
 ModelInfo osl_info() {
-  return {"osl",
-          "heap with oriented stress linearity, sigma_xx = eta sigma_yy + mu sign(x) sigma_xy",
-          2,
-          {friction_angle(), weight(),
-           optional_number("eta", "-",
-                           "unset: as the yielding slope asks for with this mu; both unset: mu = "
-                           "-tan(phi), half way between bcc and fpa",
-                           "Roul 4.22, 4.24", kAboveZero, kUnbounded),
-           optional_number("mu", "-", "unset: as the yielding slope asks for with this eta",
-                           "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
-           optional_number("K", "-", "with tau_deg instead of eta and mu: sigma_nn = K sigma_mm",
-                           "Roul 4.23", kAboveZero, kUnbounded),
-           optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n",
-                           "Roul 4.23", -180, 180)},
-          make,
-          figures()};
+  return {
+      "osl", "heap with oriented stress linearity, sigma_xx = eta sigma_yy + mu sign(x) sigma_xy",
+      2,     closure_parameters(),
+      make,  figures()};
 }
 
 ModelInfo fpa_info() {

@@ -39,6 +39,12 @@ StressRatio ratio_of(const Closure& closure);
 /// positive), at x.
 double closure_residual(const Closure& closure, const Eigen::Vector3d& stress, double x);
 
+/// Parameters of a heap whose closure can be chosen: phi_deg, rho_g, eta, mu, K, tau_deg; and what
+/// they choose. Throws BadParameter naming the model for a choice that is none, without a
+/// characteristic inside the heap, or outside the hyperbolic range.
+std::vector<Parameter> closure_parameters();
+Closure chosen_closure(const std::string& model, const Settings& s, double phi);
+
 /// The heap of slope and friction angle phi (rad). Needs eta > 0 and c1 < cot(phi). Regions: left
 /// outer, left inner, right inner, right outer.
 SectorField osl_field(double phi, const Closure& closure, double rho_g);

@@ -1,0 +1,46 @@
+// Oriented stress linearity in a cone (Wittmer, Cates and Claudin 1997). Compression positive,
+// z down from the apex, axisymmetric, no displacement round the axis:
+//   d_r s_rr + d_z s_rz + (s_rr - s_tt)/r = 0,  d_r s_rz + d_z s_zz + s_rz/r = rho g
+// with the closures s_rr = eta s_zz + mu s_rz and s_tt = s_rr. The cone has no size, so stress =
+// rho g z s(S), S = r tan(phi)/z, and with c = tan(phi), p = s_zz, q = s_rz
+//   c (eta p' + mu q') + q - S q' = 0,  c q' + p - S p' + c q/S = 1,
+// p = q = 0 on the surface S = 1. The equations are singular at S0 = c c1, where the characteristic
+// from the apex runs (osl.h). From the surface to it they have one solution, smooth in sqrt(S -
+// S0), in which it is integrated. From the axis, q = 0, they have one for every p(0),
+//   q = a S, p = p(0) - a mu/eta S, a = (1 - p(0))/(2 c),
+// and p is continuous at S0 for one of these.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "continuum/closed/osl.h"
+
+namespace grainfield::continuum {
+
+class OslCone {
+ public:
+  /// phi in rad; needs eta > 0 and c1 < cot(phi).
+  OslCone(double phi, const Closure& closure, double rho_g);
+
+  /// s_rr = s_tt, s_zz, s_rz over rho g z at S, 0 <= S <= 1.
+  std::array<double, 3> reduced(double S) const;
+  /// xx, yy, zz, yz, xz, xy in the project's axes (apex at the origin, z up, tension positive), Pa;
+  /// nan outside of the cone.
+  std::array<double, 6> stress(double x, double y, double z) const;
+
+  double singular() const { return singular_; }  ///< S0
+  const Closure& closure() const { return closure_; }
+
+ private:
+  std::array<double, 2> derivative(double S, const std::array<double, 2>& y) const;
+  void integrate();
+  std::array<double, 2> outer(double S) const;
+
+  double tangent_, rho_g_, singular_;
+  Closure closure_;
+  double centre_ = 0;  // p(0)
+  // p, q and their derivatives by t, S = S0 + (1 - S0) t^2, evenly from t = 1 down.
+  std::vector<std::array<double, 2>> value_, slope_;
+};
+
+}  // namespace grainfield::continuum
