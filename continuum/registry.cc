@@ -16,6 +16,7 @@ namespace grainfield::continuum {
 const std::vector<ModelInfo>& registry() {
   static const std::vector<ModelInfo> models = {flamant_info(),
                                                 boussinesq_info(),
+                                                transverse_half_space_info(),
                                                 layer_info(),
                                                 hydrostatic_info(),
                                                 liffman_info(),

@@ -1,0 +1,124 @@
+#include "continuum/closed/transverse.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "continuum/closed/models.h"
+#include "continuum/constants.h"
+#include "continuum/settings.h"
+
+namespace grainfield::continuum {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Least relative distance of the two g. The stress is even in their difference, so that it is wrong
+// by its square; what cancels loses its inverse.
+constexpr double kApart = 1e-5;
+
+class Transverse : public Model {
+ public:
+  Transverse(double load, const TransverseModuli& moduli) : half_space_(load, moduli) {}
+  Stresses stress(const Points& points) override {
+    Stresses out = Stresses::Constant(points.rows(), 6, kNan);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      if (!(points(i, 2) < 0)) continue;
+      const auto s = half_space_.stress(points(i, 0), points(i, 1), points(i, 2));
+      for (int c = 0; c < 6; ++c) out(i, c) = s[static_cast<std::size_t>(c)];
+    }
+    return out;
+  }
+
+ private:
+  TransverseHalfSpace half_space_;
+};
+
+}  // namespace
+
+bool TransverseModuli::is_stable() const {
+  return E_h > 0 && E_v > 0 && G_v > 0 && std::fabs(nu_h) < 1 &&
+         1 - nu_h - 2 * nu_v * nu_v * E_h / E_v > 0;
+}
+
+TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
+  Eigen::Matrix3d compliance;
+  compliance << 1 / m.E_h, -m.nu_h / m.E_h, -m.nu_v / m.E_v,  //
+      -m.nu_h / m.E_h, 1 / m.E_h, -m.nu_v / m.E_v,            //
+      -m.nu_v / m.E_v, -m.nu_v / m.E_v, 1 / m.E_v;
+  const Eigen::Matrix3d c = compliance.inverse();
+  const double c11 = c(0, 0), c13 = c(0, 2), c33 = c(2, 2), c44 = m.G_v;
+  plane_ = m.E_h / (1 + m.nu_h);
+  // n1 n2 = c33/c11 and (sqrt n1 + sqrt n2)^2 = n1 + n2 + 2 sqrt(n1 n2).
+  const double sum = (c11 * c33 - c13 * (c13 + 2 * c44)) / (c11 * c44);
+  const double product = std::sqrt(c33 / c11);
+  const Complex mean = std::sqrt(Complex(sum + 2 * product)) / 2.0;
+  const Complex half = std::sqrt(Complex(sum - 2 * product)) / 2.0;
+  std::array<Complex, 2> g{1.0 / (mean + half), 1.0 / (mean - half)};
+  const Complex middle = (g[0] + g[1]) / 2.0;
+  if (std::abs(g[0] - g[1]) < kApart * std::abs(middle)) {
+    g = {middle * (1 + kApart / 2), middle * (1 - kApart / 2)};
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    Term& term = terms_[i];
+    const Complex other = g[1 - i], n = 1.0 / (g[i] * g[i]);
+    term.g = g[i];
+    term.a = F / (2 * std::numbers::pi) * other / (other - g[i]);
+    // c44 (1 + k): (c13 + c44 + c11 n - c44)/(c13 + c44) = (c13 + c11 n)/(c13 + c44).
+    term.A = term.a * (c13 + c44) / (c44 * (c13 + c11 * n));
+  }
+}
+
+std::array<double, 6> TransverseHalfSpace::stress(double x, double y, double z) const {
+  const double r = std::hypot(x, y);
+  Complex zz = 0, shear = 0, hoop = 0, across = 0;
+  for (const Term& t : terms_) {
+    const Complex depth = -t.g * z, R = std::sqrt(r * r + depth * depth), cube = R * R * R;
+    const Complex potential = t.A / (R * (R + depth));
+    zz -= t.a * depth / cube;
+    shear += t.a * t.g / cube;
+    hoop += (t.a * t.g * t.g - plane_ * t.A) * depth / cube + plane_ * potential;
+    // (s_rr - s_tt)/r^2 for s_xx = s_tt + (s_rr - s_tt) x^2/r^2; its two parts cancel at the axis:
+    // -2/(R (R + z)) + z/R^3 over r^2 is
+    // -(2 R + z)/(R^3 (R + z)^2).
+    const Complex sum = R + depth;
+    across -= plane_ * t.A * (2.0 * R + depth) / (cube * sum * sum);
+  }
+  const double tt = hoop.real(), turn = across.real();
+  return {tt + turn * x * x, tt + turn * y * y, zz.real(),
+          shear.real() * y,  shear.real() * x,  turn * x * y};
+}
+
+ModelInfo transverse_half_space_info() {
+  const char* source = "Elliott 1948";
+  return {
+      "transverse_half_space",
+      "elastic half space with a vertical axis of symmetry under a point load",
+      3,
+      {number("F", "N", "load at the origin, down", source, 1, -kUnbounded, kUnbounded),
+       number("E_h", "Pa", "horizontal Young's modulus; of the moduli only ratios count", source, 1,
+              kAboveZero, kUnbounded),
+       number("E_v", "Pa",
+              "vertical Young's modulus; raised: the load is carried nearer to the axis", source, 1,
+              kAboveZero, kUnbounded),
+       number("nu_h", "-", "-eps_yy/eps_xx under sigma_xx", source, 0.3, -1, 1),
+       number("nu_v", "-", "-eps_xx/eps_zz under sigma_zz", source, 0.3, -kUnbounded, kUnbounded),
+       optional_number("G_v", "Pa", "shear modulus of vertical planes; unset: E_v/(2 (1 + nu_v))",
+                       source, kAboveZero, kUnbounded)},
+      [](const Settings& s) -> std::unique_ptr<Model> {
+        TransverseModuli m{number_of(s, "E_h"), number_of(s, "E_v"), number_of(s, "nu_h"),
+                           number_of(s, "nu_v"), number_of(s, "G_v")};
+        if (std::isnan(m.G_v)) m.G_v = m.E_v / (2 * (1 + m.nu_v));
+        if (!m.is_stable()) {
+          throw BadParameter(fmt::format(
+              "model transverse_half_space: nu_h = {:.6g}, nu_v = {:.6g} with E_h/E_v = {:.6g} is "
+              "not elastic; allowed: G_v above 0, |nu_h| below 1, 2 nu_v^2 E_h/E_v below 1 - nu_h",
+              m.nu_h, m.nu_v, m.E_h / m.E_v));
+        }
+        return std::make_unique<Transverse>(number_of(s, "F"), m);
+      }};
+}
+
+}  // namespace grainfield::continuum
