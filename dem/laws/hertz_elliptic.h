@@ -23,7 +23,7 @@
 
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
-#include "dem/laws/elliptic.h"
+#include "dem/laws/ellipse_table.h"
 #include "dem/laws/hertz.h"
 #include "dem/laws/material_setup.h"
 #include "dem/words/nearest.h"
@@ -60,7 +60,7 @@ struct HertzEllipticLaw {
   EllipticContact ellipse(const Overlap3& o) const {
     const double least = 0.5 / (most_radius * o.radius), most = 0.5 / (least_radius * o.radius);
     const auto within = [&](double c) { return std::min(std::max(c, least), most); };
-    return elliptic_contact(within(o.lesser_curvature), within(o.greater_curvature));
+    return EllipseTable::get().contact(within(o.lesser_curvature), within(o.greater_curvature));
   }
   /// C_x and C_y, m/N, of a contact with the greater semi-axis a, m.
   struct Compliances {

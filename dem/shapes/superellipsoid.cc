@@ -17,6 +17,9 @@ namespace {
 constexpr double kLeastShare = 1e-60;
 // On edges, where weights underflow; far below what any law takes for a radius.
 constexpr double kLeastWeight = 1e-80;
+// Powers follow by their series of four terms while the base is within this share of the last one,
+// over the power: what is left out is below 1e-14.
+constexpr double kNear = 1.0 / 256;
 
 /// (a^P + b^P)^(1/P) of a, b > 0, and its derivatives.
 struct Norm {
@@ -33,25 +36,43 @@ double norm_size(double a, double b, double power) {
   return most * exponential(natural_log(1 + share) / power);
 }
 
-Norm norm_of(double a, double b, double power) {
-  Norm out;
+/// (1 + x)^power by its binomial series, |x| max(power, 1) <= kNear.
+double power_near_one(double x, double power) {
+  const double second = (1.0 / 2) * (power - 1) * x, third = (1.0 / 3) * (power - 2) * x;
+  const double fourth = (1.0 / 4) * (power - 3) * x;
+  return 1 + power * x * (1 + second * (1 + third * (1 + fourth)));
+}
+
+struct ShareAndRoot {
+  double share = 0;  // ratio^P
+  double root = 0;   // (1 + share)^(1/P)
+};
+/// From those of a ratio near it, or anew, which is then remembered.
+ShareAndRoot share_and_root(double ratio, double power, Powers::OfNorm& last) {
+  if (power == 2) {
+    const double share = ratio * ratio;
+    return {share, std::sqrt(1 + share)};
+  }
+  const double change = ratio * last.inverse_ratio - 1;
+  if (std::fabs(change) * power <= kNear) {
+    const double share = last.share * power_near_one(change, power);
+    const double rise = (share - last.share) / (1 + last.share);
+    return {share, last.root * power_near_one(rise, 1 / power)};
+  }
+  const double share = exponential(power * natural_log(ratio));
+  last = {1 / ratio, share, exponential(natural_log(1 + share) / power)};
+  return {share, last.root};
+}
+
+Norm norm_of(double a, double b, double power, Powers::OfNorm& last) {
   const bool swapped = b > a;
   const double most = swapped ? b : a, least = swapped ? a : b, ratio = least / most;
-  // Of the greater one: its share, and over the size.
-  double share = 1, part = 1;
-  if (power == 2) {
-    share = ratio * ratio;
-    const double root = std::sqrt(1 + share);
-    out.size = most * root;
-    part = 1 / root;
-  } else {
-    share = exponential(power * natural_log(ratio));
-    const double root = exponential(natural_log(1 + share) / power);
-    out.size = most * root;
-    part = 1 / root;
-  }
-  const double whole = 1 + share, rest = ratio * part;
+  const auto [share, root] = share_and_root(ratio, power, last);
+  // Of the greater one: over the size.
+  const double part = 1 / root, whole = 1 + share, rest = ratio * part;
   const double pull_most = 1 / (whole * part), pull_least = share / (whole * rest);
+  Norm out;
+  out.size = most * root;
   out.bend = (power - 1) * pull_most * pull_least / (part * rest);
   out.a = swapped ? rest : part;
   out.b = swapped ? part : rest;
@@ -63,6 +84,28 @@ Norm norm_of(double a, double b, double power) {
 Eigen::Vector3d scaled(const Superellipsoid& body, const Eigen::Vector3d& n) {
   const Eigen::Vector3d a = body.axes.cwiseProduct(n).cwiseAbs();
   return a.cwiseMax(kLeastShare * a.maxCoeff());
+}
+
+/// Half the inverse: that of c1 u1 u1' + c2 u2 u2' has 1/(c2 v^2) for n x u1 and 1/(c1 v^2) for
+/// n x u2, v = |u1 x u2|.
+Bend half_inverse(const Bend& bend) {
+  const double half = 0.5 / (bend.area * bend.area);
+  const auto& [one, two] = bend.squares;
+  Bend out;
+  out.squares[0] = {half / std::max(two.weight, kLeastWeight), -one.y, one.x};
+  out.squares[1] = {half / std::max(one.weight, kLeastWeight), -two.y, two.x};
+  out.area = bend.area;
+  return out;
+}
+
+void add(const Bend& bend, PlaneTensor& sum) {
+  const auto& [one, two] = bend.squares;
+  for (const auto& s : {one, two}) {
+    sum.xx += s.weight * s.x * s.x;
+    sum.xy += s.weight * s.x * s.y;
+    sum.yy += s.weight * s.y * s.y;
+  }
+  sum.determinant += one.weight * two.weight * bend.area * bend.area;
 }
 
 /// Squared distance of the farthest and of the nearest point of a superellipse, of squared
@@ -158,10 +201,10 @@ double height_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   return norm_size(norm_size(a[0], a[1], body.level), a[2], body.upright);
 }
 
-Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
+Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n, Powers& powers) {
   const Eigen::Vector3d a = scaled(body, n);
-  const Norm level = norm_of(a[0], a[1], body.level);
-  const Norm whole = norm_of(level.size, a[2], body.upright);
+  const Norm level = norm_of(a[0], a[1], body.level, powers.level);
+  const Norm whole = norm_of(level.size, a[2], body.upright, powers.whole);
   Eigen::Vector3d r;  // semi-axes with the normal's signs
   for (int k = 0; k < 3; ++k) r[k] = std::copysign(body.axes[k], n[k]);
   Support out;
@@ -175,6 +218,7 @@ Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   out.bend[0] = {whole.pull_a * level.bend / level.size, {r[0] * level.b, -r[1] * level.a, 0}};
   out.bend[1] = {whole.bend / whole.size,
                  {whole.b * slope[0], whole.b * slope[1], -whole.a * r[2]}};
+  out.area = body.axes[0] * body.axes[1] * body.axes[2] / whole.size;
   return out;
 }
 
@@ -217,18 +261,67 @@ Principal principal_of(const Eigen::Vector3d& n, const Square* squares, int coun
   return out;
 }
 
-Principal relative_curvatures(const Eigen::Vector3d& n, const Square* squares, int count) {
-  // The inverse of c1 u1 u1' + c2 u2 u2' across n has 1/(c2 v^2) for n x u1 and 1/(c1 v^2) for
-  // n x u2, v = n.(u1 x u2).
-  std::array<Square, 4> inverse;
-  for (int k = 0; k < count; k += 2) {
-    const Square &one = squares[k], &two = squares[k + 1];
-    const double across = n.dot(one.along.cross(two.along));
-    const double half = 0.5 / (across * across);
-    inverse[k] = {half / std::max(two.weight, kLeastWeight), n.cross(one.along)};
-    inverse[k + 1] = {half / std::max(one.weight, kLeastWeight), n.cross(two.along)};
+// Duff et al. 2017.
+Tangents tangents_of(const Eigen::Vector3d& n) {
+  const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
+  return {{1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()},
+          {b, sign + n.y() * n.y() * a, -n.y()}};
+}
+
+Eigen::Vector2d Bend::of(const Eigen::Vector2d& u) const {
+  Eigen::Vector2d out(0, 0);
+  for (const Square& s : squares) {
+    const double pull = s.weight * (s.x * u.x() + s.y * u.y());
+    out += Eigen::Vector2d(pull * s.x, pull * s.y);
   }
-  return principal_of(n, inverse.data(), count);
+  return out;
+}
+
+Bend bend_of(const Support& support, const Tangents& in_body) {
+  Bend out;
+  for (int k = 0; k < 2; ++k) {
+    const auto& [weight, along] = support.bend[k];
+    out.squares[k] = {weight, along.dot(in_body.x), along.dot(in_body.y)};
+  }
+  out.area = support.area;
+  return out;
+}
+
+PlaneTensor sum_of(const Bend& i, const Bend& j) {
+  PlaneTensor sum;
+  add(i, sum);
+  add(j, sum);
+  for (const auto& s : i.squares) {
+    for (const auto& t : j.squares) {
+      const double area = s.x * t.y - s.y * t.x;
+      sum.determinant += s.weight * t.weight * area * area;
+    }
+  }
+  return sum;
+}
+
+PlanePrincipal principal_of(const PlaneTensor& t) {
+  const double apart = t.xx - t.yy, root = std::sqrt(apart * apart + 4 * t.xy * t.xy);
+  PlanePrincipal out;
+  out.greater = 0.5 * (t.trace() + root);
+  if (!(out.greater > 0)) return out;
+  out.lesser = t.determinant / out.greater;
+  // Of an eigenvector both forms hold; the longer one is without a difference.
+  const double straight = 0.5 * (std::fabs(apart) + root);
+  const double size = std::sqrt(straight * straight + t.xy * t.xy);
+  if (!(size > 0)) return out;
+  const double c = straight / size, d = t.xy / size;
+  out.along = apart >= 0 ? Eigen::Vector2d(c, d) : Eigen::Vector2d(d, c);
+  return out;
+}
+
+PlanePrincipal relative_curvatures(const Bend& i, const Bend& j) {
+  return principal_of(sum_of(half_inverse(i), half_inverse(j)));
+}
+PlanePrincipal relative_curvatures(const Bend& i) {
+  PlaneTensor only;
+  add(half_inverse(i), only);
+  return principal_of(only);
 }
 
 }  // namespace grainfield::dem

@@ -120,7 +120,7 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
     out.gap = std::max(out.gap, found.at.depth - global.depth);
     // Where the surfaces bend least, the search's normal is known best; across a flat face it may
     // have stopped short.
-    const Principal radii = principal_of(found.at.normal, found.at.bend.data(), 4);
+    const PlanePrincipal radii = principal_of(sum_of(found.at.bend_i, found.at.bend_j));
     const double off = found.at.normal.cross(global.normal).norm();
     if (found.at.settled && global.depth - found.at.depth < 1e-10) {
       out.normal = std::max(out.normal, off * std::sqrt(std::max(radii.lesser - depth, 0.0)));
