@@ -3,23 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/shapes/pair_step.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A step is the last one when it would change the depth by less than this share of it, and the
-// points lie across each other within this share of both sizes: what is left of the depth is of
-// third order.
-constexpr double kDepthLeft = 1e-9, kPointsLeft = 1e-4;
 // Steps from a start; more are taken where flat faces lie on each other only.
 constexpr int kMostEvaluations = 100;
-// A step goes at most so far, rad, and is shortened by this factor until f falls as it should. The
-// only one that a pair in contact takes is short.
-constexpr double kShortStep = 0.05, kLongestStep = 0.5, kShorten = 0.25, kArmijo = 1e-4;
+// A step goes at most so far, rad, and is shortened by this factor until f falls as it should.
+constexpr double kLongestStep = 0.5, kShorten = 0.25, kArmijo = 1e-4;
 constexpr int kMostShortened = 25;
 // f is not known better than to this share of both sizes.
 constexpr double kRoundOff = 4e-16;
@@ -312,11 +307,17 @@ class Descent {
     const Vector3d on_i = at.x_i + bent(&at.bend[0], by);
     const Vector3d on_j = across_ - at.x_j - bent(&at.bend[2], by);
     out.point = 0.5 * (on_i + on_j);
-    out.tangents = tangents_of(n);
-    out.bend_i = bend_of(at.i, i_.in_body(out.tangents));
-    out.bend_j = bend_of(at.j, j_.in_body(out.tangents));
+    const Tangents t = tangents_of(n);
+    set_curvatures(relative_curvatures(bend_of(at.i, i_.in_body(t)), bend_of(at.j, j_.in_body(t))),
+                   t, out);
     out.settled = settled;
     out.evaluations = evaluations_;
+  }
+
+  static void set_curvatures(const PlanePrincipal& relative, const Tangents& t, CommonNormal& out) {
+    out.lesser_curvature = relative.lesser;
+    out.greater_curvature = relative.greater;
+    out.major = across_of(relative, t);
   }
 
   const TurnedBody &i_, &j_;
@@ -324,41 +325,6 @@ class Descent {
   const double size_;
   int evaluations_ = 0;
 };
-
-/// One step of Newton's from the remembered normal, in the plane across it. False when it does not
-/// end there: the bodies may be apart, or more steps are needed.
-bool one_step(const TurnedBody& i, const TurnedBody& j, const Vector3d& across, PairNormal& memory,
-              CommonNormal& out) {
-  const Vector3d n = memory.normal;
-  const Tangents t = tangents_of(n);
-  const Tangents t_i = i.in_body(t), t_j = j.in_body(t);
-  const Support a = support_of(i.shape, i.turn.transpose() * n, memory.powers_i);
-  const Support b = support_of(j.shape, j.turn.transpose() * n, memory.powers_j);
-  const double f = a.height + b.height - n.dot(across);
-  if (!(f > 0)) return false;
-  const Vector2d x_i(a.point.dot(t_i.x), a.point.dot(t_i.y));
-  const Vector2d x_j(b.point.dot(t_j.x), b.point.dot(t_j.y));
-  const Vector2d g = x_i + x_j - Vector2d(across.dot(t.x), across.dot(t.y));
-  const double size = i.farthest + j.farthest;
-  if (!(g.squaredNorm() <= kPointsLeft * kPointsLeft * size * size)) return false;
-  out.bend_i = bend_of(a, t_i);
-  out.bend_j = bend_of(b, t_j);
-  const PlaneTensor h = sum_of(out.bend_i, out.bend_j);
-  const double divisor = h.determinant - f * h.trace() + f * f;
-  if (!(divisor > 0 && h.trace() > 2 * f)) return false;
-  const Vector2d by = (f * g - h.adjugate(g)) / divisor;
-  if (!(-g.dot(by) <= kDepthLeft * f && by.squaredNorm() <= kShortStep * kShortStep)) return false;
-  const Vector2d on_i = x_i + out.bend_i.of(by), on_j = x_j + out.bend_j.of(by);
-  const Vector2d beside = on_i - on_j;
-  out.normal = (n + by.x() * t.x + by.y() * t.y).normalized();
-  out.depth = f + 0.5 * g.dot(by);
-  out.point = 0.5 * (across + (a.height - b.height) * n + beside.x() * t.x + beside.y() * t.y);
-  out.tangents = t;
-  out.evaluations = 1;
-  out.settled = true;
-  memory.normal = out.normal;
-  return true;
-}
 
 /// From the axes of both bodies, towards the other one; keeps the least depth.
 bool search_everywhere(Descent& search, const TurnedBody& i, const TurnedBody& j,
@@ -386,7 +352,7 @@ double thickness(const TurnedBody& i, const TurnedBody& j, const Vector3d& acros
 }
 
 bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& across,
-                   PairNormal& memory, CommonNormal& out) {
+                   PairNormal& memory, CommonNormal& out, bool curvatures) {
   out.evaluations = 0;
   out.depth = 0;
   const double reach = i.farthest + j.farthest;
@@ -402,8 +368,10 @@ bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& acr
   if (memory.touching == 0) {
     out.depth = thickness(i, j, across, memory.normal);
     if (out.depth <= 0) return false;
-  } else if (one_step(i, j, across, memory, out)) {
-    return true;
+  } else {
+    PairStep pair{&i, &j, across, &memory, &out};
+    step_pairs(&pair, 1, curvatures);
+    if (out.settled) return true;
   }
   Descent search(i, j, across);
   bool touches = search.descend(memory.normal, memory.touching != 0, out);

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "dem/shapes/dual_norm.h"
 #include "dem/shapes/superellipsoid.h"
 
 namespace grainfield::dem {
@@ -57,16 +58,22 @@ struct CommonNormal {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the first towards the second
   double depth = 0;                                  ///< m; apart: f at the normal, 0 or below
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< middle of both surfaces, from centre i, m
-  Tangents tangents;                                 ///< across the normal that f was evaluated at
-  Bend bend_i, bend_j;                               ///< H_i and H_j there, m
-  int evaluations = 0;                               ///< of f with its derivatives
-  bool settled = false;                              ///< n has come to rest
+  /// Relative curvatures A <= B, 1/m, and the direction of A: unit. Only when asked for.
+  double lesser_curvature = 0, greater_curvature = 0;
+  Eigen::Vector3d major = Eigen::Vector3d::UnitX();
+  int evaluations = 0;   ///< of f with its derivatives
+  bool settled = false;  ///< n has come to rest
 };
+
+// A step is the last one when it would change the depth by less than this share of it, and the
+// points lie across each other within this share of both sizes: what is left of the depth is of
+// third order.
+inline constexpr double kDepthLeft = 1e-9, kPointsLeft = 1e-4;
 
 /// False when they are apart. `across`: D, m. Starts from the remembered normal, without one from
 /// the line of centres; where the bodies overlap deeply then, also from their axes.
 bool common_normal(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,
-                   PairNormal& memory, CommonNormal& out);
+                   PairNormal& memory, CommonNormal& out, bool curvatures = false);
 
 /// f at n, m.
 double thickness(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,

@@ -7,19 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/shapes/dual_norm.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
 namespace {
-
-// |r_k n_k| counts as at least this share of the greatest of them, so that powers stay finite. Even
-// at e = 0.1 it is less than 0.1 % of a semi-axis from the middle of a face.
-constexpr double kLeastShare = 1e-60;
-// On edges, where weights underflow; far below what any law takes for a radius.
-constexpr double kLeastWeight = 1e-80;
-// Powers follow by their series of four terms while the base is within this share of the last one,
-// over the power: what is left out is below 1e-14.
-constexpr double kNear = 1.0 / 256;
 
 /// (a^P + b^P)^(1/P) of a, b > 0, and its derivatives.
 struct Norm {
@@ -36,38 +28,17 @@ double norm_size(double a, double b, double power) {
   return most * exponential(natural_log(1 + share) / power);
 }
 
-/// (1 + x)^power by its binomial series, |x| max(power, 1) <= kNear.
-double power_near_one(double x, double power) {
-  const double second = (1.0 / 2) * (power - 1) * x, third = (1.0 / 3) * (power - 2) * x;
-  const double fourth = (1.0 / 4) * (power - 3) * x;
-  return 1 + power * x * (1 + second * (1 + third * (1 + fourth)));
-}
-
-struct ShareAndRoot {
-  double share = 0;  // ratio^P
-  double root = 0;   // (1 + share)^(1/P)
-};
-/// From those of a ratio near it, or anew, which is then remembered.
-ShareAndRoot share_and_root(double ratio, double power, Powers::OfNorm& last) {
-  if (power == 2) {
-    const double share = ratio * ratio;
-    return {share, std::sqrt(1 + share)};
-  }
-  const double change = ratio * last.inverse_ratio - 1;
-  if (std::fabs(change) * power <= kNear) {
-    const double share = last.share * power_near_one(change, power);
-    const double rise = (share - last.share) / (1 + last.share);
-    return {share, last.root * power_near_one(rise, 1 / power)};
-  }
-  const double share = exponential(power * natural_log(ratio));
-  last = {1 / ratio, share, exponential(natural_log(1 + share) / power)};
-  return {share, last.root};
-}
-
-Norm norm_of(double a, double b, double power, Powers::OfNorm& last) {
+Norm norm_of(double a, double b, double power) {
   const bool swapped = b > a;
   const double most = swapped ? b : a, least = swapped ? a : b, ratio = least / most;
-  const auto [share, root] = share_and_root(ratio, power, last);
+  double share = ratio * ratio, root = 1;
+  if (power == 2) {
+    root = std::sqrt(1 + share);
+  } else {
+    const Powers::OfNorm at = powers_at(ratio, power);
+    share = at.share;
+    root = at.root;
+  }
   // Of the greater one: over the size.
   const double part = 1 / root, whole = 1 + share, rest = ratio * part;
   const double pull_most = 1 / (whole * part), pull_least = share / (whole * rest);
@@ -119,6 +90,11 @@ double nearest_pair(double a, double b, double exponent) {
 }
 
 }  // namespace
+
+Powers::OfNorm powers_at(double ratio, double power) {
+  const double share = exponential(power * natural_log(ratio));
+  return {1 / ratio, share, exponential(natural_log(1 + share) / power)};
+}
 
 Superellipsoid superellipsoid(const std::array<double, 3>& axes,
                               const std::array<double, 2>& exponents) {
@@ -201,10 +177,10 @@ double height_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   return norm_size(norm_size(a[0], a[1], body.level), a[2], body.upright);
 }
 
-Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n, Powers& powers) {
+Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   const Eigen::Vector3d a = scaled(body, n);
-  const Norm level = norm_of(a[0], a[1], body.level, powers.level);
-  const Norm whole = norm_of(level.size, a[2], body.upright, powers.whole);
+  const Norm level = norm_of(a[0], a[1], body.level);
+  const Norm whole = norm_of(level.size, a[2], body.upright);
   Eigen::Vector3d r;  // semi-axes with the normal's signs
   for (int k = 0; k < 3; ++k) r[k] = std::copysign(body.axes[k], n[k]);
   Support out;
@@ -268,15 +244,6 @@ Tangents tangents_of(const Eigen::Vector3d& n) {
           {b, sign + n.y() * n.y() * a, -n.y()}};
 }
 
-Eigen::Vector2d Bend::of(const Eigen::Vector2d& u) const {
-  Eigen::Vector2d out(0, 0);
-  for (const Square& s : squares) {
-    const double pull = s.weight * (s.x * u.x() + s.y * u.y());
-    out += Eigen::Vector2d(pull * s.x, pull * s.y);
-  }
-  return out;
-}
-
 Bend bend_of(const Support& support, const Tangents& in_body) {
   Bend out;
   for (int k = 0; k < 2; ++k) {
@@ -303,7 +270,7 @@ PlaneTensor sum_of(const Bend& i, const Bend& j) {
 PlanePrincipal principal_of(const PlaneTensor& t) {
   const double apart = t.xx - t.yy, root = std::sqrt(apart * apart + 4 * t.xy * t.xy);
   PlanePrincipal out;
-  out.greater = 0.5 * (t.trace() + root);
+  out.greater = 0.5 * ((t.xx + t.yy) + root);
   if (!(out.greater > 0)) return out;
   out.lesser = t.determinant / out.greater;
   // Of an eigenvector both forms hold; the longer one is without a difference.

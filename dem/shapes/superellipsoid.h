@@ -71,23 +71,8 @@ struct Support {
   double area = 0;                                  ///< |n.(u1 x u2)|, m2
 };
 
-/// Powers of the last n that were taken by logarithm and exponential; those of an n near it follow
-/// by their series. All 0: none yet.
-struct Powers {
-  struct OfNorm {
-    double inverse_ratio = 0;  ///< greater over lesser component
-    double share = 0;          ///< (lesser over greater)^P
-    double root = 0;           ///< (1 + share)^(1/P)
-  };
-  OfNorm level, whole;
-};
-
-/// `n`: unit, in the body frame. `powers`: of an earlier call for the same body, or none.
-Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n, Powers& powers);
-inline Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
-  Powers none;
-  return support_of(body, n, none);
-}
+/// `n`: unit, in the body frame.
+Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n);
 /// The height alone, m.
 double height_of(const Superellipsoid& body, const Eigen::Vector3d& n);
 
@@ -111,9 +96,6 @@ struct Bend {
   };
   std::array<Square, 2> squares;
   double area = 0;  ///< |u1 x u2|: known without a difference
-
-  /// H u.
-  Eigen::Vector2d of(const Eigen::Vector2d& u) const;
 };
 /// `x`, `y`: the tangents in the body frame.
 Bend bend_of(const Support& support, const Tangents& in_body);
@@ -122,11 +104,6 @@ Bend bend_of(const Support& support, const Tangents& in_body);
 struct PlaneTensor {
   double xx = 0, xy = 0, yy = 0;
   double determinant = 0;  ///< a sum of positive terms (Cauchy and Binet), not by a difference
-
-  double trace() const { return xx + yy; }
-  Eigen::Vector2d adjugate(const Eigen::Vector2d& u) const {
-    return {yy * u.x() - xy * u.y(), xx * u.y() - xy * u.x()};
-  }
 };
 /// The sum of both Hessians.
 PlaneTensor sum_of(const Bend& i, const Bend& j);
@@ -142,6 +119,10 @@ PlanePrincipal principal_of(const PlaneTensor& tensor);
 /// the other body is flat.
 PlanePrincipal relative_curvatures(const Bend& i, const Bend& j);
 PlanePrincipal relative_curvatures(const Bend& i);
+/// The direction of the lesser one in space: unit.
+inline Eigen::Vector3d across_of(const PlanePrincipal& p, const Tangents& t) {
+  return p.along.x() * t.y - p.along.y() * t.x;
+}
 
 /// Principal radii of curvature, m, and the direction of the greater one.
 inline Principal radii_of(const Eigen::Vector3d& n, const Support& support) {

@@ -72,8 +72,9 @@ class SuperellipsoidStore {
     const Eigen::Vector3d across = b.position - a.position;
     const double swept = first.swept + second.swept;
     if (across.dot(feature.normal) > feature.clear + swept) return false;
+    constexpr bool curvatures = measures == Measures::curvatures;
     CommonNormal contact;
-    if (!common_normal(turned(first), turned(second), across, feature, contact)) {
+    if (!common_normal(turned(first), turned(second), across, feature, contact, curvatures)) {
       if (contact.depth < 0) feature.clear = across.dot(feature.normal) + contact.depth - swept;
       return false;
     }
@@ -82,10 +83,12 @@ class SuperellipsoidStore {
     o.depth = contact.depth;
     o.arm_i = contact.point;
     o.arm_j = contact.point - across;
-    if constexpr (measures == Measures::curvatures) {
-      set_curvatures(
-          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius),
-          relative_curvatures(contact.bend_i, contact.bend_j), contact.tangents, o);
+    if constexpr (curvatures) {
+      o.radius =
+          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius);
+      o.lesser_curvature = contact.lesser_curvature;
+      o.greater_curvature = contact.greater_curvature;
+      o.major = contact.major;
     }
     return true;
   }
@@ -105,7 +108,11 @@ class SuperellipsoidStore {
     if constexpr (measures == Measures::curvatures) {
       const Tangents tangents = tangents_of(n);
       const Bend bend = bend_of(s, turned(grain).in_body(tangents));
-      set_curvatures(grain.equal_radius, relative_curvatures(bend), tangents, o);
+      const PlanePrincipal relative = relative_curvatures(bend);
+      o.radius = grain.equal_radius;
+      o.lesser_curvature = relative.lesser;
+      o.greater_curvature = relative.greater;
+      o.major = across_of(relative, tangents);
     }
     return true;
   }
@@ -132,14 +139,6 @@ class SuperellipsoidStore {
   }
   static TurnedBody turned(const Grain& grain) {
     return {grain.shape, grain.turn, grain.farthest, grain.nearest};
-  }
-  /// `relative`: along the tangents, across which the greater axis of the contact ellipse is.
-  static void set_curvatures(double radius, const PlanePrincipal& relative, const Tangents& across,
-                             Overlap& o) {
-    o.radius = radius;
-    o.greater_curvature = relative.greater;
-    o.lesser_curvature = relative.lesser;
-    o.major = relative.along.x() * across.y - relative.along.y() * across.x;
   }
 
   std::vector<Grain> grains_;

@@ -96,6 +96,15 @@ Global search_all(const Body& i, const Body& j, const Vector3d& across, Random& 
   return out;
 }
 
+/// Of H_i + H_j.
+PlanePrincipal radii_at(const Body& i, const Body& j, const Vector3d& n) {
+  const Tangents t = tangents_of(n);
+  const auto bend = [&](const Body& b) {
+    return bend_of(support_of(b.shape, b.turn.transpose() * n), b.turned().in_body(t));
+  };
+  return principal_of(sum_of(bend(i), bend(j)));
+}
+
 struct Score {
   int pairs = 0, unsettled = 0, beside = 0;  // beside: not the least that there is
   double gap = 0, normal = 0, points = 0, middle = 0;
@@ -120,7 +129,7 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
     out.gap = std::max(out.gap, found.at.depth - global.depth);
     // Where the surfaces bend least, the search's normal is known best; across a flat face it may
     // have stopped short.
-    const PlanePrincipal radii = principal_of(sum_of(found.at.bend_i, found.at.bend_j));
+    const PlanePrincipal radii = radii_at(i, j, found.at.normal);
     const double off = found.at.normal.cross(global.normal).norm();
     if (found.at.settled && global.depth - found.at.depth < 1e-10) {
       out.normal = std::max(out.normal, off * std::sqrt(std::max(radii.lesser - depth, 0.0)));
