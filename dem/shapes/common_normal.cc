@@ -21,8 +21,9 @@ constexpr double kRoundOff = 4e-16;
 // From a saddle it goes on by this angle, rad.
 constexpr double kOffSaddle = 0.01;
 // Bodies that overlap by more than this share of the smaller one's least extent, and have no
-// memory, are looked at from their axes, too.
-constexpr double kDeep = 0.05;
+// memory, are looked at from their axes, too; and those with an exponent above kSharp, at whose
+// edges shallow overlaps have several leasts, whenever they come into touch.
+constexpr double kDeep = 0.05, kSharp = 1.3;
 // Below e = 2/3 the surface's points go with n's components by a power e/(2 - e) < 1/2, for which
 // Newton's method in n runs away.
 constexpr double kSteepPower = 0.5;
@@ -326,6 +327,8 @@ class Descent {
   int evaluations_ = 0;
 };
 
+bool is_sharp(const Superellipsoid& b) { return std::max(b.exponents[0], b.exponents[1]) > kSharp; }
+
 /// From the axes of both bodies, towards the other one; keeps the least depth.
 bool search_everywhere(Descent& search, const TurnedBody& i, const TurnedBody& j,
                        const Vector3d& across, CommonNormal& best) {
@@ -369,15 +372,15 @@ bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& acr
     out.depth = thickness(i, j, across, memory.normal);
     if (out.depth <= 0) return false;
   } else {
-    PairStep pair{&i, &j, across, &memory, &out};
-    step_pairs(&pair, 1, curvatures);
-    if (out.settled) return true;
+    const Stepped end = step_pair({&i, &j, across, &memory, &out}, curvatures);
+    memory.touching = end == Stepped::apart ? 0 : 1;
+    if (end != Stepped::neither) return end == Stepped::settled;
   }
   Descent search(i, j, across);
   bool touches = search.descend(memory.normal, memory.touching != 0, out);
-  if (touches && !knows && out.depth > kDeep * std::min(i.nearest, j.nearest)) {
-    touches = search_everywhere(search, i, j, across, out);
-  }
+  const bool deep = !knows && out.depth > kDeep * std::min(i.nearest, j.nearest);
+  const bool sharp = memory.touching == 0 && (is_sharp(i.shape) || is_sharp(j.shape));
+  if (touches && (deep || sharp)) touches = search_everywhere(search, i, j, across, out);
   memory.normal = out.normal;
   memory.touching = touches ? 1 : 0;
   return touches;

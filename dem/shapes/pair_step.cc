@@ -11,8 +11,10 @@ namespace {
 
 // Lanes 2k and 2k + 1 are the bodies i and j of pair k. What is of the pair stands in both.
 
-// A step is short, rad.
-constexpr double kShortStep = 0.05;
+// A step is short, rad, and another one may follow where it would change the depth by no more than
+// this share of it: there each step squares what the last one has left.
+constexpr double kShortStep = 0.03, kDepthNear = 1e-2;
+constexpr int kMostSteps = 3;
 
 template <int W>
 struct Vectors {
@@ -108,8 +110,12 @@ GRAINFIELD_INLINE LaneTensor<W> sum_of(const LaneBend<W>& b) {
           own + swapped<W>(own) + both};
 }
 
+/// From the normals `from`, by pair. How each ends: as Stepped, or (another) its normal is where to
+/// go on from.
+enum class End { settled, apart, neither, another };
 template <int W>
-GRAINFIELD_INLINE void step(PairStep* pairs, bool curvatures) {
+GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, bool curvatures,
+                            End* ends) {
   using V = Lanes<W>;
   const TurnedBody* bodies[W];
   Powers::OfNorm *level_powers[W], *whole_powers[W];
@@ -126,9 +132,9 @@ GRAINFIELD_INLINE void step(PairStep* pairs, bool curvatures) {
   const auto of_bodies = [&](auto get) {
     return lanes_of<W>([&](int k) { return get(*bodies[k]); });
   };
-  const Vectors<W> n{of_pairs([](const PairStep& p) { return p.memory->normal.x(); }),
-                     of_pairs([](const PairStep& p) { return p.memory->normal.y(); }),
-                     of_pairs([](const PairStep& p) { return p.memory->normal.z(); })};
+  const Vectors<W> n{lanes_of<W>([&](int k) { return from[k / 2].x(); }),
+                     lanes_of<W>([&](int k) { return from[k / 2].y(); }),
+                     lanes_of<W>([&](int k) { return from[k / 2].z(); })};
   const Vectors<W> across{of_pairs([](const PairStep& p) { return p.across.x(); }),
                           of_pairs([](const PairStep& p) { return p.across.y(); }),
                           of_pairs([](const PairStep& p) { return p.across.z(); })};
@@ -186,9 +192,11 @@ GRAINFIELD_INLINE void step(PairStep* pairs, bool curvatures) {
   const V fall = -(gx * step_x + gy * step_y);
   const V size = of_bodies([](const TurnedBody& t) { return t.farthest; });
   const V reach = kPointsLeft * (size + swapped<W>(size));
-  const auto settled = (f > 0) & (divisor > 0) & (trace > 2 * f) & (fall <= kDepthLeft * f) &
-                       (gx * gx + gy * gy <= reach * reach) &
-                       (step_x * step_x + step_y * step_y <= kShortStep * kShortStep);
+  const auto least_ahead = (f > 0) & (divisor > 0) & (trace > 2 * f) &
+                           (step_x * step_x + step_y * step_y <= kShortStep * kShortStep);
+  const auto settled =
+      least_ahead & (fall <= kDepthLeft * f) & (gx * gx + gy * gy <= reach * reach);
+  const auto another = least_ahead & (fall <= kDepthNear * f);
 
   const V moved = bend.weight * (bend.x * step_x + bend.y * step_y);
   const V moved2 = bend.weight2 * (bend.x2 * step_x + bend.y2 * step_y);
@@ -231,12 +239,14 @@ GRAINFIELD_INLINE void step(PairStep* pairs, bool curvatures) {
     along_y = apart >= 0 ? two : one;
   }
   for (int k = 0; k < W; k += 2) {
-    PairStep& pair = pairs[k / 2];
+    const PairStep& pair = pairs[k / 2];
     CommonNormal& out = *pair.out;
-    out.settled = settled[k] != 0;
-    out.evaluations = 1;
-    if (!out.settled) continue;
+    out.depth = f[k];
+    ends[k / 2] = f[k] <= 0 ? End::apart : another[k] != 0 ? End::another : End::neither;
+    if (settled[k] != 0) ends[k / 2] = End::settled;
+    if (ends[k / 2] == End::neither || ends[k / 2] == End::apart) continue;
     out.normal = {normal.x[k], normal.y[k], normal.z[k]};
+    if (ends[k / 2] == End::another) continue;
     out.depth = depth[k];
     out.point = {middle.x[k], middle.y[k], middle.z[k]};
     out.greater_curvature = greater[k];
@@ -244,14 +254,34 @@ GRAINFIELD_INLINE void step(PairStep* pairs, bool curvatures) {
     // Across the direction of the greater one.
     const double u = along_x[k], v = along_y[k];
     out.major = {u * ty.x[k] - v * tx.x[k], u * ty.y[k] - v * tx.y[k], u * ty.z[k] - v * tx.z[k]};
-    pair.memory->normal = out.normal;
   }
 }
 
 }  // namespace
 
-void step_pairs(PairStep* pairs, int count, bool curvatures) {
-  for (int k = 0; k < count; ++k) step<2>(pairs + k, curvatures);
+Stepped step_pair(PairStep pair, bool curvatures) {
+  Eigen::Vector3d from = pair.memory->normal;
+  double before = 0;
+  for (int n = 1; n <= kMostSteps; ++n) {
+    End end = End::neither;
+    step<2>(&pair, &from, curvatures, &end);
+    CommonNormal& out = *pair.out;
+    if (n > 1 && out.depth > before) return Stepped::neither;
+    if (end == End::settled) {
+      out.settled = true;
+      out.evaluations = n;
+      pair.memory->normal = out.normal;
+      return Stepped::settled;
+    }
+    if (end == End::apart) {
+      pair.memory->normal = from;
+      return Stepped::apart;
+    }
+    if (end == End::neither) return Stepped::neither;
+    from = out.normal;
+    before = out.depth;
+  }
+  return Stepped::neither;
 }
 
 }  // namespace grainfield::dem

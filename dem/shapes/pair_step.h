@@ -1,4 +1,5 @@
-// One of Newton's steps for pairs in contact (common_normal.h), for several pairs at a time.
+// The short steps of Newton's that a pair in contact takes (common_normal.h), for both bodies side
+// by side.
 #pragma once
 #include "dem/shapes/common_normal.h"
 
@@ -12,10 +13,13 @@ struct PairStep {
   PairNormal* memory = nullptr;                      ///< its powers are carried on
   CommonNormal* out = nullptr;
 };
+enum class Stepped {
+  settled,  ///< the contact is found, and remembered
+  apart,    ///< the remembered normal proves it
+  neither   ///< more has to be done than a few short steps
+};
 
-/// Steps from the remembered normals. A pair is settled when that is all it takes; when it is not,
-/// the bodies may be apart, or more steps are needed. The bits of a pair do not depend on the
-/// others nor on the processor.
-void step_pairs(PairStep* pairs, int count, bool curvatures);
+/// From the remembered normal by at most kMostSteps. The bits do not depend on the processor.
+Stepped step_pair(PairStep pair, bool curvatures);
 
 }  // namespace grainfield::dem

@@ -164,9 +164,9 @@ TEST(CommonNormal, IsTheLeastOfAGlobalSearch) {
 }
 
 // 4,000 of all exponents: at edges (e near 1.9, radius 0) a shallow overlap has several least
-// thicknesses; of 2,000 pairs with depths up to a hundredth a few stand in another one.
-TEST(CommonNormal, IsHardlyEverAnotherOneWithSharpEdgesAndFlatFaces) {
-  for (const auto& [least, most, beside] : {std::tuple(0.1, 0.3, 0), {0.1, 1.9, 3}}) {
+// thicknesses, and the search starts from the axes, too.
+TEST(CommonNormal, IsNoOtherOneWithSharpEdgesAndFlatFaces) {
+  for (const auto& [least, most, beside] : {std::tuple(0.1, 0.3, 0), {0.1, 1.9, 0}}) {
     const Score s = score(2, least, most, 1e-2, 2000);
     EXPECT_GT(s.pairs, 1990);
     EXPECT_LE(s.unsettled, 4) << least;
