@@ -88,8 +88,10 @@ class Interaction {
   static ContactForce<dim> force(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
                                  double dt, Memory& memory) {
     const ContactMotion<dim> motion = motion_at<central>(a, b, o);
-    if constexpr (dim == 3) {
+    if constexpr (dim == 3 && central) {
       turn_with_contact(memory.spring, o.normal, 0.5 * dt * (a.spin + b.spin).dot(o.normal), o);
+    } else if constexpr (dim == 3) {
+      turn_with_material(memory.spring, o.normal, 0.5 * dt * (a.spin + b.spin));
     }
     const LawForce<dim> f = rule.law(o, motion, rule.friction, dt, memory);
     return forces_at<central>(o, f.normal, f.tangential);

@@ -75,14 +75,17 @@ struct EllipticContact {
   double axis = 0;   ///< sqrt(m); eq. 18
   EllipseRatio shape;
 };
-inline EllipticContact elliptic_contact(double lesser, double greater) {
+inline EllipticContact contact_of(double lesser, double greater, const EllipseRatio& shape) {
   EllipticContact out;
-  out.shape = ellipse_ratio(greater / lesser);
-  const auto& [kappa, integrals] = out.shape;
+  out.shape = shape;
+  const auto& [kappa, integrals] = shape;
   const double k = integrals.k, e = k - (1 - 1 / (kappa * kappa)) * integrals.d;
   out.gamma = 2.0 / 3 * std::numbers::pi * kappa * std::sqrt(e / (k * k * k * (lesser + greater)));
   out.axis = std::sqrt(integrals.d / (lesser * k));
   return out;
+}
+inline EllipticContact elliptic_contact(double lesser, double greater) {
+  return contact_of(lesser, greater, ellipse_ratio(greater / lesser));
 }
 
 }  // namespace grainfield::dem

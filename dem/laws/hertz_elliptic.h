@@ -7,9 +7,10 @@
 //   l1 = 2 (1 + nu)/E, l2 = nu l1, 1/E* = 2 (1 - nu^2)/E: both bodies of one material
 //   the spring's force advances by -v_x dt/C_x, -v_y dt/C_y, capped at mu F_n
 //
-// The spring turns with the contact, as of every law (kinematics3.h: turn_with_contact): its axes
-// of compliance are those of the ellipse as it is. `tangential_memory` as of hertz (hertz.h): the
-// force shrinks with a while the contact unloads, or goes by a always. Never attractive.
+// The spring turns with the material (kinematics3.h: turn_with_material), its increments are along
+// the axes of the ellipse as it is: where the ellipse turns against the material the force stays,
+// and where it is round, and has no axes, nothing depends on them. `tangential_memory` as of hertz:
+// the force shrinks with a while the contact unloads, or goes by a always. Never attractive.
 //
 // Where a surface is flat or has an edge a radius of curvature is infinite or 0, and Hertz'
 // paraboloids are none. So radii 1/(2A), 1/(2B) count within least_radius and most_radius times R,
@@ -23,7 +24,7 @@
 
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
-#include "dem/laws/elliptic.h"
+#include "dem/laws/ellipse_table.h"
 #include "dem/laws/hertz.h"
 #include "dem/laws/material_setup.h"
 #include "dem/words/nearest.h"
@@ -60,7 +61,7 @@ struct HertzEllipticLaw {
   EllipticContact ellipse(const Overlap3& o) const {
     const double least = 0.5 / (most_radius * o.radius), most = 0.5 / (least_radius * o.radius);
     const auto within = [&](double c) { return std::min(std::max(c, least), most); };
-    return elliptic_contact(within(o.lesser_curvature), within(o.greater_curvature));
+    return EllipseTable::get().contact(within(o.lesser_curvature), within(o.greater_curvature));
   }
   /// C_x and C_y, m/N, of a contact with the greater semi-axis a, m.
   struct Compliances {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/shapes/pair_step.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
@@ -10,10 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A step is the last one when it would change the depth by less than this share of it, and the
-// points lie across each other within this share of both sizes: what is left of the depth is of
-// third order.
-constexpr double kDepthLeft = 1e-9, kPointsLeft = 1e-4;
 // Steps from a start; more are taken where flat faces lie on each other only.
 constexpr int kMostEvaluations = 100;
 // A step goes at most so far, rad, and is shortened by this factor until f falls as it should.
@@ -24,8 +21,9 @@ constexpr double kRoundOff = 4e-16;
 // From a saddle it goes on by this angle, rad.
 constexpr double kOffSaddle = 0.01;
 // Bodies that overlap by more than this share of the smaller one's least extent, and have no
-// memory, are looked at from their axes, too.
-constexpr double kDeep = 0.05;
+// memory, are looked at from their axes, too; and those with an exponent above kSharp, at whose
+// edges shallow overlaps have several leasts, whenever they come into touch.
+constexpr double kDeep = 0.05, kSharp = 1.3;
 // Below e = 2/3 the surface's points go with n's components by a power e/(2 - e) < 1/2, for which
 // Newton's method in n runs away.
 constexpr double kSteepPower = 0.5;
@@ -232,7 +230,7 @@ class Descent {
     View view = view_of(i_, j_, start);
     Look at = evaluate(view);
     for (;;) {
-      if (!(at.f > 0)) return apart(view, out);
+      if (!(at.f > 0)) return apart(view, at, out);
       const Step step = newton_step(at, view.n);
       const double fall = -at.gradient.dot(step.by);  // twice what f loses
       if (step.least && fall <= kDepthLeft * at.f &&
@@ -250,7 +248,7 @@ class Descent {
       if (bound && start.dot(view.n) < rotation_of(kMostTurn).cosine) {
         view = view_of(i_, j_, turned_at_most(start, view.n));
         at = evaluate(view);
-        if (!(at.f > 0)) return apart(view, out);
+        if (!(at.f > 0)) return apart(view, at, out);
         tell(view.n, at, Vector3d::Zero(), false, out);
         return true;
       }
@@ -266,8 +264,9 @@ class Descent {
     ++evaluations_;
     return look(i_, j_, across_, view);
   }
-  static bool apart(const View& view, CommonNormal& out) {
+  static bool apart(const View& view, const Look& at, CommonNormal& out) {
     out.normal = view.n;
+    out.depth = at.f;
     return false;
   }
 
@@ -309,9 +308,17 @@ class Descent {
     const Vector3d on_i = at.x_i + bent(&at.bend[0], by);
     const Vector3d on_j = across_ - at.x_j - bent(&at.bend[2], by);
     out.point = 0.5 * (on_i + on_j);
-    out.bend = at.bend;
+    const Tangents t = tangents_of(n);
+    set_curvatures(relative_curvatures(bend_of(at.i, i_.in_body(t)), bend_of(at.j, j_.in_body(t))),
+                   t, out);
     out.settled = settled;
     out.evaluations = evaluations_;
+  }
+
+  static void set_curvatures(const PlanePrincipal& relative, const Tangents& t, CommonNormal& out) {
+    out.lesser_curvature = relative.lesser;
+    out.greater_curvature = relative.greater;
+    out.major = across_of(relative, t);
   }
 
   const TurnedBody &i_, &j_;
@@ -319,6 +326,8 @@ class Descent {
   const double size_;
   int evaluations_ = 0;
 };
+
+bool is_sharp(const Superellipsoid& b) { return std::max(b.exponents[0], b.exponents[1]) > kSharp; }
 
 /// From the axes of both bodies, towards the other one; keeps the least depth.
 bool search_everywhere(Descent& search, const TurnedBody& i, const TurnedBody& j,
@@ -346,8 +355,9 @@ double thickness(const TurnedBody& i, const TurnedBody& j, const Vector3d& acros
 }
 
 bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& across,
-                   PairNormal& memory, CommonNormal& out) {
+                   PairNormal& memory, CommonNormal& out, bool curvatures) {
   out.evaluations = 0;
+  out.depth = 0;
   const double reach = i.farthest + j.farthest;
   if (across.squaredNorm() >= reach * reach) {
     memory.touching = 0;
@@ -358,12 +368,19 @@ bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& acr
     memory.normal =
         across.squaredNorm() > 0 ? Vector3d(across.normalized()) : Vector3d(i.turn.col(2));
   }
-  if (memory.touching == 0 && thickness(i, j, across, memory.normal) <= 0) return false;
+  if (memory.touching == 0) {
+    out.depth = thickness(i, j, across, memory.normal);
+    if (out.depth <= 0) return false;
+  } else {
+    const Stepped end = step_pair({&i, &j, across, &memory, &out}, curvatures);
+    memory.touching = end == Stepped::apart ? 0 : 1;
+    if (end != Stepped::neither) return end == Stepped::settled;
+  }
   Descent search(i, j, across);
   bool touches = search.descend(memory.normal, memory.touching != 0, out);
-  if (touches && !knows && out.depth > kDeep * std::min(i.nearest, j.nearest)) {
-    touches = search_everywhere(search, i, j, across, out);
-  }
+  const bool deep = !knows && out.depth > kDeep * std::min(i.nearest, j.nearest);
+  const bool sharp = memory.touching == 0 && (is_sharp(i.shape) || is_sharp(j.shape));
+  if (touches && (deep || sharp)) touches = search_everywhere(search, i, j, across, out);
   memory.normal = out.normal;
   memory.touching = touches ? 1 : 0;
   return touches;

@@ -18,7 +18,9 @@
 // depth nor normal leaps.
 #pragma once
 #include <cstdint>
+#include <limits>
 
+#include "dem/shapes/dual_norm.h"
 #include "dem/shapes/superellipsoid.h"
 
 namespace grainfield::dem {
@@ -27,14 +29,18 @@ namespace grainfield::dem {
 /// their size in a step can do, except round edges.
 inline constexpr double kMostTurn = 0.1;
 
-/// What a pair remembers: where it has looked last. All 0: nothing yet.
+/// What a pair remembers: where it has looked last. No normal: nothing yet.
 struct PairNormal {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the first towards the second
   std::int64_t touching = 0;                         ///< 1: they did
+  /// For whom keeps account of how far bodies have turned (superellipsoid_store.h): they are apart
+  /// while n.D is above this and that, m.
+  double clear = std::numeric_limits<double>::infinity();
+  Powers powers_i, powers_j;
 
   bool empty() const { return normal.isZero(0); }
   /// Seen from the second.
-  PairNormal reversed() const { return {-normal, touching}; }
+  PairNormal reversed() const { return {-normal, touching, clear, powers_j, powers_i}; }
 };
 
 /// A superellipsoid and how it is turned: from the body frame to space.
@@ -42,21 +48,32 @@ struct TurnedBody {
   const Superellipsoid& shape;
   const Eigen::Matrix3d& turn;
   double farthest = 0, nearest = 0;  ///< points of the surface from the centre, m
+
+  Tangents in_body(const Tangents& t) const {
+    return {turn.transpose() * t.x, turn.transpose() * t.y};
+  }
 };
 
 struct CommonNormal {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the first towards the second
-  double depth = 0;                                  ///< m, above 0
+  double depth = 0;                                  ///< m; apart: f at the normal, 0 or below
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< middle of both surfaces, from centre i, m
-  std::array<Square, 4> bend;                        ///< of both: H_i, H_j, m, in space
-  int evaluations = 0;                               ///< of f with its derivatives
-  bool settled = false;                              ///< n has come to rest
+  /// Relative curvatures A <= B, 1/m, and the direction of A: unit. Only when asked for.
+  double lesser_curvature = 0, greater_curvature = 0;
+  Eigen::Vector3d major = Eigen::Vector3d::UnitX();
+  int evaluations = 0;   ///< of f with its derivatives
+  bool settled = false;  ///< n has come to rest
 };
+
+// A step is the last one when it would change the depth by less than this share of it, and the
+// points lie across each other within this share of both sizes: what is left of the depth is of
+// third order.
+inline constexpr double kDepthLeft = 1e-9, kPointsLeft = 1e-4;
 
 /// False when they are apart. `across`: D, m. Starts from the remembered normal, without one from
 /// the line of centres; where the bodies overlap deeply then, also from their axes.
 bool common_normal(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,
-                   PairNormal& memory, CommonNormal& out);
+                   PairNormal& memory, CommonNormal& out, bool curvatures = false);
 
 /// f at n, m.
 double thickness(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,

@@ -7,16 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/shapes/dual_norm.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
 namespace {
-
-// |r_k n_k| counts as at least this share of the greatest of them, so that powers stay finite. Even
-// at e = 0.1 it is less than 0.1 % of a semi-axis from the middle of a face.
-constexpr double kLeastShare = 1e-60;
-// On edges, where weights underflow; far below what any law takes for a radius.
-constexpr double kLeastWeight = 1e-80;
 
 /// (a^P + b^P)^(1/P) of a, b > 0, and its derivatives.
 struct Norm {
@@ -34,24 +29,21 @@ double norm_size(double a, double b, double power) {
 }
 
 Norm norm_of(double a, double b, double power) {
-  Norm out;
   const bool swapped = b > a;
   const double most = swapped ? b : a, least = swapped ? a : b, ratio = least / most;
-  // Of the greater one: its share, and over the size.
-  double share = 1, part = 1;
+  double share = ratio * ratio, root = 1;
   if (power == 2) {
-    share = ratio * ratio;
-    const double root = std::sqrt(1 + share);
-    out.size = most * root;
-    part = 1 / root;
+    root = std::sqrt(1 + share);
   } else {
-    share = exponential(power * natural_log(ratio));
-    const double root = exponential(natural_log(1 + share) / power);
-    out.size = most * root;
-    part = 1 / root;
+    const Powers::OfNorm at = powers_at(ratio, power);
+    share = at.share;
+    root = at.root;
   }
-  const double whole = 1 + share, rest = ratio * part;
+  // Of the greater one: over the size.
+  const double part = 1 / root, whole = 1 + share, rest = ratio * part;
   const double pull_most = 1 / (whole * part), pull_least = share / (whole * rest);
+  Norm out;
+  out.size = most * root;
   out.bend = (power - 1) * pull_most * pull_least / (part * rest);
   out.a = swapped ? rest : part;
   out.b = swapped ? part : rest;
@@ -65,6 +57,28 @@ Eigen::Vector3d scaled(const Superellipsoid& body, const Eigen::Vector3d& n) {
   return a.cwiseMax(kLeastShare * a.maxCoeff());
 }
 
+/// Half the inverse: that of c1 u1 u1' + c2 u2 u2' has 1/(c2 v^2) for n x u1 and 1/(c1 v^2) for
+/// n x u2, v = |u1 x u2|.
+Bend half_inverse(const Bend& bend) {
+  const double half = 0.5 / (bend.area * bend.area);
+  const auto& [one, two] = bend.squares;
+  Bend out;
+  out.squares[0] = {half / std::max(two.weight, kLeastWeight), -one.y, one.x};
+  out.squares[1] = {half / std::max(one.weight, kLeastWeight), -two.y, two.x};
+  out.area = bend.area;
+  return out;
+}
+
+void add(const Bend& bend, PlaneTensor& sum) {
+  const auto& [one, two] = bend.squares;
+  for (const auto& s : {one, two}) {
+    sum.xx += s.weight * s.x * s.x;
+    sum.xy += s.weight * s.x * s.y;
+    sum.yy += s.weight * s.y * s.y;
+  }
+  sum.determinant += one.weight * two.weight * bend.area * bend.area;
+}
+
 /// Squared distance of the farthest and of the nearest point of a superellipse, of squared
 /// semi-axes: by Hoelder's inequality their norm of the power p/(p - 2) = 1/(1 - e) where e is
 /// below (above) 1.
@@ -76,6 +90,11 @@ double nearest_pair(double a, double b, double exponent) {
 }
 
 }  // namespace
+
+Powers::OfNorm powers_at(double ratio, double power) {
+  const double share = exponential(power * natural_log(ratio));
+  return {1 / ratio, share, exponential(natural_log(1 + share) / power)};
+}
 
 Superellipsoid superellipsoid(const std::array<double, 3>& axes,
                               const std::array<double, 2>& exponents) {
@@ -175,6 +194,7 @@ Support support_of(const Superellipsoid& body, const Eigen::Vector3d& n) {
   out.bend[0] = {whole.pull_a * level.bend / level.size, {r[0] * level.b, -r[1] * level.a, 0}};
   out.bend[1] = {whole.bend / whole.size,
                  {whole.b * slope[0], whole.b * slope[1], -whole.a * r[2]}};
+  out.area = body.axes[0] * body.axes[1] * body.axes[2] / whole.size;
   return out;
 }
 
@@ -217,18 +237,58 @@ Principal principal_of(const Eigen::Vector3d& n, const Square* squares, int coun
   return out;
 }
 
-Principal relative_curvatures(const Eigen::Vector3d& n, const Square* squares, int count) {
-  // The inverse of c1 u1 u1' + c2 u2 u2' across n has 1/(c2 v^2) for n x u1 and 1/(c1 v^2) for
-  // n x u2, v = n.(u1 x u2).
-  std::array<Square, 4> inverse;
-  for (int k = 0; k < count; k += 2) {
-    const Square &one = squares[k], &two = squares[k + 1];
-    const double across = n.dot(one.along.cross(two.along));
-    const double half = 0.5 / (across * across);
-    inverse[k] = {half / std::max(two.weight, kLeastWeight), n.cross(one.along)};
-    inverse[k + 1] = {half / std::max(one.weight, kLeastWeight), n.cross(two.along)};
+// Duff et al. 2017.
+Tangents tangents_of(const Eigen::Vector3d& n) {
+  const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
+  return {{1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()},
+          {b, sign + n.y() * n.y() * a, -n.y()}};
+}
+
+Bend bend_of(const Support& support, const Tangents& in_body) {
+  Bend out;
+  for (int k = 0; k < 2; ++k) {
+    const auto& [weight, along] = support.bend[k];
+    out.squares[k] = {weight, along.dot(in_body.x), along.dot(in_body.y)};
   }
-  return principal_of(n, inverse.data(), count);
+  out.area = support.area;
+  return out;
+}
+
+PlaneTensor sum_of(const Bend& i, const Bend& j) {
+  PlaneTensor sum;
+  add(i, sum);
+  add(j, sum);
+  for (const auto& s : i.squares) {
+    for (const auto& t : j.squares) {
+      const double area = s.x * t.y - s.y * t.x;
+      sum.determinant += s.weight * t.weight * area * area;
+    }
+  }
+  return sum;
+}
+
+PlanePrincipal principal_of(const PlaneTensor& t) {
+  const double apart = t.xx - t.yy, root = std::sqrt(apart * apart + 4 * t.xy * t.xy);
+  PlanePrincipal out;
+  out.greater = 0.5 * ((t.xx + t.yy) + root);
+  if (!(out.greater > 0)) return out;
+  out.lesser = t.determinant / out.greater;
+  // Of an eigenvector both forms hold; the longer one is without a difference.
+  const double straight = 0.5 * (std::fabs(apart) + root);
+  const double size = std::sqrt(straight * straight + t.xy * t.xy);
+  if (!(size > 0)) return out;
+  const double c = straight / size, d = t.xy / size;
+  out.along = apart >= 0 ? Eigen::Vector2d(c, d) : Eigen::Vector2d(d, c);
+  return out;
+}
+
+PlanePrincipal relative_curvatures(const Bend& i, const Bend& j) {
+  return principal_of(sum_of(half_inverse(i), half_inverse(j)));
+}
+PlanePrincipal relative_curvatures(const Bend& i) {
+  PlaneTensor only;
+  add(half_inverse(i), only);
+  return principal_of(only);
 }
 
 }  // namespace grainfield::dem

@@ -68,6 +68,7 @@ struct Support {
   double height = 0;                                ///< h, m
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< from the centre, m
   std::array<Square, 2> bend;                       ///< H = sum weight along along', m
+  double area = 0;                                  ///< |n.(u1 x u2)|, m2
 };
 
 /// `n`: unit, in the body frame.
@@ -82,10 +83,46 @@ struct Principal {
 };
 Principal principal_of(const Eigen::Vector3d& n, const Square* squares, int count);
 
-/// The relative curvatures A <= B, 1/m, of surfaces with these Hessians (pairs of squares, one pair
-/// for each body), and the direction of B: of half the sum of both curvature tensors, which is what
-/// Wellmann's eqs. 9 and 10 say without angles.
-Principal relative_curvatures(const Eigen::Vector3d& n, const Square* squares, int count);
+/// Unit vectors x and y = n cross x.
+struct Tangents {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero(), y = Eigen::Vector3d::Zero();
+};
+Tangents tangents_of(const Eigen::Vector3d& n);
+
+/// The Hessian of one body in the plane of two tangents.
+struct Bend {
+  struct Square {
+    double weight = 0, x = 0, y = 0;
+  };
+  std::array<Square, 2> squares;
+  double area = 0;  ///< |u1 x u2|: known without a difference
+};
+/// `x`, `y`: the tangents in the body frame.
+Bend bend_of(const Support& support, const Tangents& in_body);
+
+/// A symmetric tensor in the plane.
+struct PlaneTensor {
+  double xx = 0, xy = 0, yy = 0;
+  double determinant = 0;  ///< a sum of positive terms (Cauchy and Binet), not by a difference
+};
+/// The sum of both Hessians.
+PlaneTensor sum_of(const Bend& i, const Bend& j);
+
+/// Eigenvalues of a symmetric tensor in the plane, and the direction of the greater one.
+struct PlanePrincipal {
+  double greater = 0, lesser = 0;
+  Eigen::Vector2d along = Eigen::Vector2d::UnitX();
+};
+PlanePrincipal principal_of(const PlaneTensor& tensor);
+/// The relative curvatures A <= B, 1/m, and the direction of B: of half the sum of both curvature
+/// tensors, which is what Wellmann's eqs. 9 and 10 say without angles; of the first one alone where
+/// the other body is flat.
+PlanePrincipal relative_curvatures(const Bend& i, const Bend& j);
+PlanePrincipal relative_curvatures(const Bend& i);
+/// The direction of the lesser one in space: unit.
+inline Eigen::Vector3d across_of(const PlanePrincipal& p, const Tangents& t) {
+  return p.along.x() * t.y - p.along.y() * t.x;
+}
 
 /// Principal radii of curvature, m, and the direction of the greater one.
 inline Principal radii_of(const Eigen::Vector3d& n, const Support& support) {

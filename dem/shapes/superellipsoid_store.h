@@ -1,6 +1,8 @@
 // Superellipsoids as the engine keeps them: their shapes, and how they are turned.
 #pragma once
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -37,12 +39,22 @@ class SuperellipsoidStore {
     const Solid<3> solid = solid_of(grain.shape);
     grain.farthest = solid.radius;
     grain.nearest = nearest_of(grain.shape);
+    // dh = |(x cross n) . turn|, |x cross n|^2 = x^2 - h^2.
+    grain.lever =
+        std::sqrt(std::max(grain.farthest * grain.farthest - grain.nearest * grain.nearest, 0.0));
     grain.equal_radius = cube_root(solid.volume / (4.0 / 3 * std::numbers::pi));
     grains_.push_back(grain);
     return solid;
   }
   void place(int i, const Body<3>&, const RotationOf<3>& rotation) {
-    grains_[i].turn = rotation.toRotationMatrix();
+    Grain& grain = grains_[i];
+    const double chord =
+        std::sqrt(std::min((rotation.coeffs() - grain.rotation.coeffs()).squaredNorm(),
+                           (rotation.coeffs() + grain.rotation.coeffs()).squaredNorm()));
+    // The angle is 4 asin(chord/2), and asin x <= x + (pi/2 - 1) x^3.
+    grain.swept += grain.lever * 2 * chord * (1 + 0.15 * chord * chord);
+    grain.rotation = rotation;
+    grain.turn = rotation.toRotationMatrix();
   }
   void swap(int i, int j) { std::swap(grains_[i], grains_[j]); }
   void sort(const std::vector<int>& order) {
@@ -58,16 +70,25 @@ class SuperellipsoidStore {
                Overlap& o) const {
     const Grain &first = grains_[i], &second = grains_[j];
     const Eigen::Vector3d across = b.position - a.position;
+    const double swept = first.swept + second.swept;
+    if (across.dot(feature.normal) > feature.clear + swept) return false;
+    constexpr bool curvatures = measures == Measures::curvatures;
     CommonNormal contact;
-    if (!common_normal(turned(first), turned(second), across, feature, contact)) return false;
+    if (!common_normal(turned(first), turned(second), across, feature, contact, curvatures)) {
+      if (contact.depth < 0) feature.clear = across.dot(feature.normal) + contact.depth - swept;
+      return false;
+    }
+    feature.clear = std::numeric_limits<double>::infinity();
     o.normal = contact.normal;
     o.depth = contact.depth;
     o.arm_i = contact.point;
     o.arm_j = contact.point - across;
-    if constexpr (measures == Measures::curvatures) {
-      set_curvatures(
-          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius),
-          relative_curvatures(contact.normal, contact.bend.data(), 4), o);
+    if constexpr (curvatures) {
+      o.radius =
+          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius);
+      o.lesser_curvature = contact.lesser_curvature;
+      o.greater_curvature = contact.greater_curvature;
+      o.major = contact.major;
     }
     return true;
   }
@@ -78,16 +99,20 @@ class SuperellipsoidStore {
     if (height >= a.radius) return false;
     const Grain& grain = grains_[i];
     const Eigen::Vector3d n = -plane.normal, in_body = grain.turn.transpose() * n;
-    if (height_of(grain.shape, in_body) <= height) return false;
     const Support s = support_of(grain.shape, in_body);
+    if (s.height <= height) return false;
     o.normal = n;
     o.depth = s.height - height;
     o.arm_i = grain.turn * s.point - 0.5 * o.depth * n;
     o.arm_j = Eigen::Vector3d::Zero();  // a wall does not turn
     if constexpr (measures == Measures::curvatures) {
-      Principal relative = relative_curvatures(in_body, s.bend.data(), 2);
-      relative.along = grain.turn * relative.along;
-      set_curvatures(grain.equal_radius, relative, o);
+      const Tangents tangents = tangents_of(n);
+      const Bend bend = bend_of(s, turned(grain).in_body(tangents));
+      const PlanePrincipal relative = relative_curvatures(bend);
+      o.radius = grain.equal_radius;
+      o.lesser_curvature = relative.lesser;
+      o.greater_curvature = relative.greater;
+      o.major = across_of(relative, tangents);
     }
     return true;
   }
@@ -103,6 +128,9 @@ class SuperellipsoidStore {
     Superellipsoid shape;
     double farthest = 0, nearest = 0;  ///< points of the surface from the centre, m
     double equal_radius = 0;           ///< of the sphere of equal volume, m
+    double lever = 0;  ///< by how much the height of any normal changes a radian at most, m
+    double swept = 0;  ///< and what it may have changed by so far, m
+    RotationOf<3> rotation = RotationOf<3>::Identity();
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   };
 
@@ -111,12 +139,6 @@ class SuperellipsoidStore {
   }
   static TurnedBody turned(const Grain& grain) {
     return {grain.shape, grain.turn, grain.farthest, grain.nearest};
-  }
-  static void set_curvatures(double radius, const Principal& relative, Overlap& o) {
-    o.radius = radius;
-    o.greater_curvature = relative.greater;
-    o.lesser_curvature = relative.lesser;
-    o.major = o.normal.cross(relative.along);
   }
 
   std::vector<Grain> grains_;

@@ -52,4 +52,33 @@ inline void turn_with_contact(Eigen::Vector3d& spring, const Eigen::Vector3d& no
   if (now > 0) spring *= size / now;
 }
 
+/// v turned by `turn` (rad, its direction the axis).
+inline Eigen::Vector3d turned_by(const Eigen::Vector3d& turn, const Eigen::Vector3d& v) {
+  // Rodrigues: with t along the axis, |t| = tan(angle/2), v + 2/(1 + t^2) (t x v + t x (t x v)).
+  const double square = turn.squaredNorm();
+  double share =
+      0.5 * (1 + square * (1.0 / 12 + square * (1.0 / 120 + square * (17.0 / 20160 +
+                                                                      square * (31.0 / 362880)))));
+  if (!(square < 1e-2)) {  // beyond it the series' next term counts
+    const double angle = std::sqrt(square);
+    const Rotation half = rotation_of(0.5 * angle);
+    share = half.sine / (half.cosine * angle);
+  }
+  const Eigen::Vector3d t = share * turn, once = t.cross(v);
+  return v + 2 / (1 + t.squaredNorm()) * (once + t.cross(once));
+}
+
+/// The same where the points in contact do not lie on the line of centres: the spring turns with
+/// the material, by the mean turn of both bodies (rad), exactly, then into the plane across
+/// `normal`.
+inline void turn_with_material(Eigen::Vector3d& spring, const Eigen::Vector3d& normal,
+                               const Eigen::Vector3d& turn) {
+  const double size = spring.norm();
+  if (!(size > 0)) return;
+  spring = turned_by(turn, spring);
+  spring -= spring.dot(normal) * normal;
+  const double now = spring.norm();
+  if (now > 0) spring *= size / now;
+}
+
 }  // namespace grainfield::dem

@@ -96,6 +96,15 @@ Global search_all(const Body& i, const Body& j, const Vector3d& across, Random& 
   return out;
 }
 
+/// Of H_i + H_j.
+PlanePrincipal radii_at(const Body& i, const Body& j, const Vector3d& n) {
+  const Tangents t = tangents_of(n);
+  const auto bend = [&](const Body& b) {
+    return bend_of(support_of(b.shape, b.turn.transpose() * n), b.turned().in_body(t));
+  };
+  return principal_of(sum_of(bend(i), bend(j)));
+}
+
 struct Score {
   int pairs = 0, unsettled = 0, beside = 0;  // beside: not the least that there is
   double gap = 0, normal = 0, points = 0, middle = 0;
@@ -120,7 +129,7 @@ Score score(std::uint64_t seed, double least, double most, double depth, int pai
     out.gap = std::max(out.gap, found.at.depth - global.depth);
     // Where the surfaces bend least, the search's normal is known best; across a flat face it may
     // have stopped short.
-    const Principal radii = principal_of(found.at.normal, found.at.bend.data(), 4);
+    const PlanePrincipal radii = radii_at(i, j, found.at.normal);
     const double off = found.at.normal.cross(global.normal).norm();
     if (found.at.settled && global.depth - found.at.depth < 1e-10) {
       out.normal = std::max(out.normal, off * std::sqrt(std::max(radii.lesser - depth, 0.0)));
@@ -155,9 +164,9 @@ TEST(CommonNormal, IsTheLeastOfAGlobalSearch) {
 }
 
 // 4,000 of all exponents: at edges (e near 1.9, radius 0) a shallow overlap has several least
-// thicknesses; of 2,000 pairs with depths up to a hundredth a few stand in another one.
-TEST(CommonNormal, IsHardlyEverAnotherOneWithSharpEdgesAndFlatFaces) {
-  for (const auto& [least, most, beside] : {std::tuple(0.1, 0.3, 0), {0.1, 1.9, 3}}) {
+// thicknesses, and the search starts from the axes, too.
+TEST(CommonNormal, IsNoOtherOneWithSharpEdgesAndFlatFaces) {
+  for (const auto& [least, most, beside] : {std::tuple(0.1, 0.3, 0), {0.1, 1.9, 0}}) {
     const Score s = score(2, least, most, 1e-2, 2000);
     EXPECT_GT(s.pairs, 1990);
     EXPECT_LE(s.unsettled, 4) << least;

@@ -83,6 +83,33 @@ TEST(HertzElliptic, RatioHoldsFarBeyondAndNextToRound) {
   EXPECT_EQ(ellipse_ratio(1).kappa, 1);
 }
 
+// The table against what it was made from, of any ratio, at the parts' ends and beyond it.
+TEST(HertzElliptic, TableIsWhatIsSolvedFor) {
+  Random random(5);
+  double worst = 0;
+  const auto compare = [&](double ratio) {
+    const EllipticContact solved = elliptic_contact(0.7, 0.7 * ratio);
+    const EllipticContact found = EllipseTable::get().contact(0.7, 0.7 * ratio);
+    const auto &a = solved.shape, &b = found.shape;
+    for (const auto& [x, y] : {std::pair(solved.gamma, found.gamma),
+                               {solved.axis, found.axis},
+                               {a.kappa, b.kappa},
+                               {a.integrals.k, b.integrals.k},
+                               {a.integrals.b, b.integrals.b},
+                               {a.integrals.d, b.integrals.d}}) {
+      worst = std::max(worst, std::fabs(y / x - 1));
+    }
+  };
+  for (int k = 0; k < 20000; ++k) compare(std::pow(10, random.uniform(0, 7)));
+  for (int k = 8; k < 8 * 21; ++k) {
+    const double end = std::ldexp(1 + k % 8 / 8.0, k / 8 - 1);
+    for (const double ratio : {end, std::nextafter(end, 1e9), std::nextafter(end, 1.0)}) {
+      compare(std::max(ratio, 1.0));
+    }
+  }
+  EXPECT_LT(worst, 1e-12);
+}
+
 TEST(HertzElliptic, OfSpheresIsHertz) {
   const double radius = 0.3;
   const EllipticContact c = elliptic_contact(0.5 / radius, 0.5 / radius);
