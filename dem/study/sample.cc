@@ -49,7 +49,11 @@ class SampleRun final : public ArchivedRun {
   bool is_led_now() const { return any_led(plan_, phases_.now()); }
   long every() const;
   double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
-  double strain() const { return strain_in(plan_, phases_.now(), in_phase()); }
+  /// So many steps from now.
+  double strain(long steps = 0) const {
+    const double step = engine_->time_step();
+    return strain_in(plan_, phases_.now(), in_phase() + static_cast<double>(steps) * step, step);
+  }
   Vec3 pressure() const { return held_pressure(plan_, *engine_); }
   double fraction() const { return solid_fraction(plan_, *engine_, solid_volume_); }
   double compressed() const {
@@ -235,9 +239,7 @@ void SampleRun::decide_deformation() {
     return;
   }
   if (tilts(plan_)) {
-    tilt_sides(*engine_, plan_,
-               strain_in(plan_, before, in_phase() + kTiltEvery * engine_->time_step()),
-               kTiltEvery);
+    tilt_sides(*engine_, plan_, strain(kTiltEvery), kTiltEvery);
   }
   if (is_led_now() && phases_.is_due(kCheckEvery)) note_error();
 }
@@ -253,8 +255,7 @@ void SampleRun::decide_compression() {
 }
 
 Phase SampleRun::after_rest() const {
-  if (phases_.now() == Phase::settle || !settles(plan_)) return Phase::deform;
-  return plan_.precompression > 0 ? Phase::precompress : Phase::settle;
+  return phases_.now() == Phase::rest && precompresses(plan_) ? Phase::precompress : Phase::deform;
 }
 
 void SampleRun::decide_rest() {
@@ -279,8 +280,7 @@ void SampleRun::lead() {
   if (!states_.empty()) first = sample_state(*states_.front()).edges.diagonal();
   lead_walls(*engine_, plan_, now, box_, first);
   if (deforms(now) && tilts(plan_)) {
-    tilt_sides(*engine_, plan_,
-               strain_in(plan_, now, in_phase() + kTiltEvery * engine_->time_step()), kTiltEvery);
+    tilt_sides(*engine_, plan_, strain(kTiltEvery), kTiltEvery);
   }
 }
 

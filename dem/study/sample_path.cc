@@ -12,8 +12,7 @@ bool is_led(const SamplePlan& p, SamplePhase phase, int axis) {
     if (p.deformation == "axial") return axis != last;
     return shears(p) && p.constant == "stress" && axis == last;
   }
-  if (phase == SamplePhase::precompress) return false;
-  if (phase == SamplePhase::settle && p.precompression > 0) return false;
+  if (phase == SamplePhase::precompress || phase == SamplePhase::settle) return false;
   return compresses_to_pressure(p) && compresses(p, axis);
 }
 
@@ -46,9 +45,10 @@ long steps_to(const SamplePlan& p, double strain, double time_step) {
   return high;
 }
 
-double strain_in(const SamplePlan& p, SamplePhase phase, double time) {
+double strain_in(const SamplePlan& p, SamplePhase phase, double time, double time_step) {
   const double passed = strain_at(p, time);
-  return phase == SamplePhase::unload ? p.strain - passed : passed;
+  if (phase != SamplePhase::unload) return passed;
+  return strain_at(p, static_cast<double>(steps_to(p, p.strain, time_step)) * time_step) - passed;
 }
 
 }  // namespace grainfield::dem

@@ -4,7 +4,7 @@
 
 namespace grainfield::dem {
 
-/// compress -> rest -> (precompress) -> (settle) -> deform -> (unload) -> done; those in brackets
+/// compress -> rest -> (precompress -> settle) -> deform -> (unload) -> done; those in brackets
 /// where the plan asks for them.
 enum class SamplePhase : int { compress, rest, precompress, settle, deform, unload, done };
 
@@ -17,8 +17,8 @@ inline bool tilts(const SamplePlan& p) {
 }
 inline bool unloads(const SamplePlan& p) { return p.unload != "none"; }
 inline bool has_other_friction(const SamplePlan& p) { return p.prepared_with == "other_friction"; }
-/// Whether it is brought to rest once more before it is deformed.
-inline bool settles(const SamplePlan& p) { return has_other_friction(p) || p.precompression > 0; }
+/// Whether it is shortened along the last axis, and rests once more, before the first state.
+inline bool precompresses(const SamplePlan& p) { return p.precompression > 0; }
 /// The deformation goes on, forwards or back.
 inline bool deforms(SamplePhase phase) {
   return phase == SamplePhase::deform || phase == SamplePhase::unload;
@@ -39,7 +39,8 @@ bool any_led(const SamplePlan& plan, SamplePhase phase);
 double strain_at(const SamplePlan& plan, double time);
 /// Steps until it is reached.
 long steps_to(const SamplePlan& plan, double strain, double time_step);
-/// Strain against the first state, `time` s after the beginning of deform or unload.
-double strain_in(const SamplePlan& plan, SamplePhase phase, double time);
+/// Strain against the first state, `time` s after the beginning of deform or unload, which begins
+/// at what whole steps have reached.
+double strain_in(const SamplePlan& plan, SamplePhase phase, double time, double time_step);
 
 }  // namespace grainfield::dem

@@ -68,9 +68,9 @@ struct SamplePlan {
 
 /// Grains in a periodic cell or between walls are compressed, rest and are deformed, without
 /// gravity: compress -> rest -> snapshot "state_000" -> deform, with a snapshot "state_NNN" at each
-/// of `records` equal steps of strain. Where the plan asks for it: between rest and the first state
-/// the grains take the friction of the material, shorten along the last axis and rest again; and
-/// after the last strain the deformation is taken back, with `unload_records` further states.
+/// of `records` equal steps of strain. Where the plan asks for it: after the rest the grains take
+/// the friction of the material, shorten along the last axis and rest again; and after the last
+/// strain the deformation is taken back, with `unload_records` further states.
 struct SampleSetup {
   SamplePlan plan;
   MaterialSetup material = [] {

@@ -68,8 +68,7 @@ void lead_walls(Engine& engine, const SamplePlan& p, SamplePhase phase,
       motion.ramp = p.ramp_time;
     }
     // A servo that goes on keeps what it has learnt.
-    const bool goes_on = phase == SamplePhase::rest || phase == SamplePhase::settle ||
-                         (deforms(phase) && !shears(p));
+    const bool goes_on = phase == SamplePhase::rest || (deforms(phase) && !shears(p));
     if (led && goes_on) continue;
     engine.set_wall_motion(moved_wall(a, p.dim), motion);
   }

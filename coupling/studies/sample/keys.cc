@@ -95,7 +95,8 @@ void compression(SectionKeys& s) {
            "of an edge, and of servos at most; slower: a calmer start and a longer run");
   s.word("prepared_with", IN(prepared_with), {"same_friction", "other_friction"},
          "friction until the first rest: that of [material], or sample.prepared_friction; then the "
-         "grains go on with that of [material]");
+         "grains go on with that of [material], and a lower one lets them slide as they begin to "
+         "move");
   s.number("prepared_friction", "-", IN(prepared_friction), {0, 10},
            "between grains, and of walls at most; lower: a denser first state");
   s.only("sample.prepared_with", {"other_friction"});
