@@ -50,7 +50,7 @@ std::vector<SummaryKey> sample_figures() {
        "of "
        "the first state again"},
       {"sample.unloading_stiffness", "-",
-       "its slope to the first state of the unloading over that of the loading's last quarter"},
+       "its slope to the middle state of the unloading over that of the loading's last quarter"},
       {"sample.loop_loss", "-", "area of its loop over that under the loading"},
       {"sample.residual_stress", "-",
        "axial stress of the contacts after the unloading over that at the end of the loading"},

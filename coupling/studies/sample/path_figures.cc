@@ -70,8 +70,9 @@ std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
     const double plastic = strain_at_fall(strain, outside, end, outside[0]);
     if (std::isfinite(plastic)) put("plastic_strain", plastic);
     const Index late = std::min<Index>(end - 1, 3 * end / 4);
+    const Index middle = end + std::max<Index>(1, plan.unload_records / 2);
     put("unloading_stiffness",
-        slope(strain, outside, end, end + 1) / slope(strain, outside, late, end));
+        slope(strain, outside, end, middle) / slope(strain, outside, late, end));
     const double loaded = area_under(strain, outside, 0, end);
     put("loop_loss", (loaded + area_under(strain, outside, end, strain.size() - 1)) / loaded);
     put("residual_stress", inside[inside.size() - 1] / inside[end]);

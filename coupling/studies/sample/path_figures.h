@@ -21,8 +21,8 @@ namespace grainfield::coupling {
 ///   sample.stiffening_late       the same of the last quarter over the second one
 /// of an unloading, with the axial stress of the lid or, in a cell, of the contacts
 ///   sample.plastic_strain        strain where that of the first state is met again
-///   sample.unloading_stiffness   slope to the first state of the unloading over that of the last
-///                                quarter of the loading
+///   sample.unloading_stiffness   slope to the middle state of the unloading over that of the
+///                                last quarter of the loading
 ///   sample.loop_loss             area of the loop over that under the loading
 ///   sample.residual_stress       axial stress of the contacts at the end over the largest
 std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
