@@ -44,22 +44,40 @@ std::string data_of(const char* element, const std::vector<continuum::Quantity>&
   return out + fmt::format("</{}>\n", element);
 }
 
-}  // namespace
-
-std::string triangles_vtu(const continuum::MeshField& mesh) {
-  std::string coordinates, connectivity, offsets, types;
-  for (const auto& at : mesh.corners.rowwise())
-    coordinates += fmt::format("{:.9g} {:.9g} 0\n", at[0], at[1]);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& c = mesh.triangles[t];
+// A piece of points, three numbers a line, and triangles.
+std::string triangle_piece(std::size_t points, const std::string& coordinates,
+                           const std::vector<std::array<int, 3>>& triangles,
+                           const std::string& data) {
+  std::string connectivity, offsets, types;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& c = triangles[t];
     connectivity += fmt::format("{} {} {}\n", c[0], c[1], c[2]);
     offsets += fmt::format("{} ", 3 * (t + 1));
     types += fmt::format("{} ", kTriangle);
   }
+  return piece(points, triangles.size(), coordinates, connectivity, offsets, types, data);
+}
+
+}  // namespace
+
+std::string triangles_vtu(const continuum::MeshField& mesh) {
+  std::string coordinates;
+  for (const auto& at : mesh.corners.rowwise())
+    coordinates += fmt::format("{:.9g} {:.9g} 0\n", at[0], at[1]);
   const auto points = static_cast<std::size_t>(mesh.corners.rows());
-  return piece(points, mesh.triangles.size(), coordinates, connectivity, offsets, types,
-               data_of("PointData", mesh.at_corners, points) +
-                   data_of("CellData", mesh.in_triangles, mesh.triangles.size()));
+  return triangle_piece(points, coordinates, mesh.triangles,
+                        data_of("PointData", mesh.at_corners, points) +
+                            data_of("CellData", mesh.in_triangles, mesh.triangles.size()));
+}
+
+std::string surface_vtu(const Eigen::MatrixXd& points,
+                        const std::vector<std::array<int, 3>>& triangles,
+                        const std::vector<continuum::Quantity>& at_points) {
+  std::string coordinates;
+  for (const auto& at : points.rowwise())
+    coordinates += fmt::format("{:.9g} {:.9g} {:.9g}\n", at[0], at[1], at[2]);
+  const auto count = static_cast<std::size_t>(points.rows());
+  return triangle_piece(count, coordinates, triangles, data_of("PointData", at_points, count));
 }
 
 std::string lines_vtu(const std::vector<Eigen::MatrixXd>& lines) {

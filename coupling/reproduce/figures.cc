@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/reproduce/box_figures.h"
 #include "coupling/reproduce/dips.h"
 #include "coupling/reproduce/fit_figures.h"
 
@@ -229,6 +230,7 @@ const std::vector<SourceFigure>& source_figures() {
   static const std::vector<SourceFigure> all = [] {
     std::vector<SourceFigure> out = own;
     for (SourceFigure& figure : fit_figures()) out.push_back(std::move(figure));
+    for (SourceFigure& figure : box_figures()) out.push_back(std::move(figure));
     return out;
   }();
   return all;

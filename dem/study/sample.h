@@ -11,7 +11,8 @@
 namespace grainfield::dem {
 
 /// Snapshots "state_000" (at rest, compressed) to "state_NNN" with NNN = plan.records, at equal
-/// steps of strain. Attributes of each, as numbers: strain (imposed), kinetic_energy,
+/// steps of strain; then those of the unloading, at equal steps of strain or of the axial stress.
+/// Attributes of each, as numbers: strain (imposed), kinetic_energy,
 /// elastic_energy, work (of cell and walls since the beginning), unbalanced_force_ratio,
 /// strain_rate; with motion.energy_balance lost_in_dashpots, lost_to_friction, lost_to_rolling,
 /// lost_to_damping, work_of_law and energy_balance since the beginning. Figure

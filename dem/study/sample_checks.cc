@@ -12,6 +12,7 @@
 #include "dem/study/common.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_checks.h"
+#include "dem/study/sample_path.h"
 
 namespace grainfield::dem {
 namespace {
@@ -129,6 +130,26 @@ void check_servo(const SamplePlan& p) {
   }
 }
 
+// A strain before the first state, and the way back.
+void check_path(const SamplePlan& p) {
+  if (p.precompression > 0 && any_led(p, SamplePhase::deform)) {
+    refuse("precompression",
+           fmt::format(
+               "found {:g}, allowed with sample.{}: 0, because servos hold the pressure",
+               p.precompression,
+               p.deformation == "axial" ? "deformation = \"axial\"" : "constant = \"stress\""));
+  }
+  if (p.precompression > kMostShortening) {
+    refuse("precompression",
+           fmt::format("found {:g}, allowed: up to {:g}", p.precompression, kMostShortening));
+  }
+  if (p.unload == "stress" && shears(p)) {
+    refuse("unload",
+           "found \"stress\", allowed with sample.deformation = \"simple_shear\": none, "
+           "strain, because its axial stress drives nothing");
+  }
+}
+
 void check_strains(const SamplePlan& p) {
   for (const auto& [key, rate] : {std::pair("compression_rate", p.compression_rate),
                                   std::pair("strain_rate", p.strain_rate)}) {
@@ -167,6 +188,7 @@ double shrunk(const SamplePlan& p, int axis, double target) {
       (last && (p.deformation == "axial" || p.deformation == "uniaxial"))) {
     share *= p.boundary == "walls" ? 1 - p.strain : std::exp(-p.strain);
   }
+  if (last) share *= p.boundary == "walls" ? 1 - p.precompression : std::exp(-p.precompression);
   return share;
 }
 
@@ -230,6 +252,7 @@ void check_sample(const SampleSetup& s) {
   check_dimension(s);
   check_servo(s.plan);
   check_strains(s.plan);
+  check_path(s.plan);
   const double most = kMostLoad * stiffness_of(s);
   if (has_servo(s.plan) && s.plan.pressure > most) {
     refuse("pressure",
@@ -261,30 +284,15 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
     longest = std::max(longest, 1 - shrunk(alone, a, volume_share(p)));
   }
   out.compression_time = longest / p.compression_rate;
-  out.deformation_time = p.strain / p.strain_rate + (p.boundary == "walls" ? 0.5 * p.ramp_time : 0);
-  return out;
-}
-
-double strain_at(const SamplePlan& p, double time) {
-  const double ramp = p.boundary == "walls" ? p.ramp_time : 0;
-  if (time >= ramp) return p.strain_rate * (time - 0.5 * ramp);
-  const double x = time / ramp;
-  return p.strain_rate * ramp * (x * x * x - 0.5 * x * x * x * x);
-}
-
-long steps_to(const SamplePlan& p, double strain, double time_step) {
-  // Up to its last digit, so that a strain which is a whole number of steps takes no step more.
-  const double enough = strain * (1 - 1e-12);
-  const auto reached = [&](long n) {
-    return strain_at(p, static_cast<double>(n) * time_step) >= enough;
-  };
-  long low = 0, high = 1;
-  while (!reached(high)) high *= 2;
-  while (high - low > 1) {
-    const long middle = low + (high - low) / 2;
-    (reached(middle) ? high : low) = middle;
+  const double ramp = p.boundary == "walls" ? 0.5 * p.ramp_time : 0;
+  out.deformation_time = p.strain / p.strain_rate + ramp;
+  if (p.precompression > 0) out.deformation_time += p.precompression / p.strain_rate + ramp;
+  // Of an unloading to a stress at most, about: the strain.
+  if (unloads(p)) {
+    const double back = p.unload == "strain" ? p.unload_strain : 1;
+    out.deformation_time += back * p.strain / p.strain_rate + ramp;
   }
-  return high;
+  return out;
 }
 
 Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& seeds,
@@ -293,7 +301,7 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
   const SamplePlan& p = s.plan;
   Outlook out;
   out.grains = p.grains;
-  out.bytes = p.grains * (kBytesOfGrain + kBytesOfRecord * (p.records + 1));
+  out.bytes = p.grains * (kBytesOfGrain + kBytesOfRecord * states_of(p));
   out.bytes_key = "sample.grains";
   const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
     const SampleFrame frame =

@@ -21,10 +21,4 @@ void check_sample(const SampleSetup& setup);
 SampleFrame sample_frame(const SampleSetup& setup, const GrainExtremes& extremes,
                          double reserve = 1);
 
-/// Strain that is imposed until `time` s after the deformation's start: between walls the rate
-/// rises smoothly (3 s^2 - 2 s^3) within ramp_time.
-double strain_at(const SamplePlan& plan, double time);
-/// Steps until it is reached.
-long steps_to(const SamplePlan& plan, double strain, double time_step);
-
 }  // namespace grainfield::dem

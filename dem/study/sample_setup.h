@@ -31,12 +31,15 @@ struct SamplePlan {
   double start_fraction = 0.3;        ///< solid fraction of the loose grains
 
   // -- compression
-  std::string compression = "isotropic";  ///< isotropic | uniaxial (along the last axis)
-  std::string compress_to = "pressure";   ///< pressure | solid_fraction | strain
-  double pressure = 1e4;                  ///< Pa (2D: N/m); of servos
-  double solid_fraction = 0.86;           ///< compress_to solid_fraction
-  double compression_strain = 0.2;        ///< compress_to strain: of every edge that shortens
-  double compression_rate = 1;            ///< 1/s, of an edge; and of servos at most
+  std::string compression = "isotropic";        ///< isotropic | uniaxial (along the last axis)
+  std::string compress_to = "pressure";         ///< pressure | solid_fraction | strain
+  double pressure = 1e4;                        ///< Pa (2D: N/m); of servos
+  double solid_fraction = 0.86;                 ///< compress_to solid_fraction
+  double compression_strain = 0.2;              ///< compress_to strain: of every edge that shortens
+  double compression_rate = 1;                  ///< 1/s, of an edge; and of servos at most
+  std::string prepared_with = "same_friction";  ///< same_friction | other_friction
+  double prepared_friction = 0;  ///< other_friction: of the grains, and of walls at most
+  double precompression = 0;     ///< strain along the last axis before the first state
 
   // -- deformation
   std::string deformation = "simple_shear";  ///< simple_shear | axial | uniaxial | isotropic
@@ -46,18 +49,28 @@ struct SamplePlan {
   double ramp_time = 0.05;                   ///< s from rest to the full rate; walls
   int records = 20;                          ///< recorded states after the first one
 
+  // -- and back
+  std::string unload = "none";  ///< none | strain | stress
+  double unload_strain = 1;     ///< strain: the share of it that is taken back
+  double unload_stress = 1;     ///< stress: down to this share of the first state's axial stress
+  int unload_records = 10;      ///< recorded states of the unloading
+
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
                     corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
                     boundary, height_ratio, start_fraction, compression, compress_to, pressure,
-                    solid_fraction, compression_strain, compression_rate, deformation, constant,
-                    sides, strain, strain_rate, ramp_time, records);
+                    solid_fraction, compression_strain, compression_rate, prepared_with,
+                    prepared_friction, precompression, deformation, constant, sides, strain,
+                    strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
+                    unload_records);
   }
 };
 
 /// Grains in a periodic cell or between walls are compressed, rest and are deformed, without
 /// gravity: compress -> rest -> snapshot "state_000" -> deform, with a snapshot "state_NNN" at each
-/// of `records` equal steps of strain.
+/// of `records` equal steps of strain. Where the plan asks for it: after the rest the grains take
+/// the friction of the material, shorten along the last axis and rest again; and after the last
+/// strain the deformation is taken back, with `unload_records` further states.
 struct SampleSetup {
   SamplePlan plan;
   MaterialSetup material = [] {

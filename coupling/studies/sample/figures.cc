@@ -7,7 +7,7 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.initial_pressure", "N/m (3D: Pa)", "p of a sample at rest, before it is deformed"},
       {"sample.initial_solid_fraction", "-", "its solid fraction then; overlaps count twice"},
       {"sample.initial_coordination", "-", "contacts of a grain then, without rattlers"},
-      {"sample.final_pressure", "N/m (3D: Pa)", "p of the last state"},
+      {"sample.final_pressure", "N/m (3D: Pa)", "p of the last state of the loading"},
       {"sample.lost_strength", "-",
        "share of the samples that lose their strength: some state has less than 1 % of the first "
        "pressure, or an inertial number above 0.1"},
@@ -35,6 +35,25 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.stress_error", "-",
        "largest relative error of a servo's stress at any of its measurements in the deformation"},
       {"sample.stress_rms_error", "-", "root of the mean square of the same"},
+      {"sample.kinetic_share", "-",
+       "largest kinetic over elastic energy of the states after the first one"},
+      {"sample.pressure_ratio", "-", "p at the end of the loading over that of the first state"},
+      {"sample.shear_over_pressure", "-",
+       "simple shear: shear stress at the end of the loading over p of the first state"},
+      {"sample.end_stress_ratio", "-", "uniaxial: q/p at the end of the loading"},
+      {"sample.stiffening", "-",
+       "uniaxial: rise of the axial stress in the second half of the strain over that in the first "
+       "half; 1 of a straight line"},
+      {"sample.stiffening_late", "-", "the same of the last quarter over the second one"},
+      {"sample.plastic_strain", "-",
+       "unloading: strain where the axial stress (of the lid; in a cell of the contacts) is that "
+       "of "
+       "the first state again"},
+      {"sample.unloading_stiffness", "-",
+       "its slope to the middle state of the unloading over that of the loading's last quarter"},
+      {"sample.loop_loss", "-", "area of its loop over that under the loading"},
+      {"sample.residual_stress", "-",
+       "axial stress of the contacts after the unloading over that at the end of the loading"},
       {"sample.energy_balance_error", "-",
        "largest change of the energies' sum less the work, over the work, of the states"},
   };

@@ -93,6 +93,17 @@ void compression(SectionKeys& s) {
   s.only("sample.compress_to", {"strain"});
   s.number("compression_rate", "1/s", IN(compression_rate), {1e-6, 1e6},
            "of an edge, and of servos at most; slower: a calmer start and a longer run");
+  s.word("prepared_with", IN(prepared_with), {"same_friction", "other_friction"},
+         "friction until the first rest: that of [material], or sample.prepared_friction; then the "
+         "grains go on with that of [material], and a lower one lets them slide as they begin to "
+         "move");
+  s.number("prepared_friction", "-", IN(prepared_friction), {0, 10},
+           "between grains, and of walls at most; lower: a denser first state");
+  s.only("sample.prepared_with", {"other_friction"});
+  s.number("precompression", "-", IN(precompression), {0, 0.9},
+           "strain by which the last axis alone shortens before the first state, at "
+           "sample.strain_rate; the grains rest after it",
+           "Wellmann 28");
 }
 
 void deformation(SectionKeys& s) {
@@ -120,6 +131,22 @@ void deformation(SectionKeys& s) {
            "larger files");
 }
 
+void unloading(SectionKeys& s) {
+  s.word("unload", IN(unload), {"none", "strain", "stress"},
+         "after the last strain the deformation is taken back: not, by a share of the strain, or "
+         "until the axial stress has fallen",
+         "Wellmann fig. 12");
+  s.number("unload_strain", "-", IN(unload_strain), {1e-6, 2}, "share of the strain; 1: all of it");
+  s.only("sample.unload", {"strain"});
+  s.number("unload_stress", "-", IN(unload_stress), {0, 10},
+           "share of the first state's axial stress at which it ends; 1: what is left of the "
+           "strain there is plastic");
+  s.only("sample.unload", {"stress"});
+  s.number("unload_records", "-", IN(unload_records), {1, 999},
+           "recorded states of the unloading, at equal steps of what ends it");
+  s.only("sample.unload", {"strain", "stress"});
+}
+
 }  // namespace
 
 void declare_sample_keys(SectionKeys s) {
@@ -127,6 +154,7 @@ void declare_sample_keys(SectionKeys s) {
   place(s);
   compression(s);
   deformation(s);
+  unloading(s);
 }
 
 }  // namespace grainfield::coupling

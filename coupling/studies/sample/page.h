@@ -27,6 +27,7 @@ struct SampleReport {
   std::vector<SampleCurve> energies;   ///< in one frame, J
   /// Of the realization that is drawn; may be null.
   const dem::Snapshot *first = nullptr, *last = nullptr;
+  std::vector<Section> rves;  ///< pictures of RVEs (rve_page.h); may be empty
   ReportRows figures, made;
 };
 

@@ -65,12 +65,13 @@ Driving driving_of(const std::string& deformation, int dim) {
 }
 
 std::map<std::string, std::vector<double>> state_figures(const StateTable& table,
-                                                         const std::string& deformation) {
+                                                         const std::string& deformation,
+                                                         int records) {
   std::map<std::string, std::vector<double>> out;
   const Driving driving = driving_of(deformation, table.dim());
   for (Eigen::Index r = 0; r < table.realizations(); ++r) {
     const auto column = [&](const std::string& name) -> Eigen::VectorXd {
-      return table.of(name).col(r);
+      return table.of(name).col(r).head(records + 1);
     };
     const auto put = [&](const std::string& key, double value) {
       out["sample." + key].push_back(value);

@@ -24,7 +24,8 @@ struct Driving {
 /// `deformation`: the word of sample.deformation.
 Driving driving_of(const std::string& deformation, int dim);
 
-/// By summary key, a number for each realization: of the first state
+/// By summary key, a number for each realization, of the states up to `records`, the last one of
+/// the loading: of the first state
 ///   sample.initial_{pressure,solid_fraction,coordination}
 /// and of the curves
 ///   sample.final_pressure                        of the last state
@@ -42,6 +43,7 @@ Driving driving_of(const std::string& deformation, int dim);
 ///   sample.energy_balance_error                  the largest of the states; where it was followed
 /// Those of the critical state are left out where it has too few states, or one that bears no load.
 std::map<std::string, std::vector<double>> state_figures(const StateTable& table,
-                                                         const std::string& deformation);
+                                                         const std::string& deformation,
+                                                         int records);
 
 }  // namespace grainfield::coupling

@@ -11,6 +11,8 @@
 #include "coupling/run/study_result.h"
 #include "coupling/studies/sample/keys.h"
 #include "coupling/studies/sample/page.h"
+#include "coupling/studies/sample/path_figures.h"
+#include "coupling/studies/sample/rve_page.h"
 #include "coupling/studies/sample/state_figures.h"
 #include "coupling/studies/sample/state_table.h"
 #include "dem/study/sample.h"
@@ -104,6 +106,16 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.secant_modulus",
                                              "sample.secant_strain",
                                              "sample.volumetric_strain",
+                                             "sample.end_stress_ratio",
+                                             "sample.stiffening",
+                                             "sample.stiffening_late",
+                                             "sample.pressure_ratio",
+                                             "sample.shear_over_pressure",
+                                             "sample.plastic_strain",
+                                             "sample.unloading_stiffness",
+                                             "sample.loop_loss",
+                                             "sample.residual_stress",
+                                             "sample.kinetic_share",
                                              "sample.inertial_number",
                                              "sample.stress_error",
                                              "sample.stress_rms_error",
@@ -204,13 +216,30 @@ std::map<std::string, std::vector<double>> engine_figures(const std::vector<std:
   return out;
 }
 
+// rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
+void add_rves(const Case& value, const std::vector<std::string>& files, SampleReport& report,
+              StudyResult& out) {
+  const RveSetup& setup = value.get<RveSetup>();
+  if (setup.along == 0) return;
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  const RveTable rves = rve_table(files, setup, plan);
+  add_figures(out.summary, rve_figures(rves, plan.deformation));
+  out.texts.emplace_back("rve.csv", rve_csv(rves));
+  if (const std::string hull = rve_vtu(rves); !hull.empty()) {
+    out.texts.emplace_back("rve_hull.vtu", hull);
+  }
+  report.rves = rve_sections(rves, plan.deformation);
+}
+
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
 // spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
   const StateTable table(files);
   StudyResult out = begin_result(value, files);
   add_figures(out.summary, engine_figures(files));
-  add_figures(out.summary, state_figures(table, value.get<dem::SampleSetup>().plan.deformation));
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
+  add_figures(out.summary, path_figures(table, plan));
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.verdict.sentence = sentence(value, table, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
@@ -221,7 +250,8 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
       out.texts.emplace_back(fmt::format("{}.pvd", kind), series_of(table, kind));
     }
   }
-  const SampleReport report = curves_of(value, table);
+  SampleReport report = curves_of(value, table);
+  add_rves(value, files, report, out);
   out.member_curves = member_curves(report);
   out.page = [report](const StudyResult& result, const Realization* first) {
     return page_of(report, result, first);
@@ -243,12 +273,12 @@ Study sample_study() {
   Study out;
   out.name = "sample";
   out.meaning = "grains in a cell or a box, compressed and sheared: stress, volume and fabric";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys};
+  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures};
+  out.figures = {sample_figures, rve_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };

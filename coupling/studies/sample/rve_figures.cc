@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "continuum/constants.h"
+#include "coupling/studies/sample/rve.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using Eigen::Matrix3d;
+using Of = double (*)(const RveValue&);
+
+double symmetric(const Matrix3d& m, int a, int b) { return 0.5 * (m(a, b) + m(b, a)); }
+
+struct RveColumn {
+  const char *name, *unit, *meaning;
+  Of of;
+};
+
+const std::vector<RveColumn>& rve_columns() {
+  using V = const RveValue&;
+  // clang-format off
+  static const std::vector<RveColumn> columns{
+      {"grains", "", "in an RVE", [](V v) { return v.count; }},
+      {"strain_xx", "", "of the hull (Wellmann 30), against the first state, extension positive", [](V v) { return v.hull(0, 0); }},
+      {"strain_yy", "", "likewise", [](V v) { return v.hull(1, 1); }},
+      {"strain_zz", "", "likewise", [](V v) { return v.hull(2, 2); }},
+      {"strain_xy", "", "likewise", [](V v) { return symmetric(v.hull, 0, 1); }},
+      {"strain_xz", "", "likewise", [](V v) { return symmetric(v.hull, 0, 2); }},
+      {"strain_yz", "", "likewise", [](V v) { return symmetric(v.hull, 1, 2); }},
+      {"strain_vol", "", "trace over three (Wellmann 34)", [](V v) { return v.hull.trace() / 3; }},
+      {"fit_zz", "", "strain by least squares over the RVE's grains", [](V v) { return v.fit(2, 2); }},
+      {"fit_xz", "", "likewise", [](V v) { return symmetric(v.fit, 0, 2); }},
+      {"sigma_xx", "Pa", "from the forces on the boundary (Wellmann 29), tension positive", [](V v) { return v.boundary(0, 0); }},
+      {"sigma_yy", "Pa", "likewise", [](V v) { return v.boundary(1, 1); }},
+      {"sigma_zz", "Pa", "likewise", [](V v) { return v.boundary(2, 2); }},
+      {"sigma_xz", "Pa", "likewise", [](V v) { return symmetric(v.boundary, 0, 2); }},
+      {"inside_zz", "Pa", "from the contacts inside, over the same volume", [](V v) { return v.inside(2, 2); }},
+      {"of_grains_zz", "Pa", "from all contacts of its grains, over the sphere's volume", [](V v) { return v.grains(2, 2); }},
+      {"field_zz", "Pa", "coarse-grained at the RVE's point; first state and end of loading", [](V v) { return v.field_zz; }},
+  };
+  // clang-format on
+  return columns;
+}
+
+std::string cell_text(double value) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
+}
+
+// Components that tell of a deformation.
+struct Axis {
+  int a = 2, b = 2;
+};
+Axis axis_of(const std::string& deformation) {
+  return deformation == "simple_shear" ? Axis{0, 2} : Axis{2, 2};
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return values.empty() ? kNan : sum / static_cast<double>(values.size());
+}
+
+double boundary_zz(const RveValue& v) { return v.boundary(2, 2); }
+
+// Largest |boundary - inside| over |inside| of the RVEs in a state.
+double closure(const std::vector<RveValue>& values) {
+  double worst = 0;
+  for (const RveValue& v : values) {
+    worst = std::max(worst, (v.boundary - v.inside).norm() / v.inside.norm());
+  }
+  return worst;
+}
+
+void add_of_radius(const RveTable& table, std::size_t r, const std::string& deformation,
+                   std::map<std::string, std::vector<double>>& out) {
+  const Axis axis = axis_of(deformation);
+  const auto loading = static_cast<std::size_t>(table.loading);
+  const auto put = [&](const char* key, double value) {
+    out[fmt::format("rve.r{:g}.{}", table.radii[r], key)].push_back(value);
+  };
+  for (std::size_t k = 0; k < table.values[r].size(); ++k) {
+    const RveStates& states = table.values[r][k];
+    const std::vector<RveValue>& end = states[loading];
+    put("grains", mean_over(end, [](const RveValue& v) { return v.count; }).mean);
+    std::vector<double> bars;
+    for (std::size_t s = loading / 2 + 1; s <= loading; ++s) {
+      const RveMean zz = mean_over(states[s], boundary_zz);
+      bars.push_back(std::fabs(zz.error_bar / zz.mean));
+    }
+    put("error_bar", mean_of(bars));
+    put("closure", closure(states.front()));
+    const double zz = table.stresses[k][loading](2, 2);
+    put("stress_ratio", mean_over(end, boundary_zz).mean / zz);
+    put("grain_stress_ratio",
+        mean_over(end, [](const RveValue& v) { return v.grains(2, 2); }).mean / zz);
+    put("field_ratio", mean_over(end, [](const RveValue& v) { return v.field_zz; }).mean / zz);
+    std::vector<double> hull, fit;
+    for (const RveValue& v : end) {
+      hull.push_back(symmetric(v.hull, axis.a, axis.b));
+      fit.push_back(symmetric(v.fit, axis.a, axis.b));
+    }
+    put("strain_ratio", mean_of(hull) / symmetric(table.gradients[k][loading], axis.a, axis.b));
+    put("fit_ratio", mean_of(fit) / mean_of(hull));
+  }
+}
+
+}  // namespace
+
+std::string rve_csv(const RveTable& table) {
+  const std::size_t realizations = table.gradients.size();
+  std::string out = fmt::format(
+      "# RVEs: of each column the mean over the RVEs and the realizations, and the error bar "
+      "s/sqrt(N) over the RVEs of a realization (Wellmann 31), mean over realizations: {}\n"
+      "# radius: over sample.radius\n# imposed_zz, imposed_xz: of the sample's edges\n",
+      realizations);
+  std::string heading = "radius,state,strain,imposed_zz,imposed_xz,sample_zz_Pa,sample_xz_Pa";
+  for (const RveColumn& c : rve_columns()) {
+    const std::string unit = *c.unit != '\0' ? std::string("_") + c.unit : "";
+    out += fmt::format("# {}{}: {}\n", c.name, unit, c.meaning);
+    heading += fmt::format(",{0}{1},{0}{1}_error_bar", c.name, unit);
+  }
+  out += heading + "\n";
+  for (std::size_t r = 0; r < table.radii.size(); ++r) {
+    for (std::size_t s = 0; s < table.strain.size(); ++s) {
+      const auto over = [&](auto&& of) {
+        std::vector<double> values;
+        for (std::size_t k = 0; k < realizations; ++k) values.push_back(of(k));
+        return cell_text(mean_of(values));
+      };
+      const auto of_sample = [&](const auto& tensors, int a, int b) {
+        return over([&](std::size_t k) { return symmetric(tensors[k][s], a, b); });
+      };
+      out += fmt::format("{:g},{},{:.9g},{},{},{},{}", table.radii[r], s, table.strain[s],
+                         of_sample(table.gradients, 2, 2), of_sample(table.gradients, 0, 2),
+                         of_sample(table.stresses, 2, 2), of_sample(table.stresses, 0, 2));
+      for (const RveColumn& c : rve_columns()) {
+        const auto part = [&](double RveMean::*what) {
+          return over([&](std::size_t k) { return mean_over(table.values[r][k][s], c.of).*what; });
+        };
+        out += fmt::format(",{},{}", part(&RveMean::mean), part(&RveMean::error_bar));
+      }
+      out += "\n";
+    }
+  }
+  return out;
+}
+
+std::map<std::string, std::vector<double>> rve_figures(const RveTable& table,
+                                                       const std::string& deformation) {
+  std::map<std::string, std::vector<double>> out;
+  for (std::size_t r = 0; r < table.radii.size(); ++r) add_of_radius(table, r, deformation, out);
+  if (table.radii.empty() || deformation != "simple_shear") return out;
+  // Of the largest radius: how far the sample's inside contracts, and whether it dilates again.
+  for (std::size_t k = 0; k < table.gradients.size(); ++k) {
+    double least = 0, at = 0, now = 0;
+    for (std::size_t s = 0; s <= static_cast<std::size_t>(table.loading); ++s) {
+      now = mean_over(table.values.back()[k][s], [](const RveValue& v) {
+              return v.hull.trace() / 3;
+            }).mean;
+      if (now < least) {
+        least = now;
+        at = symmetric(table.gradients[k][s], 0, 2);
+      }
+    }
+    out["rve.contraction"].push_back(-least);
+    out["rve.contraction_strain"].push_back(at);
+    out["rve.dilation"].push_back(now - least);
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

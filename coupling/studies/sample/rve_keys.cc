@@ -1,0 +1,45 @@
+// Keys of the RVEs of a sample: [rve].
+#include "coupling/case/declare.h"
+#include "coupling/studies/sample/rve_page.h"
+
+namespace grainfield::coupling {
+
+void declare_rve_keys(SectionKeys s) {
+  s.number("along", "-", GRAINFIELD_MEMBER(RveSetup, along), {0, 10},
+           "points along each axis, spread over the sample as widely as the spheres about them fit "
+           "between walls; 2: eight RVEs, 0: none",
+           "Wellmann 5");
+  s.space();
+  s.number("radii", "-", GRAINFIELD_MEMBER(RveSetup, radii), {0.5, 1000},
+           "of the spheres, over sample.radius; such as do not fit into the sample are left out",
+           "Wellmann 5");
+  s.space();
+}
+
+std::vector<SummaryKey> rve_summary_keys() {
+  return {
+      {"rve.r*.grains", "-", "grains of an RVE whose radius is so many sample.radius"},
+      {"rve.r*.error_bar", "-",
+       "s/sqrt(N) of sigma_zz over the RVEs of a sample, over its mean; mean of the second half of "
+       "the loading"},
+      {"rve.r*.closure", "-",
+       "largest |boundary - inside| over |inside| of the stress from the forces on the boundary "
+       "and "
+       "from the contacts inside, at rest"},
+      {"rve.r*.stress_ratio", "-",
+       "sigma_zz of the RVEs from the forces on their boundary over that of the sample, at the end "
+       "of the loading"},
+      {"rve.r*.grain_stress_ratio", "-", "the same from all contacts of the RVEs' grains"},
+      {"rve.r*.field_ratio", "-", "the same of the coarse-grained field at their points"},
+      {"rve.r*.strain_ratio", "-",
+       "strain of the hulls over that of the sample's edges at the end of the loading: zz, of a "
+       "simple shear xz"},
+      {"rve.r*.fit_ratio", "-", "strain by least squares over that of the hulls, likewise"},
+      {"rve.contraction", "-",
+       "simple shear: largest contraction of the largest RVEs, -trace/3 of their strain"},
+      {"rve.contraction_strain", "-", "shear strain xz of the sample there"},
+      {"rve.dilation", "-", "trace/3 of their strain at the end of the loading less the least one"},
+  };
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,46 @@
+// The path of a sample: its phases, what servos hold in them, and the strain that is imposed.
+#pragma once
+#include "dem/study/sample_setup.h"
+
+namespace grainfield::dem {
+
+/// compress -> rest -> (precompress -> settle) -> deform -> (unload) -> done; those in brackets
+/// where the plan asks for them.
+enum class SamplePhase : int { compress, rest, precompress, settle, deform, unload, done };
+
+inline bool is_periodic(const SamplePlan& p) { return p.boundary == "periodic"; }
+inline bool compresses_to_pressure(const SamplePlan& p) { return p.compress_to == "pressure"; }
+inline bool shears(const SamplePlan& p) { return p.deformation == "simple_shear"; }
+/// Whether sides turn with the lid.
+inline bool tilts(const SamplePlan& p) {
+  return shears(p) && !is_periodic(p) && p.sides == "tilting";
+}
+inline bool unloads(const SamplePlan& p) { return p.unload != "none"; }
+inline bool has_other_friction(const SamplePlan& p) { return p.prepared_with == "other_friction"; }
+/// Whether it is shortened along the last axis, and rests once more, before the first state.
+inline bool precompresses(const SamplePlan& p) { return p.precompression > 0; }
+/// The deformation goes on, forwards or back.
+inline bool deforms(SamplePhase phase) {
+  return phase == SamplePhase::deform || phase == SamplePhase::unload;
+}
+/// Recorded states, the first one included.
+inline int states_of(const SamplePlan& p) {
+  return p.records + 1 + (unloads(p) ? p.unload_records : 0);
+}
+
+/// Whether the axis' edge changes in the compression.
+bool compresses(const SamplePlan& plan, int axis);
+/// Whether a servo holds the stress across the axis in a phase, or across any.
+bool is_led(const SamplePlan& plan, SamplePhase phase, int axis);
+bool any_led(const SamplePlan& plan, SamplePhase phase);
+
+/// Strain that is imposed until `time` s after a motion's start: between walls the rate rises
+/// smoothly (3 s^2 - 2 s^3) within ramp_time.
+double strain_at(const SamplePlan& plan, double time);
+/// Steps until it is reached.
+long steps_to(const SamplePlan& plan, double strain, double time_step);
+/// Strain against the first state, `time` s after the beginning of deform or unload, which begins
+/// at what whole steps have reached.
+double strain_in(const SamplePlan& plan, SamplePhase phase, double time, double time_step);
+
+}  // namespace grainfield::dem
