@@ -101,16 +101,6 @@ TEST(SampleRves, TellStressAndStrainOfTheirSample) {
   }
 }
 
-TEST(SampleRves, AreTheSameOnAnyNumberOfThreads) {
-  const Folder folder;
-  const std::string small = "--set sample.records=2 --set ensemble.realizations=1 --threads ";
-  run(folder, small + "1", "one");
-  run(folder, small + "3", "three");
-  const std::string one = testing::read_text(folder / "one/rve.csv");
-  EXPECT_GT(one.size(), 1000U);
-  EXPECT_EQ(one, testing::read_text(folder / "three/rve.csv"));
-}
-
 TEST(SampleRves, KeysMeanNothingInThePlane) {
   const Folder folder;
   const std::string file = folder.write("x.toml", "study = \"sample\"\n[rve]\nalong = 2\n");

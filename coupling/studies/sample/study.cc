@@ -66,6 +66,13 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
               curve(table, "coordination", "contacts of a grain")};
   const Driving driving = driving_of(plan.deformation, plan.dim);
   out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
+  if (plan.deformation == "uniaxial") {
+    SampleCurve axial = curve(table, driving.stress, "axial stress over its largest");
+    const double largest = axial.mean.minCoeff();
+    axial.mean /= largest;
+    axial.error /= std::fabs(largest);
+    out.main.push_back(std::move(axial));
+  }
   out.stresses = {curve(table, "p", "p"), curve(table, "q", "q")};
   if (driving.stress.starts_with("sigma")) {
     SampleCurve own = curve(table, driving.stress, driving.meaning);
@@ -229,6 +236,15 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
     out.texts.emplace_back("rve_hull.vtu", hull);
   }
   report.rves = rve_sections(rves, plan.deformation);
+  out.sweep_sections = [sections = report.rves](const std::string& member) {
+    std::vector<Section> own;
+    for (Section section : sections) {
+      if (auto* picture = std::get_if<Picture>(&section))
+        picture->title = member + ": " + picture->title;
+      own.push_back(std::move(section));
+    }
+    return own;
+  };
 }
 
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
