@@ -18,9 +18,11 @@ constexpr const char* kNotRun = "not run";
 constexpr const char* kNoCommand = "run before commands were stored: see the case's page";
 
 std::string with_error(const SourceFigure& figure, const Measured& m) {
-  const int digits = figure.unit == "deg" ? 1 : 3;
+  int digits = figure.unit == "deg" ? 1 : 3;
   const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
   if (std::isnan(m.error)) return fmt::format("{:.{}f}{}", m.value, digits, unit);
+  // An error that is not 0 is not shown as 0.
+  while (digits < 6 && m.error > 0 && m.error < 0.5 * std::pow(10, -digits)) ++digits;
   return fmt::format("{:.{}f} ± {:.{}f}{}", m.value, digits, m.error, digits, unit);
 }
 

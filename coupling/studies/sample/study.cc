@@ -22,6 +22,8 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr double kRounding = 1e-10;
+
 const char* strain_name(const std::string& deformation) {
   return deformation == "simple_shear" ? "shear strain"
          : deformation == "isotropic"  ? "strain of the edges"
@@ -64,8 +66,15 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
               curve(table, "volumetric_strain", "volumetric strain"),
               curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"),
               curve(table, "coordination", "contacts of a grain")};
+  // At constant volume it is rounding.
+  auto& volume = out.main[1].mean;
+  if (volume.cwiseAbs().maxCoeff() < kRounding) volume.setZero();
   const Driving driving = driving_of(plan.deformation, plan.dim);
   out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
+  if (plan.deformation == "simple_shear") {
+    out.main.push_back(
+        curve(table, driving.stress, fmt::format("shear stress ({})", out.stress_unit)));
+  }
   if (plan.deformation == "uniaxial") {
     SampleCurve axial = curve(table, driving.stress, "axial stress over its largest");
     const double largest = axial.mean.minCoeff();
