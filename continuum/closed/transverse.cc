@@ -18,6 +18,7 @@ using Complex = std::complex<double>;
 // Least relative distance of the two g. The stress is even in their difference, so that it is wrong
 // by its square; what cancels loses its inverse.
 constexpr double kApart = 1e-5;
+constexpr double kCancels = 1e-3;  // share that a sum keeps of its terms
 
 class Transverse : public Model {
  public:
@@ -66,8 +67,12 @@ TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
     const Complex other = g[1 - i], n = 1.0 / (g[i] * g[i]);
     term.g = g[i];
     term.a = F / (2 * std::numbers::pi) * other / (other - g[i]);
-    // c44 (1 + k): (c13 + c44 + c11 n - c44)/(c13 + c44) = (c13 + c11 n)/(c13 + c44).
-    term.A = term.a * (c13 + c44) / (c44 * (c13 + c11 * n));
+    // 1 + k = (c13 + c11 n)/(c13 + c44) = (c33 + c13 n)/(c33 - c44 n). Where c13 = -c44 the first
+    // is 0/0 for one root; elsewhere both terms take it, for they are to be even in the g's
+    // difference.
+    const Complex first = c13 + c11 * n;
+    const bool cancels = std::abs(first) < kCancels * (std::fabs(c13) + c11 * std::abs(n));
+    term.A = term.a / c44 * (cancels ? (c33 - c44 * n) / (c33 + c13 * n) : (c13 + c44) / first);
   }
 }
 

@@ -22,6 +22,9 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr const char* kLabelLetters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+
 // "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
 ModelChoice parse_choice(const std::string& text) {
   const std::size_t colon = text.find(':');
@@ -30,6 +33,10 @@ ModelChoice parse_choice(const std::string& text) {
   ModelChoice out;
   out.name = equals == std::string::npos ? head : head.substr(equals + 1);
   out.label = equals == std::string::npos ? head : head.substr(0, equals);
+  if (out.label.empty() || out.label.find_first_not_of(kLabelLetters) != std::string::npos) {
+    throw std::invalid_argument(
+        fmt::format("--model: found the label '{}', allowed: letters, digits, _ and -", out.label));
+  }
   continuum::find_model(out.name);
   if (colon == std::string::npos) return out;
   std::vector<std::string> items;

@@ -13,6 +13,8 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr double kBeyondFoot = 1.1;
+
 const std::vector<std::string> kFrames{"layer", "heap", "packing"};
 
 Placement place_in_space(const dem::Snapshot& s, const std::string& frame,
@@ -83,9 +85,11 @@ Placement place(const dem::Snapshot& s, const std::string& frame, std::int64_t l
   if (frame == "heap") {
     const PileFrame heap = pile_frame(s);
     const Region region(s);
-    return {[heap](const auto& points) { return heap.to_packing(points); },
-            (region.left() - heap.apex_x) / heap.height,
-            (region.right() - heap.apex_x) / heap.height, heap.height, heap};
+    // From foot to foot and a little beyond; the floor may be many times as long.
+    const double left = std::max(region.left() - heap.apex_x, -kBeyondFoot * heap.half_left);
+    const double right = std::min(region.right() - heap.apex_x, kBeyondFoot * heap.half_right);
+    return {[heap](const auto& points) { return heap.to_packing(points); }, left / heap.height,
+            right / heap.height, heap.height, heap};
   }
   if (frame == "packing")
     return {[](const auto& points) { return points; }, layer.left, layer.right, layer.depth()};

@@ -75,7 +75,9 @@ class SuperellipsoidStore {
     constexpr bool curvatures = measures == Measures::curvatures;
     CommonNormal contact;
     if (!common_normal(turned(first), turned(second), across, feature, contact, curvatures)) {
-      if (contact.depth < 0) feature.clear = across.dot(feature.normal) + contact.depth - swept;
+      // Of a search that ended exactly in touch nothing is known along the normal that it left.
+      feature.clear = contact.depth < 0 ? across.dot(feature.normal) + contact.depth - swept
+                                        : std::numeric_limits<double>::infinity();
       return false;
     }
     feature.clear = std::numeric_limits<double>::infinity();

@@ -172,6 +172,9 @@ long SampleRun::every() const {
 void SampleRun::advance(long steps) {
   while (steps > 0 && !done()) {
     long chunk = std::min(steps, phases_.until_due(every()));
+    if (phases_.now() == Phase::rest || phases_.now() == Phase::settle) {
+      chunk = std::min(chunk, phases_.until_due(kCheckEvery));
+    }
     if (deforms(phases_.now()) || phases_.now() == Phase::precompress) {
       chunk = std::min(chunk, next_record_ - phases_.steps());
     }

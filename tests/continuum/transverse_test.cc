@@ -113,6 +113,18 @@ TEST(TransverseHalfSpace, ALineOfThemIsTheOrthotropicHalfPlane) {
   }
 }
 
+// c13 = -c44 of a material that widens as it is stretched: the potentials' own equation is 0/0.
+TEST(TransverseHalfSpace, IsContinuousWhereItsShearAndCouplingCancel) {
+  TransverseModuli m{1, 1.5, 0.2, -0.3, 0};
+  // c13 = nu_v E_h E_v/((1 - nu_h) E_v - 2 nu_v^2 E_h)
+  m.G_v = -m.nu_v * m.E_h * m.E_v / ((1 - m.nu_h) * m.E_v - 2 * m.nu_v * m.nu_v * m.E_h);
+  TransverseModuli near = m;
+  near.G_v *= 1 + 1e-6;
+  const auto at = TransverseHalfSpace(1, m).stress(0.3, -0.2, -0.7);
+  const auto beside = TransverseHalfSpace(1, near).stress(0.3, -0.2, -0.7);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(at[c], beside[c], 1e-5) << c;
+}
+
 TEST(TransverseHalfSpace, ItsAxisIsSmoothAndItsSettingsAreChecked) {
   const auto model = make_model("transverse_half_space", {{"E_h", "0.5"}, {"nu_v", "0.2"}});
   Eigen::MatrixXd points(3, 3);

@@ -13,7 +13,7 @@ std::vector<SummaryKey> sample_figures() {
        "pressure, or an inertial number above 0.1"},
       {"sample.strain_at_loss", "-", "imposed strain of the first such state, of these samples"},
       {"sample.lateral_stress_ratio", "-",
-       "uniaxial: lateral over axial stress of the last state, K0"},
+       "uniaxial: lateral over axial stress of the last state of the loading, K0"},
       {"sample.peak_stress_ratio", "-",
        "largest q/p of the recorded states (states.csv) that bear load (sample.lost_strength)"},
       {"sample.strain_at_peak", "-", "imposed strain of that state"},

@@ -61,19 +61,24 @@ struct Elements {
   std::vector<MatrixXd> places;
   std::vector<Hull> hulls;
   MatrixXd centres;
+  int left_out = 0;  // of fewer than four grains
 };
 
 Elements elements_of(const dem::Snapshot& first, int along, double radius) {
   Elements out;
-  out.centres = centres(first, along, radius);
-  for (const auto& centre : out.centres.rowwise()) {
-    Cluster cluster(first, centre.transpose(), radius);
-    if (cluster.size() < 4) continue;
+  const MatrixXd all = centres(first, along, radius);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < all.rows(); ++k) {
+    Cluster cluster(first, all.row(k).transpose(), radius);
+    if (cluster.size() < 4) continue;  // no hull
+    kept.push_back(k);
     MatrixXd places = cluster.places(first);
     out.hulls.push_back(convex_hull(places));
     out.places.push_back(std::move(places));
     out.clusters.push_back(std::move(cluster));
   }
+  out.left_out = static_cast<int>(all.rows()) - static_cast<int>(kept.size());
+  out.centres = all(kept, Eigen::all);
   return out;
 }
 
@@ -110,10 +115,12 @@ void add_field(const dem::Snapshot& state, const MatrixXd& points, double radius
   }
 }
 
-RveStates states_of(const Snapshots& states, int along, double radius, std::size_t loading) {
+RveStates states_of(const Snapshots& states, int along, double radius, std::size_t loading,
+                    int& left_out) {
   const dem::Snapshot& first = states.front().second;
   const dem::SampleState start = dem::sample_state(first);
   const Elements elements = elements_of(first, along, radius);
+  left_out += elements.left_out;
   RveStates out;
   for (std::size_t s = 0; s < states.size(); ++s) {
     const dem::Snapshot& state = states[s].second;
@@ -147,13 +154,16 @@ RveTable rve_table(const std::vector<std::string>& files, const RveSetup& setup,
                    const dem::SamplePlan& plan) {
   RveTable out;
   out.loading = plan.records;
-  for (const double radius : setup.radii) {
+  std::vector<double> radii = setup.radii;
+  std::sort(radii.begin(), radii.end());
+  for (const double radius : radii) {
     const bool fit = std::all_of(files.begin(), files.end(), [&](const std::string& file) {
       return fits(read_realization(file).snapshots.front().second, radius * plan.radius);
     });
     (fit ? out.radii : out.too_large).push_back(radius);
   }
   out.values.resize(out.radii.size());
+  out.left_out.resize(out.radii.size());
   const auto loading = static_cast<std::size_t>(plan.records);
   for (const std::string& file : files) {
     const Snapshots states = read_realization(file).snapshots;
@@ -170,7 +180,8 @@ RveTable rve_table(const std::vector<std::string>& files, const RveSetup& setup,
       }
     }
     for (std::size_t r = 0; r < out.radii.size(); ++r) {
-      out.values[r].push_back(states_of(states, setup.along, out.radii[r] * plan.radius, loading));
+      out.values[r].push_back(
+          states_of(states, setup.along, out.radii[r] * plan.radius, loading, out.left_out[r]));
     }
     if (!is_first || out.radii.empty()) continue;
     const Elements largest =

@@ -39,6 +39,7 @@ struct RveSurface {
 struct RveTable {
   std::vector<double> radii;      ///< those that fit into every sample, over sample.radius
   std::vector<double> too_large;  ///< those that do not
+  std::vector<int> left_out;      ///< by radius: RVEs of fewer than four grains, of all samples
   std::vector<double> strain;     ///< imposed, by state
   std::vector<std::vector<RveStates>> values;           ///< by radius, then by realization
   std::vector<std::vector<Eigen::Matrix3d>> gradients;  ///< the sample's own, by realization, state
@@ -51,6 +52,9 @@ struct RveTable {
 /// the radius) is taken in the first state and the last one of the loading.
 RveTable rve_table(const std::vector<std::string>& files, const RveSetup& setup,
                    const dem::SamplePlan& plan);
+
+/// What the reader must know of radii and RVEs that were left out, a sentence each.
+std::vector<std::string> rve_warnings(const RveTable& table);
 
 /// A row for each radius and state: means over the RVEs and realizations, and the error bars
 /// s/sqrt(N) over the RVEs of a realization (Wellmann eq. 31), their mean over realizations.

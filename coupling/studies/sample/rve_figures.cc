@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +34,15 @@ const std::vector<RveColumn>& rve_columns() {
       {"strain_vol", "", "trace over three (Wellmann 34)", [](V v) { return v.hull.trace() / 3; }},
       {"fit_zz", "", "strain by least squares over the RVE's grains", [](V v) { return v.fit(2, 2); }},
       {"fit_xz", "", "likewise", [](V v) { return symmetric(v.fit, 0, 2); }},
-      {"sigma_xx", "Pa", "from the forces on the boundary (Wellmann 29), tension positive", [](V v) { return v.boundary(0, 0); }},
-      {"sigma_yy", "Pa", "likewise", [](V v) { return v.boundary(1, 1); }},
-      {"sigma_zz", "Pa", "likewise", [](V v) { return v.boundary(2, 2); }},
-      {"sigma_xz", "Pa", "likewise", [](V v) { return symmetric(v.boundary, 0, 2); }},
+      {"sigma_xx", "Pa", "from all contacts of its grains, over the sphere's volume, tension positive", [](V v) { return v.grains(0, 0); }},
+      {"sigma_yy", "Pa", "likewise", [](V v) { return v.grains(1, 1); }},
+      {"sigma_zz", "Pa", "likewise", [](V v) { return v.grains(2, 2); }},
+      {"sigma_xy", "Pa", "likewise", [](V v) { return symmetric(v.grains, 0, 1); }},
+      {"sigma_xz", "Pa", "likewise", [](V v) { return symmetric(v.grains, 0, 2); }},
+      {"sigma_yz", "Pa", "likewise", [](V v) { return symmetric(v.grains, 1, 2); }},
+      {"boundary_zz", "Pa", "from the forces on the boundary over the hull's volume (Wellmann 29): too large, the more so the fewer grains", [](V v) { return v.boundary(2, 2); }},
+      {"boundary_xz", "Pa", "likewise", [](V v) { return symmetric(v.boundary, 0, 2); }},
       {"inside_zz", "Pa", "from the contacts inside, over the same volume", [](V v) { return v.inside(2, 2); }},
-      {"of_grains_zz", "Pa", "from all contacts of its grains, over the sphere's volume", [](V v) { return v.grains(2, 2); }},
       {"field_zz", "Pa", "coarse-grained at the RVE's point; first state and end of loading", [](V v) { return v.field_zz; }},
   };
   // clang-format on
@@ -109,13 +113,31 @@ void add_of_radius(const RveTable& table, std::size_t r, const std::string& defo
 
 }  // namespace
 
+std::vector<std::string> rve_warnings(const RveTable& table) {
+  std::vector<std::string> out;
+  if (!table.too_large.empty()) {
+    out.push_back(fmt::format("rve.radii: left out, for the sample is narrower: {}",
+                              fmt::join(table.too_large, ", ")));
+  }
+  for (std::size_t r = 0; r < table.radii.size(); ++r) {
+    if (table.left_out[r] == 0) continue;
+    out.push_back(fmt::format(
+        "rve.radii: {} RVEs of radius {:g} have fewer than four grains and are left out",
+        table.left_out[r], table.radii[r]));
+  }
+  return out;
+}
+
 std::string rve_csv(const RveTable& table) {
   const std::size_t realizations = table.gradients.size();
   std::string out = fmt::format(
       "# RVEs: of each column the mean over the RVEs and the realizations, and the error bar "
       "s/sqrt(N) over the RVEs of a realization (Wellmann 31), mean over realizations: {}\n"
-      "# radius: over sample.radius\n# imposed_zz, imposed_xz: of the sample's edges\n",
+      "# radius: over sample.radius\n# strain: of the deformation\n"
+      "# imposed_zz, imposed_xz: of the sample's edges\n"
+      "# sample_zz_Pa, sample_xz_Pa: of all contacts of the sample over its volume\n",
       realizations);
+  for (const std::string& line : rve_warnings(table)) out += "# " + line + "\n";
   std::string heading = "radius,state,strain,imposed_zz,imposed_xz,sample_zz_Pa,sample_xz_Pa";
   for (const RveColumn& c : rve_columns()) {
     const std::string unit = *c.unit != '\0' ? std::string("_") + c.unit : "";

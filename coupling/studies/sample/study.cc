@@ -245,6 +245,9 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
     out.texts.emplace_back("rve_hull.vtu", hull);
   }
   report.rves = rve_sections(rves, plan.deformation);
+  for (const std::string& line : rve_warnings(rves)) {
+    report.rves.insert(report.rves.begin(), Text{"", line + ".", true});
+  }
   out.sweep_sections = [sections = report.rves](const std::string& member) {
     std::vector<Section> own;
     for (Section section : sections) {
