@@ -26,7 +26,7 @@ SampleSetup spheres() {
   s.plan.grains = 60;
   s.plan.pressure = 1e5;
   s.material.density = 2500;
-  s.material.friction = 0.1;  // with more it is loose enough to lose all of its stress
+  s.material.friction = 0.05;  // with more it is loose enough to lose all of its stress
   return s;
 }
 
