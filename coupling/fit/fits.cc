@@ -166,6 +166,8 @@ Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name)
   for (Eigen::Index p = 0; p < m.points.rows(); ++p) {
     if (m.mean.row(p).allFinite()) inside.push_back(p);
   }
+  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
+  if (inside.empty()) return out;
   const Eigen::MatrixXd points = m.points(inside, Eigen::all);
   const bool layer = observed.specimen == Specimen::layer;
   const auto seeing = std::make_shared<const ObservationOperator>(
@@ -173,9 +175,8 @@ Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name)
             : ObservationOperator::of_heap(points, *observed.kernel));
   const std::vector<FitModel> models =
       layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
-  const Eigen::MatrixXd seen = find_fit_model(models, name)
-                                   .stress(points, parameters_of(fit_named(fits.fits, name)));
-  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
+  const Eigen::MatrixXd seen =
+      find_fit_model(models, name).stress(points, parameters_of(fit_named(fits.fits, name)));
   for (std::size_t k = 0; k < inside.size(); ++k) {
     out.row(inside[k]) = seen.row(static_cast<Eigen::Index>(k));
   }

@@ -22,8 +22,8 @@ struct HeapSlopes {
 /// std::invalid_argument naming the keys where no heap has one.
 HeapSlopes slopes_of(const FitSetup& setup, const std::vector<PileFrame>& frames);
 
-/// The models' constants, rho g = h = 1, for heaps averaged by this kernel, its width over h. Throws
-/// std::invalid_argument for a friction angle below the slopes.
+/// The models' constants, rho g = h = 1, for heaps averaged by this kernel, its width over h.
+/// Throws std::invalid_argument for a friction angle below the slopes.
 HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, const Kernel& kernel);
 
 /// Empty maps on a grid over a heap with these slopes, from foot to foot.

@@ -45,8 +45,8 @@ FitParameter beta_hat(double phi) {
 
 // Roul 4.6, 4.9 with seven free numbers: inside |x| < Y tan(beta_hat), Y = -y,
 //   (xx, yy, xy) = rho g ((a2 - 1) Y, (a1 - 1) Y + b1 |x|, a1 x)           y up: xy changes sign
-// outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over `blend`: free constants jump
-// on the core's boundary, and the quadrature of a kernel would make steps of it.
+// outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over `blend`: free constants
+// jump on the core's boundary, and the quadrature of a kernel would make steps of it.
 MatrixXd cantelaube_free(const MatrixXd& points, const VectorXd& p, double slope, double rho_g,
                          double blend) {
   const double a1 = p[0], a2 = p[1], b1 = p[2], axx = p[3], ayy = p[4], axy = p[5];

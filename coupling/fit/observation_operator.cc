@@ -157,8 +157,7 @@ Eigen::MatrixXd ObservationOperator::seen(const StressFunction& stress, bool hal
 Eigen::MatrixXd ObservationOperator::seen_in_heap(const StressFunction& stress) const {
   const Eigen::MatrixXd exact = stress(points_);
   Eigen::MatrixXd out =
-      layer_.weight *
-      stress(layer_.at).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
+      layer_.weight * stress(layer_.at).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
   for (Eigen::Index p = 0; p < out.rows(); ++p) {
     if (!exact.row(p).allFinite()) out.row(p).setConstant(std::nan(""));
   }

@@ -33,7 +33,7 @@ struct Powered {
 template <int W>
 GRAINFIELD_INLINE Powered<W> powered(const Lanes<W>& ratio, const Lanes<W>& power,
                                      const Lanes<W>& inverse, Powers::OfNorm* const* last) {
-  Powered<W> out;
+  Powered<W> out{};
   const auto square = power == 2;
   const auto other = power != 2;
   if (any_of(other)) {

@@ -51,12 +51,14 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
 }
 
 TEST(Fit, IntervalsCoverTheTruth) {
-  expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight}), places(15)), truths(), places(15), 11);
+  expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight}), places(15)), truths(), places(15),
+                  11);
 }
 
 TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
   const FitData data = places(15, kLeft, kRight);
-  expect_coverage(seen(heap_models(two_slopes()), data), two_sided_truths(), data, 21, 20);  // a trial takes more than a second
+  expect_coverage(seen(heap_models(two_slopes()), data), two_sided_truths(), data, 21,
+                  20);  // a trial takes more than a second
 }
 
 // Noise as grains have it: components of a point are tied, its size grows with the depth and is
