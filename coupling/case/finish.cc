@@ -269,6 +269,12 @@ void finish(Draft& draft) {
         fmt::format("{}: sweep.key: {} {}", written(draft, "sweep.key").origin, swept->path(),
                     without_effect_text(*swept, draft.value)));
   }
+  const Study& study = study_of(draft.value);
+  if (study.left_unused == nullptr) return;
+  blame(draft, [&] {
+    const std::string text = study.left_unused(draft.value);
+    if (!text.empty()) draft.value.without_effect.push_back(text);
+  });
 }
 
 }  // namespace grainfield::coupling

@@ -74,6 +74,9 @@ struct Study {
   /// What a realization will take, from the case alone; set where make_run is. Throws what make_run
   /// would for any of the realizations; draws at most so many grains (dem/study/outlook.h).
   dem::Outlook (*foresee)(const Case&, std::int64_t draws) = nullptr;
+  /// What the case names and the run leaves out, one line for a warning, empty: nothing; null:
+  /// nothing ever. After foresee.
+  std::string (*left_unused)(const Case&) = nullptr;
   /// For people, of a run as foreseen; null: nothing to say of any.
   LongestPart (*longest_part)(const Case&, const dem::Outlook&) = nullptr;
   /// What it averages; null: nothing of any size.

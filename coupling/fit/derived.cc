@@ -7,6 +7,7 @@
 
 #include "continuum/closed/osl.h"
 #include "continuum/constants.h"
+#include "coupling/fit/intervals.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -22,8 +23,7 @@ double jackknife(const Fit& fit, const std::function<double(const Eigen::VectorX
   if (r < 3) return kNan;
   Eigen::VectorXd values(r);
   for (Eigen::Index k = 0; k < r; ++k) values[k] = of(fit.left_out.col(k));
-  return std::sqrt((values.array() - values.mean()).square().sum() * static_cast<double>(r - 1) /
-                   static_cast<double>(r));
+  return jackknife_error(values);
 }
 
 FittedParameter derived(const std::string& name, const std::string& unit, const Fit& fit,

@@ -218,7 +218,9 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
     };
     f.by_covariance = about(f.covariance_error);
     f.by_bootstrap = about(f.bootstrap_error);
-    f.by_jackknife = about(f.jackknife_error);
+    f.by_jackknife = std::isfinite(f.jackknife_error) && std::isfinite(f.parameter.floor)
+                         ? interval_above(f.parameter.floor, f.value, out.left_out.row(p), t)
+                         : about(f.jackknife_error);
     if (free && options.profile && f.covariance_error > 0) {
       // (J^T J)^-1 of p: the misfit rises by 1 over that per unit squared.
       Eigen::Index row = 0;
@@ -228,8 +230,9 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
       f.by_profile =
           profile_interval(data, weights, model, best, p, t * t * error * error / flat, t * error);
     }
-    f.low = about(f.error).low;
-    f.high = about(f.error).high;
+    const Interval quoted = out.left_out.size() > 0 ? f.by_jackknife : f.by_covariance;
+    f.low = quoted.low;
+    f.high = quoted.high;
     if (f.at_bound) add_note(out, f.parameter.name + " ends at its bound");
     if (!f.determined) add_note(out, "the values do not determine " + f.parameter.name);
     if (free && weights.known() && !std::isfinite(f.error)) {

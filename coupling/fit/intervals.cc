@@ -63,6 +63,11 @@ double error_of_difference(const FitData& data, const Weights& weights, const Ei
 
 }  // namespace
 
+double jackknife_error(const Eigen::VectorXd& left_out) {
+  const auto r = static_cast<double>(left_out.size());
+  return std::sqrt((left_out.array() - left_out.mean()).square().sum() * (r - 1) / r);
+}
+
 double student(int realizations, double level) {
   if (realizations < 2) return 1.96;
   return boost::math::quantile(boost::math::students_t(realizations - 1.0), 0.5 + 0.5 * level);
@@ -116,7 +121,7 @@ Eigen::VectorXd leave_out(const FitData& data, const Weights& weights, const Fit
   Eigen::VectorXd errors(k);
   for (Eigen::Index p = 0; p < k; ++p) {
     const Eigen::VectorXd row = out.left_out.row(p);
-    errors[p] = std::sqrt((row.array() - row.mean()).square().sum() * (r - 1) / r);
+    errors[p] = jackknife_error(row);
     Eigen::Index other = -1;
     for (Eigen::Index left = 0; left < r; ++left) {
       if (row[left] * best[p] < 0) other = left;
@@ -127,6 +132,12 @@ Eigen::VectorXd leave_out(const FitData& data, const Weights& weights, const Fit
                                             best[p], other + 1, row[other]));
   }
   return errors;
+}
+
+Interval interval_above(double floor, double value, const Eigen::VectorXd& left_out, double t) {
+  const double error = jackknife_error((left_out.array() - floor).log().matrix());
+  const double wide = std::exp(t * error);
+  return {floor + (value - floor) / wide, floor + (value - floor) * wide};
 }
 
 Eigen::VectorXd bootstrap_errors(const FitData& data, const Weights& weights, const FitModel& model,

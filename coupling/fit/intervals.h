@@ -11,6 +11,10 @@ namespace grainfield::coupling {
 /// whose errors count as known.
 double student(int realizations, double level);
 
+/// Standard error of a number whose values without each of the realizations these are (Efron and
+/// Tibshirani 1993, 11.5).
+double jackknife_error(const Eigen::VectorXd& left_out);
+
 /// Ends of the search that are another set of constants within the noise: their misfit is above the
 /// least by less than the noise of the difference (two standard errors over the realizations), and
 /// some constant differs by more than its error. `free`, `spread`: of the constants about `best`.
@@ -23,10 +27,14 @@ std::vector<Eigen::VectorXd> distinct_ends(const FitData& data, const Weights& w
 
 /// Fits without each of the realizations, all of it anew: what the model takes from the packings,
 /// and the search from the best and from `others`. Fills left_out and turning_signs; returns the
-/// jackknife's errors (Efron and Tibshirani 1993, 11.5), nan below 3 realizations.
+/// jackknife's errors, nan below 3 realizations.
 Eigen::VectorXd leave_out(const FitData& data, const Weights& weights, const FitModel& model,
                           const Eigen::VectorXd& best, const std::vector<Eigen::VectorXd>& others,
                           const FitOptions& options, Fit& out);
+
+/// Interval of a constant whose limit is `floor`: (value - floor) times or divided by exp(t e), e the
+/// jackknife's error of log(value - floor) by the fits without each realization.
+Interval interval_above(double floor, double value, const Eigen::VectorXd& left_out, double t);
 
 /// Standard deviations over draws of the realizations, times sqrt(R / (R - 1)); nan without.
 Eigen::VectorXd bootstrap_errors(const FitData& data, const Weights& weights, const FitModel& model,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct FitParameter {
   std::string meaning;  ///< one line
   double least = 0;     ///< open bounds of the search; infinite: none
   double most = 0;
+  /// A limit that no material passes, of ratios of moduli: the interval over realizations is even in
+  /// log(value - floor), so the same for a ratio and its reciprocal. -infinite: even in the value.
+  double floor = -std::numeric_limits<double>::infinity();
 };
 
 /// A model of the registry (continuum/registry.h) that is a model of fits with these constants, of

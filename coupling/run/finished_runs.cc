@@ -70,7 +70,7 @@ const std::vector<std::string>& groups_of(const std::string& file) {
   return (all[file] = std::move(now)).groups;
 }
 
-// All that the files hold, at least as many as the case wants. `go_on` is asked before every file:
+// All that the files hold, at least as many as the case takes. `go_on` is asked before every file:
 // where it says no, nothing is returned.
 std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
                                                   const std::vector<std::string>& snapshots,
@@ -103,7 +103,6 @@ std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
         "ensemble.realizations: found {}, allowed: up to {}, the realizations in grains.files",
         value.ensemble.realizations, count));
   }
-  there.resize(static_cast<std::size_t>(value.ensemble.realizations));
   return there;
 }
 
@@ -113,6 +112,19 @@ FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study) {
   const auto runs = find_runs(value, snapshots, study, [] { return true; });
   return (*runs)[static_cast<std::size_t>(number)];
+}
+
+std::string unused_runs(const Case& value, const std::vector<std::string>& snapshots,
+                        const std::string& study) {
+  if (value.get<GrainFiles>().files.empty()) return {};
+  const dem::hdf5::StructureOnly alone;
+  patience().begin();
+  const auto runs = find_runs(value, snapshots, study, [] { return !patience().over(); });
+  patience().end();
+  if (!runs || static_cast<std::int64_t>(runs->size()) == value.ensemble.realizations) return {};
+  return fmt::format(
+      "grains.files: {} realizations, of which ensemble.realizations = {} takes the first",
+      runs->size(), value.ensemble.realizations);
 }
 
 void try_finished_runs(const Case& value, const std::vector<std::string>& snapshots,
@@ -133,6 +145,7 @@ void try_finished_runs(const Case& value, const std::vector<std::string>& snapsh
       }
     }
     if (runs && bytes <= kReadBytes) {
+      runs->resize(static_cast<std::size_t>(value.ensemble.realizations));
       for (const FinishedRun& run : *runs) {
         if (!go_on()) break;
         make(run);

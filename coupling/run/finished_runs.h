@@ -31,6 +31,11 @@ struct FinishedRun {
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study);
 
+/// One line where grains.files hold more realizations than the case takes; else empty. Throws as
+/// finished_run.
+std::string unused_runs(const Case& value, const std::vector<std::string>& snapshots,
+                        const std::string& study);
+
 /// Makes the run of every realization in grains.files and lets it go again, as far as a check may:
 /// within 4 s in all, and where the files hold no more than 16 MB of numbers. Throws as
 /// finished_run and as `make`.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+#include <cctype>
 #include <stdexcept>
 
 #include "continuum/model.h"
@@ -13,16 +14,24 @@
 namespace grainfield::coupling {
 namespace {
 
-// '*' matches any text that is not empty.
-bool matches(const char* pattern, const char* text) {
-  if (*pattern == '\0') return *text == '\0';
-  if (*pattern == '*') {
-    for (const char* t = text; *t != '\0'; ++t) {
-      if (matches(pattern + 1, t + 1)) return true;
-    }
-    return false;
+// '*' matches a name: text that is not empty, whose only dots are those of numbers (0.98). At an end
+// of the pattern it is another figure's key, which is looked up, and has its dots.
+bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0,
+             std::size_t t = 0) {
+  if (p == pattern.size()) return t == text.size();
+  if (pattern[p] != '*') {
+    return t < text.size() && pattern[p] == text[t] && matches(pattern, text, p + 1, t + 1);
   }
-  return *pattern == *text && matches(pattern + 1, text + 1);
+  const auto digit = [&](std::size_t k) {
+    return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
+  };
+  const bool end = p == 0 || p + 1 == pattern.size();
+  for (std::size_t k = t; k < text.size(); ++k) {
+    const bool of_a_number = k > t && digit(k - 1) && digit(k + 1);
+    if (text[k] == '.' && !end && !of_a_number) return false;
+    if (matches(pattern, text, p + 1, k + 1)) return true;
+  }
+  return false;
 }
 
 // Whether the text is the key of a declared figure and, behind a dot, a member of a sweep.
@@ -142,6 +151,10 @@ const std::vector<SummaryKey>& summary_keys() {
       {"compare.*.chi2_per_dof", "-",
        "chi squared per degree of freedom with the ensemble's errors"},
       {"compare.*.dof", "-", "independent points"},
+      {"compare.*.*.rel_l2", "-", "the same distance on one profile, e.g. height_0.1 or base"},
+      {"compare.*.*.max", "N/m", "largest distance there"},
+      {"compare.*.*.chi2_per_dof", "-", "chi squared per degree of freedom there"},
+      {"compare.*.*.dof", "-", "independent points there"},
       {"compare.*.peak", "N/m", "the model's peak on the last profile"},
       {"compare.*.peak_over_F_per_h", "-", "the same over F/h"},
       {"verdict.best_model", "text", "label of the model nearest to the simulation"},
@@ -194,7 +207,7 @@ const std::vector<SummaryKey>& summary_keys() {
 const SummaryKey* find_summary_key(const std::string& key) {
   for (const auto& entry : summary_keys()) {
     const std::string& pattern = entry.pattern;
-    if (!matches(pattern.c_str(), key.c_str())) continue;
+    if (!matches(pattern, key)) continue;
     // What says something of another figure is declared where that figure is.
     if (pattern.front() == '*') {
       if (find_summary_key(key.substr(0, key.size() - pattern.size() + 1)) == nullptr) continue;

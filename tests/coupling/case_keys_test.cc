@@ -127,6 +127,10 @@ TEST(SummaryKeys, PatternsMatchWholeNames) {
   EXPECT_EQ(find_summary_key("compare.layer.rel_l2")->pattern, "compare.*.rel_l2");
   EXPECT_EQ(find_summary_key("model.fe_rough.flank_jump")->pattern, "model.*.flank_jump");
   EXPECT_EQ(find_summary_key("model.fe.nobody_knows"), nullptr);
+  // A star stops at a dot, unless it is that of a number.
+  EXPECT_EQ(find_summary_key("fit.osl.anything.eta"), nullptr);
+  EXPECT_EQ(find_summary_key("compare.osl.height_0.4.dof")->pattern, "compare.*.*.dof");
+  EXPECT_EQ(find_summary_key("compare.osl.height_0.4.more.dof"), nullptr);
   EXPECT_EQ(find_summary_key("response.peak.least")->pattern, "*.least");
   EXPECT_EQ(find_summary_key("nobody.knows.least"), nullptr);
   EXPECT_EQ(find_summary_key("sweep.p_holm.dem.contacts.friction_0.3")->pattern, "sweep.p_holm.*");

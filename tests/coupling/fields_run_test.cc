@@ -95,6 +95,10 @@ TEST(FieldsRun, FinishedPilesGiveWhatPouredOnesGive) {
   EXPECT_THAT(refusal("material.density=100"), HasSubstr("material.density: found 100, the pile"));
   EXPECT_THAT(refusal("ensemble.realizations=3"),
               HasSubstr("ensemble.realizations: found 3, allowed: up to 2, the realizations in "));
+  const Output fewer = program("check " + file + reuse + " --set ensemble.realizations=1");
+  EXPECT_EQ(fewer.code, 0) << fewer.err;
+  EXPECT_THAT(fewer.err, HasSubstr("warning: grains.files: 2 realizations, of which "
+                                   "ensemble.realizations = 1 takes the first"));
   EXPECT_THAT(refusal("'fields.topics=[\"fabrik\"]'"), HasSubstr("nearest: fabric"));
   EXPECT_THAT(refusal("'compare.models=[\"osl\"]'"), HasSubstr("compare.models: has no meaning"));
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coupling/fit/intervals.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
@@ -122,6 +123,21 @@ TEST(Fit, ErrorsOfALinearConstantAreThoseOfItsRealizations) {
     EXPECT_NEAR(p.error, error, 1e-4 * error);
     EXPECT_NEAR(p.by_profile.high - p.by_profile.low, p.high - p.low, 0.03 * (p.high - p.low));
   }
+}
+
+// A ratio of moduli along x over y says the same as that along y over x.
+TEST(Fit, IntervalOfARatioIsThatOfItsReciprocal) {
+  const Eigen::VectorXd left_out = vector({2.1, 1.4, 3.3, 1.9, 2.6});
+  const Interval one = interval_above(0, 2.2, left_out, 2.776);
+  const Interval other = interval_above(0, 1 / 2.2, left_out.cwiseInverse(), 2.776);
+  EXPECT_NEAR(other.low, 1 / one.high, 1e-12);
+  EXPECT_NEAR(other.high, 1 / one.low, 1e-12);
+  EXPECT_GT(one.low, 0);
+  // Far from its limit it is the plain one.
+  const double error = jackknife_error(left_out);
+  const Interval far = interval_above(-1e6, 2.2, left_out, 2.776);
+  EXPECT_NEAR(far.low, 2.2 - 2.776 * error, 1e-4);
+  EXPECT_NEAR(far.high, 2.2 + 2.776 * error, 1e-4);
 }
 
 TEST(Fit, BadData) {

@@ -34,6 +34,7 @@ void describe_piles(Study& out) {
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::PileSetup>().rest; };
   out.figures = {pile_figures};
   out.models_optional = true;
+  out.left_unused = [](const Case& value) { return unused_runs(value, {"pile"}, "pile"); };
   out.longest_part = [](const Case& value, const dem::Outlook& outlook) -> LongestPart {
     if (outlook.time_key != "source.interval") return {};
     if (!value.get<dem::PileSetup>().sleep.on) return {"pouring", ""};

@@ -76,4 +76,6 @@ void try_finished_layers(const Case& value) {
   });
 }
 
+std::string unused_layers(const Case& value) { return unused_runs(value, kStates, kStudy); }
+
 }  // namespace grainfield::coupling

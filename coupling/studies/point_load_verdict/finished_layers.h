@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "coupling/case/case.h"
 #include "dem/study/run.h"
@@ -16,5 +17,7 @@ namespace grainfield::coupling {
 std::unique_ptr<dem::Run> make_finished_layer_run(const Case& value, std::int64_t number);
 /// Reads all of them (try_finished_runs). Throws the same.
 void try_finished_layers(const Case& value);
+/// Of them, unused_runs().
+std::string unused_layers(const Case& value);
 
 }  // namespace grainfield::coupling

@@ -198,6 +198,7 @@ Study point_load_verdict_study() {
   out.models_optional = true;
   out.make_run = make_run;
   out.foresee = foresee;
+  out.left_unused = unused_layers;
   out.analyse = analyse;
   return out;
 }
