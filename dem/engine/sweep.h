@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/engine/batch.h"
 #include "dem/engine/flatten.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
@@ -34,6 +35,8 @@ class Sweep {
   using Overlap = typename World::Overlap;
   using Rule = typename World::Acting::Rule;
   using Memory = typename World::Acting::Memory;
+  /// All pairs are evaluated before any sum, several side by side (batch.h).
+  static constexpr bool in_lanes = InLanes<typename World::Shape>;
 
   explicit Sweep(World& world)
       : world_(world),
@@ -74,6 +77,7 @@ class Sweep {
   /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
   /// their second grain, as they do when one thread sweeps all.
   GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
+    if constexpr (in_lanes) return evaluate(rank, dt);
     const bool periodic = world_.cell.is_periodic();
     for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
       Force& f = world_.contacts.pair_forces[k];
@@ -82,9 +86,7 @@ class Sweep {
         f = Force{};
         continue;
       }
-      Sum& sum = sums_[world_.contacts.pairs[k].j];
-      sum.force -= f.force;
-      sum.torque += f.torque_j;
+      add_to_second(k, f);
     }
   }
 
@@ -93,6 +95,7 @@ class Sweep {
   /// `applied`: the applied force. `first_new`: with SweepKind::start, ids from here on are new.
   template <SweepKind kind>
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
+    if constexpr (in_lanes) sum_incoming(rank, dt);
     if (world_.cell.is_periodic()) {
       sweep<kind, true>(rank, applied, dt, first_new);
     } else {
@@ -123,7 +126,14 @@ class Sweep {
       sums_[i] = Sum{};
       const int end = in_cell ? first_across(i) : pairs.last(i);
       sum_pairs<kind>(
-          pairs.first(i), end, last, [&](int k, Force& f) { return pair_force(i, k, dt, f); },
+          pairs.first(i), end, last,
+          [&](int k, Force& f) {
+            if constexpr (in_lanes) {
+              return evaluated(k, f);
+            } else {
+              return pair_force(i, k, dt, f);
+            }
+          },
           force, torque);
       if (in_cell && end < pairs.last(i)) {
         const Force across = sum_across<kind>(i, last, dt);
@@ -215,7 +225,14 @@ class Sweep {
     Force sum;
     sum_pairs<kind>(
         first_across(i), world_.contacts.pairs.last(i), last,
-        [&](int k, Force& f) { return pair_force_across(i, k, dt, f); }, sum.force, sum.torque_i);
+        [&](int k, Force& f) {
+          if constexpr (in_lanes) {
+            return evaluated_across(k, dt, f);
+          } else {
+            return pair_force_across(i, k, dt, f);
+          }
+        },
+        sum.force, sum.torque_i);
     return sum;
   }
 
@@ -269,6 +286,55 @@ class Sweep {
     auto& b = grains.bodies[i];
     load.gravity += load.drag * world_.cell.flow_at(b.position);
     integrator_.start(b, grains.memory[i], grains.inertias[i], load);
+  }
+
+  void add_to_second(int k, const Force& f) {
+    Sum& sum = sums_[world_.contacts.pairs[k].j];
+    sum.force -= f.force;
+    sum.torque += f.torque_j;
+  }
+
+  // In lanes: a thread evaluates the pairs of its block's rows but those that reach into a later
+  // block, and those that come in from an earlier one. The sums are as without.
+
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
+    const auto& contacts = world_.contacts;
+    const int last = contacts.blocks.last(rank);
+    PairBatches batch(world_, dt, books_, rolls_,
+                      [&](const Rule& rule, const Body& a, const Body& b, const Overlap& o,
+                          Memory& memory, int k) {
+                        return acts(rule, a, b, o, dt, memory, world_.rolling.pairs,
+                                    world_.balance.pairs, k)
+                            .force;
+                      });
+    for (const auto& [i, k] : contacts.blocks.incoming(rank)) batch.add(i, k);
+    for (int i = contacts.blocks.first(rank); i < last; ++i) {
+      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
+        const int j = contacts.pairs[k].j;
+        if (j < last || j >= world_.awake) batch.add(i, k);
+      }
+    }
+    batch.finish();
+  }
+  GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
+    const bool periodic = world_.cell.is_periodic();
+    for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
+      Force f;
+      const bool across = periodic && is_image(world_.contacts.images[k]);
+      if (across ? evaluated_across(k, dt, f) : evaluated(k, f)) add_to_second(k, f);
+    }
+  }
+  bool evaluated(int k, Force& f) const {
+    f = world_.contacts.pair_forces[k];
+    return !f.force.isZero(0);
+  }
+  bool evaluated_across(int k, double dt, Force& f) {
+    if (!evaluated(k, f)) return false;
+    if (world_.cell.flows()) {
+      world_.grains.cell_work[world_.contacts.pairs[k].j] +=
+          dt * f.force.dot(world_.cell.drift(world_.contacts.images[k]));
+    }
+    return true;
   }
 
   /// Force of pair k between grain i and its second one; 0 and an empty memory when they do not
