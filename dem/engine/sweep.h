@@ -37,6 +37,8 @@ class Sweep {
   using Memory = typename World::Acting::Memory;
   /// All pairs are evaluated before any sum, several side by side (batch.h).
   static constexpr bool in_lanes = InLanes<typename World::Shape>;
+  /// So nothing looks at other grains while some begin their next step.
+  static constexpr bool begins_in_lanes = in_lanes && requires { World::Integrator::in_lanes; };
 
   explicit Sweep(World& world)
       : world_(world),
@@ -119,6 +121,7 @@ class Sweep {
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     const bool flows = in_cell && world_.cell.flows();
     bool moved = false;
+    [[maybe_unused]] int begins[kBatch], waiting = 0;  // grains that begin their next step together
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
       Vector force = sums_[i].force;
@@ -162,7 +165,13 @@ class Sweep {
         } else {
           integrator_.end(b, grains.memory[i], grains.inertias[i], load);
         }
-        if constexpr (kind == SweepKind::move_on) {
+        if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
+          begins[waiting++] = i;
+          if (waiting == kBatch) {
+            moved |= begin_all(begins, waiting);
+            waiting = 0;
+          }
+        } else if constexpr (kind == SweepKind::move_on) {
           if (flows) {
             moved |= begin_in_flow(i);
           } else {
@@ -173,6 +182,7 @@ class Sweep {
         }
       }
     }
+    if constexpr (begins_in_lanes) moved |= begin_all(begins, waiting);
     if (moved) moved_.store(true, std::memory_order_relaxed);
   }
 
@@ -241,23 +251,54 @@ class Sweep {
     auto& b = grains.bodies[i];
     auto& memory = grains.memory[i];
     integrator_.begin(b, memory, grains.inertias[i]);
+    moved |= has_left(i);
+  }
+  /// Of a grain that has moved: its shape is placed, too.
+  bool has_left(int i) {
+    auto& grains = world_.grains;
+    const auto& b = grains.bodies[i];
+    const auto& rotation = grains.memory[i].rotation;
     constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
-    moved |= world_.margins[i].template is_left<outlines>(b.position, memory.rotation);
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
+    return world_.margins[i].template is_left<outlines>(b.position, rotation);
+  }
+  bool has_left_in_flow(int i) {
+    auto& grains = world_.grains;
+    const auto& cell = world_.cell;
+    const auto& b = grains.bodies[i];
+    const auto& rotation = grains.memory[i].rotation;
+    constexpr bool outlines = World::Shape::outlines;
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
+    const auto& margin = world_.margins[i];
+    return margin.template is_left_in_flow<outlines>(
+        b.position, rotation, cell.carried(margin.position), cell.strain(), b.radius);
+  }
+  /// begin or begin_in_flow of several grains; true when one may have left its margin.
+  [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_all(const int* list, int count) {
+    auto& grains = world_.grains;
+    const bool flows = world_.cell.flows();
+    if (flows) {
+      for (int k = 0; k < count; ++k) {
+        auto& b = grains.bodies[list[k]];
+        b.velocity += world_.cell.kick(b.position);
+      }
+    }
+    integrator_.begin(
+        count, [&](int k) -> Body& { return grains.bodies[list[k]]; },
+        [&](int k) -> auto& { return grains.memory[list[k]]; },
+        [&](int k) -> const auto& { return grains.inertias[list[k]]; });
+    bool moved = false;
+    for (int k = 0; k < count; ++k) moved |= flows ? has_left_in_flow(list[k]) : has_left(list[k]);
+    return moved;
   }
   /// True when the grain may have left its margin.
   [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_in_flow(int i) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
-    auto& memory = grains.memory[i];
     b.velocity += cell.kick(b.position);
-    integrator_.begin(b, memory, grains.inertias[i]);
-    constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
-    const auto& margin = world_.margins[i];
-    return margin.template is_left_in_flow<outlines>(
-        b.position, memory.rotation, cell.carried(margin.position), cell.strain(), b.radius);
+    integrator_.begin(b, grains.memory[i], grains.inertias[i]);
+    return has_left_in_flow(i);
   }
 
   /// With the drag against the flow, the rest of the acceleration that goes with the flow, and the

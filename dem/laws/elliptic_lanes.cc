@@ -1,9 +1,7 @@
 // Compiled for every width (lanes.h): no function of it may be another file's, too.
 #include "dem/laws/elliptic_lanes.h"
 
-#include "dem/space/lanes.h"
-
-#define GRAINFIELD_INLINE [[gnu::always_inline]] inline
+#include "dem/space/lanes3.h"
 
 namespace grainfield::dem {
 namespace {
@@ -12,55 +10,16 @@ constexpr double kPi = 3.141592653589793238462643383279502884;
 // Beyond it turned_by (kinematics3.h) takes sine and cosine.
 constexpr double kMostTurnSquared = 1e-2;
 
-/// The order of every sum is that of Eigen's vectors of three.
-template <int W>
-struct Three {
-  Lanes<W> x, y, z;
-};
-template <int W>
-GRAINFIELD_INLINE Three<W> three(const double (*from)[kBatch], int at) {
-  return {loaded<W>(from[0] + at), loaded<W>(from[1] + at), loaded<W>(from[2] + at)};
-}
-template <int W>
-GRAINFIELD_INLINE void put(const Three<W>& v, double (*to)[kBatch], int at) {
-  store<W>(v.x, to[0] + at);
-  store<W>(v.y, to[1] + at);
-  store<W>(v.z, to[2] + at);
-}
-template <int W>
-GRAINFIELD_INLINE Three<W> operator+(const Three<W>& a, const Three<W>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <int W>
-GRAINFIELD_INLINE Three<W> operator-(const Three<W>& a, const Three<W>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <int W>
-GRAINFIELD_INLINE Three<W> scaled(const Lanes<W>& s, const Three<W>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-template <int W>
-GRAINFIELD_INLINE Lanes<W> dot(const Three<W>& a, const Three<W>& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
-}
-template <int W>
-GRAINFIELD_INLINE Three<W> cross(const Three<W>& a, const Three<W>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-template <int W, class M>
-GRAINFIELD_INLINE Three<W> chosen(const M& mask, const Three<W>& a, const Three<W>& b) {
-  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
-}
 /// As capped (contact.h).
 template <int W>
-GRAINFIELD_INLINE Three<W> capped(const Three<W>& v, const Lanes<W>& limit) {
+[[gnu::always_inline]] inline Three<W> capped(const Three<W>& v, const Lanes<W>& limit) {
   const Lanes<W> size = root_of<W>(dot<W>(v, v));
   return chosen<W>(size > limit, scaled<W>(limit / size, v), v);
 }
 
 /// As turned_by and turn_with_material.
 template <int W>
-GRAINFIELD_INLINE Three<W> turned(const Three<W>& spring, const Three<W>& normal,
+[[gnu::always_inline]] inline Three<W> turned(const Three<W>& spring, const Three<W>& normal,
                                   const Three<W>& turn, const Lanes<W>& square) {
   const Lanes<W> size = root_of<W>(dot<W>(spring, spring));
   const Lanes<W> share =
@@ -81,7 +40,7 @@ struct LaneEllipse {
 };
 /// As EllipseTable::contact, of ratios that the table has.
 template <int W>
-GRAINFIELD_INLINE LaneEllipse<W> ellipse_of(const double* table, const Lanes<W>& lesser,
+[[gnu::always_inline]] inline LaneEllipse<W> ellipse_of(const double* table, const Lanes<W>& lesser,
                                             const Lanes<W>& greater) {
   using V = Lanes<W>;
   using Bits = typename LanesOf<W>::Bits;
@@ -113,7 +72,7 @@ GRAINFIELD_INLINE LaneEllipse<W> ellipse_of(const double* table, const Lanes<W>&
 }
 
 template <int W>
-GRAINFIELD_INLINE void forces(const EllipticNumbers& law, const OverlapBatch& o, ContactBatch& c,
+[[gnu::always_inline]] inline void forces(const EllipticNumbers& law, const OverlapBatch& o, ContactBatch& c,
                               int at) {
   using V = Lanes<W>;
   const V none{};
@@ -174,8 +133,7 @@ GRAINFIELD_INLINE void forces(const EllipticNumbers& law, const OverlapBatch& o,
   const Three<W> force = tangential - scaled<W>(repulsion, normal);
   put<W>(force, c.force, at);
   put<W>(cross<W>(arm_i, force), c.torque_i, at);
-  const Three<W> other = cross<W>(arm_j, force);
-  put<W>(Three<W>{-other.x, -other.y, -other.z}, c.torque_j, at);
+  put<W>(-cross<W>(arm_j, force), c.torque_j, at);
 }
 
 }  // namespace
