@@ -9,10 +9,13 @@ namespace grainfield::dem {
 
 /// A shape with overlaps side by side (shape.h).
 template <class Shape>
-concept InLanes = requires { typename Shape::Batch; };
+concept InLanes = requires {
+  typename Shape::Batch;
+};
 /// A law with forces side by side (law.h).
 template <class Law>
-concept LawInLanes = requires(const Law& law, const OverlapBatch& overlaps, ContactBatch& contacts) {
+concept LawInLanes = requires(const Law& law, const OverlapBatch& overlaps,
+                              ContactBatch& contacts) {
   law.lanes(overlaps, 0.0, 0.0, contacts, 0);
 };
 
@@ -118,14 +121,15 @@ class PairBatches {
 
   [[gnu::noinline]] void act_alone(int i, int k, const Overlap& o) {
     auto& pair = world_.contacts.pairs[k];
-    world_.contacts.pair_forces[k] = act_(world_.pair_rule(i, pair.j), world_.grains.bodies[i],
-                                          second(k), o, pair.memory, k);
+    world_.contacts.pair_forces[k] =
+        act_(world_.pair_rule(i, pair.j), world_.grains.bodies[i], second(k), o, pair.memory, k);
   }
   void apart(int i, int k) {
     auto& contacts = world_.contacts;
     contacts.pairs[k].memory = {};
     if (!contacts.pair_forces[k].force.isZero(0)) contacts.pair_forces[k] = Force{};
-    if (dt_ > 0 && (books_ || rolls_)) [[unlikely]] account_apart(i, k);
+    if (dt_ > 0 && (books_ || rolls_)) [[unlikely]]
+      account_apart(i, k);
   }
   [[gnu::noinline]] void account_apart(int i, int k) {
     if (rolls_) world_.rolling.pairs[k] = {};

@@ -20,7 +20,7 @@ template <int W>
 /// As turned_by and turn_with_material.
 template <int W>
 [[gnu::always_inline]] inline Three<W> turned(const Three<W>& spring, const Three<W>& normal,
-                                  const Three<W>& turn, const Lanes<W>& square) {
+                                              const Three<W>& turn, const Lanes<W>& square) {
   const Lanes<W> size = root_of<W>(dot<W>(spring, spring));
   const Lanes<W> share =
       0.5 * (1 + square * (1.0 / 12 + square * (1.0 / 120 + square * (17.0 / 20160 +
@@ -41,14 +41,13 @@ struct LaneEllipse {
 /// As EllipseTable::contact, of ratios that the table has.
 template <int W>
 [[gnu::always_inline]] inline LaneEllipse<W> ellipse_of(const double* table, const Lanes<W>& lesser,
-                                            const Lanes<W>& greater) {
+                                                        const Lanes<W>& greater) {
   using V = Lanes<W>;
   using Bits = typename LanesOf<W>::Bits;
   const V ratio = greater_of(greater / lesser, V{} + 1.0);
   const Bits bits = reinterpret_cast<Bits>(ratio);
   const Bits part = (bits >> 49) - (std::uint64_t{1023} << 3);
-  const Bits rest =
-      (bits & ((std::uint64_t{1} << 49) - 1)) << 3 | (std::uint64_t{1023} << 52);
+  const Bits rest = (bits & ((std::uint64_t{1} << 49) - 1)) << 3 | (std::uint64_t{1023} << 52);
   const V t = 2 * reinterpret_cast<V>(rest) - 3, t2 = t * t, t4 = t2 * t2;
   const double* rows[W];
   for (int k = 0; k < W; ++k) rows[k] = table + kEllipseRow * part[k];
@@ -72,8 +71,8 @@ template <int W>
 }
 
 template <int W>
-[[gnu::always_inline]] inline void forces(const EllipticNumbers& law, const OverlapBatch& o, ContactBatch& c,
-                              int at) {
+[[gnu::always_inline]] inline void forces(const EllipticNumbers& law, const OverlapBatch& o,
+                                          ContactBatch& c, int at) {
   using V = Lanes<W>;
   const V none{};
   const Three<W> normal = three<W>(o.normal, at), major = three<W>(o.major, at);

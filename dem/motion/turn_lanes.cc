@@ -24,10 +24,10 @@ template <int W>
 template <int W>
 [[gnu::always_inline]] inline Turn<W> product(const Turn<W>& a, const Turn<W>& b) {
   const Three<W>&p = a.v, &q = b.v;
-  return {a.w * b.w - p.x * q.x - p.y * q.y - p.z * q.z,
-          {a.w * q.x + p.x * b.w + p.y * q.z - p.z * q.y,
-           a.w * q.y + p.y * b.w + p.z * q.x - p.x * q.z,
-           a.w * q.z + p.z * b.w + p.x * q.y - p.y * q.x}};
+  return {
+      a.w * b.w - p.x * q.x - p.y * q.y - p.z * q.z,
+      {a.w * q.x + p.x * b.w + p.y * q.z - p.z * q.y, a.w * q.y + p.y * b.w + p.z * q.x - p.x * q.z,
+       a.w * q.z + p.z * b.w + p.x * q.y - p.y * q.x}};
 }
 
 /// As quaternion_of (space3.h), with rotation_of (rotation.h), of `size` along an axis.
@@ -52,7 +52,8 @@ template <int W>
                      q4 * (1.0 / 20922789888000));
   const V s = r + r * ps, c = 1 + pc;
   // The quarter is in the last bits of the rounded sum.
-  const Bits quarter = reinterpret_cast<Bits>(shifted) & (magnitude(turns) < 1e15 ? Bits{} + 3 : Bits{});
+  const Bits quarter =
+      reinterpret_cast<Bits>(shifted) & (magnitude(turns) < 1e15 ? Bits{} + 3 : Bits{});
   const auto swapped = (quarter & 1) != 0, negative = (quarter & 2) != 0;
   const V cosine = swapped ? -s : c, sine = swapped ? c : s;
   const auto turns_at_all = full > 0;
@@ -79,8 +80,8 @@ template <int W>
   const Three<W> moments = three<W>(b.moments, at);
   Turn<W> rotation{loaded<W>(b.rotation[3] + at), three<W>(b.rotation, at)};
   const Three<W> spin = turned<W>(back<W>(rotation), three<W>(b.spin, at));
-  const Three<W> before = turned<W>(
-      rotation, Three<W>{moments.x * spin.x, moments.y * spin.y, moments.z * spin.z});
+  const Three<W> before =
+      turned<W>(rotation, Three<W>{moments.x * spin.x, moments.y * spin.y, moments.z * spin.z});
   const Three<W> world = before + scaled<W>(V{} + 0.5 * dt, three<W>(b.torque, at));
   Three<W> momentum = turned<W>(back<W>(rotation), world);
   turn<W>(0, 0.5 * dt, moments, momentum, rotation);

@@ -57,8 +57,8 @@ class VerletIntegrator<3> {
     }
     m.rotation.normalize();
   }
-  /// begin of several bodies: body(k), memory(k) and inertia(k) are those of the k-th. Bit by bit as
-  /// one by one.
+  /// begin of several bodies: body(k), memory(k) and inertia(k) are those of the k-th. Bit by bit
+  /// as one by one.
   template <class BodyAt, class MemoryAt, class InertiaAt>
   void begin(int count, BodyAt body, MemoryAt memory, InertiaAt inertia) const {
     TurnBatch batch;

@@ -115,8 +115,13 @@ GRAINFIELD_INLINE LaneTensor<W> sum_of(const LaneBend<W>& i, const LaneBend<W>& 
 template <int W>
 GRAINFIELD_INLINE LaneBend<W> half_inverse(const LaneBend<W>& bend) {
   const Lanes<W> half = 0.5 / (bend.area * bend.area), floor = Lanes<W>{} + kLeastWeight;
-  return {half / greater_of(bend.weight2, floor), -bend.y,  bend.x,
-          half / greater_of(bend.weight, floor),  -bend.y2, bend.x2, bend.area};
+  return {half / greater_of(bend.weight2, floor),
+          -bend.y,
+          bend.x,
+          half / greater_of(bend.weight, floor),
+          -bend.y2,
+          bend.x2,
+          bend.area};
 }
 
 /// One body of each pair, where its outward normal is n (of the second: -n, with the same height).
@@ -127,8 +132,7 @@ struct Side {
 };
 template <int W>
 GRAINFIELD_INLINE Side<W> side_of(const LaneBody* const* bodies, Powers* const* powers,
-                                  const Vectors<W>& n, const Vectors<W>& tx,
-                                  const Vectors<W>& ty) {
+                                  const Vectors<W>& n, const Vectors<W>& tx, const Vectors<W>& ty) {
   using V = Lanes<W>;
   const auto of_bodies = [&](auto get) {
     return lanes_of<W>([&](int k) { return get(*bodies[k]); });
@@ -228,9 +232,8 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
   const V step_x = (f * gx - (h.yy * gx - h.xy * gy)) / divisor;
   const V step_y = (f * gy - (h.xx * gy - h.xy * gx)) / divisor;
   const V fall = -(gx * step_x + gy * step_y);
-  const V reach = kPointsLeft * lanes_of<W>([&](int k) {
-                    return first[k]->farthest + second[k]->farthest;
-                  });
+  const V reach =
+      kPointsLeft * lanes_of<W>([&](int k) { return first[k]->farthest + second[k]->farthest; });
   const auto least_ahead = (f > 0) & (divisor > 0) & (trace > 2 * f) &
                            (step_x * step_x + step_y * step_y <= kShortStep * kShortStep);
   const auto settled =

@@ -48,8 +48,7 @@ inline std::unique_ptr<Engine> lanes_scene(const LanesScene& scene) {
     const Eigen::Vector3d place(k % 4, k / 4 % 4, k / 16);
     const Eigen::Vector3d at = spacing * (place + Eigen::Vector3d::Constant(0.5));
     const bool sharp = k % 3 == 0;
-    const Superellipsoid body =
-        random_superellipsoid(random, sharp ? 0.3 : 0.6, sharp ? 1.7 : 1.4);
+    const Superellipsoid body = random_superellipsoid(random, sharp ? 0.3 : 0.6, sharp ? 1.7 : 1.4);
     NewGrain g;
     g.x = at.x();
     g.y = at.y();

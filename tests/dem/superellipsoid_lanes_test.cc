@@ -39,8 +39,7 @@ TEST_P(SuperellipsoidLanes, ScenesEndAsPairByPair) {
 TEST_P(SuperellipsoidLanes, LawAndTurningAreThoseOneByOne) {
   for (const bool cell : {false, true}) {
     const auto run = [cell](bool alone, int threads) {
-      const auto engine =
-          lanes_scene({cell, HertzEllipticLaw{1e5, 0.3, 0.3}, threads, alone});
+      const auto engine = lanes_scene({cell, HertzEllipticLaw{1e5, 0.3, 0.3}, threads, alone});
       for (int k = 0; k < (alone ? 200 : 1); ++k) engine->step(alone ? 1 : 200);
       EXPECT_GT(engine->measure().contacts, 60);
       return bits::hash_of(engine->snapshot());
