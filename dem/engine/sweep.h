@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/engine/batch.h"
 #include "dem/engine/flatten.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
@@ -34,6 +35,10 @@ class Sweep {
   using Overlap = typename World::Overlap;
   using Rule = typename World::Acting::Rule;
   using Memory = typename World::Acting::Memory;
+  /// All pairs are evaluated before any sum, several side by side (batch.h).
+  static constexpr bool in_lanes = InLanes<typename World::Shape>;
+  /// So nothing looks at other grains while some begin their next step.
+  static constexpr bool begins_in_lanes = in_lanes && requires { World::Integrator::in_lanes; };
 
   explicit Sweep(World& world)
       : world_(world),
@@ -74,6 +79,7 @@ class Sweep {
   /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
   /// their second grain, as they do when one thread sweeps all.
   GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
+    if constexpr (in_lanes) return evaluate(rank, dt);
     const bool periodic = world_.cell.is_periodic();
     for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
       Force& f = world_.contacts.pair_forces[k];
@@ -82,9 +88,7 @@ class Sweep {
         f = Force{};
         continue;
       }
-      Sum& sum = sums_[world_.contacts.pairs[k].j];
-      sum.force -= f.force;
-      sum.torque += f.torque_j;
+      add_to_second(k, f);
     }
   }
 
@@ -93,6 +97,7 @@ class Sweep {
   /// `applied`: the applied force. `first_new`: with SweepKind::start, ids from here on are new.
   template <SweepKind kind>
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
+    if constexpr (in_lanes) sum_incoming(rank, dt);
     if (world_.cell.is_periodic()) {
       sweep<kind, true>(rank, applied, dt, first_new);
     } else {
@@ -116,6 +121,7 @@ class Sweep {
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     const bool flows = in_cell && world_.cell.flows();
     bool moved = false;
+    [[maybe_unused]] int begins[kBatch], waiting = 0;  // grains that begin their next step together
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
       Vector force = sums_[i].force;
@@ -123,7 +129,14 @@ class Sweep {
       sums_[i] = Sum{};
       const int end = in_cell ? first_across(i) : pairs.last(i);
       sum_pairs<kind>(
-          pairs.first(i), end, last, [&](int k, Force& f) { return pair_force(i, k, dt, f); },
+          pairs.first(i), end, last,
+          [&](int k, Force& f) {
+            if constexpr (in_lanes) {
+              return evaluated(k, f);
+            } else {
+              return pair_force(i, k, dt, f);
+            }
+          },
           force, torque);
       if (in_cell && end < pairs.last(i)) {
         const Force across = sum_across<kind>(i, last, dt);
@@ -152,7 +165,13 @@ class Sweep {
         } else {
           integrator_.end(b, grains.memory[i], grains.inertias[i], load);
         }
-        if constexpr (kind == SweepKind::move_on) {
+        if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
+          begins[waiting++] = i;
+          if (waiting == kBatch) {
+            moved |= begin_all(begins, waiting);
+            waiting = 0;
+          }
+        } else if constexpr (kind == SweepKind::move_on) {
           if (flows) {
             moved |= begin_in_flow(i);
           } else {
@@ -163,6 +182,7 @@ class Sweep {
         }
       }
     }
+    if constexpr (begins_in_lanes) moved |= begin_all(begins, waiting);
     if (moved) moved_.store(true, std::memory_order_relaxed);
   }
 
@@ -215,7 +235,14 @@ class Sweep {
     Force sum;
     sum_pairs<kind>(
         first_across(i), world_.contacts.pairs.last(i), last,
-        [&](int k, Force& f) { return pair_force_across(i, k, dt, f); }, sum.force, sum.torque_i);
+        [&](int k, Force& f) {
+          if constexpr (in_lanes) {
+            return evaluated_across(k, dt, f);
+          } else {
+            return pair_force_across(i, k, dt, f);
+          }
+        },
+        sum.force, sum.torque_i);
     return sum;
   }
 
@@ -224,23 +251,54 @@ class Sweep {
     auto& b = grains.bodies[i];
     auto& memory = grains.memory[i];
     integrator_.begin(b, memory, grains.inertias[i]);
+    moved |= has_left(i);
+  }
+  /// Of a grain that has moved: its shape is placed, too.
+  bool has_left(int i) {
+    auto& grains = world_.grains;
+    const auto& b = grains.bodies[i];
+    const auto& rotation = grains.memory[i].rotation;
     constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
-    moved |= world_.margins[i].template is_left<outlines>(b.position, memory.rotation);
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
+    return world_.margins[i].template is_left<outlines>(b.position, rotation);
+  }
+  bool has_left_in_flow(int i) {
+    auto& grains = world_.grains;
+    const auto& cell = world_.cell;
+    const auto& b = grains.bodies[i];
+    const auto& rotation = grains.memory[i].rotation;
+    constexpr bool outlines = World::Shape::outlines;
+    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
+    const auto& margin = world_.margins[i];
+    return margin.template is_left_in_flow<outlines>(
+        b.position, rotation, cell.carried(margin.position), cell.strain(), b.radius);
+  }
+  /// begin or begin_in_flow of several grains; true when one may have left its margin.
+  [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_all(const int* list, int count) {
+    auto& grains = world_.grains;
+    const bool flows = world_.cell.flows();
+    if (flows) {
+      for (int k = 0; k < count; ++k) {
+        auto& b = grains.bodies[list[k]];
+        b.velocity += world_.cell.kick(b.position);
+      }
+    }
+    integrator_.begin(
+        count, [&](int k) -> Body& { return grains.bodies[list[k]]; },
+        [&](int k) -> auto& { return grains.memory[list[k]]; },
+        [&](int k) -> const auto& { return grains.inertias[list[k]]; });
+    bool moved = false;
+    for (int k = 0; k < count; ++k) moved |= flows ? has_left_in_flow(list[k]) : has_left(list[k]);
+    return moved;
   }
   /// True when the grain may have left its margin.
   [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_in_flow(int i) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
     auto& b = grains.bodies[i];
-    auto& memory = grains.memory[i];
     b.velocity += cell.kick(b.position);
-    integrator_.begin(b, memory, grains.inertias[i]);
-    constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, memory.rotation);
-    const auto& margin = world_.margins[i];
-    return margin.template is_left_in_flow<outlines>(
-        b.position, memory.rotation, cell.carried(margin.position), cell.strain(), b.radius);
+    integrator_.begin(b, grains.memory[i], grains.inertias[i]);
+    return has_left_in_flow(i);
   }
 
   /// With the drag against the flow, the rest of the acceleration that goes with the flow, and the
@@ -269,6 +327,55 @@ class Sweep {
     auto& b = grains.bodies[i];
     load.gravity += load.drag * world_.cell.flow_at(b.position);
     integrator_.start(b, grains.memory[i], grains.inertias[i], load);
+  }
+
+  void add_to_second(int k, const Force& f) {
+    Sum& sum = sums_[world_.contacts.pairs[k].j];
+    sum.force -= f.force;
+    sum.torque += f.torque_j;
+  }
+
+  // In lanes: a thread evaluates the pairs of its block's rows but those that reach into a later
+  // block, and those that come in from an earlier one. The sums are as without.
+
+  [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
+    const auto& contacts = world_.contacts;
+    const int last = contacts.blocks.last(rank);
+    PairBatches batch(world_, dt, books_, rolls_,
+                      [&](const Rule& rule, const Body& a, const Body& b, const Overlap& o,
+                          Memory& memory, int k) {
+                        return acts(rule, a, b, o, dt, memory, world_.rolling.pairs,
+                                    world_.balance.pairs, k)
+                            .force;
+                      });
+    for (const auto& [i, k] : contacts.blocks.incoming(rank)) batch.add(i, k);
+    for (int i = contacts.blocks.first(rank); i < last; ++i) {
+      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
+        const int j = contacts.pairs[k].j;
+        if (j < last || j >= world_.awake) batch.add(i, k);
+      }
+    }
+    batch.finish();
+  }
+  GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
+    const bool periodic = world_.cell.is_periodic();
+    for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
+      Force f;
+      const bool across = periodic && is_image(world_.contacts.images[k]);
+      if (across ? evaluated_across(k, dt, f) : evaluated(k, f)) add_to_second(k, f);
+    }
+  }
+  bool evaluated(int k, Force& f) const {
+    f = world_.contacts.pair_forces[k];
+    return !f.force.isZero(0);
+  }
+  bool evaluated_across(int k, double dt, Force& f) {
+    if (!evaluated(k, f)) return false;
+    if (world_.cell.flows()) {
+      world_.grains.cell_work[world_.contacts.pairs[k].j] +=
+          dt * f.force.dot(world_.cell.drift(world_.contacts.images[k]));
+    }
+    return true;
   }
 
   /// Force of pair k between grain i and its second one; 0 and an empty memory when they do not

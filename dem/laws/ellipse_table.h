@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "dem/laws/elliptic.h"
+#include "dem/laws/elliptic_lanes.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
@@ -29,13 +30,18 @@ class EllipseTable {
     return contact_of(lesser, greater, ratio < kMostRatio ? at(ratio) : ellipse_ratio(ratio));
   }
 
- private:
-  static constexpr int kOctaves = 20, kParts = 8, kTerms = 9;
+  static constexpr int kOctaves = 20;
   static constexpr double kMostRatio = 1 << kOctaves;
+  /// Rows of kEllipseRow numbers.
+  const double* coefficients() const { return parts_[0].k.data(); }
+
+ private:
+  static constexpr int kParts = 8, kTerms = 9;
   /// Coefficients of t^n, t from -1 to 1 over the part.
   struct Part {
     std::array<double, kTerms> k{}, d{};
   };
+  static_assert(sizeof(Part) == kEllipseRow * sizeof(double));
 
   EllipseTable() {
     for (int octave = 0; octave < kOctaves; ++octave) {

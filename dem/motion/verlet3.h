@@ -6,6 +6,7 @@
 // |L| kept to round-off; what it leaves out of the exact motion is the gyroscopic term's third
 // order. Where all moments are equal the body simply turns by dt omega.
 #pragma once
+#include "dem/motion/turn_lanes.h"
 #include "dem/motion/verlet.h"
 #include "dem/space/space3.h"
 
@@ -28,6 +29,7 @@ template <>
 class VerletIntegrator<3> {
  public:
   static constexpr bool end_moves = false;
+  static constexpr bool in_lanes = true;  ///< begins several bodies at a time, too
   using Vector = Eigen::Vector3d;
 
   /// Per grain: rotation, acceleration, and torque with the drag's part (N m).
@@ -54,6 +56,36 @@ class VerletIntegrator<3> {
       drift(b, m, inertia);
     }
     m.rotation.normalize();
+  }
+  /// begin of several bodies: body(k), memory(k) and inertia(k) are those of the k-th. Bit by bit
+  /// as one by one.
+  template <class BodyAt, class MemoryAt, class InertiaAt>
+  void begin(int count, BodyAt body, MemoryAt memory, InertiaAt inertia) const {
+    TurnBatch batch;
+    int turning[kBatch], size = 0;
+    for (int k = 0; k < count; ++k) {
+      Body<3>& b = body(k);
+      Memory& m = memory(k);
+      const Inertia<3>& i = inertia(k);
+      if (b.inverse_inertia == 0 || is_round(i)) {
+        begin(b, m, i);
+        continue;
+      }
+      b.velocity += 0.5 * dt_ * m.acceleration;
+      b.position += dt_ * b.velocity;
+      for (int d = 0; d < 3; ++d) {
+        batch.spin[d][size] = b.spin[d];
+        batch.torque[d][size] = m.torque[d];
+        batch.moments[d][size] = i.moments[d];
+      }
+      for (int d = 0; d < 4; ++d) batch.rotation[d][size] = m.rotation.coeffs()[d];
+      turning[size++] = k;
+    }
+    drift_turning(batch, dt_, size);
+    for (int n = 0; n < size; ++n) {
+      for (int d = 0; d < 3; ++d) body(turning[n]).spin[d] = batch.spin[d][n];
+      for (int d = 0; d < 4; ++d) memory(turning[n]).rotation.coeffs()[d] = batch.rotation[d][n];
+    }
   }
   void end(Body<3>& b, Memory& m, const Inertia<3>& inertia, const Load<3>& load) const {
     start(b, m, inertia, load);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/shapes/pair_step.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
@@ -346,7 +345,59 @@ bool search_everywhere(Descent& search, const TurnedBody& i, const TurnedBody& j
   return true;
 }
 
+/// step_pairs of one pair.
+Stepped step_alone(const TurnedBody& i, const TurnedBody& j, const Vector3d& across,
+                   PairNormal& memory, CommonNormal& out, bool curvatures) {
+  const LaneBody first = lane_body(i, 1), second = lane_body(j, 1);
+  PairBatch pair;
+  OverlapBatch o;
+  pair.count = 1;
+  pair.slots[0] = 0;
+  pair.i[0] = &first;
+  pair.j[0] = &second;
+  pair.powers_i[0] = &memory.powers_i;
+  pair.powers_j[0] = &memory.powers_j;
+  pair.overlaps = &o;
+  for (int k = 0; k < 3; ++k) {
+    pair.across[k][0] = across[k];
+    o.normal[k][0] = memory.normal[k];
+  }
+  step_pairs_of<2>(pair, curvatures);
+  const auto vector = [](const double(&v)[3][kBatch]) {
+    return Vector3d(v[0][0], v[1][0], v[2][0]);
+  };
+  const Stepped end = pair.ends[0];
+  if (end == Stepped::neither) return end;
+  memory.normal = vector(o.normal);
+  out.depth = pair.height[0];
+  if (end == Stepped::apart) return end;
+  out.normal = memory.normal;
+  out.depth = o.depth[0];
+  out.point = vector(o.arm_i);
+  out.settled = true;
+  out.evaluations = pair.evaluations[0];
+  if (curvatures) {
+    out.lesser_curvature = o.lesser_curvature[0];
+    out.greater_curvature = o.greater_curvature[0];
+    out.major = vector(o.major);
+  }
+  return end;
+}
+
 }  // namespace
+
+LaneBody lane_body(const TurnedBody& body, double equal_radius) {
+  LaneBody out;
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 3; ++l) out.turn[k][l] = body.turn(l, k);
+    out.axes[k] = body.shape.axes[k];
+  }
+  out.level = body.shape.level;
+  out.upright = body.shape.upright;
+  out.farthest = body.farthest;
+  out.equal_radius = equal_radius;
+  return out;
+}
 
 double thickness(const TurnedBody& i, const TurnedBody& j, const Vector3d& across,
                  const Vector3d& n) {
@@ -372,15 +423,24 @@ bool common_normal(const TurnedBody& i, const TurnedBody& j, const Vector3d& acr
     out.depth = thickness(i, j, across, memory.normal);
     if (out.depth <= 0) return false;
   } else {
-    const Stepped end = step_pair({&i, &j, across, &memory, &out}, curvatures);
+    const Stepped end = step_alone(i, j, across, memory, out, curvatures);
     memory.touching = end == Stepped::apart ? 0 : 1;
-    if (end != Stepped::neither) return end == Stepped::settled;
+    if (end == Stepped::neither) return descend_on(i, j, across, memory, out);
+    return end == Stepped::settled;
   }
   Descent search(i, j, across);
-  bool touches = search.descend(memory.normal, memory.touching != 0, out);
+  bool touches = search.descend(memory.normal, false, out);
   const bool deep = !knows && out.depth > kDeep * std::min(i.nearest, j.nearest);
-  const bool sharp = memory.touching == 0 && (is_sharp(i.shape) || is_sharp(j.shape));
+  const bool sharp = is_sharp(i.shape) || is_sharp(j.shape);
   if (touches && (deep || sharp)) touches = search_everywhere(search, i, j, across, out);
+  memory.normal = out.normal;
+  memory.touching = touches ? 1 : 0;
+  return touches;
+}
+
+bool descend_on(const TurnedBody& i, const TurnedBody& j, const Vector3d& across,
+                PairNormal& memory, CommonNormal& out) {
+  const bool touches = Descent(i, j, across).descend(memory.normal, true, out);
   memory.normal = out.normal;
   memory.touching = touches ? 1 : 0;
   return touches;

@@ -21,6 +21,7 @@
 #include <limits>
 
 #include "dem/shapes/dual_norm.h"
+#include "dem/shapes/pair_step.h"
 #include "dem/shapes/superellipsoid.h"
 
 namespace grainfield::dem {
@@ -65,15 +66,17 @@ struct CommonNormal {
   bool settled = false;  ///< n has come to rest
 };
 
-// A step is the last one when it would change the depth by less than this share of it, and the
-// points lie across each other within this share of both sizes: what is left of the depth is of
-// third order.
-inline constexpr double kDepthLeft = 1e-9, kPointsLeft = 1e-4;
-
 /// False when they are apart. `across`: D, m. Starts from the remembered normal, without one from
 /// the line of centres; where the bodies overlap deeply then, also from their axes.
 bool common_normal(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,
                    PairNormal& memory, CommonNormal& out, bool curvatures = false);
+
+/// The rest of common_normal for a pair whose short steps (pair_step.h) have ended with `neither`.
+bool descend_on(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,
+                PairNormal& memory, CommonNormal& out);
+
+/// `equal_radius` 0 where nobody reads it.
+LaneBody lane_body(const TurnedBody& body, double equal_radius = 0);
 
 /// f at n, m.
 double thickness(const TurnedBody& i, const TurnedBody& j, const Eigen::Vector3d& across,

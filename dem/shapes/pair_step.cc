@@ -1,15 +1,14 @@
+// Compiled for every width (lanes.h): no function of it may be another file's, too.
 #include "dem/shapes/pair_step.h"
 
-#include <cmath>
-
-#include "dem/shapes/lanes.h"
+#include "dem/space/lanes.h"
 
 #define GRAINFIELD_INLINE [[gnu::always_inline]] inline
 
 namespace grainfield::dem {
 namespace {
 
-// Lanes 2k and 2k + 1 are the bodies i and j of pair k. What is of the pair stands in both.
+// A lane is a pair; its bodies come one after the other.
 
 // A step is short, rad, and another one may follow where it would change the depth by no more than
 // this share of it: there each step squares what the last one has left.
@@ -88,64 +87,65 @@ template <int W>
 struct LaneTensor {
   Lanes<W> xx, xy, yy, determinant;
 };
-/// c1 u1 u1' + c2 u2 u2' of each body.
+/// c1 u1 u1' + c2 u2 u2' of a body.
 template <int W>
 struct LaneBend {
   Lanes<W> weight, x, y, weight2, x2, y2, area;
 };
 template <int W>
-GRAINFIELD_INLINE LaneTensor<W> sum_of(const LaneBend<W>& b) {
-  const Lanes<W> xx = b.weight * b.x * b.x + b.weight2 * b.x2 * b.x2;
-  const Lanes<W> xy = b.weight * b.x * b.y + b.weight2 * b.x2 * b.y2;
-  const Lanes<W> yy = b.weight * b.y * b.y + b.weight2 * b.y2 * b.y2;
-  const Lanes<W> sx = swapped<W>(b.x), sy = swapped<W>(b.y);
-  const Lanes<W> sx2 = swapped<W>(b.x2), sy2 = swapped<W>(b.y2);
-  const Lanes<W> one = b.x * sy - b.y * sx, two = b.x2 * sy2 - b.y2 * sx2;
-  const Lanes<W> mixed = b.x * sy2 - b.y * sx2;
-  const Lanes<W> own =
-      b.weight * b.weight2 * b.area * b.area + b.weight * swapped<W>(b.weight2) * mixed * mixed;
-  const Lanes<W> both =
-      b.weight * swapped<W>(b.weight) * one * one + b.weight2 * swapped<W>(b.weight2) * two * two;
-  return {xx + swapped<W>(xx), xy + swapped<W>(xy), yy + swapped<W>(yy),
-          own + swapped<W>(own) + both};
+GRAINFIELD_INLINE LaneTensor<W> sum_of(const LaneBend<W>& i, const LaneBend<W>& j) {
+  const auto xx = [](const LaneBend<W>& b) {
+    return b.weight * b.x * b.x + b.weight2 * b.x2 * b.x2;
+  };
+  const auto xy = [](const LaneBend<W>& b) {
+    return b.weight * b.x * b.y + b.weight2 * b.x2 * b.y2;
+  };
+  const auto yy = [](const LaneBend<W>& b) {
+    return b.weight * b.y * b.y + b.weight2 * b.y2 * b.y2;
+  };
+  const auto own = [](const LaneBend<W>& b, const LaneBend<W>& other) {
+    const Lanes<W> mixed = b.x * other.y2 - b.y * other.x2;
+    return b.weight * b.weight2 * b.area * b.area + b.weight * other.weight2 * mixed * mixed;
+  };
+  const Lanes<W> one = i.x * j.y - i.y * j.x, two = i.x2 * j.y2 - i.y2 * j.x2;
+  const Lanes<W> both = i.weight * j.weight * one * one + i.weight2 * j.weight2 * two * two;
+  return {xx(i) + xx(j), xy(i) + xy(j), yy(i) + yy(j), own(i, j) + own(j, i) + both};
+}
+/// Half the inverse, as of superellipsoid.cc.
+template <int W>
+GRAINFIELD_INLINE LaneBend<W> half_inverse(const LaneBend<W>& bend) {
+  const Lanes<W> half = 0.5 / (bend.area * bend.area), floor = Lanes<W>{} + kLeastWeight;
+  return {half / greater_of(bend.weight2, floor),
+          -bend.y,
+          bend.x,
+          half / greater_of(bend.weight, floor),
+          -bend.y2,
+          bend.x2,
+          bend.area};
 }
 
-/// From the normals `from`, by pair. How each ends: as Stepped, or (another) its normal is where to
-/// go on from.
-enum class End { settled, apart, neither, another };
+/// One body of each pair, where its outward normal is n (of the second: -n, with the same height).
 template <int W>
-GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, bool curvatures,
-                            End* ends) {
+struct Side {
+  Lanes<W> height, x, y;  // of the surface's point along the tangents
+  LaneBend<W> bend;
+};
+template <int W>
+GRAINFIELD_INLINE Side<W> side_of(const LaneBody* const* bodies, Powers* const* powers,
+                                  const Vectors<W>& n, const Vectors<W>& tx, const Vectors<W>& ty) {
   using V = Lanes<W>;
-  const TurnedBody* bodies[W];
-  Powers::OfNorm *level_powers[W], *whole_powers[W];
-  for (int k = 0; k < W; ++k) {
-    const PairStep& p = pairs[k / 2];
-    bodies[k] = k % 2 == 0 ? p.i : p.j;
-    Powers& powers = k % 2 == 0 ? p.memory->powers_i : p.memory->powers_j;
-    level_powers[k] = &powers.level;
-    whole_powers[k] = &powers.whole;
-  }
-  const auto of_pairs = [&](auto get) {
-    return lanes_of<W>([&](int k) { return get(pairs[k / 2]); });
-  };
   const auto of_bodies = [&](auto get) {
     return lanes_of<W>([&](int k) { return get(*bodies[k]); });
   };
-  const Vectors<W> n{lanes_of<W>([&](int k) { return from[k / 2].x(); }),
-                     lanes_of<W>([&](int k) { return from[k / 2].y(); }),
-                     lanes_of<W>([&](int k) { return from[k / 2].z(); })};
-  const Vectors<W> across{of_pairs([](const PairStep& p) { return p.across.x(); }),
-                          of_pairs([](const PairStep& p) { return p.across.y(); }),
-                          of_pairs([](const PairStep& p) { return p.across.z(); })};
-  // tangents_of.
-  const V unit = with_sign(V{} + 1, n.z), a = -1 / (unit + n.z), b = n.x * n.y * a;
-  const Vectors<W> tx{1 + unit * n.x * n.x * a, unit * b, -unit * n.x};
-  const Vectors<W> ty{b, unit + n.y * n.y * a, -n.y};
+  Powers::OfNorm *level_powers[W], *whole_powers[W];
+  for (int k = 0; k < W; ++k) {
+    level_powers[k] = &powers[k]->level;
+    whole_powers[k] = &powers[k]->whole;
+  }
   const auto column = [&](int axis) {
-    return Vectors<W>{of_bodies([axis](const TurnedBody& t) { return t.turn(0, axis); }),
-                      of_bodies([axis](const TurnedBody& t) { return t.turn(1, axis); }),
-                      of_bodies([axis](const TurnedBody& t) { return t.turn(2, axis); })};
+    return Vectors<W>{of_bodies([axis](const LaneBody& b) { return b.turn[axis][0]; }),
+                      of_bodies([axis](const LaneBody& b) { return b.turn[axis][1]; }),
+                      of_bodies([axis](const LaneBody& b) { return b.turn[axis][2]; })};
   };
   const Vectors<W> c0 = column(0), c1 = column(1), c2 = column(2);
   const Vectors<W> nb{dot<W>(c0, n), dot<W>(c1, n), dot<W>(c2, n)};
@@ -153,14 +153,14 @@ GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, 
   const Vectors<W> yb{dot<W>(c0, ty), dot<W>(c1, ty), dot<W>(c2, ty)};
 
   // support_of.
-  const Vectors<W> axes{of_bodies([](const TurnedBody& t) { return t.shape.axes.x(); }),
-                        of_bodies([](const TurnedBody& t) { return t.shape.axes.y(); }),
-                        of_bodies([](const TurnedBody& t) { return t.shape.axes.z(); })};
+  const Vectors<W> axes{of_bodies([](const LaneBody& b) { return b.axes[0]; }),
+                        of_bodies([](const LaneBody& b) { return b.axes[1]; }),
+                        of_bodies([](const LaneBody& b) { return b.axes[2]; })};
   Vectors<W> s{magnitude(axes.x * nb.x), magnitude(axes.y * nb.y), magnitude(axes.z * nb.z)};
   const V least = kLeastShare * greater_of(greater_of(s.x, s.y), s.z);
   s = {greater_of(s.x, least), greater_of(s.y, least), greater_of(s.z, least)};
-  const V p = of_bodies([](const TurnedBody& t) { return t.shape.level; });
-  const V q = of_bodies([](const TurnedBody& t) { return t.shape.upright; });
+  const V p = of_bodies([](const LaneBody& b) { return b.level; });
+  const V q = of_bodies([](const LaneBody& b) { return b.upright; });
   const LaneNorm<W> level = norm_of<W>(s.x, s.y, p, 1 / p, level_powers);
   const LaneNorm<W> whole = norm_of<W>(level.size, s.z, q, 1 / q, whole_powers);
   const Vectors<W> r{with_sign(axes.x, nb.x), with_sign(axes.y, nb.y), with_sign(axes.z, nb.z)};
@@ -169,9 +169,13 @@ GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, 
   const Vectors<W> point{nb.x == 0 ? zero : whole.pull_a * slope_x,
                          nb.y == 0 ? zero : whole.pull_a * slope_y,
                          nb.z == 0 ? zero : whole.pull_b * r.z};
-  LaneBend<W> bend;
   const V level_x = r.x * level.b, level_y = -r.y * level.a;
   const Vectors<W> square{whole.b * slope_x, whole.b * slope_y, -whole.a * r.z};
+  Side<W> out;
+  out.height = whole.size;
+  out.x = dot<W>(point, xb);
+  out.y = dot<W>(point, yb);
+  LaneBend<W>& bend = out.bend;
   bend.weight = whole.pull_a * level.bend / level.size;
   bend.x = level_x * xb.x + level_y * xb.y;
   bend.y = level_x * yb.x + level_y * yb.y;
@@ -179,54 +183,100 @@ GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, 
   bend.x2 = dot<W>(square, xb);
   bend.y2 = dot<W>(square, yb);
   bend.area = axes.x * axes.y * axes.z / whole.size;
+  return out;
+}
+
+/// A point along the tangents.
+template <int W>
+struct Pushed {
+  Lanes<W> x, y;
+};
+
+// How a step ends: as Stepped, or (another) its normal is where to go on from.
+enum class End { settled, apart, neither, another };
+
+/// From the normals of the pairs in `slots`. Of the first `count` lanes the results are kept: the
+/// others repeat one of them.
+template <int W>
+GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool curvatures,
+                            End* ends) {
+  using V = Lanes<W>;
+  OverlapBatch& o = *batch.overlaps;
+  const auto of_slots = [&](const double* values) {
+    return lanes_of<W>([&](int k) { return values[slots[k]]; });
+  };
+  const auto vectors = [&](const double(*values)[kBatch]) {
+    return Vectors<W>{of_slots(values[0]), of_slots(values[1]), of_slots(values[2])};
+  };
+  const LaneBody *first[W], *second[W];
+  Powers *powers_i[W], *powers_j[W];
+  for (int k = 0; k < W; ++k) {
+    first[k] = batch.i[slots[k]];
+    second[k] = batch.j[slots[k]];
+    powers_i[k] = batch.powers_i[slots[k]];
+    powers_j[k] = batch.powers_j[slots[k]];
+  }
+  const Vectors<W> n = vectors(o.normal), across = vectors(batch.across);
+  // tangents_of.
+  const V unit = with_sign(V{} + 1, n.z), a = -1 / (unit + n.z), b = n.x * n.y * a;
+  const Vectors<W> tx{1 + unit * n.x * n.x * a, unit * b, -unit * n.x};
+  const Vectors<W> ty{b, unit + n.y * n.y * a, -n.y};
+  const Side<W> i = side_of<W>(first, powers_i, n, tx, ty);
+  const Side<W> j = side_of<W>(second, powers_j, n, tx, ty);
 
   // f, its gradient and Hessian, and the step.
-  const V f = whole.size + swapped<W>(whole.size) - dot<W>(n, across);
-  const V px = dot<W>(point, xb), py = dot<W>(point, yb);
-  const V gx = px + swapped<W>(px) - dot<W>(across, tx);
-  const V gy = py + swapped<W>(py) - dot<W>(across, ty);
-  const LaneTensor<W> h = sum_of<W>(bend);
+  const V f = i.height + j.height - dot<W>(n, across);
+  const V gx = i.x + j.x - dot<W>(across, tx), gy = i.y + j.y - dot<W>(across, ty);
+  const LaneTensor<W> h = sum_of<W>(i.bend, j.bend);
   const V trace = h.xx + h.yy, divisor = h.determinant - f * trace + f * f;
   const V step_x = (f * gx - (h.yy * gx - h.xy * gy)) / divisor;
   const V step_y = (f * gy - (h.xx * gy - h.xy * gx)) / divisor;
   const V fall = -(gx * step_x + gy * step_y);
-  const V size = of_bodies([](const TurnedBody& t) { return t.farthest; });
-  const V reach = kPointsLeft * (size + swapped<W>(size));
+  const V reach =
+      kPointsLeft * lanes_of<W>([&](int k) { return first[k]->farthest + second[k]->farthest; });
   const auto least_ahead = (f > 0) & (divisor > 0) & (trace > 2 * f) &
                            (step_x * step_x + step_y * step_y <= kShortStep * kShortStep);
   const auto settled =
       least_ahead & (fall <= kDepthLeft * f) & (gx * gx + gy * gy <= reach * reach);
   const auto another = least_ahead & (fall <= kDepthNear * f);
 
-  const V moved = bend.weight * (bend.x * step_x + bend.y * step_y);
-  const V moved2 = bend.weight2 * (bend.x2 * step_x + bend.y2 * step_y);
-  const V on_x = px + moved * bend.x + moved2 * bend.x2;
-  const V on_y = py + moved * bend.y + moved2 * bend.y2;
-  // Of body i less that of j: of the first of two lanes.
-  const V up = whole.size - swapped<W>(whole.size);
-  const V beside_x = on_x - swapped<W>(on_x), beside_y = on_y - swapped<W>(on_y);
-  const Vectors<W> middle{0.5 * (across.x + up * n.x + beside_x * tx.x + beside_y * ty.x),
-                          0.5 * (across.y + up * n.y + beside_x * tx.y + beside_y * ty.y),
-                          0.5 * (across.z + up * n.z + beside_x * tx.z + beside_y * ty.z)};
   Vectors<W> normal{n.x + step_x * tx.x + step_y * ty.x, n.y + step_x * tx.y + step_y * ty.y,
                     n.z + step_x * tx.z + step_y * ty.z};
   const V scale = 1 / root_of<W>(dot<W>(normal, normal));
   normal = {normal.x * scale, normal.y * scale, normal.z * scale};
+  for (int k = 0; k < count; ++k) {
+    const int at = slots[k];
+    End& end = ends[k];
+    batch.height[at] = f[k];
+    end = f[k] <= 0 ? End::apart : another[k] != 0 ? End::another : End::neither;
+    if (settled[k] != 0) end = End::settled;
+    if (end == End::neither || end == End::apart) continue;
+    o.normal[0][at] = normal.x[k];
+    o.normal[1][at] = normal.y[k];
+    o.normal[2][at] = normal.z[k];
+  }
+  if (!any_of(settled)) return;
+
+  // Of body i less that of j.
+  const auto on = [&](const Side<W>& side) {
+    const LaneBend<W>& c = side.bend;
+    const V moved = c.weight * (c.x * step_x + c.y * step_y);
+    const V moved2 = c.weight2 * (c.x2 * step_x + c.y2 * step_y);
+    return Pushed<W>{side.x + moved * c.x + moved2 * c.x2, side.y + moved * c.y + moved2 * c.y2};
+  };
+  const auto [ix, iy] = on(i);
+  const auto [jx, jy] = on(j);
+  const V up = i.height - j.height, beside_x = ix - jx, beside_y = iy - jy;
+  const Vectors<W> middle{0.5 * (across.x + up * n.x + beside_x * tx.x + beside_y * ty.x),
+                          0.5 * (across.y + up * n.y + beside_x * tx.y + beside_y * ty.y),
+                          0.5 * (across.z + up * n.z + beside_x * tx.z + beside_y * ty.z)};
+  const Vectors<W> back{middle.x - across.x, middle.y - across.y, middle.z - across.z};
   const V depth = f - 0.5 * fall;
 
-  V greater = zero, lesser = zero, along_x = zero, along_y = zero;
+  V greater{}, lesser{}, along_x{}, along_y{}, radius{};
   if (curvatures) {
-    // Half the inverse of each, and the principal values of their sum.
-    const V half = 0.5 / (bend.area * bend.area);
-    const V floor = V{} + kLeastWeight;
-    const LaneBend<W> inverse{half / greater_of(bend.weight2, floor),
-                              -bend.y,
-                              bend.x,
-                              half / greater_of(bend.weight, floor),
-                              -bend.y2,
-                              bend.x2,
-                              bend.area};
-    const LaneTensor<W> c = sum_of<W>(inverse);
+    // The principal values of the sum of half the inverses.
+    const LaneTensor<W> c = sum_of<W>(half_inverse<W>(i.bend), half_inverse<W>(j.bend));
     const V apart = c.xx - c.yy, root = root_of<W>(apart * apart + 4 * c.xy * c.xy);
     greater = 0.5 * (c.xx + c.yy + root);
     lesser = c.determinant / greater;
@@ -234,54 +284,68 @@ GRAINFIELD_INLINE void step(const PairStep* pairs, const Eigen::Vector3d* from, 
     const V square_size = straight * straight + c.xy * c.xy;
     const V inverse_size = 1 / root_of<W>(square_size);
     const V one = square_size > 0 ? straight * inverse_size : V{} + 1;
-    const V two = square_size > 0 ? c.xy * inverse_size : zero;
+    const V two = square_size > 0 ? c.xy * inverse_size : V{};
     along_x = apart >= 0 ? one : two;
     along_y = apart >= 0 ? two : one;
+    const V r_i = lanes_of<W>([&](int k) { return first[k]->equal_radius; });
+    const V r_j = lanes_of<W>([&](int k) { return second[k]->equal_radius; });
+    radius = r_i * r_j / (r_i + r_j);
   }
-  for (int k = 0; k < W; k += 2) {
-    const PairStep& pair = pairs[k / 2];
-    CommonNormal& out = *pair.out;
-    out.depth = f[k];
-    ends[k / 2] = f[k] <= 0 ? End::apart : another[k] != 0 ? End::another : End::neither;
-    if (settled[k] != 0) ends[k / 2] = End::settled;
-    if (ends[k / 2] == End::neither || ends[k / 2] == End::apart) continue;
-    out.normal = {normal.x[k], normal.y[k], normal.z[k]};
-    if (ends[k / 2] == End::another) continue;
-    out.depth = depth[k];
-    out.point = {middle.x[k], middle.y[k], middle.z[k]};
-    out.greater_curvature = greater[k];
-    out.lesser_curvature = lesser[k];
-    // Across the direction of the greater one.
-    const double u = along_x[k], v = along_y[k];
-    out.major = {u * ty.x[k] - v * tx.x[k], u * ty.y[k] - v * tx.y[k], u * ty.z[k] - v * tx.z[k]};
+  // Across the direction of the greater one.
+  const Vectors<W> major{along_x * ty.x - along_y * tx.x, along_x * ty.y - along_y * tx.y,
+                         along_x * ty.z - along_y * tx.z};
+  for (int k = 0; k < count; ++k) {
+    if (ends[k] != End::settled) continue;
+    const int at = slots[k];
+    o.depth[at] = depth[k];
+    const auto put = [&](const Vectors<W>& from, double(*to)[kBatch]) {
+      to[0][at] = from.x[k];
+      to[1][at] = from.y[k];
+      to[2][at] = from.z[k];
+    };
+    put(middle, o.arm_i);
+    put(back, o.arm_j);
+    if (!curvatures) continue;
+    o.radius[at] = radius[k];
+    o.greater_curvature[at] = greater[k];
+    o.lesser_curvature[at] = lesser[k];
+    put(major, o.major);
   }
 }
 
 }  // namespace
 
-Stepped step_pair(PairStep pair, bool curvatures) {
-  Eigen::Vector3d from = pair.memory->normal;
-  double before = 0;
-  for (int n = 1; n <= kMostSteps; ++n) {
-    End end = End::neither;
-    step<2>(&pair, &from, curvatures, &end);
-    CommonNormal& out = *pair.out;
-    if (n > 1 && out.depth > before) return Stepped::neither;
-    if (end == End::settled) {
-      out.settled = true;
-      out.evaluations = n;
-      pair.memory->normal = out.normal;
-      return Stepped::settled;
+template <int W>
+void step_pairs_of(PairBatch& batch, bool curvatures) {
+  int slots[kBatch + W], left = batch.count;
+  double before[kBatch];
+  for (int k = 0; k < left; ++k) slots[k] = batch.slots[k];
+  for (int n = 1; n <= kMostSteps && left > 0; ++n) {
+    for (int k = left; k < left + W; ++k) slots[k] = slots[left - 1];
+    int again = 0;
+    for (int at = 0; at < left; at += W) {
+      int now[W];
+      End ends[W];
+      for (int k = 0; k < W; ++k) now[k] = slots[at + k];
+      const int count = left - at < W ? left - at : W;
+      step<W>(batch, now, count, curvatures, ends);
+      for (int k = 0; k < count; ++k) {
+        const int slot = now[k];
+        if ((n > 1 && batch.height[slot] > before[slot]) || ends[k] == End::neither ||
+            (ends[k] == End::another && n == kMostSteps)) {
+          batch.ends[slot] = Stepped::neither;
+        } else if (ends[k] == End::another) {
+          before[slot] = batch.height[slot];
+          slots[again++] = slot;
+        } else {
+          batch.ends[slot] = ends[k] == End::settled ? Stepped::settled : Stepped::apart;
+          batch.evaluations[slot] = n;
+        }
+      }
     }
-    if (end == End::apart) {
-      pair.memory->normal = from;
-      return Stepped::apart;
-    }
-    if (end == End::neither) return Stepped::neither;
-    from = out.normal;
-    before = out.depth;
+    left = again;
   }
-  return Stepped::neither;
 }
+template void step_pairs_of<GRAINFIELD_LANES>(PairBatch& batch, bool curvatures);
 
 }  // namespace grainfield::dem

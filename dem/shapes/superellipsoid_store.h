@@ -44,6 +44,7 @@ class SuperellipsoidStore {
         std::sqrt(std::max(grain.farthest * grain.farthest - grain.nearest * grain.nearest, 0.0));
     grain.equal_radius = cube_root(solid.volume / (4.0 / 3 * std::numbers::pi));
     grains_.push_back(grain);
+    lanes_.push_back(lane_body(turned(grain), grain.equal_radius));
     return solid;
   }
   void place(int i, const Body<3>&, const RotationOf<3>& rotation) {
@@ -55,12 +56,19 @@ class SuperellipsoidStore {
     grain.swept += grain.lever * 2 * chord * (1 + 0.15 * chord * chord);
     grain.rotation = rotation;
     grain.turn = rotation.toRotationMatrix();
+    for (int k = 0; k < 3; ++k) {
+      for (int l = 0; l < 3; ++l) lanes_[i].turn[k][l] = grain.turn(l, k);
+    }
   }
-  void swap(int i, int j) { std::swap(grains_[i], grains_[j]); }
+  void swap(int i, int j) {
+    std::swap(grains_[i], grains_[j]);
+    std::swap(lanes_[i], lanes_[j]);
+  }
   void sort(const std::vector<int>& order) {
     std::vector<Grain> sorted(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = grains_[order[k]];
     std::copy(sorted.begin(), sorted.end(), grains_.begin());
+    fill_lanes();
   }
   Outline outline(int) const { return {}; }
   const Superellipsoid& superellipsoid(int i) const { return grains_[i].shape; }
@@ -72,28 +80,112 @@ class SuperellipsoidStore {
     const Eigen::Vector3d across = b.position - a.position;
     const double swept = first.swept + second.swept;
     if (across.dot(feature.normal) > feature.clear + swept) return false;
-    constexpr bool curvatures = measures == Measures::curvatures;
     CommonNormal contact;
-    if (!common_normal(turned(first), turned(second), across, feature, contact, curvatures)) {
-      // Of a search that ended exactly in touch nothing is known along the normal that it left.
-      feature.clear = contact.depth < 0 ? across.dot(feature.normal) + contact.depth - swept
-                                        : std::numeric_limits<double>::infinity();
-      return false;
+    const bool touches = common_normal(turned(first), turned(second), across, feature, contact,
+                                       measures == Measures::curvatures);
+    return take<measures>(touches, first, second, across, contact, feature, o);
+  }
+
+  /// Pairs side by side, by slot. After finish the overlaps of those that touch.
+  struct Batch {
+    int count = 0;  ///< slots in use
+    bool touches[kBatch];
+    OverlapBatch overlaps{};
+
+    Batch() {
+      // What nobody has put in is looked at, too.
+      std::fill_n(overlaps.depth, kBatch, 1.0);
+      std::fill_n(overlaps.radius, kBatch, 1.0);
+      std::fill_n(overlaps.lesser_curvature, kBatch, 1.0);
+      std::fill_n(overlaps.greater_curvature, kBatch, 1.0);
     }
-    feature.clear = std::numeric_limits<double>::infinity();
-    o.normal = contact.normal;
-    o.depth = contact.depth;
-    o.arm_i = contact.point;
-    o.arm_j = contact.point - across;
-    if constexpr (curvatures) {
-      o.radius =
-          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius);
-      o.lesser_curvature = contact.lesser_curvature;
-      o.greater_curvature = contact.greater_curvature;
-      o.major = contact.major;
+
+   private:
+    friend class SuperellipsoidStore;
+    PairBatch pairs;
+    int i[kBatch], j[kBatch];
+    Feature* features[kBatch];
+  };
+  /// Puts a pair into the next slot; false, and into none, when it is known already that the two do
+  /// not touch. Bit by bit as `overlap`.
+  template <Measures measures>
+  bool put(Batch& batch, int i, const Body<3>& a, int j, const Eigen::Vector3d& position,
+           Feature& feature) const {
+    const Grain &first = grains_[i], &second = grains_[j];
+    const int slot = batch.count;
+    const Eigen::Vector3d across = position - a.position;
+    if (across.dot(feature.normal) > feature.clear + (first.swept + second.swept)) return false;
+    const double reach = first.farthest + second.farthest;
+    if (feature.touching == 0 || !(across.squaredNorm() < reach * reach)) {
+      Overlap o;
+      Body<3> b;
+      b.position = position;
+      if (!overlap<measures>(i, a, j, b, feature, o)) return false;
+      put_overlap(o, batch, slot);
+      batch.touches[slot] = true;
+      ++batch.count;
+      return true;
     }
+    PairBatch& p = batch.pairs;
+    p.slots[p.count++] = slot;
+    p.i[slot] = &lanes_[i];
+    p.j[slot] = &lanes_[j];
+    p.powers_i[slot] = &feature.powers_i;
+    p.powers_j[slot] = &feature.powers_j;
+    for (int k = 0; k < 3; ++k) {
+      p.across[k][slot] = across[k];
+      batch.overlaps.normal[k][slot] = feature.normal[k];
+    }
+    batch.i[slot] = i;
+    batch.j[slot] = j;
+    batch.features[slot] = &feature;
+    ++batch.count;
     return true;
   }
+  template <Measures measures>
+  void finish(Batch& batch) const {
+    PairBatch& p = batch.pairs;
+    p.overlaps = &batch.overlaps;
+    step_pairs(p, measures == Measures::curvatures);
+    for (int n = 0; n < p.count; ++n) {
+      const int slot = p.slots[n];
+      Feature& feature = *batch.features[slot];
+      const auto& normal = batch.overlaps.normal;
+      if (p.ends[slot] != Stepped::neither) {
+        feature.normal = {normal[0][slot], normal[1][slot], normal[2][slot]};
+      }
+      batch.touches[slot] = p.ends[slot] == Stepped::settled;
+      if (batch.touches[slot]) continue;  // it remembers that already
+      const Grain &first = grains_[batch.i[slot]], &second = grains_[batch.j[slot]];
+      const Eigen::Vector3d across(p.across[0][slot], p.across[1][slot], p.across[2][slot]);
+      CommonNormal contact;
+      contact.depth = p.height[slot];
+      feature.touching = 0;
+      const bool touches = p.ends[slot] == Stepped::neither &&
+                           descend_on(turned(first), turned(second), across, feature, contact);
+      Overlap o;
+      batch.touches[slot] = take<measures>(touches, first, second, across, contact, feature, o);
+      if (touches) put_overlap(o, batch, slot);
+    }
+    p.count = 0;
+  }
+  static Overlap overlap_of(const Batch& batch, int slot) {
+    const OverlapBatch& from = batch.overlaps;
+    const auto vector = [slot](const double(&v)[3][kBatch]) {
+      return Eigen::Vector3d(v[0][slot], v[1][slot], v[2][slot]);
+    };
+    Overlap o;
+    o.normal = vector(from.normal);
+    o.depth = from.depth[slot];
+    o.arm_i = vector(from.arm_i);
+    o.arm_j = vector(from.arm_j);
+    o.radius = from.radius[slot];
+    o.lesser_curvature = from.lesser_curvature[slot];
+    o.greater_curvature = from.greater_curvature[slot];
+    o.major = vector(from.major);
+    return o;
+  }
+
   /// The contact point is in the middle between the surface and the plane.
   template <Measures measures>
   bool overlap_plane(int i, const Body<3>& a, const Plane<3>& plane, Overlap& o) const {
@@ -123,6 +215,8 @@ class SuperellipsoidStore {
   void read(ImageReader& r, std::size_t grains) {
     r.get(grains_);
     r.require(grains_.size() == grains);
+    lanes_.resize(grains);
+    fill_lanes();
   }
 
  private:
@@ -143,7 +237,53 @@ class SuperellipsoidStore {
     return {grain.shape, grain.turn, grain.farthest, grain.nearest};
   }
 
+  /// What a search for a pair's normal has found, as it is remembered and told.
+  template <Measures measures>
+  static bool take(bool touches, const Grain& first, const Grain& second,
+                   const Eigen::Vector3d& across, const CommonNormal& contact, Feature& feature,
+                   Overlap& o) {
+    feature.clear = std::numeric_limits<double>::infinity();
+    if (!touches) {
+      // Of a search that ended exactly in touch nothing is known along the normal that it left.
+      if (contact.depth < 0) {
+        feature.clear = across.dot(feature.normal) + contact.depth - (first.swept + second.swept);
+      }
+      return false;
+    }
+    o.normal = contact.normal;
+    o.depth = contact.depth;
+    o.arm_i = contact.point;
+    o.arm_j = contact.point - across;
+    if constexpr (measures == Measures::curvatures) {
+      o.radius =
+          first.equal_radius * second.equal_radius / (first.equal_radius + second.equal_radius);
+      o.lesser_curvature = contact.lesser_curvature;
+      o.greater_curvature = contact.greater_curvature;
+      o.major = contact.major;
+    }
+    return true;
+  }
+  static void put_overlap(const Overlap& o, Batch& batch, int slot) {
+    OverlapBatch& to = batch.overlaps;
+    for (int k = 0; k < 3; ++k) {
+      to.normal[k][slot] = o.normal[k];
+      to.arm_i[k][slot] = o.arm_i[k];
+      to.arm_j[k][slot] = o.arm_j[k];
+      to.major[k][slot] = o.major[k];
+    }
+    to.depth[slot] = o.depth;
+    to.radius[slot] = o.radius;
+    to.lesser_curvature[slot] = o.lesser_curvature;
+    to.greater_curvature[slot] = o.greater_curvature;
+  }
+  void fill_lanes() {
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      lanes_[i] = lane_body(turned(grains_[i]), grains_[i].equal_radius);
+    }
+  }
+
   std::vector<Grain> grains_;
+  std::vector<LaneBody> lanes_;  // the same, for kernels
 };
 
 }  // namespace grainfield::dem

@@ -1,8 +1,18 @@
 // Numbers side by side, for code that does the same to each: W of them in a vector of the
 // processor, or in several. Each comes out with the bits that it would have alone.
+//
+// Files that include this are compiled once for each width (dem/CMakeLists.txt), for processors
+// that not every machine has: they share no inline function with other files.
 #pragma once
-#include <cmath>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 #include <cstdint>
+
+// Where the build does not say otherwise, what every processor has.
+#ifndef GRAINFIELD_LANES
+#define GRAINFIELD_LANES 2
+#endif
 
 namespace grainfield::dem {
 
@@ -10,6 +20,7 @@ template <int W>
 struct LanesOf {
   typedef double Numbers __attribute__((vector_size(8 * W)));
   typedef std::int64_t Masks __attribute__((vector_size(8 * W)));
+  typedef std::uint64_t Bits __attribute__((vector_size(8 * W)));
 };
 template <int W>
 using Lanes = typename LanesOf<W>::Numbers;
@@ -36,16 +47,28 @@ template <class V>
 }
 template <int W>
 [[gnu::always_inline]] inline Lanes<W> root_of(const Lanes<W>& x) {
+#if defined(__x86_64__)
+  if constexpr (W == 2) return reinterpret_cast<Lanes<W>>(_mm_sqrt_pd(x));
+#endif
+#if defined(__AVX__)
+  if constexpr (W == 4) return reinterpret_cast<Lanes<W>>(_mm256_sqrt_pd(x));
+#endif
+#if defined(__AVX512F__)
+  // With a mask of all: the header of the other one warns of what it leaves unset (GCC 12).
+  if constexpr (W == 8) return reinterpret_cast<Lanes<W>>(_mm512_maskz_sqrt_pd(0xFF, x));
+#endif
+  return lanes_of<W>([&](int k) { return __builtin_sqrt(x[k]); });
+}
+/// W numbers in a row, of memory.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> loaded(const double* from) {
   Lanes<W> out;
-  for (int k = 0; k < W; ++k) out[k] = std::sqrt(x[k]);
+  __builtin_memcpy(&out, from, sizeof out);
   return out;
 }
-/// Neighbours 0 and 1, 2 and 3, ... in each other's place.
 template <int W>
-[[gnu::always_inline]] inline Lanes<W> swapped(const Lanes<W>& x) {
-  typename LanesOf<W>::Masks order;
-  for (int k = 0; k < W; ++k) order[k] = k ^ 1;
-  return __builtin_shuffle(x, order);
+[[gnu::always_inline]] inline void store(const Lanes<W>& x, double* to) {
+  __builtin_memcpy(to, &x, sizeof x);
 }
 template <class M>
 [[gnu::always_inline]] inline bool any_of(const M& mask) {
