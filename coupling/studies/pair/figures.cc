@@ -31,13 +31,18 @@ std::vector<SummaryKey> pair_figures() {
        "loops whose work finer steps still changed by more than 2e-6 of that energy"},
       {"pair.stable_time_step", "s", "limit of the time step of these two bodies"},
       {"pair.*.restitution_normal", "-",
-       "of a further impact: pair.speed_V or pair.angle_A; with closed_form. its closed form"},
+       "of a further impact: pair.speed_V or pair.angle_A"},
       {"pair.*.restitution_tangential", "-", "likewise"},
       {"pair.*.duration", "s", "likewise"},
       {"pair.*.max_depth", "m", "likewise"},
       {"pair.*.max_force", "N", "likewise"},
       {"pair.*.energy_lost", "-", "likewise"},
       {"pair.*.parted", "-", "likewise"},
+      {"pair.*.closed_form.restitution_normal", "-", "closed form of a further impact"},
+      {"pair.*.closed_form.restitution_tangential", "-", "likewise"},
+      {"pair.*.closed_form.duration", "s", "likewise"},
+      {"pair.*.closed_form.max_depth", "m", "likewise"},
+      {"pair.*.closed_form.max_force", "N", "likewise"},
   };
 }
 
