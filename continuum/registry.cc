@@ -17,6 +17,7 @@ const std::vector<ModelInfo>& registry() {
   static const std::vector<ModelInfo> models = {flamant_info(),
                                                 boussinesq_info(),
                                                 transverse_half_space_info(),
+                                                transverse_layer_info(),
                                                 layer_info(),
                                                 hydrostatic_info(),
                                                 liffman_info(),

@@ -7,6 +7,7 @@ namespace grainfield::continuum {
 ModelInfo flamant_info();
 ModelInfo boussinesq_info();
 ModelInfo transverse_half_space_info();
+ModelInfo transverse_layer_info();
 ModelInfo layer_info();
 ModelInfo hydrostatic_info();
 ModelInfo liffman_info();

@@ -18,6 +18,7 @@ using Complex = std::complex<double>;
 // Least relative distance of the two g. The stress is even in their difference, so that it is wrong
 // by its square; what cancels loses its inverse.
 constexpr double kApart = 1e-5;
+constexpr const char* kSource = "Elliott 1948";
 constexpr double kCancels = 1e-3;  // share that a sum keeps of its terms
 
 class Transverse : public Model {
@@ -42,6 +43,39 @@ class Transverse : public Model {
 bool TransverseModuli::is_stable() const {
   return E_h > 0 && E_v > 0 && G_v > 0 && std::fabs(nu_h) < 1 &&
          1 - nu_h - 2 * nu_v * nu_v * E_h / E_v > 0;
+}
+
+PlaneModuli TransverseModuli::plane_strain() const {
+  PlaneModuli plane;
+  plane.E_x = E_h / (1 - nu_h * nu_h);
+  plane.E_y = E_v / (1 - nu_v * nu_v * E_h / E_v);
+  plane.nu_xy = plane.E_x * nu_v * (1 + nu_h) / E_v;
+  plane.G = G_v;
+  return plane;
+}
+
+std::vector<Parameter> transverse_parameters() {
+  return {
+      number("E_h", "Pa", "horizontal Young's modulus; of the moduli only ratios count", kSource, 1,
+             kAboveZero, kUnbounded),
+      number("E_v", "Pa",
+             "vertical Young's modulus; raised: the load is carried nearer to the axis", kSource, 1,
+             kAboveZero, kUnbounded),
+      number("nu_h", "-", "-eps_yy/eps_xx under sigma_xx", kSource, 0.3, -1, 1),
+      number("nu_v", "-", "-eps_xx/eps_zz under sigma_zz", kSource, 0.3, -kUnbounded, kUnbounded),
+      optional_number("G_v", "Pa", "shear modulus of vertical planes; unset: E_v/(2 (1 + nu_v))",
+                      kSource, kAboveZero, kUnbounded)};
+}
+
+TransverseModuli transverse_moduli(const std::string& model, const Settings& s) {
+  TransverseModuli m{number_of(s, "E_h"), number_of(s, "E_v"), number_of(s, "nu_h"),
+                     number_of(s, "nu_v"), number_of(s, "G_v")};
+  if (std::isnan(m.G_v)) m.G_v = m.E_v / (2 * (1 + m.nu_v));
+  if (m.is_stable()) return m;
+  throw BadParameter(
+      fmt::format("model {}: nu_h = {:.6g}, nu_v = {:.6g} with E_h/E_v = {:.6g} is not elastic; "
+                  "allowed: G_v above 0, |nu_h| below 1, 2 nu_v^2 E_h/E_v below 1 - nu_h",
+                  model, m.nu_h, m.nu_v, m.E_h / m.E_v));
 }
 
 TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
@@ -97,33 +131,15 @@ std::array<double, 6> TransverseHalfSpace::stress(double x, double y, double z) 
 }
 
 ModelInfo transverse_half_space_info() {
-  const char* source = "Elliott 1948";
-  return {
-      "transverse_half_space",
-      "elastic half space with a vertical axis of symmetry under a point load",
-      3,
-      {number("F", "N", "load at the origin, down", source, 1, -kUnbounded, kUnbounded),
-       number("E_h", "Pa", "horizontal Young's modulus; of the moduli only ratios count", source, 1,
-              kAboveZero, kUnbounded),
-       number("E_v", "Pa",
-              "vertical Young's modulus; raised: the load is carried nearer to the axis", source, 1,
-              kAboveZero, kUnbounded),
-       number("nu_h", "-", "-eps_yy/eps_xx under sigma_xx", source, 0.3, -1, 1),
-       number("nu_v", "-", "-eps_xx/eps_zz under sigma_zz", source, 0.3, -kUnbounded, kUnbounded),
-       optional_number("G_v", "Pa", "shear modulus of vertical planes; unset: E_v/(2 (1 + nu_v))",
-                       source, kAboveZero, kUnbounded)},
-      [](const Settings& s) -> std::unique_ptr<Model> {
-        TransverseModuli m{number_of(s, "E_h"), number_of(s, "E_v"), number_of(s, "nu_h"),
-                           number_of(s, "nu_v"), number_of(s, "G_v")};
-        if (std::isnan(m.G_v)) m.G_v = m.E_v / (2 * (1 + m.nu_v));
-        if (!m.is_stable()) {
-          throw BadParameter(fmt::format(
-              "model transverse_half_space: nu_h = {:.6g}, nu_v = {:.6g} with E_h/E_v = {:.6g} is "
-              "not elastic; allowed: G_v above 0, |nu_h| below 1, 2 nu_v^2 E_h/E_v below 1 - nu_h",
-              m.nu_h, m.nu_v, m.E_h / m.E_v));
-        }
-        return std::make_unique<Transverse>(number_of(s, "F"), m);
-      }};
+  std::vector<Parameter> parameters{
+      number("F", "N", "load at the origin, down", kSource, 1, -kUnbounded, kUnbounded)};
+  for (Parameter& p : transverse_parameters()) parameters.push_back(std::move(p));
+  return {"transverse_half_space",
+          "elastic half space with a vertical axis of symmetry under a point load", 3,
+          std::move(parameters), [](const Settings& s) -> std::unique_ptr<Model> {
+            return std::make_unique<Transverse>(number_of(s, "F"),
+                                                transverse_moduli("transverse_half_space", s));
+          }};
 }
 
 }  // namespace grainfield::continuum

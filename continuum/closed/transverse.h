@@ -11,6 +11,9 @@
 #pragma once
 #include <array>
 #include <complex>
+#include <string>
+
+#include "continuum/closed/orthotropic.h"
 
 namespace grainfield::continuum {
 
@@ -23,7 +26,15 @@ struct TransverseModuli {
 
   /// Whether every strain takes work.
   bool is_stable() const;
+  /// Of a vertical plane that does not strain across itself; x horizontal, y vertical. Across it is
+  /// then nu_h s_xx + nu_v E_h/E_v s_yy.
+  PlaneModuli plane_strain() const;
 };
+
+/// E_h, E_v, nu_h, nu_v, G_v of a model's settings and their check: throws BadParameter naming the
+/// model when they are not stable.
+std::vector<Parameter> transverse_parameters();
+TransverseModuli transverse_moduli(const std::string& model, const Settings& settings);
 
 class TransverseHalfSpace {
  public:

@@ -6,34 +6,30 @@
 //   power:  U = (3/5) E A^{5/3} / (12^{1/3} l0^{4/3})              U' = E A^{2/3} / (12^{1/3}
 //   l0^{4/3})
 //           below A_c = share l0^2 a straight line through 0:      U' = U'(A_c) A / A_c
-//   D = gamma (dA/dt)/l0 sqrt(E m_eff)   D >= -R: never attractive
-//   spring k_t v_t dt, k_t = ratio E, dashpot sqrt(k_t m_t) v_t, m_t as in overlap_area.h
+//   dashpots and spring of friction: Roul's, with l0 for l (area_dashpots.h)
 //
 // l0 = R_i R_j/(R_i + R_j) of the circles of equal area. Where the chord is about l0 both are
 // Roul's E A/l; the power is it for disks, to O(overlap/R). An overlap without a chord (one grain
 // inside the other) has no force: dA = 0.
 #pragma once
-#include "dem/laws/contact.h"
+#include "dem/laws/area_dashpots.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
 
-struct EnergyLaw {
+struct EnergyLaw : AreaDashpots {
   static constexpr const char* name = "energy";
   static constexpr Measures measures = Measures::gradient;
   static constexpr EdgeMeasure edges = EdgeMeasure::width;
   template <int D>
   using Memory = SpringMemory<D>;
-  double young = 1e7;                 ///< E, N/m
-  double damping = 0.75;              ///< gamma, -
-  double tangential_ratio = 2.0 / 7;  ///< k_t/E, -
-  bool power = false;                 ///< the member: power, else square
-  double linear_share = 1e-3;         ///< A_c / l0^2, -; of the power
+  bool power = false;          ///< the member: power, else square
+  double linear_share = 1e-3;  ///< A_c / l0^2, -; of the power
 
   static EnergyLaw of(const MaterialSetup& m) {
-    return {m.young, m.damping, m.tangential_ratio, m.energy == "power", m.linear_share};
+    return {{m.young, m.damping, m.tangential_ratio}, m.energy == "power", m.linear_share};
   }
 
   /// U'/E at a = A/l0^2, -.
@@ -50,37 +46,15 @@ struct EnergyLaw {
     return 0.5 * at_limit * limit + 0.6 * (power_slope(a) * a - at_limit * limit);
   }
 
-  /// Stiffness that bounds the time step, N/m: of disks up to an overlap of 5 % of R.
-  double stiffness(double /*radius*/ = 0) const { return std::max(1.0, tangential_ratio) * young; }
-  double tangential_stiffness(double /*radius*/ = 0) const { return young * tangential_ratio; }
-
-  /// As of Roul's law (overlap_area.h): the dashpots are his.
-  double viscous_rate(double mass, double /*radius*/ = 0) const {
-    return std::max(24 * std::sqrt(tangential_stiffness() / (6 * mass)),
-                    6 * 0.6 * damping * std::sqrt(young / (2 * mass)));
-  }
   /// Two edges face to face: dA = c dx, so the stiffness is U'' c^2, four times that for the
   /// fastest mode of a chain. `width`: c/l0.
   double edge_stiffness(double width) const {
     const double curvature = power ? power_slope(linear_share) / linear_share : 1;
     return 4 * young * curvature * width * width;
   }
-  double edge_rate(double mass, double width) const {
-    return 4 * damping * width * std::sqrt(young / (2 * mass));
-  }
-
   LawForce<2> operator()(const Overlap& o, const ContactMotion<2>& m, double mu, double dt,
                          SpringMemory<2>& memory) const {
-    const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
-    const double viscous =
-        damping * o.chord * m.approach / o.length * std::sqrt(young / inverse_sum);
-    const double normal = std::max(repulsion(o) + viscous, 0.0);
-    const double inverse_tangential = inverse_sum + o.arm_i * o.arm_i * m.inverse_inertia_i +
-                                      o.arm_j * o.arm_j * m.inverse_inertia_j;
-    const double kt = tangential_stiffness();
-    const double force = friction_force(normal, mu, kt, std::sqrt(kt / inverse_tangential), m.slip,
-                                        dt, memory.spring);
-    return {normal, force};
+    return forces(repulsion(o), o, m, mu, dt, memory);
   }
 
   double repulsion(const Overlap& o) const {

@@ -115,6 +115,9 @@ struct HertzLaw {
     memory.contact_radius = std::sqrt(o.radius * o.depth);
   }
 
+  double spring_stiffness(const OverlapIn<3>& o) const {
+    return 8 * effective_shear() * std::sqrt(o.radius * o.depth);
+  }
   double repulsion(const OverlapIn<3>& o) const {
     return 2 * effective_young() * std::sqrt(o.radius * o.depth) * (2.0 / 3) * o.depth;
   }

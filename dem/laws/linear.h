@@ -49,6 +49,7 @@ struct LinearLaw {
     return {normal, force};
   }
 
+  double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }
   double repulsion(const auto& o) const { return normal_stiffness * o.depth; }
   template <int D>
   ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {

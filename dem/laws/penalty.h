@@ -48,6 +48,7 @@ struct PenaltyLaw {
             friction_force(normal, mu, tangential_stiffness_, 0.0, m.slip, dt, memory.spring)};
   }
 
+  double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }
   double repulsion(const auto& o) const { return normal_stiffness * o.depth; }
   template <int D>
   ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {

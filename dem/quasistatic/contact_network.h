@@ -1,67 +1,57 @@
-// The forces of a packing as functions of displacements, and their derivatives.
+// The forces of a packing as functions of displacements, and their derivatives: what equilibrium is
+// sought with. plane_network.h has disks and polygons, sphere_network.h spheres.
 //
-// Unknowns z: for each free grain (u_x/r, u_y/r, theta), displacements since the last committed
-// state, r the grain's radius. Residual: for each free grain (F_x, F_y, M/r) / scale, the resultant
-// of contact forces, weight and applied force.
-//
-// A contact's normal force N is the law's without its dashpot. Its tangential force is the return
-// mapping of the committed spring S0:
-//   T = clamp(S0 - k_t s, -mu N, mu N)
-// with s the slip since the committed state, of i against j, at the contact's middle tangent t
-// (normal halfway between the committed and the present one) and middle levers:
-//   s = (u_i - u_j) . t + theta_i lever_i + theta_j lever_j
-// A rigid rotation of both grains by a leaves s = O(a^3): the spring turns with the contact. A
-// contact that was open at the committed state begins with S0 = 0 and only the share of s since it
-// closed, depth / approach.
-//
-// Tangent: the force is a smooth function of N, s and the geometry (n, levers, shifts), with one
-// branch for stick and one for slip. The derivatives of those eight by the relative position and
-// the two angles are central differences of the narrow phase (of disks: by the position only), the
-// branch is exact. Rows with slip make the matrix unsymmetric.
+// Unknowns z: for each free grain displacement over its radius r, and rotation, since the last
+// committed state: (u_x/r, u_y/r, theta) in the plane, (u/r, theta) with three each in space.
+// Residual: for each free grain (F, M/r) / scale, the resultant of contact forces, weight and
+// applied force.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <array>
+#include <cmath>
 #include <cstdint>
-#include <utility>
-#include <vector>
+#include <memory>
 
 #include "dem/laws/materials.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
 
-/// Copyable: a copy is a saved state.
 class ContactNetwork {
  public:
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Committed state: the start's positions and springs. `start` must have been checked.
-  ContactNetwork(const Snapshot& start, const Materials& materials);
+  virtual ~ContactNetwork() = default;
 
-  int size() const { return 3 * free_; }  ///< unknowns
+  int size() const { return per_grain() * free_; }  ///< unknowns
   int free_grains() const { return free_; }
+  /// Components of a grain's force and, after them, of its moment.
+  int per_force() const { return dim_; }
+  int per_grain() const { return dim_ == 2 ? 3 : 6; }
 
-  /// External force on every grain, N, from now on.
-  void set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
-                std::int64_t loaded_b, const Vec3& force_b);
+  /// External force on every grain, N, from now on. Grains by index, -1: none.
+  virtual void set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
+                        std::int64_t loaded_b, const Vec3& force_b) = 0;
   /// Force that makes the residual one, N (> 0).
   void set_scale(double newtons) { scale_ = newtons; }
   double scale() const { return scale_; }
 
   /// Residual at z. False when z is not finite or moves a grain further than kMostMove: there the
   /// increments no longer mean anything.
-  bool residual(const Vector& z, Vector& r);
+  virtual bool residual(const Vector& z, Vector& r) = 0;
   /// Its derivative at z, less `drag` on the diagonal. The diagonal also loses the size of the
   /// residual r of each grain: that keeps loose grains in place and vanishes with the residual, so
   /// that Newton's convergence stays quadratic.
-  void tangent(const Vector& z, const Vector& r, const Vector& drag, Matrix& matrix);
+  virtual void tangent(const Vector& z, const Vector& r, const Vector& drag, Matrix& matrix) = 0;
   /// A stiffness of the law times radius over scale, per unknown: unit of a drag on z.
-  Vector drag_unit() const;
+  virtual Vector drag_unit() const = 0;
 
   /// z becomes the committed state: springs and contact geometry are kept, z starts again at 0.
-  void commit(const Vector& z);
+  virtual void commit(const Vector& z) = 0;
+  /// Keeps the committed state, and goes back to the one that was kept last.
+  virtual void keep() = 0;
+  virtual void take_back() = 0;
 
   struct Balance {
     double mean_contact_force = 0, mean_unbalanced_force = 0;
@@ -72,70 +62,35 @@ class ContactNetwork {
   };
   /// Of the committed state, from the same forces as the residual.
   Balance balance();
+  /// Mean size of the resultants in a residual.
+  double mean_resultant(const Vector& r) const;
 
   /// The committed state as a snapshot: `like` with new positions, velocities 0 and contacts.
-  Snapshot snapshot(const Snapshot& like);
+  virtual Snapshot snapshot(const Snapshot& like) = 0;
 
   /// Largest displacement of z in radii or radians that the model is made for.
   static constexpr double kMostMove = 0.5;
 
- private:
-  struct Pair {
-    int i = 0, j = 0;  // j < 0: wall -1 - j
-    bool touched = false;
-    double friction = 0;
-    double spring = 0;                                // committed, N
-    double nx = 0, ny = 0, lever_i = 0, lever_j = 0;  // committed, where touched
-  };
-  // Where the two grains are against each other, and how they moved since the committed state.
-  struct Place {
-    double dx = 0, dy = 0;            // from i to j; wall: from i to the wall's point, m
-    double angle_i = 0, angle_j = 0;  // rad
-    double ux = 0, uy = 0;            // displacement of i against j, m
-    double turn_i = 0, turn_j = 0;    // rad
-  };
-  struct Geometry {
-    double normal = 0, slip = 0;
-    double nx = 0, ny = 0, lever_i = 0, lever_j = 0, shift_i = 0, shift_j = 0;
-  };
-  struct Force {
-    double normal = 0, tangential = 0;
-    bool sticks = true;
-    double fx = 0, fy = 0, torque_i = 0, torque_j = 0;
-  };
-  using Slopes = Eigen::Matrix<double, 4, 4>;
+ protected:
+  explicit ContactNetwork(int dim) : dim_(dim) {}
+  ContactNetwork(const ContactNetwork&) = default;
+  ContactNetwork& operator=(const ContactNetwork&) = default;
 
-  bool overlap(const Pair& pair, const Place& place, Overlap& o) const;
-  bool geometry(const Pair& pair, const Place& place, Geometry& g) const;
-  Force force(const Pair& pair, const Geometry& g) const;
-  bool slopes(const Pair& pair, const Place& place, Slopes& out) const;
-  Place place(const Pair& pair, const Vector& z) const;
-  double displacement(int grain, int axis, const Vector& z) const;
-  void ensure_candidates(const Vector& z);
-  void search(const Vector& z);
+  /// Sum of the contacts' forces, N, and their number, in the committed state.
+  virtual void add_contact_forces(double& sum, int& contacts) const = 0;
 
-  struct Shape {
-    double radius = 0, mass = 0;
-    int unknown = -1;  // first of three, -1: fixed
-    double equal_radius = 0;
-    Outline outline;
-  };
+  static bool within_reach(const Vector& z) {
+    return z.size() == 0 || z.cwiseAbs().maxCoeff() <= kMostMove;  // false for nan
+  }
 
-  AnyLaw law_;
-  Measures measures_ = Measures::depth;
-  double friction_;
-  double stiffness_, tangential_stiffness_;
-  double scale_ = 1;
+  int dim_ = 2;
   int free_ = 0;
-  std::vector<Shape> shapes_;
-  std::vector<Wall> walls_;
-  std::vector<std::array<double, 3>> origin_;     // x, y, angle of the start
-  std::vector<std::array<double, 3>> committed_;  // displacement of the committed state since then
-  std::vector<std::array<double, 2>> load_;       // N
-  std::vector<Pair> pairs_;                       // sorted by (i, j), walls of a grain first
-  std::vector<std::array<double, 2>> searched_;   // displacements at the last search
-  double skin_ = 0;
-  std::vector<Eigen::Triplet<double>> triplets_;
+  double scale_ = 1;
 };
+
+/// Committed state: the start's positions and springs. `start` must have been checked. Throws
+/// std::invalid_argument for a law that equilibrium is not sought with.
+std::unique_ptr<ContactNetwork> make_contact_network(const Snapshot& start,
+                                                     const Materials& materials);
 
 }  // namespace grainfield::dem

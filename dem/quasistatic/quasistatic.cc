@@ -33,6 +33,9 @@ constexpr double kFlowBelow = 0.25;
 constexpr double kFirstDrag = 1e-4, kLeastDrag = 1e-7, kMostDrag = 1e3;
 constexpr double kEase = 0.5, kQuickEase = 0.2, kBrake = 8;
 constexpr int kQuick = 5;
+// Unknowns of a packing in space up to which the tangent is factorized. In the plane factors fill
+// little, and it always is.
+constexpr int kMostForFactors = 6000;
 // Grains that hold up Newton: those with this share of the largest residual where it stopped.
 constexpr double kCulprit = 0.03;
 // A step of the flow is solved to this share of its first residual.
@@ -64,13 +67,14 @@ void check_settings(const QuasistaticSettings& s) {
 }
 
 void check_start(const Snapshot& s) {
-  if (s.dim != 2) {
-    throw std::invalid_argument(fmt::format(
-        "quasi-static relaxation: found a packing in {} dimensions, allowed: 2", s.dim));
-  }
-  if (s.cell.is_periodic()) {
+  if (s.dim == 2 && s.cell.is_periodic()) {
     throw std::invalid_argument(
-        "quasi-static relaxation: found a periodic cell, allowed: packings between walls");
+        "quasi-static relaxation: found a periodic cell in the plane, allowed: packings between "
+        "walls");
+  }
+  if (!s.cell.velocity_gradient.isZero(0)) {
+    throw std::invalid_argument(
+        "quasi-static relaxation: found a cell that flows, allowed: one at rest");
   }
   const auto n = static_cast<std::int64_t>(s.grains.size());
   const auto walls = static_cast<std::int64_t>(s.walls.size());
@@ -94,6 +98,12 @@ void check_start(const Snapshot& s) {
           "quasi-static relaxation: found that grain {} does not turn, allowed: grains that do",
           g.id));
     }
+    if (!g.axes.isZero(0)) {
+      throw std::invalid_argument(fmt::format(
+          "quasi-static relaxation: found that grain {} is a superellipsoid, allowed: disks, "
+          "polygons, spheres; choose method = \"damped\"",
+          g.id));
+    }
     if (!(g.position.allFinite() && std::isfinite(g.angle) && g.radius > 0 &&
           (g.fixed || (g.mass > 0 && std::isfinite(g.mass))))) {
       throw std::invalid_argument(fmt::format(
@@ -106,7 +116,8 @@ void check_start(const Snapshot& s) {
     throw std::invalid_argument("quasi-static relaxation: found no grain that is free to move");
   }
   for (const Contact& c : s.contacts) {
-    if (c.i < 0 || c.i >= n || c.j >= n || c.j < -walls || c.i == c.j || !std::isfinite(c.spring)) {
+    if (c.i < 0 || c.i >= n || c.j >= n || c.j < -walls || c.i == c.j || !std::isfinite(c.spring) ||
+        !c.rolling_spring.allFinite() || !std::isfinite(c.twisting_spring)) {
       throw std::invalid_argument(
           fmt::format("quasi-static relaxation: found a contact of {} with {}, allowed: {} grains "
                       "and {} walls",
@@ -121,19 +132,19 @@ class Relaxation {
              const AppliedForce& force, const QuasistaticSettings& settings)
       : start_(start),
         settings_(settings),
-        network_(start, materials),
+        network_(make_contact_network(start, materials)),
         gravity_(gravity),
         old_grain_(start.loaded_grain < 0 ? -1 : index_of(start, start.loaded_grain)),
         new_grain_(force.id < 0 ? -1 : index_of(start, force.id)),
-        force_(force.fx, force.fy, 0) {
+        force_(force.fx, force.fy, force.fz) {
     problem_.residual = [this](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
-      if (!network_.residual(z, r)) return false;
+      if (!network_->residual(z, r)) return false;
       r -= drag_.cwiseProduct(unit_).cwiseProduct(z);
       return true;
     };
     problem_.tangent = [this](const Eigen::VectorXd& z, const Eigen::VectorXd& r,
                               Eigen::SparseMatrix<double>& matrix) {
-      network_.tangent(z, r, drag_.cwiseProduct(unit_), matrix);
+      network_->tangent(z, r, drag_.cwiseProduct(unit_), matrix);
     };
   }
 
@@ -143,15 +154,15 @@ class Relaxation {
     while (share < 1) {
       step = std::min(step, 1 - share);
       const double next = step > 1 - share - 1e-12 ? 1 : share + step;
-      const ContactNetwork saved = network_;
+      network_->keep();
       set_load(next);
       if (settle(step > kFlowBelow)) {
         share = next;
         step *= 2;
         continue;
       }
-      const double reached = network_.balance().ratio;
-      network_ = saved;
+      const double reached = network_->balance().ratio;
+      network_->take_back();
       step = step > kFlowBelow ? kFlowBelow : 0.5 * step;
       if (step < settings_.least_step) fail(share, reached);
     }
@@ -162,30 +173,30 @@ class Relaxation {
   double tolerance() const { return kAim * settings_.unbalanced_force_ratio; }
 
   void set_load(double share) {
-    network_.set_load(start_.gravity + share * (gravity_ - start_.gravity), old_grain_,
-                      (1 - share) * start_.applied_force, new_grain_, share * force_);
+    network_->set_load(start_.gravity + share * (gravity_ - start_.gravity), old_grain_,
+                       (1 - share) * start_.applied_force, new_grain_, share * force_);
     rescale();
   }
 
   /// Residuals are measured in mean contact forces, or in mean resultants while those are larger.
   void rescale() {
-    network_.set_scale(1);
-    const ContactNetwork::Balance b = network_.balance();
+    network_->set_scale(1);
+    const ContactNetwork::Balance b = network_->balance();
     const double scale = std::max(b.mean_contact_force, b.mean_unbalanced_force);
-    network_.set_scale(scale > 0 && std::isfinite(scale) ? scale : 1);
-    unit_ = network_.drag_unit();
-    drag_ = Eigen::VectorXd::Zero(network_.size());
+    network_->set_scale(scale > 0 && std::isfinite(scale) ? scale : 1);
+    unit_ = network_->drag_unit();
+    drag_ = Eigen::VectorXd::Zero(network_->size());
   }
 
   /// To equilibrium under the present load, by Newton's method alone (`at_once`) or with drag where
   /// it is needed. Commits what it reaches.
   bool settle(bool at_once) {
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_.size());
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_->size());
     Eigen::VectorXd r;
     for (int k = 0; k < kMostFlowSteps; ++k) {
       if (settings_.go_on && !settings_.go_on(share_)) throw RelaxationStopped();
       const bool free = drag_.maxCoeff() == 0;
-      if (!network_.residual(zero, r)) return false;
+      if (!network_->residual(zero, r)) return false;
       const double now = r.cwiseAbs().maxCoeff();
       if (now <= tolerance() || (k > 0 && enough(r))) return true;
       const double wanted = free ? tolerance() : std::max(tolerance(), kFlowTolerance * now);
@@ -193,11 +204,15 @@ class Relaxation {
       Eigen::VectorXd z = zero;
       problem_.enough = nullptr;
       if (free) problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
-      const NewtonReport report = newton(problem_, {wanted, limit, kMostStep}, z);
+      const NewtonReport report =
+          newton(problem_,
+                 {wanted, limit, kMostStep,
+                  network_->per_force() == 3 && network_->size() > kMostForFactors},
+                 z);
       iterations_ += report.iterations;
       const bool good = report.converged && z.cwiseAbs().maxCoeff() <= kMostStep;
       if (good) {
-        network_.commit(z);
+        network_->commit(z);
         ++steps_;
         if (free) return true;
         drag_ *= report.iterations <= kQuick ? kQuickEase : kEase;
@@ -214,10 +229,7 @@ class Relaxation {
   /// The mean resultant meets the ratio asked for, and no grain is far above it. Newton aims lower,
   /// but disks that form a roller bearing creep on the last digits and never get there.
   bool enough(const Eigen::VectorXd& r) const {
-    double mean = 0;
-    for (int k = 0; k < network_.size(); k += 3) mean += std::hypot(r[k], r[k + 1]);
-    mean /= network_.free_grains();
-    return mean <= 0.5 * settings_.unbalanced_force_ratio &&
+    return network_->mean_resultant(r) <= 0.5 * settings_.unbalanced_force_ratio &&
            r.cwiseAbs().maxCoeff() <= kMostOver * settings_.unbalanced_force_ratio;
   }
 
@@ -228,11 +240,12 @@ class Relaxation {
     const double most = known ? r.cwiseAbs().maxCoeff() : 0;
     const double far = z.cwiseAbs().maxCoeff();
     bool any = false;
-    for (int k = 0; k < network_.size(); k += 3) {
-      const bool holds = (known && r.segment<3>(k).cwiseAbs().maxCoeff() >= kCulprit * most) ||
-                         (far > kMostStep && z.segment<3>(k).cwiseAbs().maxCoeff() >= 0.5 * far);
+    const int per = network_->per_grain();
+    for (int k = 0; k < network_->size(); k += per) {
+      const bool holds = (known && r.segment(k, per).cwiseAbs().maxCoeff() >= kCulprit * most) ||
+                         (far > kMostStep && z.segment(k, per).cwiseAbs().maxCoeff() >= 0.5 * far);
       if (!holds) continue;
-      drag_.segment<3>(k).setConstant(std::max(drag_[k] * kBrake, kFirstDrag));
+      drag_.segment(k, per).setConstant(std::max(drag_[k] * kBrake, kFirstDrag));
       any = true;
     }
     if (!any) drag_ = (drag_ * kBrake).cwiseMax(kFirstDrag);
@@ -245,15 +258,15 @@ class Relaxation {
   QuasistaticResult finish() {
     ContactNetwork::Balance b;
     for (int k = 0; k < kMostFinish; ++k) {
-      b = network_.balance();
+      b = network_->balance();
       if (balanced(b)) break;
       rescale();
       if (!settle(false)) break;
-      b = network_.balance();
+      b = network_->balance();
     }
     if (!balanced(b)) fail(1, std::max(b.ratio, b.moment_ratio));
     QuasistaticResult out;
-    out.state = network_.snapshot(start_);
+    out.state = network_->snapshot(start_);
     out.state.gravity = gravity_;
     out.state.loaded_grain = new_grain_ < 0 ? -1 : start_.grains[new_grain_].id;
     out.state.applied_force = new_grain_ < 0 ? Vec3(0, 0, 0) : force_;
@@ -280,7 +293,7 @@ class Relaxation {
 
   const Snapshot& start_;
   const QuasistaticSettings& settings_;
-  ContactNetwork network_;
+  std::unique_ptr<ContactNetwork> network_;
   Vec3 gravity_;
   std::int64_t old_grain_, new_grain_;  // indices, -1: none
   Vec3 force_;
@@ -301,9 +314,10 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
         fmt::format("quasi-static relaxation: found {} materials, allowed: one for all grains",
                     materials.materials.size()));
   }
-  if (materials.resist_rolling()) {
+  if (start.dim == 2 && materials.resist_rolling()) {
     throw std::invalid_argument(
-        "quasi-static relaxation: found resistance against rolling (material.rolling_friction or "
+        "quasi-static relaxation in the plane: found resistance against rolling "
+        "(material.rolling_friction or "
         "twisting_friction above 0), allowed: none; choose method = \"damped\"");
   }
   if (!gravity.allFinite()) {
@@ -317,7 +331,7 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
                       "free grain",
                       force.id));
     }
-    if (!std::isfinite(force.fx) || !std::isfinite(force.fy)) {
+    if (!std::isfinite(force.fx) || !std::isfinite(force.fy) || !std::isfinite(force.fz)) {
       throw std::invalid_argument(fmt::format(
           "quasi-static relaxation: found a force on grain {} that is not finite", force.id));
     }

@@ -1,15 +1,12 @@
 #include "dem/quasistatic/sparse_newton.h"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseLU>
 #include <cmath>
+
+#include "dem/quasistatic/linear_solver.h"
 
 namespace grainfield::dem {
 namespace {
 
-// A pivot off the diagonal is taken only when the diagonal one is this much smaller: the tangent is
-// dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
-constexpr double kPivotThreshold = 0.01;
 // Newton stalls, at a corner between two branches, when so many iterations have not brought the
 // residual's 2-norm below this share.
 constexpr std::size_t kPatience = 6;
@@ -22,19 +19,17 @@ constexpr double kSlow = 0.1;
 NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings,
                     Eigen::VectorXd& z) {
   SparseProblem::Matrix matrix;
-  Eigen::SparseLU<SparseProblem::Matrix, Eigen::COLAMDOrdering<int>> factors;
-  factors.setPivotThreshold(kPivotThreshold);
+  const auto solver = settings.iterative ? make_iterative_solver() : make_direct_solver();
   double last = 0;  // 2-norm of the last iteration's residual
 
   NewtonProblem core;
   core.residual = problem.residual;
   core.factorize = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& r) {
     problem.tangent(at, r, matrix);
-    factors.compute(matrix);
-    return factors.info() == Eigen::Success;
+    return solver->prepare(matrix);
   };
   core.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
-    x = factors.solve(rhs);
+    solver->solve(rhs, x);
     const double longest = x.cwiseAbs().maxCoeff();
     if (longest > settings.most_step) x *= settings.most_step / longest;
   };

@@ -1,4 +1,4 @@
-// Newton's method with a sparse unsymmetric factorization.
+// Newton's method with a sparse tangent.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -23,6 +23,7 @@ struct SparseSettings {
   double tolerance = 1e-10;  ///< largest |r| to be reached
   int max_iterations = 50;
   double most_step = 0.25;  ///< a longer step (largest |dz|) is shortened
+  bool iterative = false;   ///< make_iterative_solver() instead of make_direct_solver()
 };
 
 /// Improves z, the first guess. Without convergence z is the last iterate.

@@ -148,9 +148,9 @@ class PileChangeRun final : public ArchivedRun {
 
   // The forces that the law gives at these places carry the weight, or the law is another one.
   void check_balance() const {
-    ContactNetwork network(pile_, settings_);
-    network.set_load(pile_.gravity, -1, Vec3(0, 0, 0), -1, Vec3(0, 0, 0));
-    const double ratio = network.balance().ratio;
+    const auto network = make_contact_network(pile_, settings_);
+    network->set_load(pile_.gravity, -1, Vec3(0, 0, 0), -1, Vec3(0, 0, 0));
+    const double ratio = network->balance().ratio;
     const double allowed = std::max(kBalanced, 10 * setup_.rest.unbalanced_force_ratio);
     if (!(ratio <= allowed)) {
       throw std::invalid_argument(fmt::format(

@@ -1,5 +1,5 @@
 // The equations of a contact network: their tangent, balance and invariance.
-#include "dem/quasistatic/contact_network.h"
+#include "dem/quasistatic/plane_network.h"
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(ContactNetwork, TangentIsTheDerivativeOfTheResidual) {
       e.friction = 0;
       for (Wall& w : s.walls) w.friction = 0;
     }
-    ContactNetwork network(s, e);
+    PlaneNetwork network(s, e);
     network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
     network.set_scale(100);
     const int n = network.size();
@@ -82,7 +82,7 @@ TEST(ContactNetwork, ATrialThatIsTakenBackLeavesNoTrace) {
   Random random(11);
   for (int trial = 0; trial < 20; ++trial) {
     Snapshot s = cluster(random, trial % 2 == 1);
-    ContactNetwork network(s, area_law(0.4));
+    PlaneNetwork network(s, area_law(0.4));
     network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
     Eigen::VectorXd z(network.size()), before, after;
     for (int k = 0; k < network.size(); ++k) z[k] = 1e-3 * random.uniform(-1, 1);
@@ -102,7 +102,7 @@ TEST(ContactNetwork, InternalForcesSumToZero) {
     Snapshot s = cluster(random, true);
     s.walls.clear();
     for (Grain& g : s.grains) g.fixed = false;
-    ContactNetwork network(s, area_law(0.4));
+    PlaneNetwork network(s, area_law(0.4));
     Eigen::VectorXd z(network.size()), r;
     for (int k = 0; k < network.size(); ++k) z[k] = 1e-2 * random.uniform(-1, 1);
     ASSERT_TRUE(network.residual(z, r));
@@ -125,7 +125,7 @@ TEST(ContactNetwork, ARigidRotationLeavesTheForces) {
   Random random(5);
   Snapshot s = cluster(random, false);
   s.walls.clear();
-  ContactNetwork network(s, area_law(0.4));
+  PlaneNetwork network(s, area_law(0.4));
   const int n = network.size();
   Eigen::VectorXd z(n), before, after;
   for (int k = 0; k < n; ++k) z[k] = 1e-3 * random.uniform(-1, 1);

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "dem/packing/packing.h"
-#include "dem/quasistatic/contact_network.h"
+#include "dem/quasistatic/plane_network.h"
 #include "dem/quasistatic/sparse_newton.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
@@ -106,7 +106,7 @@ TEST(Quasistatic, RelaxingARelaxedStateChangesNothing) {
 
 TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
   const Snapshot rest = relax(block(8, 5, 5), area_law(5), {0, -kG, 0}, {}, {}).state;
-  ContactNetwork network(rest, area_law(5));
+  PlaneNetwork network(rest, area_law(5));
   network.set_load({0, -0.8 * kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
   network.set_scale(network.balance().mean_contact_force);
   SparseProblem problem;

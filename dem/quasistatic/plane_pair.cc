@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/quasistatic/contact_network.h"
+#include "dem/quasistatic/plane_network.h"
 #include "dem/shapes/polygon.h"
 #include "dem/space/rotation.h"
 
@@ -36,7 +36,7 @@ struct Corners {
 }  // namespace
 
 /// In coordinates with the first grain's centroid as origin: small numbers, no lost digits.
-bool ContactNetwork::overlap(const Pair& pair, const Place& p, Overlap& o) const {
+bool PlaneNetwork::overlap(const Pair& pair, const Place& p, Overlap& o) const {
   const Shape& a = shapes_[pair.i];
   const bool wall = pair.j < 0;
   const double wx = wall ? walls_[-1 - pair.j].normal.x() : 0;
@@ -63,7 +63,7 @@ bool ContactNetwork::overlap(const Pair& pair, const Place& p, Overlap& o) const
   return true;
 }
 
-bool ContactNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) const {
+bool PlaneNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) const {
   Overlap o;
   if (!overlap(pair, p, o)) return false;
   g.normal = std::visit(
@@ -96,7 +96,7 @@ bool ContactNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) con
   return true;
 }
 
-ContactNetwork::Force ContactNetwork::force(const Pair& pair, const Geometry& g) const {
+PlaneNetwork::Force PlaneNetwork::force(const Pair& pair, const Geometry& g) const {
   Force f;
   f.normal = g.normal;
   const double limit = pair.friction * g.normal;
@@ -114,7 +114,7 @@ ContactNetwork::Force ContactNetwork::force(const Pair& pair, const Geometry& g)
 
 /// Rows: f_x, f_y on i, torques on i and j; columns: by the relative position (from i to j) and the
 /// two angles.
-bool ContactNetwork::slopes(const Pair& pair, const Place& at, Slopes& out) const {
+bool PlaneNetwork::slopes(const Pair& pair, const Place& at, Slopes& out) const {
   Geometry g;
   Overlap o;
   if (!overlap(pair, at, o) || !geometry(pair, at, g)) return false;

@@ -1,0 +1,31 @@
+// Linear equations of a tangent stiffness: by factors, or of large packings in space by iteration.
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+
+namespace grainfield::dem {
+
+class LinearSolver {
+ public:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  virtual ~LinearSolver() = default;
+  /// Makes ready for this matrix, which must live until the last solve; false: singular.
+  virtual bool prepare(const Matrix& matrix) = 0;
+  /// x of matrix x = rhs; not finite where no x was found.
+  virtual void solve(const Vector& rhs, Vector& x) = 0;
+};
+
+/// Sparse unsymmetric factors of Eigen.
+std::unique_ptr<LinearSolver> make_direct_solver();
+/// BiCGSTAB to kLinearTolerance of the right side, preconditioned by an incomplete Cholesky
+/// factorization of the symmetric part. For negative definite tangents that friction makes
+/// unsymmetric here and there.
+std::unique_ptr<LinearSolver> make_iterative_solver();
+
+/// Of the residual; Newton's steps lower theirs by no more than that.
+inline constexpr double kLinearTolerance = 1e-4;
+
+}  // namespace grainfield::dem
