@@ -39,7 +39,8 @@ const std::vector<ModelInfo>& registry() {
                                                 fe_cantelaube_core_info(),
                                                 fe_osl_wedge_info(),
                                                 fe_osl_layer_info(),
-                                                fe_mohr_coulomb_wedge_info()};
+                                                fe_mohr_coulomb_wedge_info(),
+                                                fe_cone_info()};
   return models;
 }
 

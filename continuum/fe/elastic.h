@@ -25,5 +25,7 @@ ModelInfo fe_cantelaube_core_info();
 
 /// A heap of Mohr-Coulomb material under its own weight, plane strain (fe/wedge.h).
 ModelInfo fe_mohr_coulomb_wedge_info();
+/// The same as a body of revolution.
+ModelInfo fe_cone_info();
 
 }  // namespace grainfield::continuum

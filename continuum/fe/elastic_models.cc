@@ -223,6 +223,7 @@ std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& s
   if (name == "fe_cantelaube_core") return make_cantelaube_core(settings);
   if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(settings);
   if (name == "fe_mohr_coulomb_wedge") return make_wedge_model(settings);
+  if (name == "fe_cone") return make_cone_model(settings);
   throw BadParameter("no finite-element model '" + name + "'");
 }
 

@@ -57,7 +57,7 @@ ContactForce contact_force(const ContactNode& node, const Ground& ground, const 
 PlasticBody::PlasticBody(const TriangleMesh& mesh, const PlasticSolver::Material& material,
                          const PlasticSolver::Supports& supports, const Ground& ground_,
                          PlasticSettings settings_)
-    : settings(std::move(settings_)), ground(ground_), grid(mesh) {
+    : settings(std::move(settings_)), ground(ground_), grid(mesh, settings.revolution) {
   const auto& cells = grid.cells;
   displacement = zeros();
   for (const QuadraticCell& cell : cells) {
@@ -93,7 +93,7 @@ void PlasticBody::find_supports(const PlasticSolver::Supports& supports) {
       if (!grounded) continue;
       const auto [found, added] = contact_of.emplace(x, contacts.size());
       if (added) contacts.push_back({{x, y}});
-      contacts[found->second].length += edge.length * (node < 2 ? 1. / 6 : 4. / 6);
+      contacts[found->second].length += grid.share(edge, node);
     }
   }
 }
@@ -110,11 +110,11 @@ void PlasticBody::find_free() {
 Eigen::VectorXd PlasticBody::forces_of(const PlasticSolver::Traction& traction) const {
   Eigen::VectorXd out = zeros();
   for (const BoundaryEdge& edge : grid.edges) {
-    const Vector2d force = edge.length * traction(edge.middle);
+    const Vector2d pressure = traction(edge.middle);
     for (std::size_t node = 0; node < 3; ++node)
       for (std::size_t d = 0; d < 2; ++d)
         out[edge.unknowns[node][d]] +=
-            force[static_cast<Eigen::Index>(d)] * (node < 2 ? 1. / 6 : 4. / 6);
+            pressure[static_cast<Eigen::Index>(d)] * grid.share(edge, node);
   }
   return out;
 }
@@ -126,9 +126,32 @@ Eigen::VectorXd PlasticBody::forces_of(const std::vector<Vector2d>& force) const
   return out;
 }
 
+Vector4 PlasticBody::trial(std::size_t c, std::size_t q, const CellVector& u) const {
+  const QuadraticCell& cell = grid.cells[c];
+  Vector4 out = points[c * kPoints + q].elastic_strain + in_space(cell.strain[q] * u);
+  if (settings.revolution) out[2] += cell.hoop[q].dot(u);
+  return out;
+}
+
+CellVector PlasticBody::forces_of(std::size_t c, std::size_t q, const Vector4& stress) const {
+  const QuadraticCell& cell = grid.cells[c];
+  CellVector out = cell.areas[q] * cell.strain[q].transpose() * in_plane(stress);
+  if (settings.revolution) out += cell.areas[q] * stress[2] * cell.hoop[q].transpose();
+  return out;
+}
+
+CellMatrix PlasticBody::stiffness_of(std::size_t c, std::size_t q, const Matrix4& tangent) const {
+  const QuadraticCell& cell = grid.cells[c];
+  if (!settings.revolution) {
+    return cell.areas[q] * cell.strain[q].transpose() * in_plane(tangent) * cell.strain[q];
+  }
+  Eigen::Matrix<double, 4, kUnknowns> strain;
+  strain << cell.strain[q].topRows<2>(), cell.hoop[q], cell.strain[q].row(2);
+  return cell.areas[q] * strain.transpose() * tangent * strain;
+}
+
 Returned PlasticBody::update(std::size_t c, std::size_t q, const CellVector& u) const {
-  const Vector4 trial =
-      points[c * kPoints + q].elastic_strain + in_space(grid.cells[c].strain[q] * u);
+  const Vector4 trial = this->trial(c, q, u);
   const plasticity::MohrCoulombLaw& law = laws[c];
   Returned out = law(trial);
   if (relaxed < 1 && out.regime != Regime::elastic) {
@@ -147,8 +170,7 @@ Eigen::VectorXd PlasticBody::internal(const Eigen::VectorXd& u) const {
     const QuadraticCell& cell = grid.cells[c];
     const CellVector local = cell.gather(u);
     CellVector f = CellVector::Zero();
-    for (std::size_t q = 0; q < kPoints; ++q)
-      f += cell.areas[q] * cell.strain[q].transpose() * in_plane(update(c, q, local).stress);
+    for (std::size_t q = 0; q < kPoints; ++q) f += forces_of(c, q, update(c, q, local).stress);
     cell.scatter(f, out);
   }
   for (const ContactNode& node : contacts) {
@@ -171,7 +193,7 @@ bool PlasticBody::factorize(const Eigen::VectorXd& u, bool elastic) {
     for (std::size_t q = 0; q < kPoints; ++q) {
       Matrix4 tangent = laws[c].elasticity();
       if (!elastic) tangent = update(c, q, local).tangent + settings.tangent_floor * tangent;
-      k += cell.areas[q] * cell.strain[q].transpose() * in_plane(tangent) * cell.strain[q];
+      k += stiffness_of(c, q, tangent);
     }
     grid.add(cell, k, free);
   }
@@ -203,9 +225,7 @@ void PlasticBody::elastic_guess(const Eigen::VectorXd& target, Eigen::VectorXd& 
     const QuadraticCell& cell = grid.cells[c];
     const CellVector local = cell.gather(u);
     CellVector f = CellVector::Zero();
-    for (std::size_t q = 0; q < kPoints; ++q)
-      f -= cell.areas[q] * cell.strain[q].transpose() * in_plane(laws[c].elasticity()) *
-           cell.strain[q] * local;
+    for (std::size_t q = 0; q < kPoints; ++q) f -= stiffness_of(c, q, laws[c].elasticity()) * local;
     cell.scatter(f, r);
   }
   clear_held(r);
@@ -222,8 +242,7 @@ void PlasticBody::accept(const Eigen::VectorXd& u) {
       const Returned r = update(c, q, local);
       PointState& p = points[c * kPoints + q];
       if (r.regime != Regime::elastic) {
-        Vector4 plastic =
-            p.elastic_strain + in_space(grid.cells[c].strain[q] * local) - r.elastic_strain;
+        Vector4 plastic = trial(c, q, local) - r.elastic_strain;
         p.plastic_strain += plastic;
         plastic[3] /= 2;
         const Eigen::Vector3d principal = plasticity::principal(plastic);

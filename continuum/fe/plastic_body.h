@@ -45,6 +45,13 @@ struct PlasticBody {
   /// Of forces per area, one for each cell; cells not active have none.
   Eigen::VectorXd forces_of(const std::vector<Eigen::Vector2d>& force) const;
 
+  /// Elastic strain at point q of cell c if all that its nodes move by u were elastic.
+  plasticity::Vector4 trial(std::size_t c, std::size_t q, const CellVector& u) const;
+  /// Nodal forces of a stress at point q of cell c.
+  CellVector forces_of(std::size_t c, std::size_t q, const plasticity::Vector4& stress) const;
+  /// The cell's stiffness of a tangent at point q.
+  CellMatrix stiffness_of(std::size_t c, std::size_t q, const plasticity::Matrix4& tangent) const;
+
   /// Stress and tangent at point q of cell c after the cell's nodes have moved by u.
   plasticity::Returned update(std::size_t c, std::size_t q, const CellVector& u) const;
 

@@ -286,8 +286,7 @@ Vector2d PlasticSolver::reaction(const std::function<bool(const Vector2d&)>& whe
     if (!impl_->active[c]) continue;
     CellVector f = CellVector::Zero();
     for (std::size_t q = 0; q < kPoints; ++q)
-      f += grid.cells[c].areas[q] * grid.cells[c].strain[q].transpose() *
-           in_plane(impl_->points[c * kPoints + q].stress);
+      f += impl_->forces_of(c, q, impl_->points[c * kPoints + q].stress);
     grid.cells[c].scatter(f, forces);
   }
   Vector2d out = Vector2d::Zero();

@@ -1,6 +1,6 @@
-// Elasto-plastic plane strain on triangles with quadratic displacements and three points of
-// integration each, loaded in steps that are found as it goes. Internal to fe/; this header does
-// without deal.II.
+// Elasto-plastic plane strain, or a body of revolution, on triangles with quadratic displacements
+// and three points of integration each, loaded in steps that are found as it goes. Internal to fe/;
+// this header does without deal.II.
 //
 // In every load step the equations  sum_cells int B^T sigma(e_n + B du) dV = f  are solved for the
 // displacement increment du by Newton's method with line search (dem/newton), the consistent
@@ -42,6 +42,7 @@ struct Ground {
 
 struct PlasticSettings {
   std::string name = "plasticity";  ///< begins the messages of failures
+  bool revolution = false;          ///< about x = 0, x >= 0 the radius; zz is round the axis
   double force_scale = 1;           ///< a large residual of a node, N (2D: N/m)
   double tolerance = 1e-9;          ///< largest residual of a node over the force scale
   /// Where Newton's method stalls, at a corner of the yield surface, this residual will do.
@@ -75,7 +76,7 @@ struct LoadStep {
 /// State at a point of integration.
 struct PointState {
   Eigen::Vector2d position;
-  double area = 0;  ///< that it stands for
+  double area = 0;  ///< that it stands for; of a body of revolution the volume
   plasticity::Vector4 stress = plasticity::Vector4::Zero();
   plasticity::Vector4 elastic_strain = plasticity::Vector4::Zero();
   plasticity::Vector4 plastic_strain = plasticity::Vector4::Zero();

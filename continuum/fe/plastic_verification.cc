@@ -186,4 +186,90 @@ FootingCheck check_strip_footing(const Footing& footing) {
   return out;
 }
 
+CylinderCheck check_cylinder(const Cylinder& cylinder) {
+  constexpr double inside = 1, outside = 2, slack = 1e-9, young = 1000, poisson = 0.3;
+  const double sine = std::sin(cylinder.phi_deg * kDegree);
+  const double N = (1 + sine) / (1 - sine);
+  const double s = 2 * std::cos(cylinder.phi_deg * kDegree) / (1 - sine);
+  const double end = std::max(cylinder.yields, inside), square = outside * outside;
+  double A = s / (N * (1 + square / (end * end)) - 1 + square / (end * end));
+  if (cylinder.yields <= inside) A /= 2;
+  const double at_end = A * (1 - square / (end * end));
+  const auto radial = [&](double r) {
+    if (r >= end) return A * (1 - square / (r * r));
+    if (sine == 0) return at_end - s * std::log(end / r);
+    const double constant = s / (N - 1);
+    return constant + (at_end - constant) * std::pow(r / end, 1 / N - 1);
+  };
+  const auto hoop = [&](double r) {
+    return r >= end ? A * (1 + square / (r * r)) : (s + radial(r)) / N;
+  };
+
+  std::vector<double> x;
+  for (int k = 0; k <= cylinder.cells; ++k) {
+    x.push_back(inside + (outside - inside) * k / cylinder.cells);
+  }
+  const double height = (outside - inside) / cylinder.cells;
+  const auto mesh = crossed(x, {0, height});
+  fe::PlasticSettings settings;
+  settings.name = "cylinder";
+  settings.revolution = true;
+  settings.force_scale = height;
+  settings.first_step = 0.25;
+  const plasticity::MohrCoulomb material{young, poisson, cylinder.phi_deg, cylinder.dilation_deg,
+                                         1};
+  fe::PlasticSolver solver(
+      mesh, [&](const Vector2d&) { return material; },
+      [&](const Vector2d& p) -> fe::Support {
+        return {{false, p[1] > -slack || p[1] < -height + slack}, false};
+      },
+      {}, settings);
+  CylinderCheck out;
+  out.pressure = -radial(inside);
+  solver.load(
+      std::vector<Vector2d>(mesh.triangles.size(), Vector2d::Zero()), {},
+      [&](const Vector2d& p) { return Vector2d(p[0] < inside + slack ? out.pressure : 0, 0); });
+  double error = 0, size = 0, yielded = 0;
+  for (const auto& p : solver.points()) {
+    const double r = p.position[0];
+    const Vector2d exact(radial(r), hoop(r)), found(p.stress[0], p.stress[2]);
+    error += p.area * (found - exact).squaredNorm();
+    size += p.area * exact.squaredNorm();
+    yielded += p.area * (p.regime != plasticity::Regime::elastic);
+  }
+  out.stress_error = std::sqrt(error / size);
+  const double volume = std::numbers::pi * height;
+  out.inner_error =
+      yielded / (volume * (square - inside)) - (end * end - inside) / (square - inside);
+  out.steps = solver.steps();
+  return out;
+}
+
+double check_column(int cells) {
+  constexpr double slack = 1e-9, poisson = 0.3;
+  std::vector<double> lines;
+  for (int k = 0; k <= cells; ++k) lines.push_back(static_cast<double>(k) / cells);
+  const auto mesh = crossed(lines, lines);
+  fe::PlasticSettings settings;
+  settings.name = "column";
+  settings.revolution = true;
+  settings.force_scale = 1. / (cells * cells);
+  const plasticity::MohrCoulomb material{1000, poisson, 30, 0, 100};
+  fe::PlasticSolver solver(
+      mesh, [&](const Vector2d&) { return material; },
+      [&](const Vector2d& p) -> fe::Support {
+        return {{p[0] < slack || p[0] > 1 - slack, p[1] < -1 + slack}, false};
+      },
+      {}, settings);
+  solver.load(std::vector<Vector2d>(mesh.triangles.size(), Vector2d(0, -1)));
+  double error = 0, size = 0;
+  for (const auto& p : solver.points()) {
+    const double vertical = p.position[1], side = poisson / (1 - poisson) * vertical;
+    const plasticity::Vector4 exact(side, vertical, side, 0);
+    error += p.area * (p.stress - exact).squaredNorm();
+    size += p.area * exact.squaredNorm();
+  }
+  return std::sqrt(error / size);
+}
+
 }  // namespace grainfield::continuum

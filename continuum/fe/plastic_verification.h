@@ -57,4 +57,28 @@ struct FootingCheck {
 };
 FootingCheck check_strip_footing(const Footing& footing);
 
+/// A thick-walled cylinder (radii 1 and 2, no strain along its axis) under the pressure inside that
+/// makes it yield out to the radius `yields` (1 or less: elastic, and half of the pressure at which
+/// yielding begins). With N = (1 + sin phi)/(1 - sin phi), s = 2 c cos phi/(1 - sin phi) and c = 1,
+/// outside of `yields` = e
+///   s_rr, s_tt = A (1 -+ 4/r^2),   A = s/(N (1 + 4/e^2) - 1 + 4/e^2),
+/// inside, at the limit N s_tt - s_rr = s,
+///   s_rr = s/(N - 1) + K r^(1/N - 1); without friction s_rr = s_rr(e) - s log(e/r).
+struct Cylinder {
+  double phi_deg = 0, dilation_deg = 0;
+  double yields = 1.5;
+  int cells = 4;  ///< squares of four triangles through the wall
+};
+struct CylinderCheck {
+  double pressure = 0;      ///< over the cohesion
+  double stress_error = 0;  ///< 2-norm of the error of rr and tt over that of the stress
+  double inner_error = 0;   ///< of the yielded share of the volume, against the exact one
+  std::vector<fe::LoadStep> steps;
+};
+CylinderCheck check_cylinder(const Cylinder& cylinder);
+
+/// A column in a smooth rigid tube under its own weight: s_zz = -depth, s_rr = s_tt =
+/// nu/(1 - nu) s_zz. 2-norm of the error over that of the stress.
+double check_column(int cells);
+
 }  // namespace grainfield::continuum

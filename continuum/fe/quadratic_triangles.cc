@@ -12,6 +12,7 @@
 #include <deal.II/lac/sparse_direct.h>
 #include <deal.II/lac/sparse_matrix.h>
 
+#include <numbers>
 #include <optional>
 
 // OpenBLAS, when that is the BLAS in use: its threads would change the order of sums.
@@ -65,8 +66,8 @@ void QuadraticCell::scatter(const CellVector& f, Eigen::VectorXd& out) const {
   for (std::size_t i = 0; i < kUnknowns; ++i) out[unknowns[i]] += f[static_cast<int>(i)];
 }
 
-QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh)
-    : impl_(std::make_unique<Impl>(mesh)) {
+QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh, bool revolution)
+    : impl_(std::make_unique<Impl>(mesh)), revolution_(revolution) {
   const auto& element = impl_->element;
   const auto& dofs = impl_->dofs;
   positions.resize(dofs.n_dofs());
@@ -90,7 +91,8 @@ QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh)
     for (unsigned int q = 0; q < kPoints; ++q) {
       const auto& p = values.quadrature_point(q);
       out.points[q] = {p[0], p[1]};
-      out.areas[q] = values.JxW(q);
+      out.areas[q] = values.JxW(q) * (revolution ? 2 * std::numbers::pi * p[0] : 1);
+      out.hoop[q].setZero();
     }
     for (unsigned int i = 0; i < kUnknowns; ++i) {
       const auto [component, node] = element.system_to_component_index(i);
@@ -104,7 +106,10 @@ QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh)
         b(0, i) = component == 0 ? gradient[0] : 0;
         b(1, i) = component == 1 ? gradient[1] : 0;
         b(2, i) = component == 0 ? gradient[1] : gradient[0];
-        out.weight(i, component) += values.shape_value(i, q) * values.JxW(q);
+        out.weight(i, component) += values.shape_value(i, q) * out.areas[q];
+        if (revolution && component == 0) {
+          out.hoop[q][i] = values.shape_value(i, q) / out.points[q][0];
+        }
       }
     }
     for (unsigned int v = 0; v < 3; ++v) {
@@ -128,6 +133,11 @@ QuadraticTriangles::QuadraticTriangles(const TriangleMesh& mesh)
 }
 
 QuadraticTriangles::~QuadraticTriangles() = default;
+
+double QuadraticTriangles::share(const BoundaryEdge& edge, std::size_t node) const {
+  const double part = edge.length * (node < 2 ? 1. / 6 : 4. / 6);
+  return revolution_ ? 2 * std::numbers::pi * positions[edge.unknowns[node][0]][0] * part : part;
+}
 
 void QuadraticTriangles::clear_matrix() { impl_->matrix = 0; }
 

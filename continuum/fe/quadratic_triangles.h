@@ -1,6 +1,10 @@
 // Quadratic displacements on triangles with straight edges: strains, nodal weights, boundary edges,
 // and the sparse matrix with its direct factorization. What plasticity needs of deal.II, behind a
 // header that does without it. Internal to fe/.
+//
+// Plane strain, or a body of revolution about x = 0, of which the triangles are a half section,
+// x the radius: an area then stands for the ring it makes, 2 pi x times itself, and there is a
+// strain round the axis.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -31,9 +35,11 @@ struct QuadraticCell {
   std::array<unsigned int, kUnknowns> unknowns;  ///< their numbers in the whole problem
   std::array<int, 3> corners;                    ///< vertices of the mesh
   std::array<Eigen::Vector2d, kPoints> points;
-  std::array<double, kPoints> areas;
+  std::array<double, kPoints> areas;  ///< of a body of revolution: volumes
   /// xx, yy and engineering xy strain at a point from the cell's displacements.
   std::array<Eigen::Matrix<double, 3, kUnknowns>, kPoints> strain;
+  /// Strain across the section, u_x/x of a body of revolution; in the plane 0.
+  std::array<Eigen::Matrix<double, 1, kUnknowns>, kPoints> hoop;
   Eigen::Matrix<double, kUnknowns, 2> weight;  ///< nodal forces of a unit body force along x, y
 
   CellVector gather(const Eigen::VectorXd& u) const;
@@ -49,7 +55,8 @@ struct BoundaryEdge {
 
 class QuadraticTriangles {
  public:
-  explicit QuadraticTriangles(const TriangleMesh& mesh);
+  /// Of a body of revolution the mesh has x >= 0.
+  explicit QuadraticTriangles(const TriangleMesh& mesh, bool revolution = false);
   ~QuadraticTriangles();
 
   std::vector<QuadraticCell> cells;  ///< in the order of the mesh's triangles
@@ -59,6 +66,9 @@ class QuadraticTriangles {
   std::vector<std::array<unsigned int, 2>> corner_unknowns;  ///< x and y of each vertex
 
   std::size_t unknowns() const { return positions.size(); }
+  /// Part of an edge (of a body of revolution: of its ring) that a node of it stands for: Simpson's
+  /// weights, exact for a linear pressure.
+  double share(const BoundaryEdge& edge, std::size_t node) const;
   void clear_matrix();
   /// Adds a cell's matrix to the rows and columns of unknowns that are free.
   void add(const QuadraticCell& cell, const CellMatrix& values, const std::vector<bool>& free);
@@ -71,6 +81,7 @@ class QuadraticTriangles {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  bool revolution_;
 };
 
 }  // namespace grainfield::continuum::fe

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "continuum/constants.h"
@@ -34,17 +35,23 @@ constexpr double kLeast = 1e-50, kMost = 1e50;
 /// A heap with more is elastic all over.
 constexpr double kMostCohesion = 1e6;
 
-/// Layers along two unlike slopes need mesh lines of their own in each half.
-bool in_halves(const WedgeProblem& p) {
-  return p.history == WedgeHistory::grow && p.left_deg != p.right_deg;
+const char* name_of(const WedgeProblem& p) { return p.cone ? "fe_cone" : "fe_mohr_coulomb_wedge"; }
+
+double steepest(const WedgeProblem& p) {
+  return p.cone ? p.right_deg : std::max(p.left_deg, p.right_deg);
 }
 
-/// The heap cut by lines along its sides into cells^2 congruent triangles; or each of its halves
-/// below the apex likewise, the left one first.
+/// Layers along two unlike slopes need mesh lines of their own in each half.
+bool in_halves(const WedgeProblem& p) {
+  return !p.cone && p.history == WedgeHistory::grow && p.left_deg != p.right_deg;
+}
+
+/// The heap (of a cone its right half) cut by lines along its sides into cells^2 congruent
+/// triangles; or each of its halves below the apex likewise, the left one first.
 class Lattice {
  public:
   explicit Lattice(const WedgeProblem& p)
-      : left(-p.height / std::tan(p.left_deg * kDegree), -p.height),
+      : left(p.cone ? 0 : -p.height / std::tan(p.left_deg * kDegree), -p.height),
         right(p.height / std::tan(p.right_deg * kDegree), -p.height),
         cells_(p.cells),
         halves_(in_halves(p)) {}
@@ -99,7 +106,7 @@ class Lattice {
 
 /// Mesh lines between layers: so many of `cells` are needed for each.
 int cells_of_a_layer(const WedgeProblem& p) {
-  return p.history == WedgeHistory::grow && !in_halves(p) ? 2 : 1;
+  return p.history == WedgeHistory::grow && !in_halves(p) && !p.cone ? 2 : 1;
 }
 
 /// The layer in which a point of the final heap is laid, from 0.
@@ -115,12 +122,6 @@ int layer_of(const WedgeProblem& p, const Lattice& lattice, const Vector2d& poin
   return std::clamp(static_cast<int>(part * p.layers), 0, p.layers - 1);
 }
 
-void refuse(bool wrong, const char* name, double found, const std::string& allowed) {
-  if (wrong)
-    throw BadParameter(fmt::format("fe_mohr_coulomb_wedge: {} = {:g} is out of range; allowed: {}",
-                                   name, found, allowed));
-}
-
 std::string advice(const WedgeProblem& p) {
   if (p.base == WedgeBase::smooth)
     return "a heap on a smooth base slides apart unless cohesion holds it: choose base = rough or "
@@ -132,10 +133,10 @@ std::string advice(const WedgeProblem& p) {
   const double phi = p.friction_deg * kDegree, psi = p.dilation_deg * kDegree;
   const double davis =
       std::atan(std::sin(phi) * std::cos(psi) / (1 - std::sin(phi) * std::sin(psi))) / kDegree;
-  const double steepest = std::max(p.left_deg, p.right_deg);
-  if (steepest > p.friction_deg)
-    out += fmt::format("; the slope, {:g} deg, is above phi_deg, {:g}", steepest, p.friction_deg);
-  else if (steepest > davis)
+  if (steepest(p) > p.friction_deg)
+    out +=
+        fmt::format("; the slope, {:g} deg, is above phi_deg, {:g}", steepest(p), p.friction_deg);
+  else if (steepest(p) > davis)
     out += fmt::format(
         "; with dilation_deg = {:g} slopes above {:.3g} deg may slide: raise dilation_deg or lower "
         "the slope",
@@ -146,9 +147,16 @@ std::string advice(const WedgeProblem& p) {
 }  // namespace
 
 void check_wedge(const WedgeProblem& p) {
-  for (const auto& [name, slope] :
-       {std::pair("left_deg", p.left_deg), std::pair("right_deg", p.right_deg)})
-    refuse(!(slope > 0 && slope < 90), name, slope, "above 0 to below 90 deg");
+  const auto refuse = [&p](bool wrong, const char* name, double found, const std::string& allowed) {
+    if (!wrong) return;
+    throw BadParameter(fmt::format("{}: {} = {:g} is out of range; allowed: {}", name_of(p), name,
+                                   found, allowed));
+  };
+  if (!p.cone) {
+    refuse(!(p.left_deg > 0 && p.left_deg < 90), "left_deg", p.left_deg, "above 0 to below 90 deg");
+  }
+  const char* right = p.cone ? "slope_deg" : "right_deg";
+  refuse(!(p.right_deg > 0 && p.right_deg < 90), right, p.right_deg, "above 0 to below 90 deg");
   // Powers of these up to the third occur.
   refuse(!(p.height >= kLeast && p.height <= kMost), "h", p.height, "1e-50 to 1e50 m");
   refuse(!(p.rho_g >= kLeast && p.rho_g <= kMost), "rho_g", p.rho_g, "1e-50 to 1e50");
@@ -157,10 +165,9 @@ void check_wedge(const WedgeProblem& p) {
   refuse(p.dilation_deg > p.friction_deg, "dilation_deg", p.dilation_deg,
          fmt::format("0 to phi_deg, {:g}", p.friction_deg));
   // An infinite slope of this material, as deep as the heap, stands up to here.
-  const double steepest = std::max(p.left_deg, p.right_deg);
   if (p.cohesion == 0)
-    refuse(steepest > p.friction_deg, p.left_deg >= p.right_deg ? "left_deg" : "right_deg",
-           steepest, fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
+    refuse(steepest(p) > p.friction_deg, !p.cone && p.left_deg >= p.right_deg ? "left_deg" : right,
+           steepest(p), fmt::format("0 to phi_deg, {:g}, where cohesion = 0", p.friction_deg));
   refuse(p.cells < 2, "cells", p.cells, "at least 2");
   if (p.history != WedgeHistory::at_once) {
     const int step = cells_of_a_layer(p) * p.layers;
@@ -277,8 +284,10 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   const double width = lattice.right[0] - lattice.left[0];
   const double cell_area = width * p.height / 2 / (p.cells * p.cells);
   fe::PlasticSettings settings;
-  settings.name = "fe_mohr_coulomb_wedge";
+  settings.name = name_of(p);
+  settings.revolution = p.cone;
   settings.force_scale = p.rho_g * cell_area;
+  if (p.cone) settings.force_scale *= std::numbers::pi * width;  // of the ring half way out
   settings.stress_scale = scale;
   settings.displacement_scale = p.height / p.young;
   settings.tolerance = p.tolerance;
@@ -293,10 +302,12 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   const Vector2d held = out.mesh.vertices[static_cast<std::size_t>(lattice.base_corner())];
   const auto on_base = [&](const Vector2d& x) { return x[1] < -p.height + slack; };
   const auto supports = [&](const Vector2d& x) -> fe::Support {
-    if (!on_base(x)) return {};
+    const bool on_axis = p.cone && x[0] < slack;
+    if (!on_base(x)) return {{on_axis, false}, false};
     if (p.base == WedgeBase::rough) return {{true, true}, false};
-    if (p.base == WedgeBase::smooth) return {{(x - held).norm() < slack, true}, false};
-    return {{false, false}, true};
+    if (p.base == WedgeBase::smooth)
+      return {{on_axis || (!p.cone && (x - held).norm() < slack), true}, false};
+    return {{on_axis, false}, true};
   };
   fe::PlasticSolver solver(
       out.mesh,
@@ -338,7 +349,7 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   out.displacement = solver.corner_displacement();
   out.points = solver.points();
   out.steps = solver.steps();
-  out.weight = p.rho_g * width * p.height / 2;
+  out.weight = p.rho_g * p.height * (p.cone ? std::numbers::pi * width * width / 3 : width / 2);
   out.base_force = solver.reaction(on_base);
   out.unknowns = solver.unknowns();
   estimate_errors(out);
@@ -364,8 +375,7 @@ WedgeResult solve_wedge(const WedgeProblem& p) {
     std::vector<int> parent;
     const auto before = static_cast<double>(mesh.triangles.size());
     mesh = fe::refined(mesh, fe::largest_errors(out.errors, p.refine_share), parent);
-    require_unknowns("fe_mohr_coulomb_wedge",
-                     out.unknowns * static_cast<double>(mesh.triangles.size()) / before,
+    require_unknowns(name_of(p), out.unknowns * static_cast<double>(mesh.triangles.size()) / before,
                      p.most_unknowns, "refinements");
     std::vector<int> cell(parent.size());
     for (std::size_t t = 0; t < parent.size(); ++t)
@@ -381,6 +391,10 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
     const double depth = p.height * (kCoreFrom + (kCoreTo - kCoreFrom) * k / (kCoreDepths - 1.));
     core.depth.push_back(depth);
     for (const double side : {-1., 1.}) {
+      if (p.cone && side < 0) {
+        core.left.push_back(kNan);
+        continue;
+      }
       const double slope = side < 0 ? p.left_deg : p.right_deg;
       const double outside = depth / std::tan(slope * kDegree);
       const auto plastic = [&](int s) {
@@ -408,7 +422,7 @@ WedgeCore wedge_core(const WedgeResult& result, double mobilized) {
     for (std::size_t k = 0; k < x.size(); ++k) {
       if (std::isnan(x[k])) continue;
       tangents.push_back(std::abs(x[k]) / core.depth[k]);
-      core.share += 0.5 / static_cast<double>(x.size());
+      core.share += (p.cone ? 1 : 0.5) / static_cast<double>(x.size());
     }
     const bool enough =
         static_cast<double>(tangents.size()) >= kCoreLeast * static_cast<double>(x.size());

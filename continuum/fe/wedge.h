@@ -1,6 +1,7 @@
 // A heap of Mohr-Coulomb material under its own weight, solved by finite elements: plane strain,
 // triangular outline with slopes left_deg and right_deg, apex at (0, 0), base y = -height, on a
-// rough, frictional or smooth ground.
+// rough, frictional or smooth ground. Or a cone with the slope right_deg: a body of revolution
+// about x = 0, of which the right half is solved; x is the radius, zz round the axis.
 //
 // Cohesionless material at its angle of repose has no strength to spare: a cohesion of the stated
 // part of rho g h keeps the equations solvable, and is to be taken to zero by the user (all the
@@ -9,7 +10,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "continuum/fe/plastic_solver.h"
@@ -28,6 +31,7 @@ enum class WedgeHistory {
 };
 
 struct WedgeProblem {
+  bool cone = false;                     ///< left_deg does not count
   double left_deg = 28, right_deg = 28;  ///< slopes, above 0, at most the friction angle + cohesion
   double height = 1;                     ///< of the apex above the base, m
   double rho_g = 1;                      ///< weight per volume, N/m^3 (2D: N/m^2)
@@ -71,7 +75,8 @@ struct WedgeResult {
   double relative_error = 0;
   /// Of each triangle of the lattice: those it was cut into.
   std::vector<std::vector<int>> pieces;
-  Eigen::Vector2d base_force = Eigen::Vector2d::Zero();  ///< of the ground on the heap
+  /// Of the ground on the heap; of a cone the radial forces are summed without regard to direction.
+  Eigen::Vector2d base_force = Eigen::Vector2d::Zero();
   int unknowns = 0;
 
   /// Index of the triangle that holds the point; -1 outside.
@@ -89,8 +94,9 @@ struct WedgeResult {
 /// heap may yield again (Cantelaube's branches with a yield line there).
 struct WedgeCore {
   std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0; nan: all at the limit
-  double share = 0;                        ///< of the depths and sides that have a boundary
-  double axis_mobilized = 0;               ///< mobilized friction on the axis, mean over the depths
+  /// Of the depths and sides that have a boundary; a cone has the right side alone.
+  double share = 0;
+  double axis_mobilized = 0;  ///< mobilized friction on the axis, mean over the depths
   /// Angle from the vertical, in degrees, of the line from the apex that has half of the boundary
   /// on either side (Cantelaube's beta_hat): the arc tangent of the median of |x|/depth. Misfit:
   /// the median distance from it in |x|/depth; large, there is no such line. Both nan where fewer
@@ -101,8 +107,21 @@ struct WedgeCore {
 /// Throws BadParameter naming the value found and what is allowed.
 void check_wedge(const WedgeProblem& problem);
 
-/// As a model of the registry, from complete settings (fe_models.cc declares them).
+/// "fe_mohr_coulomb_wedge" and "fe_cone" of the registry, from complete settings (fe_models.cc
+/// declares them).
 std::unique_ptr<Model> make_wedge_model(const Settings& settings);
+std::unique_ptr<Model> make_cone_model(const Settings& settings);
+/// What both have. Throws as check_wedge.
+WedgeProblem heap_problem(const Settings& settings, bool cone);
+/// Figures of the solution that both have.
+std::map<std::string, double> heap_figures(const WedgeResult& result, const WedgeCore& core);
+
+/// Of a triangle: the share of its points that yielded last, and the means of their plastic
+/// strains.
+struct CellMeans {
+  double plastic = 0, shear = 0, volume = 0;
+};
+CellMeans cell_means(const WedgeResult& result, int triangle);
 
 /// Throws BadParameter, or ComputationFailed naming the last converged load and what to try.
 WedgeResult solve_wedge(const WedgeProblem& problem);

@@ -17,22 +17,6 @@
 namespace grainfield::continuum {
 namespace {
 
-/// Of a cell: the share of its points that yielded last, and the means of their plastic strains.
-struct CellMeans {
-  double plastic = 0, shear = 0, volume = 0;
-};
-
-CellMeans cell_means(const WedgeResult& r, int triangle) {
-  CellMeans out;
-  for (std::size_t q = 0; q < 3; ++q) {
-    const auto& p = r.points[3 * static_cast<std::size_t>(triangle) + q];
-    out.plastic += (p.regime != plasticity::Regime::elastic) / 3.;
-    out.shear += p.plastic_shear / 3;
-    out.volume += p.plastic_strain.head<3>().sum() / 3;
-  }
-  return out;
-}
-
 /// Young's modulus and Poisson's ratio of a map. Throws BadParameter where it is not isotropic.
 std::function<Eigen::Vector2d(const Eigen::Vector2d&)> measured(const ElasticField& map,
                                                                 const std::string& file) {
@@ -77,40 +61,7 @@ Points over_the_heap(const WedgeProblem& p) {
 
 class WedgeModel : public Model {
  public:
-  explicit WedgeModel(const Settings& s) {
-    const auto whole = [&s](const char* name) { return static_cast<int>(number_of(s, name)); };
-    WedgeProblem& p = problem_;
-    p.friction_deg = number_of(s, "phi_deg");
-    p.left_deg = number_of(s, "left_deg");
-    p.right_deg = number_of(s, "right_deg");
-    if (p.left_deg == 0) p.left_deg = p.friction_deg;
-    if (p.right_deg == 0) p.right_deg = p.left_deg;
-    p.height = number_of(s, "h");
-    p.rho_g = number_of(s, "rho_g");
-    p.young = number_of(s, "E");
-    p.poisson = number_of(s, "nu");
-    p.dilation_deg = number_of(s, "dilation_deg");
-    p.cohesion = number_of(s, "cohesion");
-    const std::string& base = s.at("base");
-    p.base = base == "rough"    ? WedgeBase::rough
-             : base == "smooth" ? WedgeBase::smooth
-                                : WedgeBase::frictional;
-    p.base_friction_deg = number_of(s, "base_friction_deg");
-    p.base_stiffness = number_of(s, "base_stiffness");
-    const std::string& history = s.at("history");
-    p.history = history == "at_once" ? WedgeHistory::at_once
-                : history == "rise"  ? WedgeHistory::rise
-                                     : WedgeHistory::grow;
-    p.steps = whole("steps");
-    p.layers = whole("layers");
-    p.cells = whole("cells");
-    p.iterations = whole("iterations");
-    p.refinements = whole("refinements");
-    p.most_unknowns = number_of(s, "most_unknowns");
-    p.viscous_step = number_of(s, "viscous_step");
-    p.work = whole("work");
-    p.tolerance = number_of(s, "tolerance");
-    check_wedge(p);
+  explicit WedgeModel(const Settings& s) : problem_(heap_problem(s, false)) {
     if (!s.at("map").empty()) take_map(s.at("map"));
   }
 
@@ -191,32 +142,12 @@ class WedgeModel : public Model {
   std::map<std::string, double> figures() const override {
     if (!solved_) return {};
     const WedgeCore core = wedge_core(*solved_);
-    double iterations = 0, plastic = 0, residual = 0, viscous = 0, overstress = 0;
-    for (const auto& step : solved_->steps) {
-      iterations += step.iterations;
-      residual = std::max(residual, step.history.back());
-      viscous += step.viscous_steps;
-      overstress = std::max(overstress, step.overstress);
-    }
-    for (const auto& p : solved_->points)
-      plastic += (p.regime != plasticity::Regime::elastic) * p.area;
-    const double weight = solved_->weight;
-    std::map<std::string, double> all{{"unknowns", solved_->unknowns},
-                                      {"load_steps", static_cast<double>(solved_->steps.size())},
-                                      {"newton_iterations", iterations},
-                                      {"largest_residual", residual},
-                                      {"viscous_steps", viscous},
-                                      {"largest_overstress", overstress},
-                                      {"stress_error", solved_->relative_error},
-                                      {"weight_ratio", solved_->base_force[1] / weight},
-                                      {"thrust_ratio", solved_->base_force[0] / weight},
-                                      {"core_share", core.share},
-                                      {"axis_mobilized", core.axis_mobilized},
-                                      {"plastic_share", plastic * problem_.rho_g / weight},
-                                      {"beta_hat_left_deg", core.left_deg},
-                                      {"beta_hat_right_deg", core.right_deg},
-                                      {"beta_hat_left_misfit", core.left_misfit},
-                                      {"beta_hat_right_misfit", core.right_misfit}};
+    std::map<std::string, double> all = heap_figures(*solved_, core);
+    all["thrust_ratio"] = solved_->base_force[0] / solved_->weight;
+    all["beta_hat_left_deg"] = core.left_deg;
+    all["beta_hat_right_deg"] = core.right_deg;
+    all["beta_hat_left_misfit"] = core.left_misfit;
+    all["beta_hat_right_misfit"] = core.right_misfit;
     all.insert(map_figures_.begin(), map_figures_.end());
     return all;
   }
