@@ -239,7 +239,7 @@ CylinderCheck check_cylinder(const Cylinder& cylinder) {
   }
   out.stress_error = std::sqrt(error / size);
   const double volume = std::numbers::pi * height;
-  out.inner_error =
+  out.yielded_error =
       yielded / (volume * (square - inside)) - (end * end - inside) / (square - inside);
   out.steps = solver.steps();
   return out;

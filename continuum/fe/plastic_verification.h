@@ -72,7 +72,7 @@ struct Cylinder {
 struct CylinderCheck {
   double pressure = 0;      ///< over the cohesion
   double stress_error = 0;  ///< 2-norm of the error of rr and tt over that of the stress
-  double inner_error = 0;   ///< of the yielded share of the volume, against the exact one
+  double yielded_error = 0;   ///< of the yielded share of the volume, against the exact one
   std::vector<fe::LoadStep> steps;
 };
 CylinderCheck check_cylinder(const Cylinder& cylinder);
