@@ -32,10 +32,13 @@ inline Imbalance imbalance_of(const Snapshot& s) {
     force[k] += f;
     moment[k] += (at - s.grains[k].position).cross(f);
   };
+  const auto image_of = [&](const Contact& c) -> Vec3 {
+    return s.cell.edges * Vec3(c.image[0], c.image[1], c.image[2]);
+  };
   for (const Contact& c : s.contacts) {
     mean += c.force.norm() / static_cast<double>(s.contacts.size());
     push(c.i, c.force, c.point);
-    if (c.j >= 0) push(c.j, -c.force, c.point);
+    if (c.j >= 0) push(c.j, -c.force, c.point - image_of(c));
     const double repulsion = -c.force.dot(c.normal);
     const double along = (c.force + repulsion * c.normal).norm();
     out.pull = std::max(out.pull, -repulsion);

@@ -66,7 +66,7 @@ Cluster cluster(Random& random, const AnyLaw& law, bool periodic, bool any_fixed
 
 const std::vector<AnyLaw>& laws() {
   static const std::vector<AnyLaw> all{LinearLaw{1e5, 4e4, 0, 0}, HertzLaw{1e7, 0.3, 0},
-                                       HertzLaw{1e7, 0.2, 0, true}, PenaltyLaw{1e5, 5e4, 1}};
+                                       HertzLaw{1e7, 0.2, 0, true}, PenaltyLaw{1e5, 5e4, 0}};
   return all;
 }
 

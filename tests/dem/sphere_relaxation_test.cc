@@ -3,102 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "dem/engine/engine.h"
 #include "dem/quasistatic/linear_solver.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/quasistatic/sphere_network.h"
-#include "dem/random/random.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/dem/imbalance.h"
+#include "tests/dem/sphere_relaxation_scene.h"
 
 namespace grainfield::dem {
 namespace {
-
-constexpr double kG = 9.81, kRadius = 0.005, kDensity = 2500;
-
-EngineSettings settings_of(const AnyLaw& law, double friction) {
-  EngineSettings e;
-  e.shape = ShapeKind::sphere;
-  e.law = law;
-  e.friction = friction;
-  e.integrator = IntegratorKind::verlet;
-  e.time_step = 2e-5;
-  e.gravity_y = 0;
-  e.gravity_z = -kG;
-  return e;
-}
-
-NewGrain sphere(const Vec3& at, double radius = kRadius) {
-  NewGrain g;
-  g.x = at.x();
-  g.y = at.y();
-  g.z = at.z();
-  g.radius = radius;
-  g.density = kDensity;
-  return g;
-}
-
-double mass_of(double radius) {
-  return kDensity * 4.0 / 3 * std::numbers::pi * radius * radius * radius;
-}
-
-double weight_of(const Snapshot& s) {
-  double weight = 0;
-  for (const Grain& g : s.grains) weight += g.fixed ? 0 : g.mass * s.gravity.norm();
-  return weight;
-}
-
-/// Steps until the mean resultant is this share of the mean contact force.
-void come_to_rest(Engine& engine, double ratio) {
-  engine.set_background_damping(40);
-  for (int k = 0; k < 4000; ++k) {
-    engine.step(500);
-    const Diagnostics d = engine.measure();
-    if (d.unbalanced_force_ratio < ratio && d.unbalanced_moment_ratio < ratio) return;
-  }
-  FAIL() << "no rest: " << engine.measure().unbalanced_force_ratio;
-}
-
-/// Poly-disperse spheres dropped into a box without friction at the sides, or into one that repeats
-/// sideways, at rest.
-std::unique_ptr<Engine> settled(EngineSettings e, bool periodic, int columns, int layers) {
-  const double cell = 2.3 * kRadius, width = columns * cell;
-  if (periodic) {
-    e.cell.periodic = {true, true, false};
-    e.cell.edges = Vec3(width, width, 1).asDiagonal();
-  }
-  auto engine = make_engine(e);
-  engine->add_wall({"floor", {0, 0, 0}, {0, 0, 1}, e.friction});
-  if (!periodic) {
-    engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0});
-    engine->add_wall({"right", {width, 0, 0}, {-1, 0, 0}, 0});
-    engine->add_wall({"front", {0, 0, 0}, {0, 1, 0}, 0});
-    engine->add_wall({"back", {0, width, 0}, {0, -1, 0}, 0});
-  }
-  Random random(2);
-  for (int k = 0; k < columns * columns * layers; ++k) {
-    const auto at = [&](int n) { return cell * (n + 0.5 + 0.05 * random.uniform(-1, 1)); };
-    engine->add(sphere({at(k % columns), at(k / columns % columns), at(k / (columns * columns))},
-                       kRadius * random.uniform(0.85, 1.1)));
-  }
-  come_to_rest(*engine, 1e-8);
-  return engine;
-}
-
-/// rms difference of the displacements over their rms.
-double difference(const Snapshot& start, const Snapshot& a, const Snapshot& b) {
-  double sum = 0, square = 0;
-  for (std::size_t k = 0; k < start.grains.size(); ++k) {
-    if (start.grains[k].fixed) continue;
-    const Vec3 u = a.grains[k].position - start.grains[k].position;
-    const Vec3 v = b.grains[k].position - start.grains[k].position;
-    square += (u - v).squaredNorm();
-    sum += u.squaredNorm();
-  }
-  return std::sqrt(square / sum);
-}
 
 TEST(SphereRelaxation, TwoSpheresUnderWeightOverlapAsTheLawsSay) {
   const double m = mass_of(kRadius), k = 1e5;
@@ -147,35 +62,6 @@ TEST(SphereRelaxation, ASphereOnASlopeIsHeldByRollingResistance) {
   EXPECT_THROW(
       relax(engine->snapshot(), e, {kG * std::sin(steep), 0, -kG * std::cos(steep)}, {}, {}),
       ComputationFailed);
-}
-
-TEST(SphereRelaxation, AgreesWithSlowDampedDynamics) {
-  struct Run {
-    AnyLaw law;
-    bool periodic, rolls;
-  };
-  for (const Run& run :
-       {Run{HertzLaw{5e6, 0.3, 0.3}, false, false}, Run{LinearLaw{2e4, 1e4, 200, 100}, true, false},
-        Run{LinearLaw{2e4, 1e4, 200, 100}, false, true}}) {
-    EngineSettings e = settings_of(run.law, 0.5);
-    if (run.rolls) e.rolling = {5e3, 0.5, 0.1, 0, 0, 0};
-    const auto engine = settled(e, run.periodic, 5, 5);
-    const Snapshot start = engine->snapshot();
-    const double to = 0.995 * kG;
-    for (int k = 1; k <= 100; ++k) {
-      engine->set_gravity(0, 0, -(kG + (to - kG) * k / 100));
-      engine->step(200);
-    }
-    come_to_rest(*engine, 1e-8);
-    const Snapshot damped = engine->snapshot();
-    const QuasistaticResult newton = relax(start, e, {0, 0, -to}, {}, {});
-    const ContactChanges changes = compare_contacts(start, damped);
-    EXPECT_EQ(newton.contacts_gained, changes.gained);
-    EXPECT_EQ(newton.contacts_lost, changes.lost);
-    if (!run.rolls) expect_balanced(newton.state, 1e-8);
-    EXPECT_LT(difference(start, damped, newton.state), 0.01) << run.periodic << run.rolls;
-    EXPECT_NEAR(base_force(newton.state).z() / weight_of(newton.state), 1, 1e-6);
-  }
 }
 
 TEST(SphereRelaxation, ASmallLoadIsCarriedByTheBaseAndIsLinear) {
