@@ -168,7 +168,8 @@ TEST(TransverseLayer, ItsDomainAndItsSettingsAreChecked) {
   };
   EXPECT_THAT(complaint({{"E_h", "9"}, {"nu_v", "0.4"}}),
               HasSubstr("model transverse_layer: nu_h"));
-  EXPECT_THAT(complaint({{"G_v", "1e4"}}), HasSubstr("G_v = 10000 is too large"));
+  EXPECT_THAT(complaint({{"nu_h", "0"}, {"nu_v", "0.706"}, {"G_v", "1e4"}}),
+              HasSubstr("G_v = 10000 is too large"));
 }
 
 }  // namespace
