@@ -12,7 +12,7 @@ namespace {
 // A pivot off the diagonal is taken only when the diagonal one is this much smaller: the tangent is
 // dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
 constexpr double kPivotThreshold = 0.01;
-constexpr int kMostIterations = 2000;
+constexpr int kMostIterations = 500;
 
 class DirectSolver final : public LinearSolver {
  public:
