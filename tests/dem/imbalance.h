@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/snapshot/images.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
@@ -35,7 +36,7 @@ inline Imbalance imbalance_of(const Snapshot& s) {
   for (const Contact& c : s.contacts) {
     mean += c.force.norm() / static_cast<double>(s.contacts.size());
     push(c.i, c.force, c.point);
-    if (c.j >= 0) push(c.j, -c.force, c.point);
+    if (c.j >= 0) push(c.j, -c.force, c.point + (s.grains[c.j].position - second_place(s, c)));
     const double repulsion = -c.force.dot(c.normal);
     const double along = (c.force + repulsion * c.normal).norm();
     out.pull = std::max(out.pull, -repulsion);
