@@ -106,7 +106,7 @@ void MeanLayer::add(const dem::Snapshot& unloaded, const dem::Snapshot& loaded, 
   const LayerFrame frame = layer_frame(unloaded, loaded.loaded_grain);
   depth += frame.depth() / n;
   diameter += mean_diameter(unloaded) / n;
-  force += -loaded.applied_force[up_axis(loaded.dim)] / n;
+  force += -dem::total_applied_force(loaded)[up_axis(loaded.dim)] / n;
   half_width = std::min({half_width, frame.load_x - frame.left, frame.right - frame.load_x});
   if (loaded.dim == 3) {
     half_width = std::min({half_width, frame.load_y - frame.front, frame.back - frame.load_y});

@@ -18,7 +18,7 @@ void add_layer_figures(const Snapshot& unloaded, const Snapshot& loaded, double 
   f["dem.volume_fraction"] = solid / (area * height);
   f["base.weight_ratio"] = base_force(unloaded)[up] / weight;
   f["base.response_over_load"] =
-      (base_force(loaded) - base_force(unloaded))[up] / -loaded.applied_force[up];
+      (base_force(loaded) - base_force(unloaded))[up] / -total_applied_force(loaded)[up];
   const Grain& grain = unloaded.grains[static_cast<std::size_t>(loaded.loaded_grain)];
   f["load.x"] = grain.position.x();
   f["load.y"] = grain.position.y();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "dem/packing/space_layer.h"
 #include "dem/snapshot/images.h"
@@ -57,6 +58,7 @@ class SpaceLoadRun final : public ArchivedRun {
   std::string fingerprint() const override;
   Snapshot take_snapshot(const char* state) const;
   std::int64_t choose_loaded_grain(const Snapshot& snapshot) const;
+  std::vector<std::int64_t> others_loaded(const Snapshot& snapshot, std::int64_t first) const;
 
   PointLoadSetup setup_;
   std::uint64_t seed_;
@@ -145,10 +147,31 @@ void SpaceLoadRun::decide_rest() {
   enter(Phase::load);
   AppliedForce force;
   force.id = choose_loaded_grain(*unloaded_);
-  force.fz = -force_of_load(setup_);
+  const std::vector<std::int64_t> beside = others_loaded(*unloaded_, force.id);
+  force.fz = -force_of_load(setup_) / static_cast<double>(1 + beside.size());
   force.start = engine_->time();
   force.ramp = setup_.load.ramp_time;
-  engine_->apply(force);
+  engine_->apply(force, beside);
+}
+
+// The grains within load.radius of that one whose centres no higher grain covers.
+std::vector<std::int64_t> SpaceLoadRun::others_loaded(const Snapshot& s, std::int64_t first) const {
+  const auto apart = [&s](const Grain& a, const Grain& b) {
+    Vec3 way = a.position - b.position;
+    way.z() = 0;
+    way += shift_to(s.cell, nearest_image(s.cell, way));
+    return way.head<2>().norm();
+  };
+  const Grain& middle = s.grains[static_cast<std::size_t>(first)];
+  std::vector<std::int64_t> out;
+  for (const Grain& g : s.grains) {
+    if (g.fixed || g.id == first || apart(g, middle) > setup_.load.radius) continue;
+    const bool covered = std::any_of(s.grains.begin(), s.grains.end(), [&](const Grain& other) {
+      return other.position.z() > g.position.z() && apart(other, g) < other.radius;
+    });
+    if (!covered) out.push_back(g.id);
+  }
+  return out;
 }
 
 // The highest grain within a radius of the wanted place, or where there is none within more; ties
@@ -240,6 +263,7 @@ RunResult SpaceLoadRun::result() const {
   f["load.force_over_weight"] =
       f["load.force"] /
       (setup_.material.density * mean_sphere_volume(setup_.packing) * setup_.material.gravity);
+  f["load.grains"] = static_cast<double>(1 + loaded_->also_loaded.size());
   add_contact_changes(*unloaded_, *loaded_, f);
   return out;
 }

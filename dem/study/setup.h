@@ -34,10 +34,11 @@ struct LoadSetup {
   double position = 0.5;    ///< of the width: the top grain nearest to it carries the force
   double weights = 1;       ///< 3D: force over a grain's mean weight; 0: load.force
   double position_y = 0.5;  ///< 3D: likewise along y
+  double radius = 0;        ///< m; 3D: grains of the surface so near to that one share the force
 
   auto members() const {
-    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position, weights,
-                    position_y);
+    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position, weights, position_y,
+                    radius);
   }
 };
 

@@ -25,7 +25,7 @@ inline Imbalance imbalance_of(const Snapshot& s) {
   std::vector<Vec3> force(s.grains.size()), moment(s.grains.size(), Vec3(0, 0, 0));
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     force[k] = s.grains[k].mass * s.gravity;
-    if (s.grains[k].id == s.loaded_grain) force[k] += s.applied_force;
+    if (is_loaded(s, s.grains[k].id)) force[k] += s.applied_force;
   }
   Imbalance out;
   double mean = 0;

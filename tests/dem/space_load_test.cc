@@ -9,6 +9,7 @@
 #include "dem/packing/space_layer.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/outlook.h"
+#include "dem/study/point_load_space.h"
 #include "tests/dem/imbalance.h"
 #include "tests/dem/pile_scene.h"
 
@@ -76,6 +77,36 @@ TEST(SpaceLoad, LinearLawToo) {
   const RunResult r = result_of(s);
   EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-4);
   EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2);
+}
+
+// The grains seen from above within the radius share the force.
+TEST(SpaceLoad, ADiskOfGrainsSharesTheForce) {
+  PointLoadSetup s = spheres("random");
+  s.load.weights = 2;
+  s.load.radius = 0.015;
+  const RunResult r = result_of(s);
+  const Snapshot& loaded = r.snapshots[1].second;
+  ASSERT_GT(loaded.also_loaded.size(), 2U);
+  EXPECT_EQ(r.figures.at("load.grains"), 1.0 + static_cast<double>(loaded.also_loaded.size()));
+  EXPECT_NEAR(total_applied_force(loaded).z(), -force_of_load(s), 1e-12 * force_of_load(s));
+  EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2);
+  expect_balanced(loaded, 1e-6);
+  const Grain& middle = loaded.grains[static_cast<std::size_t>(loaded.loaded_grain)];
+  for (const std::int64_t id : loaded.also_loaded) {
+    const Vec3 way = loaded.grains[static_cast<std::size_t>(id)].position - middle.position;
+    EXPECT_LE(way.head<2>().norm(), s.load.radius * 1.01);
+    EXPECT_LT(way.z(), 0);
+  }
+  // Written and read again, and an engine goes on from it.
+  const std::string file = (std::filesystem::temp_directory_path() /
+                            ("grainfield_disk_" + std::to_string(getpid()) + ".h5"))
+                               .string();
+  write_snapshot(file, "/loaded", loaded);
+  EXPECT_EQ(read_snapshot(file, "/loaded").also_loaded, loaded.also_loaded);
+  std::filesystem::remove(file);
+  const auto engine = make_engine(space_load_settings(s, 1), loaded);
+  engine->step(1);
+  EXPECT_LT(engine->measure().unbalanced_force_ratio, 1e-5);
 }
 
 // Half the force moves every grain half as far, as long as no contact changes.

@@ -9,6 +9,7 @@ std::vector<SummaryKey> point_load_figures() {
       {"base.response_over_load", "-", "vertical base force, loaded - unloaded, over the load"},
       {"load.force", "N", "applied force F"},
       {"load.force_over_weight", "-", "3D: F over the mean weight of a grain"},
+      {"load.grains", "-", "3D: grains that share it"},
       {"load.x", "m", "abscissa of the loaded grain, packing's axes"},
       {"load.y", "m", "height of the loaded grain, packing's axes; 3D: its other abscissa"},
       {"load.z", "m", "3D: its height"},

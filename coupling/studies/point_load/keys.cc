@@ -109,6 +109,11 @@ void declare_load_keys(SectionKeys s) {
            "share of the width: the top grain nearest to it carries the force");
   s.number("position_y", "-", IN(load.position_y), {0, 1}, "likewise along y");
   s.space();
+  s.number(
+      "radius", "m", IN(load.radius), kLength.with_zero(),
+      "the grains that are seen from above within this distance of that one share the force in "
+      "equal parts; 0: it alone");
+  s.space();
 }
 
 }  // namespace grainfield::coupling

@@ -147,7 +147,8 @@ class SpaceLoadAnalysis {
     add_base(unloaded, loaded, frame);
     for (const auto& [key, figure] : r.figures) figures_[key].push_back(figure);
     figures_["response.total_over_load"].push_back(
-        (dem::base_force(loaded) - dem::base_force(unloaded)).z() / -loaded.applied_force.z());
+        (dem::base_force(loaded) - dem::base_force(unloaded)).z() /
+        -dem::total_applied_force(loaded).z());
   }
 
   void add_averages(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
