@@ -194,7 +194,7 @@ TEST(SpaceLoadRun, SameFilesOnAnyThreadsAndAfterAKill) {
   ASSERT_EQ(program("run " + file + " -o " + (folder / "two") + " --threads 2").code, 0);
   // Killed in the midst of it, and resumed.
   const Output killed = program(
-      "run " + file + " -o " + (folder / "three") + " --threads 2 --checkpoint-interval 0.2",
+      "run " + file + " -o " + (folder / "three") + " --threads 2 --checkpoint-seconds 0.2",
       "timeout -s KILL 1.5");
   EXPECT_NE(killed.code, 0);
   ASSERT_EQ(program("run " + file + " -o " + (folder / "three") + " --threads 1 --resume").code, 0);
