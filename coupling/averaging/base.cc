@@ -95,7 +95,7 @@ Eigen::Vector2d base_force(const dem::Snapshot& snapshot) {
 
 double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {
   require_same_grains(unloaded, loaded);
-  const double load = unloaded.applied_force.y() - loaded.applied_force.y();
+  const double load = dem::total_applied_force(unloaded).y() - dem::total_applied_force(loaded).y();
   if (load == 0) return std::numeric_limits<double>::quiet_NaN();
   return (base_force(loaded).y() - base_force(unloaded).y()) / load;
 }

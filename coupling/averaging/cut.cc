@@ -48,7 +48,7 @@ double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& o
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;
     sum -= grain.mass * snapshot.gravity[up] * of_grain(grain);
-    if (grain.id == snapshot.loaded_grain)
+    if (dem::is_loaded(snapshot, grain.id))
       sum -= snapshot.applied_force[up] * share(grain.position[up]);
   }
   for_each_branch(

@@ -63,7 +63,7 @@ std::vector<bool> rattlers(const dem::Snapshot& snapshot) {
   std::vector<std::size_t> loose;
   const auto look = [&](std::size_t g) {
     const dem::Grain& grain = snapshot.grains[g];
-    const int load = loaded && grain.id == snapshot.loaded_grain ? 1 : 0;
+    const int load = loaded && dem::is_loaded(snapshot, grain.id) ? 1 : 0;
     if (out[g] || grain.fixed || supports[g] + load >= 2) return;
     out[g] = true;
     loose.push_back(g);
@@ -87,7 +87,7 @@ std::vector<GrainFacts> grain_facts(const dem::Snapshot& snapshot) {
     facts[g].grain = &snapshot.grains[g];
     facts[g].bearing = !loose[g];
     facts[g].inertia = inertia_of(snapshot.grains[g], snapshot.dim);
-    if (snapshot.grains[g].id == snapshot.loaded_grain) facts[g].load = snapshot.applied_force;
+    if (dem::is_loaded(snapshot, snapshot.grains[g].id)) facts[g].load = snapshot.applied_force;
   }
   for (const dem::Contact& contact : snapshot.contacts) {
     const auto i = static_cast<std::size_t>(contact.i);

@@ -75,6 +75,13 @@ LayerFrame box_frame(const dem::Snapshot& snapshot, const dem::Grain* loaded) {
       if (wall.normal[a] > 1 - 1e-9) low[a] = wall.point[a];
       if (wall.normal[a] < -1 + 1e-9 && a < 2) high[a] = wall.point[a];
     }
+  // A layer that repeats fills its cell.
+  const dem::Cell<3>& cell = snapshot.cell;
+  for (int a = 0; a < 2; ++a) {
+    if (!cell.periodic[a] || cell.periodic[2]) continue;
+    low[a] = cell.low[a];
+    high[a] = cell.low[a] + cell.edges(a, a);
+  }
   if (!(low.x() < high.x() && low.y() < high.y()))
     throw std::invalid_argument(
         fmt::format("no space between the packing's sides at x = {:g} and {:g} m, y = {:g} and "
@@ -99,8 +106,11 @@ void MeanLayer::add(const dem::Snapshot& unloaded, const dem::Snapshot& loaded, 
   const LayerFrame frame = layer_frame(unloaded, loaded.loaded_grain);
   depth += frame.depth() / n;
   diameter += mean_diameter(unloaded) / n;
-  force += -loaded.applied_force.y() / n;
+  force += -dem::total_applied_force(loaded)[up_axis(loaded.dim)] / n;
   half_width = std::min({half_width, frame.load_x - frame.left, frame.right - frame.load_x});
+  if (loaded.dim == 3) {
+    half_width = std::min({half_width, frame.load_y - frame.front, frame.back - frame.load_y});
+  }
 }
 
 double mean_diameter(const dem::Snapshot& snapshot) {

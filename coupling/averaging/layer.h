@@ -26,15 +26,15 @@ struct LayerFrame {
 };
 
 /// Measures the layer. Walls: in the plane those named "left", "right", "floor"; in space planes
-/// across an axis, whatever their names. `loaded_grain`: id of the grain that is or will be loaded
-/// (for load_x, load_y), -1: the snapshot's own. Throws std::invalid_argument if no free grain is
-/// between the sides.
+/// across an axis, whatever their names, and the ends of a cell that repeats along x or y alone.
+/// `loaded_grain`: id of the grain that is or will be loaded (for load_x, load_y), -1: the
+/// snapshot's own. Throws std::invalid_argument if no free grain is between the sides.
 LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain = -1);
 
 /// The loaded layers of an ensemble as one.
 struct MeanLayer {
   double depth = 0, force = 0, diameter = 0;  ///< means of h, m, F, N, and the grains' diameter, m
-  /// From the load to the nearer side wall, least of the layers, m.
+  /// From the load to the nearest side wall (or end of the cell), least of the layers, m.
   double half_width = std::numeric_limits<double>::infinity();
 
   /// Adds one of `count` layers.

@@ -211,7 +211,7 @@ void check_grains(const Draft& draft) {
   const Study& study = study_of(draft.value);
   if (!study.has_grains()) return;
   check_points(draft);
-  blame(draft, [&] { require_models(draft.value.models); });
+  blame(draft, [&] { require_models(draft.value.models, dimension_of(draft.value)); });
   // Of a sweep's many members each has a part of the draws.
   const std::int64_t draws =
       std::max(kLeastDraws, kMostDraws / static_cast<std::int64_t>(draft.members));

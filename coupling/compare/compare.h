@@ -33,8 +33,8 @@ struct ModelProfiles {
 };
 
 /// What the verdict calls a registry model: flamant, orthotropic_half_plane, fe_elastic_half_space:
-/// "half plane"; boussinesq: "half space"; layer, fe_elastic_layer: "finite layer"; others: their
-/// own name.
+/// "half plane"; boussinesq, transverse_half_space: "half space"; layer, fe_elastic_layer: "finite
+/// layer"; others: their own name.
 std::string family_of(const std::string& model_name);
 
 /// Distance of a model from the simulation.
@@ -83,11 +83,12 @@ struct Comparison {
   Verdict verdict;
   int realizations = 1;
   double load = 0;   ///< F, N
-  double depth = 0;  ///< h, m; F/h is the unit of normalised profiles
+  double depth = 0;  ///< h, m
   Scale scale;
+  int dim = 2;  ///< of the grains
 
-  /// Unit of normalised profiles, N/m.
-  double unit() const { return load / depth; }
+  /// Unit of normalised profiles: F/h, N/m; in space F/h^2, Pa.
+  double unit() const { return dim == 3 ? load / (depth * depth) : load / depth; }
 };
 
 /// The simulation alone: shapes of the profiles, no models, no verdict. Throws

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "coupling/averaging/base_space.h"
 #include "coupling/compare/quadrature.h"
 
 namespace grainfield::coupling {
@@ -73,6 +74,31 @@ Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::Matri
       continue;
     }
     for (const SpaceNode& node : ball) add(p, point + node.at, node.weight);
+  }
+  return plan.evaluate(stress, points.rows());
+}
+
+Eigen::MatrixXd smooth_over_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
+                                  const Kernel& kernel, int rings) {
+  if (points.cols() != 3 || kernel.dim() != 3)
+    throw std::invalid_argument("smoothing in space needs points and a kernel of space");
+  if (rings < 1) throw std::invalid_argument("smoothing needs at least one node");
+  std::vector<SpaceNode> disk;
+  double total = 0;
+  const int round = 2 * rings + 2;
+  for (const Node& r : gauss_points(rings, 0, kernel.range())) {
+    const double weight = r.at * r.weight * seen_from_above(kernel, r.at);
+    for (int k = 0; k < round; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / round;
+      disk.push_back({Vector3d(r.at * std::cos(phi), r.at * std::sin(phi), 0), weight});
+      total += weight;
+    }
+  }
+  SmoothingPlan plan(3);
+  for (Index p = 0; p < points.rows(); ++p) {
+    for (const SpaceNode& node : disk) {
+      plan.add(p, points.row(p) + node.at.transpose(), node.weight / total);
+    }
   }
   return plan.evaluate(stress, points.rows());
 }

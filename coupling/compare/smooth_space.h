@@ -16,4 +16,10 @@ namespace grainfield::coupling {
 Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::MatrixXd& points,
                                 const Kernel& kernel, double depth, int rings = 6);
 
+/// Convolution over the horizontal plane at the points with the kernel as it is seen from above:
+/// what base_stress does to floor forces; n x 6. `rings` Gauss points along the radius times
+/// 2 rings + 2 directions. One call of `stress`. Throws as smooth_in_space.
+Eigen::MatrixXd smooth_over_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
+                                  const Kernel& kernel, int rings = 8);
+
 }  // namespace grainfield::coupling

@@ -117,7 +117,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
             fmt::format("{}:{}: {}", item.state.file, item.state.group, placed.heap.in_flight));
       }
     }
-    const double force = -s.applied_force[up_axis(s.dim)];
+    const double force = -dem::total_applied_force(s)[up_axis(s.dim)];
     if (request.response && &item != &items.front() && force != out.load) {
       throw std::invalid_argument(
           fmt::format("{}:{}: its load is {:g} N, that of the others {:g} N", item.state.file,

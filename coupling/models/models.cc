@@ -30,8 +30,10 @@ Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, 
     return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
   };
   Eigen::MatrixXd out =
-      set.points.cols() == 3               ? smooth_in_space(nodes, set.points, *set.kernel, depth)
-      : set.smoothing == Smoothing::kernel ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
+      set.points.cols() == 3               ? set.smoothing == Smoothing::marginal
+                                                 ? smooth_over_plane(nodes, set.points, *set.kernel)
+                                                 : smooth_in_space(nodes, set.points, *set.kernel, depth)
+                    : set.smoothing == Smoothing::kernel ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
                                            : smooth_along_x(nodes, set.points, *set.kernel);
   if (set.empty_outside) {
     const Eigen::MatrixXd here = stress(set.points);
@@ -97,13 +99,13 @@ void require_models(const std::vector<ModelChoice>& choices, const RunFacts& fac
   }
 }
 
-void require_models(const std::vector<ModelChoice>& choices) {
+void require_models(const std::vector<ModelChoice>& choices, int dim) {
   constexpr double kHeights[] = {1e-3, 0.1, 10}, kSlopes[] = {20, 27, 35};
   for (const ModelChoice& choice : choices) {
     std::set<std::string> said;
     for (std::size_t k = 0; k < std::size(kHeights); ++k) {
       const double h = kHeights[k], slope = kSlopes[k];
-      RunFacts facts{1, h, 2, 0.1 * h, "", {}};
+      RunFacts facts{1, h, dim, 0.1 * h, "", {}};
       facts.numbers = {{"rho_g", 1 / h},      {"phi_deg", slope},
                        {"left_deg", slope},   {"right_deg", slope},
                        {"chi_g", 1},          {"alpha_deg", slope},

@@ -27,15 +27,15 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
 /// Throws continuum::BadParameter for a model that refuses these facts beside its settings.
 /// Finite-element models are not made: of them only ranges and settings without effect are seen.
 void require_models(const std::vector<ModelChoice>& choices, const RunFacts& facts);
-/// The same before a run that will fill in F, h, slopes and weight: what is refused whatever they
-/// will be.
-void require_models(const std::vector<ModelChoice>& choices);
+/// The same before a run that will fill in F, h, slopes and weight, of grains in `dim` dimensions:
+/// what is refused whatever they will be.
+void require_models(const std::vector<ModelChoice>& choices, int dim = 2);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
 
 /// How a model's stress is averaged at some points (models' frame), as the grains' is: not at all;
 /// with the kernel (over the plane, of points in space over space); along x with the kernel's
-/// marginal.
+/// marginal (of points in space: over the horizontal plane with the kernel as seen from above).
 enum class Smoothing { none, kernel, marginal };
 
 struct PointSet {

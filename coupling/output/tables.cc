@@ -83,7 +83,7 @@ std::vector<std::vector<std::string>> normalised(
     const Comparison& c, const std::vector<std::size_t>& shown, std::size_t k, int rows,
     const std::function<std::string(std::string)>& math) {
   const Profile& p = c.profiles[k];
-  const double unit = c.load / c.depth;
+  const double unit = c.unit();
   std::vector<std::vector<std::string>> table(1);
   table[0] = {math(fmt::format("x/{}", c.scale.length)), "simulation", "standard error"};
   for (std::size_t m : shown) {

@@ -31,10 +31,11 @@ std::vector<AveragedValues> averaged_values(const AverageSetup& setup, std::size
           {{{"average.points", number(setup.points)}}, methods * number(profiles)}};
 }
 
-std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options) {
-  if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width);
-  const double side = options.kernel == "square" ? 2 / std::sqrt(std::numbers::pi) : 1;
-  return make_kernel("heaviside", side * options.width);
+std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options, int dim) {
+  if (options.method == "coarse_graining") return make_kernel(options.kernel, options.width, dim);
+  const double disk = 2 / std::sqrt(std::numbers::pi), ball = std::cbrt(6 / std::numbers::pi);
+  const double side = options.kernel == "square" ? (dim == 3 ? ball : disk) : 1;
+  return make_kernel("heaviside", side * options.width, dim);
 }
 
 std::string describe(const AverageOptions& options) {

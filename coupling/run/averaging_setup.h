@@ -37,8 +37,8 @@ std::vector<AveragedValues> averaged_values(const AverageSetup& setup, std::size
 AverageOptions average_options(const AverageSetup& setup, const std::string& method,
                                double diameter, int threads);
 /// The kernel through which models are seen and base forces are smeared. A circle is the Heaviside
-/// kernel; a square is taken as the disk of equal area.
-std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options);
+/// kernel; a square is taken as the disk of equal area (in space the cube as that ball).
+std::unique_ptr<Kernel> seeing_kernel(const AverageOptions& options, int dim = 2);
 /// "coarse graining, lucy kernel, w = 0.0055 m": for captions.
 std::string describe(const AverageOptions& options);
 

@@ -153,7 +153,7 @@ void add_identity(Summary& summary, const Case& value) {
 
 void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main) {
   for (const auto& [key, number] : summary_figures(comparison, main)) summary[key] = number;
-  const double unit = comparison.load / comparison.depth;
+  const double unit = comparison.unit();
   summary["response.peak_over_F_per_h"] = comparison.shapes[main].peak / unit;
   if (const double error = comparison.shape_errors[main].peak; std::isfinite(error)) {
     summary["response.peak_over_F_per_h.standard_error"] = error / unit;

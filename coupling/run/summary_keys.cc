@@ -14,8 +14,8 @@
 namespace grainfield::coupling {
 namespace {
 
-// '*' matches a name: text that is not empty, whose only dots are those of numbers (0.98). At an end
-// of the pattern it is another figure's key, which is looked up, and has its dots.
+// '*' matches a name: text that is not empty, whose only dots are those of numbers (0.98). At an
+// end of the pattern it is another figure's key, which is looked up, and has its dots.
 bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0,
              std::size_t t = 0) {
   if (p == pattern.size()) return t == text.size();
@@ -134,29 +134,29 @@ const std::vector<SummaryKey>& summary_keys() {
        "mean standard error over the largest response, by method, at "
        "the profiles below the surface"},
       {"response.total_over_load", "-", "integral of the base response over F; mean"},
-      {"response.peak", "N/m", "largest base pressure response"},
+      {"response.peak", "N/m (3D: Pa)", "largest base pressure response"},
       {"response.peak_at", "m", "its distance from the load"},
       {"response.peak_over_F_per_h", "-",
        "largest base pressure response over F/h (half plane 0.637, "
-       "smooth rigid base 0.920)"},
+       "smooth rigid base 0.920), 3D: over F/h^2"},
       {"response.width", "m", "between the outermost crossings of half the peak"},
       {"response.rms_width", "m", "root of the second central moment"},
       {"response.peaks", "-", "number of peaks of the base response"},
       {"response.integral", "N", "trapezoidal integral of the base response"},
       {"response.*.peaks", "-",
        "number of peaks of a profile, e.g. depth_0.5 (share of the depth)"},
-      {"response.*.peak", "N/m", "largest pressure response there"},
+      {"response.*.peak", "N/m (3D: Pa)", "largest pressure response there"},
       {"compare.*.rel_l2", "-", "relative L2 distance of model and simulation, all profiles"},
-      {"compare.*.max", "N/m", "largest distance"},
+      {"compare.*.max", "N/m (3D: Pa)", "largest distance"},
       {"compare.*.chi2_per_dof", "-",
        "chi squared per degree of freedom with the ensemble's errors"},
       {"compare.*.dof", "-", "independent points"},
       {"compare.*.*.rel_l2", "-", "the same distance on one profile, e.g. height_0.1 or base"},
-      {"compare.*.*.max", "N/m", "largest distance there"},
+      {"compare.*.*.max", "N/m (3D: Pa)", "largest distance there"},
       {"compare.*.*.chi2_per_dof", "-", "chi squared per degree of freedom there"},
       {"compare.*.*.dof", "-", "independent points there"},
-      {"compare.*.peak", "N/m", "the model's peak on the last profile"},
-      {"compare.*.peak_over_F_per_h", "-", "the same over F/h"},
+      {"compare.*.peak", "N/m (3D: Pa)", "the model's peak on the last profile"},
+      {"compare.*.peak_over_F_per_h", "-", "the same over F/h, 3D: over F/h^2"},
       {"verdict.best_model", "text", "label of the model nearest to the simulation"},
       {"verdict.sentence", "text", "the verdict for people"},
       {"verdict.position", "-", "0: the losing family's best model, 1: the winning family's"},

@@ -182,7 +182,7 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapsh
     force.fx = start.applied_force.x();
     force.fy = start.applied_force.y();
     force.fz = start.applied_force.z();
-    engine->apply(force);
+    engine->apply(force, start.also_loaded);
   }
   return engine;
 }

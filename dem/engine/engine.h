@@ -140,8 +140,10 @@ class Engine {
   void set_wall_motion(const std::string& name, const WallMotion& motion);
   /// Where they are, how they move, and the force of all grains on each in the last step.
   virtual std::vector<Wall> walls() const = 0;
-  /// Applies this force from now on instead of any earlier one.
-  virtual void apply(const AppliedForce& force) = 0;
+  /// Applies this force from now on instead of any earlier one; the grains `beside` carry the same
+  /// each.
+  virtual void apply(const AppliedForce& force, const std::vector<std::int64_t>& beside) = 0;
+  void apply(const AppliedForce& force) { apply(force, {}); }
   /// Mass-proportional damping: acceleration -= rate * velocity, 1/s.
   virtual void set_background_damping(double rate) = 0;
   /// From now on; every grain wakes.

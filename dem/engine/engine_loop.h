@@ -135,8 +135,10 @@ class EngineLoop final : public Engine {
     world_.wake_all();
   }
   std::vector<Wall> walls() const override { return Report(world_).walls(); }
-  void apply(const AppliedForce& force) override {
+  void apply(const AppliedForce& force, const std::vector<std::int64_t>& beside) override {
     world_.around.applied = force;
+    world_.beside = beside;
+    std::sort(world_.beside.begin(), world_.beside.end());
     world_.wake_all();
   }
   void set_background_damping(double rate) override { world_.around.drag = rate; }

@@ -122,7 +122,7 @@ class Report {
       ++free;
       d.potential_energy += potential_energy(i);
       typename World::Vector force = resultant[i] + world_.weight(i);
-      if (i == world_.applied_index) force += applied;
+      if (world_.is_loaded(i)) force += applied;
       const double size = length_of(force);
       d.mean_unbalanced_force += size;
       d.max_unbalanced_force = std::max(d.max_unbalanced_force, size);
@@ -226,6 +226,7 @@ class Report {
     }
     if (world_.applied_index >= 0) {
       s.loaded_grain = world_.around.applied.id;
+      s.also_loaded = world_.beside;
       s.applied_force = to_three(world_.around.applied_at(world_.time()));
     }
     visit_listed([&](int i, int k, const Pair& pair, const Force& f, bool wall, const Overlap& o) {

@@ -330,7 +330,7 @@ class Review {
       const double time = static_cast<double>(still.steps) * world_.time_step;
       if (still.steps < 0 || time < world_.sleep.quiet_time ||
           still.way > world_.sleep.quiet_creep * time || b.inverse_mass == 0 ||
-          i == world_.applied_index || is_at_driven_wall(i) ||
+          world_.is_loaded(i) || is_at_driven_wall(i) ||
           (world_.walls.any_driven() && is_reached_by_wall(i))) {
         continue;
       }

@@ -146,7 +146,7 @@ class Sweep {
       auto& b = grains.bodies[i];
       if (b.inverse_mass == 0) continue;
       walls<kind>(i, dt, force, torque);
-      if (i == world_.applied_index) force += applied;
+      if (world_.is_loaded(i)) force += applied;
       Damping damping;
       if (local_damping_ > 0) [[unlikely]] {
         damping = damping_of(i, force, torque);
@@ -154,7 +154,7 @@ class Sweep {
         torque += damping.torque;
       }
       if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
-        record_outer(i, i == world_.applied_index ? applied : Vector(Vector::Zero()), damping, dt);
+        record_outer(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
       }
       const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
       if constexpr (kind == SweepKind::start) {

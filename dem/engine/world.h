@@ -69,7 +69,9 @@ struct World {
   Contacts contacts;
   std::vector<Margin<dim>> margins;  ///< of the awake
   int awake = 0;  ///< bodies [0, awake) move; the others sleep or, with sleeping, are fixed
-  int applied_index = -1;  ///< body that carries the applied force
+  int applied_index = -1;            ///< body that carries the applied force
+  std::vector<std::int64_t> beside;  ///< ids, ascending, of others that carry the same
+  std::vector<char> carries;         ///< by body: is one of these; empty without such
   bool search_needed = true;
 
   /// A contact with a wall (a pair of contacts.walls) has a memory, of the law or of rolling.
@@ -83,6 +85,14 @@ struct World {
   void locate_applied() {
     const auto at = std::find(grains.ids.begin(), grains.ids.end(), around.applied.id);
     applied_index = at == grains.ids.end() ? -1 : static_cast<int>(at - grains.ids.begin());
+    carries.clear();
+    if (beside.empty()) return;
+    for (const std::int64_t id : grains.ids) {
+      carries.push_back(std::binary_search(beside.begin(), beside.end(), id) ? 1 : 0);
+    }
+  }
+  bool is_loaded(int i) const {
+    return i == applied_index || (!carries.empty() && carries[static_cast<std::size_t>(i)] != 0);
   }
   const auto& pair_rule(int i, int j) const {
     return acting.kinds() == 1 ? acting.rule(0, 0) : acting.rule(grains.kinds[i], grains.kinds[j]);

@@ -13,6 +13,7 @@ namespace grainfield::dem {
 template <class World, class Search, class Each>
 void visit_world(World& world, Search& search, Each each) {
   each(world.around);
+  each(world.beside);
   std::remove_const_t<decltype(world.walls)>::visit(world.walls, each);
   std::remove_const_t<decltype(world.balance)>::visit(world.balance, each);
   std::remove_const_t<decltype(world.rolling)>::visit(world.rolling, each);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dem/heap/surface.h"
+#include "dem/packing/space_layer.h"
 
 namespace grainfield::dem {
 namespace {
@@ -63,6 +64,7 @@ ShapeSetup pentagon(const PackingSetup& p) {
 }
 
 void check_packing(const PackingSetup& p) {
+  if (p.dim == 3) return check_space_layer(p);
   if (p.kind == "layered") {
     require(p.width >= 4 * largest_radius(p), "width", p.width, "at least two grain diameters");
     require(p.depth >= 2 * largest_radius(p), "depth", p.depth, "at least one grain diameter");

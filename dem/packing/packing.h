@@ -13,28 +13,33 @@
 namespace grainfield::dem {
 
 struct PackingSetup {
-  std::string kind = "layered";   ///< triangular | sqrt3 | layered
-  std::string sizes = "uniform";  ///< mono | bidisperse | uniform
-  double radius = 0.0045;         ///< m; mono, and the larger of bidisperse
-  double radius_small = 0.0035;   ///< m; the smaller of bidisperse
-  double fraction_small = 0.5;    ///< share by number of the smaller grains
-  double radius_min = 0.0036;     ///< m; uniform
-  double radius_max = 0.0054;     ///< m; uniform
-  int columns = 64;               ///< lattices: grains in a row
-  int rows = 16;                  ///< lattices: rows
-  double spacing = 1;             ///< sqrt3: spacing in a row / (sqrt(3) d), up to 1; below 1 rows
-                                  ///< two apart do not touch, and a grain has four contacts
-  double width = 0.6;             ///< m; layered
-  double depth = 0.15;            ///< m; layered: rows are dropped until this height is reached
-  double drop_height = 0.008;     ///< m above the surface from which a row is dropped
-  std::string floor = "smooth";   ///< smooth (flat wall with friction) | rough (fixed grains)
-  double jitter = 0;              ///< lattices: relative spread of radii, uniform +- (0 = perfect)
-  std::string shape = "disk";     ///< layered: disk | irregular (pentagons; `sizes` is not used)
-  double side = 0.009;            ///< m; irregular: mean length of a side (Roul 5.1)
+  int dim = 2;                     ///< 2: disks and pentagons; 3: spheres (space_layer.h)
+  std::string kind = "layered";    ///< triangular | sqrt3 | layered; 3D: close_packed | random
+  std::string sizes = "uniform";   ///< mono | bidisperse | uniform
+  double radius = 0.0045;          ///< m; mono, and the larger of bidisperse
+  double radius_small = 0.0035;    ///< m; the smaller of bidisperse
+  double fraction_small = 0.5;     ///< share by number of the smaller grains
+  double radius_min = 0.0036;      ///< m; uniform
+  double radius_max = 0.0054;      ///< m; uniform
+  int columns = 64;                ///< lattices: grains in a row
+  int rows = 16;                   ///< lattices: rows; 3D: horizontal layers
+  double spacing = 1;              ///< sqrt3: spacing in a row / (sqrt(3) d), up to 1; below 1 rows
+                                   ///< two apart do not touch, and a grain has four contacts
+  double width = 0.6;              ///< m; layered, random
+  double depth = 0.15;             ///< m; layered: rows are dropped until this height is reached;
+                                   ///< random: grains are counted out for it
+  double drop_height = 0.008;      ///< m above the surface from which a row is dropped
+  std::string floor = "smooth";    ///< smooth (flat wall with friction) | rough (fixed grains)
+  double jitter = 0;               ///< lattices: relative spread of radii, uniform +- (0 = perfect)
+  std::string shape = "disk";      ///< layered: disk | irregular (pentagons; `sizes` is not used)
+  double side = 0.009;             ///< m; irregular: mean length of a side (Roul 5.1)
+  std::string sides = "periodic";  ///< 3D: periodic | walls
+  std::string stacking = "fcc";    ///< 3D, close_packed: fcc (ABC) | hcp (AB)
 
   auto members() const {
-    return std::tie(kind, sizes, radius, radius_small, fraction_small, radius_min, radius_max,
-                    columns, rows, spacing, width, depth, drop_height, floor, jitter, shape, side);
+    return std::tie(dim, kind, sizes, radius, radius_small, fraction_small, radius_min, radius_max,
+                    columns, rows, spacing, width, depth, drop_height, floor, jitter, shape, side,
+                    sides, stacking);
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "dem/snapshot/images.h"
+
 namespace grainfield::dem {
 
 ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after) {
@@ -10,14 +12,17 @@ ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after) {
     throw std::invalid_argument("snapshots do not belong together: different numbers of grains");
   }
   ContactChanges c;
+  const bool counted = counts_images(after);
   for (std::size_t k = 0; k < before.grains.size(); ++k) {
     const Grain& a = before.grains[k];
     const Grain& b = after.grains[k];
     if (a.id != b.id || a.radius != b.radius) {
       throw std::invalid_argument("snapshots do not belong together: different grains");
     }
+    const Vec3 way = after.cell.is_periodic() ? displacement(a, b, before.cell, after.cell, counted)
+                                              : Vec3(b.position - a.position);
     c.max_displacement_over_radius =
-        std::max(c.max_displacement_over_radius, (b.position - a.position).norm() / a.radius);
+        std::max(c.max_displacement_over_radius, way.norm() / a.radius);
   }
   // Both lists are sorted by (i, j).
   auto a = before.contacts.begin();

@@ -1,6 +1,7 @@
 #include "dem/snapshot/snapshot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 
@@ -46,6 +48,20 @@ void require_rows(const TableSource& source, const std::string& what, std::size_
 }
 
 namespace {
+
+// Ids in ascending order, separated by spaces.
+std::vector<std::int64_t> ids_of(const std::string& text, const std::string& where) {
+  std::istringstream in(text);
+  std::vector<std::int64_t> out;
+  for (std::int64_t id = 0; in >> id;) {
+    if (id < 0 || (!out.empty() && id <= out.back())) in.setstate(std::ios::failbit);
+    out.push_back(id);
+  }
+  if (out.empty() || !in.eof())
+    throw std::invalid_argument(
+        fmt::format("{}: also_loaded: found \"{}\", allowed: ids in ascending order", where, text));
+  return out;
+}
 
 // Groups in groups that are searched for snapshots.
 constexpr int kDeepest = 64;
@@ -198,6 +214,9 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
     hdf5::write_attribute(group, fmt::format("gravity_{}", axis), s.gravity[k]);
     hdf5::write_attribute(group, fmt::format("applied_force_{}", axis), s.applied_force[k]);
   }
+  if (!s.also_loaded.empty()) {
+    hdf5::write_attribute(group, "also_loaded", fmt::format("{}", fmt::join(s.also_loaded, " ")));
+  }
   hdf5::write_attribute(group, "units", "SI; 2D: areal density kg/m2, stiffness N/m, volume m2");
   for (const auto& [name, value] : s.attributes) {
     hdf5::write_attribute(group, "run_" + name, value);
@@ -293,6 +312,14 @@ void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
 
 }  // namespace
 
+bool is_loaded(const Snapshot& s, std::int64_t id) {
+  return id == s.loaded_grain || std::binary_search(s.also_loaded.begin(), s.also_loaded.end(), id);
+}
+
+Vec3 total_applied_force(const Snapshot& s) {
+  return static_cast<double>(1 + s.also_loaded.size()) * s.applied_force;
+}
+
 void write_snapshot(const std::string& file, const std::string& group_name, const Snapshot& s) {
   hdf5::Handle handle = hdf5::open_for_adding(file);
   add_snapshot(handle, group_name, s);
@@ -316,6 +343,8 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     s.applied_force[k] = hdf5::read_number_attribute(group, fmt::format("applied_force_{}", axis));
   }
   for (const std::string& name : hdf5::text_attributes(group)) {
+    if (name == "also_loaded")
+      s.also_loaded = ids_of(hdf5::read_text_attribute(group, name), where);
     if (name.starts_with("run_"))
       s.attributes[name.substr(4)] = hdf5::read_text_attribute(group, name);
   }

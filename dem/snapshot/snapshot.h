@@ -90,12 +90,18 @@ struct Snapshot {
   Vec3 gravity{0, 0, 0};           ///< m/s2
   std::int64_t loaded_grain = -1;  ///< id of the grain that carries the applied force, or -1
   Vec3 applied_force{0, 0, 0};     ///< on that grain, N
-  Cell<3> cell;                    ///< in 2D the third axis is not periodic
-  std::vector<Grain> grains;       ///< sorted by id
-  std::vector<Contact> contacts;   ///< sorted by (i, j)
+  std::vector<std::int64_t> also_loaded{};  ///< ids, ascending, of others that carry the same force
+  Cell<3> cell;                             ///< in 2D the third axis is not periodic
+  std::vector<Grain> grains;                ///< sorted by id
+  std::vector<Contact> contacts;            ///< sorted by (i, j)
   std::vector<Wall> walls;
   std::map<std::string, std::string> attributes;  ///< law, parameters, seed, version, ...
 };
+
+/// Whether the grain of this id carries the applied force.
+bool is_loaded(const Snapshot& snapshot, std::int64_t id);
+/// The applied force of all grains that carry it, N.
+Vec3 total_applied_force(const Snapshot& snapshot);
 
 /// Writes the snapshot as group `group` ("/unloaded", "/realization_003/loaded") of the file,
 /// creating the file or adding to it. Not atomic: the caller writes beside and renames.

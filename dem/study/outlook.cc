@@ -12,16 +12,18 @@
 #include "dem/heap/source.h"
 #include "dem/packing/lattice_pile.h"
 #include "dem/packing/packing.h"
+#include "dem/packing/space_layer.h"
 #include "dem/random/random.h"
 #include "dem/study/common.h"
 #include "dem/study/pile_checks.h"
+#include "dem/study/point_load_space.h"
 
 namespace grainfield::dem {
 namespace {
 
 // Memory of a grain with its contacts, its place in checkpoints and snapshots; half a million disks
 // of a lattice take 2.3 kB each.
-constexpr double kBytesOfDisk = 2500, kBytesOfPolygon = 4000;
+constexpr double kBytesOfDisk = 2500, kBytesOfPolygon = 4000, kBytesOfSphere = 4000;
 // Volume fraction of a layer of dropped rows, about.
 constexpr double kLayerFraction = 0.85;
 // Grains side by side along the floor of a pile.
@@ -171,12 +173,44 @@ class Draws {
   bool cut_ = false;  // in the midst of a realization
 };
 
+// Throws for more spheres than anyone's machine takes.
+void check_spheres(const PackingSetup& p) {
+  const double count = layer_spheres(p);
+  if (count <= kMostGrains) return;
+  if (p.kind == "close_packed") {
+    too_many("packing.rows", p.rows, std::floor(p.rows * kMostGrains / count), "",
+             fmt::format("with packing.columns = {}: {}", p.columns, ten_million()));
+  }
+  too_many("packing.width", p.width, p.width * std::sqrt(kMostGrains / count), " m",
+           fmt::format("with packing.depth = {:g} m and grains of this size: {}", p.depth,
+                       ten_million()));
+}
+
+Outlook foresee_space_load(const PointLoadSetup& s) {
+  const PackingSetup& p = s.packing;
+  Outlook out;
+  out.time_step = space_load_settings(s, 1).time_step;
+  check_spheres(p);
+  out.grains = std::ceil(layer_spheres(p));
+  out.fixed = floor_spheres(p);
+  out.bytes = (out.grains + out.fixed) * kBytesOfSphere;
+  out.bytes_key = p.kind == "random" ? "packing.width" : "packing.columns";
+  Times times;
+  if (p.kind == "random") {
+    times.add("packing.depth", std::sqrt(2 * loose_height(p) / s.material.gravity));
+  }
+  times.add("load.ramp_time", s.load.ramp_time);
+  times.put_into(out);
+  return out;
+}
+
 }  // namespace
 
 Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint64_t>& seeds,
                            std::int64_t most) {
   const PackingSetup& p = s.packing;
   check_packing(p);
+  if (p.dim == 3) return foresee_space_load(s);
   check_method("load.method", s.load.method, s.material, s.motion);
   Outlook out;
   out.grains = grains_of(p);

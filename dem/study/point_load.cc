@@ -9,9 +9,10 @@
 
 #include "dem/packing/packing.h"
 #include "dem/quasistatic/quasistatic.h"
-#include "dem/snapshot/contact_changes.h"
 #include "dem/study/fingerprint.h"
+#include "dem/study/layer_figures.h"
 #include "dem/study/phases.h"
+#include "dem/study/point_load_space.h"
 
 namespace grainfield::dem {
 namespace {
@@ -316,31 +317,11 @@ RunResult PointLoadRun::result() const {
   auto& f = out.figures;
   add_engine_figures(*engine_, loaded_state(), f);
 
-  double weight = 0, area = 0;
-  for (const Grain& g : unloaded_->grains) {
-    if (g.fixed) continue;
-    weight += g.mass * setup_.material.gravity;
-    area += g.volume;
-  }
-  const double height = surface_height(*unloaded_, width_);
-  f["dem.layer_height"] = height;
-  f["dem.layer_width"] = width_;
-  f["dem.volume_fraction"] = area / (width_ * height);
-  f["base.weight_ratio"] = base_force(*unloaded_).y() / weight;
-  f["base.response_over_load"] =
-      (base_force(*loaded_) - base_force(*unloaded_)).y() / setup_.load.force;
-  const Grain& grain = unloaded_->grains[loaded_->loaded_grain];
+  add_layer_figures(*unloaded_, *loaded_, surface_height(*unloaded_, width_), width_, width_, f);
   f["load.force"] = setup_.load.force;
-  f["load.x"] = grain.position.x();
-  f["load.y"] = grain.position.y();
 
   add_reached("load", reached_, f);
-  const ContactChanges c = compare_contacts(*unloaded_, *loaded_);
-  f["load.contacts_gained"] = c.gained;
-  f["load.contacts_lost"] = c.lost;
-  f["load.newly_sliding"] = c.newly_sliding;
-  f["load.max_displacement_over_radius"] = c.max_displacement_over_radius;
-  f["load.no_rearrangement"] = c.gained == 0 && c.lost == 0 ? 1 : 0;
+  add_contact_changes(*unloaded_, *loaded_, f);
   return out;
 }
 
@@ -348,6 +329,7 @@ RunResult PointLoadRun::result() const {
 
 std::unique_ptr<Run> make_point_load_run(const PointLoadSetup& setup, std::uint64_t seed,
                                          int threads) {
+  if (setup.packing.dim == 3) return make_space_load_run(setup, seed, threads);
   return std::make_unique<PointLoadRun>(setup, seed, threads);
 }
 

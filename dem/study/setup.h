@@ -31,10 +31,14 @@ struct LoadSetup {
   std::string method = "damped";  ///< damped: slow damped dynamics | newton: quasi-static solver
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
   double ramp_time = 0.5;                ///< s from 0 to the full force (smooth ramp); damped
-  double position = 0.5;  ///< of the width: the top grain nearest to it carries the force
+  double position = 0.5;    ///< of the width: the top grain nearest to it carries the force
+  double weights = 1;       ///< 3D: force over a grain's mean weight; 0: load.force
+  double position_y = 0.5;  ///< 3D: likewise along y
+  double radius = 0;        ///< m; 3D: grains of the surface so near to that one share the force
 
   auto members() const {
-    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position);
+    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position, weights, position_y,
+                    radius);
   }
 };
 
@@ -130,5 +134,9 @@ struct PointLoadSetup {
 
   auto members() const { return std::tie(packing, material, motion, rest, load); }
 };
+
+/// The force that the layer is loaded with, N: load.force; in 3D load.weights times the mean weight
+/// of a grain where that is given.
+double force_of_load(const PointLoadSetup& setup);
 
 }  // namespace grainfield::dem

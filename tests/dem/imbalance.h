@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/snapshot/images.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
@@ -24,7 +25,7 @@ inline Imbalance imbalance_of(const Snapshot& s) {
   std::vector<Vec3> force(s.grains.size()), moment(s.grains.size(), Vec3(0, 0, 0));
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     force[k] = s.grains[k].mass * s.gravity;
-    if (s.grains[k].id == s.loaded_grain) force[k] += s.applied_force;
+    if (is_loaded(s, s.grains[k].id)) force[k] += s.applied_force;
   }
   Imbalance out;
   double mean = 0;
@@ -32,13 +33,10 @@ inline Imbalance imbalance_of(const Snapshot& s) {
     force[k] += f;
     moment[k] += (at - s.grains[k].position).cross(f);
   };
-  const auto image_of = [&](const Contact& c) -> Vec3 {
-    return s.cell.edges * Vec3(c.image[0], c.image[1], c.image[2]);
-  };
   for (const Contact& c : s.contacts) {
     mean += c.force.norm() / static_cast<double>(s.contacts.size());
     push(c.i, c.force, c.point);
-    if (c.j >= 0) push(c.j, -c.force, c.point - image_of(c));
+    if (c.j >= 0) push(c.j, -c.force, c.point + (s.grains[c.j].position - second_place(s, c)));
     const double repulsion = -c.force.dot(c.normal);
     const double along = (c.force + repulsion * c.normal).norm();
     out.pull = std::max(out.pull, -repulsion);

@@ -109,7 +109,9 @@ void visit_values(const Snapshot& s, Each each) {
     const auto k = static_cast<Eigen::Index>(a);
     all(s.cell.periodic[a], Vec3(s.cell.edges.col(k)), Vec3(s.cell.velocity_gradient.col(k)));
   }
-  all(s.grains.size(), s.contacts.size(), s.walls.size(), s.attributes.size());
+  all(s.also_loaded.size(), s.grains.size(), s.contacts.size(), s.walls.size(),
+      s.attributes.size());
+  for (const std::int64_t id : s.also_loaded) all(id);
   for (const Grain& g : s.grains) {
     all(g.id, g.position, g.velocity, g.angle, g.spin, g.radius, g.mass, g.inertia, g.volume,
         g.fixed, g.orientation, g.angular_velocity, g.moments, g.material, g.rotates, g.image,

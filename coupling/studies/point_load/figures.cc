@@ -8,8 +8,11 @@ std::vector<SummaryKey> point_load_figures() {
       {"dem.layer_width", "m", "distance of the side walls"},
       {"base.response_over_load", "-", "vertical base force, loaded - unloaded, over the load"},
       {"load.force", "N", "applied force F"},
+      {"load.force_over_weight", "-", "3D: F over the mean weight of a grain"},
+      {"load.grains", "-", "3D: grains that share it"},
       {"load.x", "m", "abscissa of the loaded grain, packing's axes"},
-      {"load.y", "m", "height of the loaded grain, packing's axes"},
+      {"load.y", "m", "height of the loaded grain, packing's axes; 3D: its other abscissa"},
+      {"load.z", "m", "3D: its height"},
       {"load.contacts_gained", "-", "contacts that the load closed"},
       {"load.contacts_lost", "-", "contacts that the load opened"},
       {"load.newly_sliding", "-", "contacts that the load brought to the Coulomb limit"},
@@ -24,6 +27,9 @@ std::vector<SummaryKey> point_load_figures() {
       {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
       {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions"},
       {"layer.mean_diameter", "m", "of the moving grains"},
+      {"response.within_radius", "m", "3D: where the profiles by radius end"},
+      {"response.within_over_load", "-",
+       "3D: base response within that radius, from its profile, over F"},
   };
 }
 

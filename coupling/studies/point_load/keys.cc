@@ -13,10 +13,18 @@ constexpr const char* kRoul = "Roul table 5.1";
 }  // namespace
 
 void declare_packing_keys(SectionKeys s) {
-  s.word("kind", IN(packing.kind), {"triangular", "sqrt3", "layered"},
+  s.number("dim", "-", IN(packing.dim), {2, 3},
+           "dimensions: disks and pentagons in the plane, or spheres in space, up along z");
+  s.word("kind", IN(packing.kind), {"triangular", "sqrt3", "layered", "close_packed", "random"},
          "how the layer is built: triangular lattice, lattice whose rows are shifted by half a "
-         "spacing of sqrt(3) diameters, or rows dropped one after another",
+         "spacing of sqrt(3) diameters, or rows dropped one after another; of spheres: close "
+         "packed layers, or placed at random, apart from each other, and left to settle",
          "Roul 5.2, 5.4");
+  s.words_of_dimensions({"triangular", "sqrt3", "layered"}, {"close_packed", "random"});
+  s.word("stacking", IN(packing.stacking), {"fcc", "hcp"},
+         "order of the close packed layers: ABC or AB");
+  s.space();
+  s.only("packing.kind", {"close_packed"});
   s.word("sizes", IN(packing.sizes), {"mono", "bidisperse", "uniform"},
          "radii: all equal, two sizes, or uniform between radius_min and radius_max", kRoul);
   s.number("radius", "m", IN(packing.radius), kRadius,
@@ -37,22 +45,32 @@ void declare_packing_keys(SectionKeys s) {
            kRoul);
   s.only("packing.sizes", {"uniform"});
   s.number("columns", "-", IN(packing.columns), {2, 100000},
-           "grains in a row; more moves the side walls away from the load", kRoul);
-  s.only("packing.kind", {"triangular", "sqrt3"});
+           "grains in a row; more moves the side walls away from the load; of close packed layers "
+           "the rows are as many as make them square",
+           kRoul);
+  s.only("packing.kind", {"triangular", "sqrt3", "close_packed"});
   s.number("rows", "-", IN(packing.rows), {1, 100000},
-           "rows of grains; more makes the layer deeper", kRoul);
-  s.only("packing.kind", {"triangular", "sqrt3"});
+           "rows of grains, in space close packed layers; more makes the layer deeper", kRoul);
+  s.only("packing.kind", {"triangular", "sqrt3", "close_packed"});
   s.number("spacing", "-", IN(packing.spacing), {0.71, 1},
            "distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
            "not touch and a grain has four contacts",
            "Roul 5.4");
   s.only("packing.kind", {"sqrt3"});
   s.number("width", "m", IN(packing.width), kLength,
-           "distance of the side walls; four depths keep their influence small", kRoul);
-  s.only("packing.kind", {"layered"});
-  s.number("depth", "m", IN(packing.depth), kLength,
-           "rows are dropped until the surface is this high", kRoul);
-  s.only("packing.kind", {"layered"});
+           "distance of the side walls, or the periodic length along x and y; four depths keep "
+           "their influence small",
+           kRoul);
+  s.only("packing.kind", {"layered", "random"});
+  s.number(
+      "depth", "m", IN(packing.depth), kLength,
+      "rows are dropped until the surface is this high; of spheres, as many are placed as fill "
+      "it at a solid fraction of 0.6",
+      kRoul);
+  s.only("packing.kind", {"layered", "random"});
+  s.word("sides", IN(packing.sides), {"periodic", "walls"},
+         "what bounds a layer of spheres along x and y");
+  s.space();
   s.number("drop_height", "m", IN(packing.drop_height), kLength,
            "height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
@@ -64,7 +82,7 @@ void declare_packing_keys(SectionKeys s) {
   s.number("side", "m", IN(packing.side), kRadius, "mean length of a side", "Roul 5.1");
   s.only("packing.shape", {"irregular"});
   s.word("floor", IN(packing.floor), {"smooth", "rough"},
-         "flat wall with friction, or a row of fixed grains", "Roul 5.5");
+         "flat wall with friction, or a row (in space a layer) of fixed grains", "Roul 5.5");
   s.number("jitter", "-", IN(packing.jitter), {0, 0.5},
            "radii uniform in radius * [1 - 2 jitter, 1]; 0 is the perfect lattice");
   s.only("packing.sizes", {"mono"});
@@ -72,7 +90,12 @@ void declare_packing_keys(SectionKeys s) {
 
 void declare_load_keys(SectionKeys s) {
   s.number("force", "N", IN(load.force), kForce,
-           "downwards on one grain of the surface; more rearranges grains", kRoul);
+           "downwards on one grain of the surface; more rearranges grains; in space where "
+           "load.weights is 0",
+           kRoul);
+  s.number("weights", "-", IN(load.weights), Range{1e-6, 1e9}.with_zero(),
+           "the force over the mean weight of a grain; 0: load.force");
+  s.space();
   s.word("method", IN(load.method), {"damped", "newton"},
          "slow damped dynamics, or the quasi-static solver on the contact network (for small "
          "forces: it fails where many contacts rearrange)");
@@ -84,6 +107,13 @@ void declare_load_keys(SectionKeys s) {
   s.only("load.method", {"damped"});
   s.number("position", "-", IN(load.position), {0, 1},
            "share of the width: the top grain nearest to it carries the force");
+  s.number("position_y", "-", IN(load.position_y), {0, 1}, "likewise along y");
+  s.space();
+  s.number(
+      "radius", "m", IN(load.radius), kLength.with_zero(),
+      "the grains that are seen from above within this distance of that one share the force in "
+      "equal parts; 0: it alone");
+  s.space();
 }
 
 }  // namespace grainfield::coupling

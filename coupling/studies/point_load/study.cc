@@ -20,6 +20,7 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/keys.h"
 #include "coupling/studies/point_load/page.h"
+#include "coupling/studies/point_load/space.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
@@ -278,6 +279,13 @@ void check_point_load(const Case& value) {
         fmt::format("packing.radius_small: found {:g}, allowed: up to packing.radius = {:g}",
                     p.radius_small, p.radius));
   }
+  const auto& load = value.get<dem::PointLoadSetup>().load;
+  if (p.dim == 3 && load.weights > 0 && load.force != dem::LoadSetup().force) {
+    throw std::invalid_argument(
+        fmt::format("load.force: found {:g} beside load.weights = {:g}, allowed: with load.weights "
+                    "= 0 (spheres are loaded with so many weights of a grain otherwise)",
+                    load.force, load.weights));
+  }
 }
 
 Study point_load_study() {
@@ -306,8 +314,13 @@ Study point_load_study() {
                                    draws);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int threads) {
+    if (value.get<dem::PointLoadSetup>().packing.dim == 3) {
+      return analyse_space_load(value, files, threads);
+    }
     return analyse_point_load(value, files, threads);
   };
+  out.dimension = [](const Case& value) { return value.get<dem::PointLoadSetup>().packing.dim; };
+  out.dimension_key = "packing.dim";
   return out;
 }
 

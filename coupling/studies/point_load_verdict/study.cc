@@ -194,7 +194,10 @@ Study point_load_verdict_study() {
   out.sections.push_back(kVerdictKeys);
   out.figures.push_back(figures_of_fits);
   out.check = check;
-  out.without = {"compare.models"};
+  out.without = {"compare.models", "packing.dim",     "packing.stacking", "packing.sides",
+                 "load.weights",   "load.position_y", "load.radius"};
+  out.dimension = nullptr;
+  out.dimension_key.clear();
   out.models_optional = true;
   out.make_run = make_run;
   out.foresee = foresee;

@@ -1,0 +1,186 @@
+#include "coupling/studies/point_load/space_page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "coupling/studies/point_load/page.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr const char* kStressLabel = "response of -σ_{zz}  (F/h²)";
+
+std::string shown_or_dash(double value, int digits = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+std::string with_spread(double value, double error) {
+  return std::isfinite(error) ? shown_or_dash(value) + " ± " + shown_or_dash(error, 1)
+                              : shown_or_dash(value);
+}
+
+// Profile k and the models there, lengths in h and stresses in F/h^2.
+Frame radial_frame(const Comparison& c, std::size_t k) {
+  const Profile& p = c.profiles[k];
+  Frame out;
+  out.title = p.name;
+  Series grains;
+  grains.label = c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
+  grains.simulation = true;
+  grains.x = p.x / c.depth;
+  grains.y = p.mean / c.unit();
+  if (p.error.size() > 0) grains.error = p.error / c.unit();
+  out.series.push_back(std::move(grains));
+  for (const ModelProfiles& m : c.models) {
+    out.series.push_back({m.label, p.x / c.depth, m.values[k] / c.unit(), {}, false});
+  }
+  return out;
+}
+
+void add_radial(Report& report, const Comparison& c) {
+  std::vector<Frame> frames;
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) frames.push_back(radial_frame(c, k));
+  Picture picture = curves("Response by radius, against the models", "radius / h, to both sides",
+                           kStressLabel, frames);
+  picture.caption = fmt::format(
+      "Vertical pressure added by the load, mean over the angle about it, in units of F/h² = "
+      "{:.4g} "
+      "Pa (F = {:.4g} N, h = {:.4g} m). The models are smoothed with the kernel of the averaging. "
+      "The grey band is one standard error on either side.",
+      c.unit(), c.load, c.depth);
+  report.sections.emplace_back(std::move(picture));
+}
+
+// The nearest model by the verdict.
+const SpaceLoadPage::Model& nearest_of(const SpaceLoadPage& page, const Comparison& c) {
+  for (const auto& m : page.models) {
+    if (m.key == c.verdict.best_model) return m;
+  }
+  return page.models.front();
+}
+
+// Grains, the nearest model and their difference on a grid of columns a and b of its points.
+Picture side_views(const std::string& title, const Field& grains, const std::string& vertical,
+                   int rows, int column, const std::string& label, const Eigen::VectorXd* model,
+                   const Comparison& c) {
+  Eigen::MatrixXd points(grains.points.rows(), 2);
+  points << grains.points.col(0), grains.points.col(column);
+  points /= c.depth;
+  const Eigen::VectorXd simulation = -grains.find("sigma_zz")->value / c.unit();
+  std::vector<Map> all{{"grains", grains.nx, rows, points, simulation}};
+  if (model != nullptr) {
+    const Eigen::VectorXd there = -*model / c.unit();
+    all.push_back({label, grains.nx, rows, points, there});
+    all.push_back({"grains - " + label, grains.nx, rows, points, simulation - there});
+  }
+  Picture picture = maps(title, "x / h", vertical, "-σ_{zz}  (F/h²)", all);
+  picture.caption =
+      "One colour scale for all; it ends at the 99 % quantile. Points without enough grains around "
+      "them are left white.";
+  return picture;
+}
+
+void add_maps(Report& report, const SpaceLoadPage& page, const Comparison& c) {
+  const SpaceLoadPage::Model* model = page.models.empty() ? nullptr : &nearest_of(page, c);
+  const std::string label = model ? model->label : "";
+  report.sections.emplace_back(side_views("Pressure on the base", page.base, "y / h", page.base.ny,
+                                          1, label, model ? &model->base : nullptr, c));
+  report.sections.emplace_back(side_views("Vertical cut through the load", page.cut, "z / h",
+                                          page.cut.nz, 2, label, model ? &model->cut : nullptr, c));
+}
+
+void add_space_tables(Report& report, const StudyResult& result) {
+  const Comparison& c = result.comparison;
+  Table distances{"Distance of the models from the grains",
+                  "Relative L2: root of the sum of squared differences over that of the grains, "
+                  "points evenly spaced in the radius. chi2/dof: squared differences over squared "
+                  "standard errors, corrected for the number of realizations.",
+                  {"model", "relative L2", "largest difference (F/h²)", "at r/h", "in", "chi2/dof"},
+                  {}};
+  for (const ModelComparison& r : c.results) {
+    distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
+                              shown_or_dash(r.overall.largest / c.unit()),
+                              shown_or_dash(std::fabs(r.overall.largest_at) / c.depth, 2),
+                              r.overall.largest_in, shown_or_dash(r.overall.chi2_per_dof)});
+  }
+  report.sections.emplace_back(std::move(distances));
+  Table shapes{
+      "Shape of the profiles",
+      "By radius, drawn to both sides: one peak is a peak below the load, two are a ring. "
+      "Peak in F/h², widths in h; standard errors of the grains by leaving one realization "
+      "out at a time.",
+      {"profile", "of", "peak", "at r/h", "full width at half maximum", "peaks"},
+      {}};
+  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
+                       double peak_error, double width_error) {
+    shapes.rows.push_back({profile, of, with_spread(s.peak / c.unit(), peak_error / c.unit()),
+                           shown_or_dash(std::fabs(s.peak_at) / c.depth, 2),
+                           with_spread(s.fwhm / c.depth, width_error / c.depth),
+                           fmt::format("{}", s.peaks)});
+  };
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k].peak, c.shape_errors[k].fwhm);
+    for (const ModelComparison& r : c.results) {
+      row("", r.label, r.shapes[k], std::nan(""), std::nan(""));
+    }
+  }
+  report.sections.emplace_back(std::move(shapes));
+}
+
+void add_before(Report& report, const SpaceLoadPage& page) {
+  const Column* column = page.base_unloaded.find("sigma_zz");
+  Series series{"grains before loading", page.base_unloaded.points.col(0), -column->value,
+                column->error.size() ? column->error : Eigen::VectorXd(), true};
+  report.sections.emplace_back(curves("Pressure on the base before loading", "radius (m)",
+                                      "-σ_{zz}  (Pa)", {{"", {std::move(series)}}}));
+}
+
+}  // namespace
+
+Report space_load_page(const StudyResult& result, const Realization* first,
+                       const SpaceLoadPage& page) {
+  const Comparison& c = result.comparison;
+  Report report;
+  report.title = title_of(result.value);
+  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
+                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_radial(report, c);
+  add_maps(report, page, c);
+  if (first != nullptr) {
+    report.sections.emplace_back(
+        slice("The loaded packing, cut in the middle", (*first)["loaded"]));
+  }
+  add_before(report, page);
+  add_space_tables(report, result);
+  ReportRows figures = figure_rows(result.summary, {"dem.grains",
+                                                    "dem.contacts",
+                                                    "dem.volume_fraction",
+                                                    "layer.depth",
+                                                    "layer.F_over_h2",
+                                                    "load.force",
+                                                    "load.force_over_weight",
+                                                    "dem.unbalanced_force_ratio",
+                                                    "dem.kinetic_to_elastic_energy",
+                                                    "base.weight_ratio",
+                                                    "load.contacts_gained",
+                                                    "load.contacts_lost",
+                                                    "load.newly_sliding",
+                                                    "load.no_rearrangement",
+                                                    "load.max_displacement_over_radius",
+                                                    "response.total_over_load",
+                                                    "response.within_over_load",
+                                                    "response.peak",
+                                                    "response.peak_over_F_per_h",
+                                                    "response.width",
+                                                    "response.peaks",
+                                                    "average.coarse_graining.balance_rms",
+                                                    "average.width"});
+  add_energy_rows(result.summary, figures);
+  add_rows(report, "Figures", figures);
+  add_rows(report, "How it was made", origin_rows(result));
+  return report;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,303 @@
+// A layer of spheres settles, comes to rest, and one of its top grains is loaded:
+//   settle (spheres placed at random) -> rest -> snapshot "unloaded" -> load -> hold -> "loaded".
+#include "dem/study/point_load_space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "dem/packing/space_layer.h"
+#include "dem/snapshot/images.h"
+#include "dem/study/fingerprint.h"
+#include "dem/study/layer_figures.h"
+#include "dem/study/phases.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Rest is judged every so many steps, counted within a phase: cheap beside the steps themselves.
+constexpr long kCheckEvery = 200;
+// Spheres have settled when the mean kinetic energy of one is below this share of m g r: then
+// nothing rises by more than a hundredth of a radius any more.
+constexpr double kSettledShare = 0.01;
+
+enum class Phase : int { settle, rest, load, hold, done };
+
+// In the order of Phase.
+std::vector<PhaseInfo> phases_of(const PackingSetup& packing) {
+  const double settled = packing.kind == "random" ? 0.2 : 0, rested = 0.5 + 0.2 * settled;
+  const double loaded = rested + 0.4 * (1 - rested);
+  return {{"settle", false, 0, settled},
+          {"rest", true, settled, rested},
+          {"load", true, rested, loaded},
+          {"hold", true, loaded, 1},
+          {"done", true, 1, 1}};
+}
+
+class SpaceLoadRun final : public ArchivedRun {
+ public:
+  SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads);
+
+  void advance(long steps) override;
+  bool done() const override { return phases_.done(); }
+  Progress progress() const override;
+  RunResult result() const override;
+
+ private:
+  void visit(Archive& archive) override;
+  std::unique_ptr<Engine> empty_engine() const;
+  void enter(Phase phase);
+  void decide();
+  bool has_settled() const;
+  void decide_rest();
+  double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
+  std::string fingerprint() const override;
+  Snapshot take_snapshot(const char* state) const;
+  std::int64_t choose_loaded_grain(const Snapshot& snapshot) const;
+  std::vector<std::int64_t> others_loaded(const Snapshot& snapshot, std::int64_t first) const;
+
+  PointLoadSetup setup_;
+  std::uint64_t seed_;
+  EngineSettings settings_;
+  std::unique_ptr<Engine> engine_;
+  Phases<Phase> phases_;
+  std::optional<Snapshot> unloaded_, loaded_;
+};
+
+SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
+    : setup_(setup),
+      seed_(seed),
+      settings_(space_load_settings(setup, threads)),
+      phases_(phases_of(setup.packing)) {
+  engine_ = empty_engine();
+  Random random(seed);
+  const double density = setup_.material.density;
+  for (const NewGrain& g : space_floor(setup_.packing, density, random)) engine_->add(g);
+  for (const NewGrain& g : space_grains(setup_.packing, density, random)) engine_->add(g);
+  enter(setup_.packing.kind == "random" ? Phase::settle : Phase::rest);
+}
+
+std::unique_ptr<Engine> SpaceLoadRun::empty_engine() const {
+  std::unique_ptr<Engine> engine = make_engine(settings_);
+  for (const Wall& wall : space_walls(setup_.packing, setup_.material)) engine->add_wall(wall);
+  return engine;
+}
+
+void SpaceLoadRun::enter(Phase phase) {
+  phases_.enter(phase);
+  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
+}
+
+void SpaceLoadRun::advance(long steps) {
+  while (steps > 0 && !done()) {
+    steps -= phases_.step(*engine_, steps, kCheckEvery);
+    if (phases_.is_due(kCheckEvery)) decide();
+  }
+}
+
+bool SpaceLoadRun::has_settled() const {
+  const PackingSetup& p = setup_.packing;
+  const double g = setup_.material.gravity;
+  if (in_phase() < std::sqrt(2 * loose_height(p) / g)) return false;
+  const double mass = setup_.material.density * mean_sphere_volume(p);
+  return engine_->motion().kinetic_energy <=
+         kSettledShare * mass * g * mean_sphere_radius(p) * engine_->grains();
+}
+
+void SpaceLoadRun::decide() {
+  switch (phases_.now()) {
+    case Phase::settle:
+      if (has_settled()) {
+        enter(Phase::rest);
+      } else if (in_phase() > setup_.rest.max_time) {
+        fail_to_rest(engine_->measure(), setup_.rest, "while the spheres settle", "");
+      }
+      return;
+    case Phase::rest:
+    case Phase::hold:
+      return decide_rest();
+    case Phase::load:
+      if (in_phase() >= setup_.load.ramp_time) enter(Phase::hold);
+      return;
+    case Phase::done:
+      return;
+  }
+}
+
+void SpaceLoadRun::decide_rest() {
+  const bool holds = phases_.now() == Phase::hold;
+  const Diagnostics d = engine_->measure();
+  if (!at_rest(d, setup_.rest)) {
+    if (in_phase() > setup_.rest.max_time) {
+      fail_to_rest(d, setup_.rest, holds ? "after the load" : "before the load",
+                   ", or lower load.weights or load.force");
+    }
+    return;
+  }
+  if (holds) {
+    loaded_ = take_snapshot("loaded");
+    phases_.enter(Phase::done);
+    return;
+  }
+  unloaded_ = take_snapshot("unloaded");
+  enter(Phase::load);
+  AppliedForce force;
+  force.id = choose_loaded_grain(*unloaded_);
+  const std::vector<std::int64_t> beside = others_loaded(*unloaded_, force.id);
+  force.fz = -force_of_load(setup_) / static_cast<double>(1 + beside.size());
+  force.start = engine_->time();
+  force.ramp = setup_.load.ramp_time;
+  engine_->apply(force, beside);
+}
+
+// The grains within load.radius of that one whose centres no higher grain covers.
+std::vector<std::int64_t> SpaceLoadRun::others_loaded(const Snapshot& s, std::int64_t first) const {
+  const auto apart = [&s](const Grain& a, const Grain& b) {
+    Vec3 way = a.position - b.position;
+    way.z() = 0;
+    way += shift_to(s.cell, nearest_image(s.cell, way));
+    return way.head<2>().norm();
+  };
+  const Grain& middle = s.grains[static_cast<std::size_t>(first)];
+  std::vector<std::int64_t> out;
+  for (const Grain& g : s.grains) {
+    if (g.fixed || g.id == first || apart(g, middle) > setup_.load.radius) continue;
+    const bool covered = std::any_of(s.grains.begin(), s.grains.end(), [&](const Grain& other) {
+      return other.position.z() > g.position.z() && apart(other, g) < other.radius;
+    });
+    if (!covered) out.push_back(g.id);
+  }
+  return out;
+}
+
+// The highest grain within a radius of the wanted place, or where there is none within more; ties
+// go to the nearer one.
+std::int64_t SpaceLoadRun::choose_loaded_grain(const Snapshot& s) const {
+  const auto sides = layer_sides(setup_.packing);
+  const Vec3 wanted((setup_.load.position - 0.5) * sides[0],
+                    (setup_.load.position_y - 0.5) * sides[1], 0);
+  std::int64_t best = -1;
+  double height = 0;
+  for (double reach = largest_radius(setup_.packing); best < 0; reach *= 2) {
+    for (const Grain& g : s.grains) {
+      Vec3 way = g.position - wanted;
+      way.z() = 0;
+      way += shift_to(s.cell, nearest_image(s.cell, way));
+      const double apart = way.head<2>().norm();
+      if (g.fixed || apart > reach) continue;
+      const double key = g.position.z() - 1e-3 * apart;
+      if (best < 0 || key > height) {
+        best = g.id;
+        height = key;
+      }
+    }
+  }
+  return best;
+}
+
+Snapshot SpaceLoadRun::take_snapshot(const char* state) const {
+  Snapshot s = engine_->snapshot();
+  s.attributes["state"] = state;
+  s.attributes["seed"] = fmt::format("{}", seed_);
+  s.attributes["packing"] = setup_.packing.kind;
+  s.attributes["floor"] = setup_.packing.floor;
+  return s;
+}
+
+Progress SpaceLoadRun::progress() const {
+  const Diagnostics d = engine_->measure();
+  Progress p;
+  p.simulated_time = engine_->time();
+  p.steps = engine_->steps();
+  p.grains = engine_->grains();
+  p.awake = d.awake;
+  p.kinetic_energy = d.kinetic_energy;
+  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
+  p.phase = phases_.info().name;
+  double share = 1;
+  switch (phases_.now()) {
+    case Phase::settle:
+      share =
+          0.5 * in_phase() / std::sqrt(2 * loose_height(setup_.packing) / setup_.material.gravity);
+      break;
+    case Phase::rest:
+    case Phase::hold:
+      share = rest_progress(d, setup_.rest);
+      break;
+    case Phase::load:
+      share = in_phase() / std::max(setup_.load.ramp_time, 1e-300);
+      break;
+    case Phase::done:
+      break;
+  }
+  p.fraction = done() ? 1 : phases_.fraction(share);
+  return p;
+}
+
+std::string SpaceLoadRun::fingerprint() const {
+  return fmt::format("point load {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
+}
+
+void SpaceLoadRun::visit(Archive& archive) {
+  phases_.visit(archive);
+  archive.engine(engine_, [this] { return empty_engine(); });
+  archive.snapshot(unloaded_, "unloaded");
+  archive.snapshot(loaded_, "loaded");
+  archive.require((phases_.now() < Phase::load || unloaded_) && (!done() || loaded_));
+}
+
+RunResult SpaceLoadRun::result() const {
+  RunResult out;
+  if (!unloaded_ || !loaded_) return out;
+  out.snapshots = {{"unloaded", *unloaded_}, {"loaded", *loaded_}};
+  auto& f = out.figures;
+  add_engine_figures(*engine_, engine_->measure(), f);
+  const auto sides = layer_sides(setup_.packing);
+  add_layer_figures(*unloaded_, *loaded_, space_surface(*unloaded_, setup_.packing), sides[0],
+                    sides[0] * sides[1], f);
+  f["load.force"] = force_of_load(setup_);
+  f["load.force_over_weight"] =
+      f["load.force"] /
+      (setup_.material.density * mean_sphere_volume(setup_.packing) * setup_.material.gravity);
+  f["load.grains"] = static_cast<double>(1 + loaded_->also_loaded.size());
+  add_contact_changes(*unloaded_, *loaded_, f);
+  return out;
+}
+
+}  // namespace
+
+EngineSettings space_load_settings(const PointLoadSetup& s, int threads) {
+  check_packing(s.packing);
+  if (s.load.method != "damped") {
+    throw std::invalid_argument(fmt::format(
+        "load.method: found \"{}\" with packing.dim = 3, allowed: \"damped\"", s.load.method));
+  }
+  const double least = smallest_radius(s.packing);
+  GrainExtremes extremes;
+  extremes.least_radius = least;
+  extremes.least_mass = s.material.density * 4 / 3 * std::numbers::pi * least * least * least;
+  EngineSettings out =
+      engine_settings(s.material, s.motion, extremes, threads, false, 1, ShapeKind::sphere);
+  out.gravity_y = 0;
+  out.gravity_z = -s.material.gravity;
+  out.cell = layer_cell(s.packing);
+  check_background_damping(s.rest, out.time_step);
+  check_countable("load.ramp_time", s.load.ramp_time, out.time_step);
+  return out;
+}
+
+double force_of_load(const PointLoadSetup& s) {
+  if (s.packing.dim == 2 || s.load.weights == 0) return s.load.force;
+  return s.load.weights * s.material.density * mean_sphere_volume(s.packing) * s.material.gravity;
+}
+
+std::unique_ptr<Run> make_space_load_run(const PointLoadSetup& setup, std::uint64_t seed,
+                                         int threads) {
+  return std::make_unique<SpaceLoadRun>(setup, seed, threads);
+}
+
+}  // namespace grainfield::dem

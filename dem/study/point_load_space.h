@@ -1,0 +1,17 @@
+// A point load on a layer of spheres.
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "dem/study/run.h"
+
+namespace grainfield::dem {
+
+/// Settings of its engine. Throws as make_point_load_run.
+EngineSettings space_load_settings(const PointLoadSetup& setup, int threads);
+
+/// As make_point_load_run, of packing.dim = 3: snapshots "unloaded" and "loaded".
+std::unique_ptr<Run> make_space_load_run(const PointLoadSetup& setup, std::uint64_t seed,
+                                         int threads);
+
+}  // namespace grainfield::dem
