@@ -1,6 +1,7 @@
 // Grains placed loosely are compressed, rest, and are deformed:
-//   compress -> rest (-> precompress, settle) -> snapshot "state_000" -> deform (-> unload),
-//   with a snapshot at equal steps of strain, or of the axial stress as it is unloaded.
+//   compress -> rest (-> probe) (-> precompress, settle) (-> probe) -> snapshot "state_000" ->
+//   deform (-> unload), with a snapshot at equal steps of strain, or of the axial stress as it is
+//   unloaded.
 // A periodic cell is led by its velocity gradient, between walls by their motion; where a stress is
 // held, by CellServo here and by the engine's servos there.
 #include "dem/study/sample.h"
@@ -16,6 +17,7 @@
 #include "dem/study/sample_cell.h"
 #include "dem/study/sample_checks.h"
 #include "dem/study/sample_goal.h"
+#include "dem/study/sample_probe.h"
 #include "dem/study/sample_record.h"
 #include "dem/study/sample_servo.h"
 #include "dem/study/sample_state.h"
@@ -68,8 +70,9 @@ class SampleRun final : public ArchivedRun {
   void decide();
   void decide_compression();
   void decide_rest();
+  void probe(long steps);
   void decide_deformation();
-  Phase after_rest() const;
+  Phase after(Phase phase) const;
   void lead();
   void note_error();
   void record();
@@ -86,10 +89,13 @@ class SampleRun final : public ArchivedRun {
   double solid_volume_ = 0;      // of all grains, m3 (m2)
   double compression_time_ = 0;  // s, at least
   CellServo cell_servo_;
+  SampleProber prober_{setup_};
   Phases<Phase> phases_{{{"compress", true, 0, 0.3},
                          {"rest", true, 0.3, 0.4},
-                         {"precompress", false, 0.4, 0.5},
-                         {"settle", true, 0.5, 0.55},
+                         {"probe", true, 0.4, 0.42},
+                         {"precompress", false, 0.42, 0.5},
+                         {"settle", true, 0.5, 0.53},
+                         {"probe", true, 0.53, 0.55},
                          {"deform", false, 0.55, 0.8},
                          {"unload", false, 0.8, 1},
                          {"done", false, 1, 1}}};
@@ -178,10 +184,11 @@ void SampleRun::advance(long steps) {
     if (deforms(phases_.now()) || phases_.now() == Phase::precompress) {
       chunk = std::min(chunk, next_record_ - phases_.steps());
     }
+    if (probes(phases_.now())) chunk = std::min(steps, prober_.until_due());
     engine_->step(chunk);
     phases_.advance(chunk);
     steps -= chunk;
-    decide();
+    probes(phases_.now()) ? probe(chunk) : decide();
   }
 }
 
@@ -189,6 +196,9 @@ void SampleRun::begin(Phase phase) {
   const bool prepared = prepares();
   phases_.enter(phase);
   if (has_other_friction(plan_) && prepared && !prepares()) change_friction();
+  if (probes(phase)) {
+    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared");
+  }
   engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
   cell_servo_.forget();
   if (phase == Phase::precompress) {
@@ -216,6 +226,8 @@ void SampleRun::decide() {
     case Phase::deform:
     case Phase::unload:
       return decide_deformation();
+    case Phase::probe_prepared:
+    case Phase::probe_first:
     case Phase::done:
       return;
   }
@@ -257,16 +269,24 @@ void SampleRun::decide_compression() {
   check_pressure_found(setup_, in_phase(), compression_time_, fraction());
 }
 
-Phase SampleRun::after_rest() const {
-  return phases_.now() == Phase::rest && precompresses(plan_) ? Phase::precompress : Phase::deform;
+// What follows a phase of the preparation: the next one that the plan asks for.
+Phase SampleRun::after(Phase phase) const {
+  if (phase == Phase::rest && probes_prepared(plan_)) return Phase::probe_prepared;
+  if (phase <= Phase::probe_prepared && precompresses(plan_)) return Phase::precompress;
+  return phase < Phase::probe_first && probes_first(plan_) ? Phase::probe_first : Phase::deform;
 }
 
 void SampleRun::decide_rest() {
   const Diagnostics d = engine_->measure();
   const bool led = is_led_now();
   const Vec3 held = led ? pressure() : Vec3::Zero();
-  if (is_prepared(setup_, phases_.now(), d, held)) return begin(after_rest());
+  if (is_prepared(setup_, phases_.now(), d, held)) return begin(after(phases_.now()));
   if (in_phase() > setup_.rest.max_time) fail_to_prepare(setup_, d, held);
+}
+
+void SampleRun::probe(long steps) {
+  if (prober_.decide(engine_, steps, [this] { return empty_engine(); }))
+    begin(after(phases_.now()));
 }
 
 // The motion of cell or walls at the beginning of a phase; of a cell's servo at every measurement.
@@ -298,6 +318,8 @@ void SampleRun::record() {
   if (is_led_now()) note_error();
   const std::size_t number = states_.size();
   states_.emplace_back(sample_record(*engine_, plan_, number, number == 0 ? 0 : strain(), seed_));
+  if (number == 0)
+    states_.front()->attributes.insert(prober_.attributes().begin(), prober_.attributes().end());
   const auto count = static_cast<int>(states_.size());
   if (count == states_of(plan_)) return begin(Phase::done);
   if (count == plan_.records + 1) return begin(Phase::unload);
@@ -345,6 +367,10 @@ Progress SampleRun::progress() const {
     case Phase::settle:
       share = rest_progress(d, setup_.rest);
       break;
+    case Phase::probe_prepared:
+    case Phase::probe_first:
+      share = prober_.share();
+      break;
     case Phase::precompress:
       share = strain_at(plan_, in_phase()) / plan_.precompression;
       break;
@@ -375,6 +401,7 @@ void SampleRun::visit(Archive& archive) {
   archive(measured_);
   archive(next_record_);
   cell_servo_.visit(archive);
+  prober_.visit(archive);
   archive.engine(engine_, [this] { return empty_engine(); });
   auto count = static_cast<int>(states_.size());
   archive(count);

@@ -150,6 +150,21 @@ void check_path(const SamplePlan& p) {
   }
 }
 
+// Small strains want three dimensions, and something that calms the grains.
+void check_probes(const SampleSetup& s) {
+  const SamplePlan& p = s.plan;
+  if (p.probe == "none") return;
+  if (p.dim != 3) {
+    refuse("probe", fmt::format("found \"{}\", allowed with sample.dim = 2: none", p.probe));
+  }
+  if (!(s.rest.background_damping > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "rest.background_damping: found {:g}, allowed with sample.probe = \"{}\": above "
+        "0, for the grains must come to rest after each small strain",
+        s.rest.background_damping, p.probe));
+  }
+}
+
 void check_strains(const SamplePlan& p) {
   for (const auto& [key, rate] : {std::pair("compression_rate", p.compression_rate),
                                   std::pair("strain_rate", p.strain_rate)}) {
@@ -253,6 +268,7 @@ void check_sample(const SampleSetup& s) {
   check_servo(s.plan);
   check_strains(s.plan);
   check_path(s.plan);
+  check_probes(s);
   const double most = kMostLoad * stiffness_of(s);
   if (has_servo(s.plan) && s.plan.pressure > most) {
     refuse("pressure",

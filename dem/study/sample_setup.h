@@ -41,6 +41,10 @@ struct SamplePlan {
   double prepared_friction = 0;  ///< other_friction: of the grains, and of walls at most
   double precompression = 0;     ///< strain along the last axis before the first state
 
+  // -- small strains
+  std::string probe = "none";  ///< none | prepared | first | both: the states they are tried in
+  double probe_strain = 1e-5;
+
   // -- deformation
   std::string deformation = "simple_shear";  ///< simple_shear | axial | uniaxial | isotropic
   std::string constant = "volume";           ///< simple_shear: volume | stress (of the lid)
@@ -60,9 +64,9 @@ struct SamplePlan {
                     corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
                     boundary, height_ratio, start_fraction, compression, compress_to, pressure,
                     solid_fraction, compression_strain, compression_rate, prepared_with,
-                    prepared_friction, precompression, deformation, constant, sides, strain,
-                    strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
-                    unload_records);
+                    prepared_friction, precompression, probe, probe_strain, deformation, constant,
+                    sides, strain, strain_rate, ramp_time, records, unload, unload_strain,
+                    unload_stress, unload_records);
   }
 };
 

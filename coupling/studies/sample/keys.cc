@@ -106,6 +106,17 @@ void compression(SectionKeys& s) {
            "Wellmann 28");
 }
 
+void probes(SectionKeys& s) {
+  s.word("probe", IN(probe), {"none", "prepared", "first", "both"},
+         "where elastic moduli are measured by small strains, each from the same grains at rest: "
+         "nowhere, after the preparation (the first rest), in the first state, in both");
+  s.space();
+  s.number("probe_strain", "-", IN(probe_strain), {1e-9, 1e-2},
+           "of each of them; much below the overlaps (pressure over stiffness), so that contacts "
+           "neither come nor go");
+  s.only("sample.probe", {"prepared", "first", "both"});
+}
+
 void deformation(SectionKeys& s) {
   s.word("deformation", IN(deformation), {"simple_shear", "axial", "uniaxial", "isotropic"},
          "the last axis' planes slide along x; the last axis shortens while servos hold the "
@@ -153,6 +164,7 @@ void declare_sample_keys(SectionKeys s) {
   grains(s);
   place(s);
   compression(s);
+  probes(s);
   deformation(s);
   unloading(s);
 }
