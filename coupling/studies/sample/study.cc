@@ -10,6 +10,7 @@
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/sample/keys.h"
+#include "coupling/studies/sample/moduli.h"
 #include "coupling/studies/sample/page.h"
 #include "coupling/studies/sample/path_figures.h"
 #include "coupling/studies/sample/rve_page.h"
@@ -259,6 +260,14 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   };
 }
 
+// The figures moduli.* and their table, where the case asks for small strains.
+void add_moduli(const std::vector<std::string>& files, SampleReport& report, StudyResult& out) {
+  const std::vector<ProbedState> states = probed_moduli(files);
+  add_figures(out.summary, moduli_figures(states));
+  add_symmetry(states, out.summary);
+  report.moduli = moduli_sections(states, out.summary);
+}
+
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
 // spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
@@ -279,6 +288,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
     }
   }
   SampleReport report = curves_of(value, table);
+  add_moduli(files, report, out);
   add_rves(value, files, report, out);
   out.member_curves = member_curves(report);
   out.page = [report](const StudyResult& result, const Realization* first) {
@@ -306,7 +316,7 @@ Study sample_study() {
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys};
+  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
