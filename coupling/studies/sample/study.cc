@@ -16,6 +16,7 @@
 #include "coupling/studies/sample/rve_page.h"
 #include "coupling/studies/sample/state_figures.h"
 #include "coupling/studies/sample/state_table.h"
+#include "coupling/studies/sample/strength.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
@@ -115,6 +116,11 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.peak_stress_ratio",
                                              "sample.strain_at_peak",
                                              "sample.peak_friction_angle_deg",
+                                             "strength.peak_friction_deg",
+                                             "strength.residual_friction_deg",
+                                             "strength.peak_dilation_deg",
+                                             "strength.dilation_at_peak_deg",
+                                             "strength.residual_dilation_deg",
                                              "sample.critical_stress_ratio",
                                              "sample.critical_friction_angle_deg",
                                              "sample.critical_drift",
@@ -277,6 +283,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
   add_figures(out.summary, path_figures(table, plan));
+  add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.verdict.sentence = sentence(value, table, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
@@ -316,7 +323,7 @@ Study sample_study() {
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys};
+  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
