@@ -21,6 +21,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "continuum/model.h"
 #include "continuum/plasticity/mohr_coulomb_space.h"
@@ -62,7 +63,8 @@ struct Point {
 class Block {
  public:
   Block(const BlockMaterial& material, const Eigen::Matrix3d& stress, int cells)
-      : material_(material), law_(material.constants), hooke_(hooke()) {
+      : material_(material), hooke_(hooke()) {
+    if (material.plastic) law_.emplace(material.constants);
     make_mesh(cells);
     const Vector6 start = vector_of(stress, 1);
     scale_ = std::max(start.cwiseAbs().maxCoeff(), kSmallStrain * material.constants.E);
@@ -88,7 +90,7 @@ class Block {
     return plasticity::hooke_in_space(material_.constants.E, material_.constants.nu);
   }
   ReturnedSpace answer(const Vector6& trial) const {
-    if (material_.plastic) return plasticity::return_in_space(law_, trial);
+    if (law_) return plasticity::return_in_space(*law_, trial);
     ReturnedSpace out;
     out.stress = hooke_ * trial;
     out.elastic_strain = trial;
@@ -98,7 +100,7 @@ class Block {
   void make_mesh(int cells);
 
   BlockMaterial material_;
-  plasticity::MohrCoulombLaw law_;
+  std::optional<plasticity::MohrCoulombLaw> law_;  // none: elastic
   Matrix6 hooke_;
   std::vector<Point> points_;
   Eigen::Index inside_ = 0;  // unknowns of the nodes inside

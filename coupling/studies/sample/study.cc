@@ -9,6 +9,7 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/sample/block.h"
 #include "coupling/studies/sample/keys.h"
 #include "coupling/studies/sample/moduli.h"
 #include "coupling/studies/sample/page.h"
@@ -266,12 +267,22 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   };
 }
 
-// The figures moduli.* and their table, where the case asks for small strains.
-void add_moduli(const std::vector<std::string>& files, SampleReport& report, StudyResult& out) {
+// The figures moduli.* and their table, where the case asks for small strains; block.csv, the
+// figures block.* and their pictures, where it asks for a block of finite elements.
+void add_moduli(const Case& value, const std::vector<std::string>& files, const StateTable& table,
+                SampleReport& report, StudyResult& out) {
   const std::vector<ProbedState> states = probed_moduli(files);
   add_figures(out.summary, moduli_figures(states));
   add_symmetry(states, out.summary);
   report.moduli = moduli_sections(states, out.summary);
+  const BlockSetup& setup = value.get<BlockSetup>();
+  if (setup.law == "none" || states.empty() || states.back().state != "first") return;
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  const BlockComparison comparison =
+      compare_block(setup, table, plan, states.back(), strength_paths(table, plan));
+  add_figures(out.summary, block_figures(comparison));
+  out.texts.emplace_back("block.csv", block_csv(comparison));
+  for (Section& section : block_sections(comparison)) report.moduli.push_back(std::move(section));
 }
 
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
@@ -295,7 +306,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
     }
   }
   SampleReport report = curves_of(value, table);
-  add_moduli(files, report, out);
+  add_moduli(value, files, table, report, out);
   add_rves(value, files, report, out);
   out.member_curves = member_curves(report);
   out.page = [report](const StudyResult& result, const Realization* first) {
@@ -318,16 +329,20 @@ Study sample_study() {
   Study out;
   out.name = "sample";
   out.meaning = "grains in a cell or a box, compressed and sheared: stress, volume and fabric";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys};
+  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys, kBlockKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys};
+  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
+                 block_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
   out.dimension_key = "sample.dim";
+  out.check = [](const Case& value) {
+    check_block(value.get<BlockSetup>(), value.get<dem::SampleSetup>().plan);
+  };
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_sample_run(value.get<dem::SampleSetup>(), realization_seed(value, number),
                                 threads);
