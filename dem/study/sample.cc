@@ -1,7 +1,7 @@
 // Grains placed loosely are compressed, rest, and are deformed:
-//   compress -> rest (-> probe) (-> precompress, settle) (-> probe) -> snapshot "state_000" ->
-//   deform (-> unload), with a snapshot at equal steps of strain, or of the axial stress as it is
-//   unloaded.
+//   (drop ->) compress -> rest (-> probe) (-> precompress, settle) (-> probe) -> snapshot
+//   "state_000" -> deform (-> unload), with a snapshot at equal steps of strain, or of the axial
+//   stress as it is unloaded.
 // A periodic cell is led by its velocity gradient, between walls by their motion; where a stress is
 // held, by CellServo here and by the engine's servos there.
 #include "dem/study/sample.h"
@@ -16,6 +16,7 @@
 #include "dem/study/phases.h"
 #include "dem/study/sample_cell.h"
 #include "dem/study/sample_checks.h"
+#include "dem/study/sample_drop.h"
 #include "dem/study/sample_goal.h"
 #include "dem/study/sample_probe.h"
 #include "dem/study/sample_record.h"
@@ -35,6 +36,8 @@ using Phase = SamplePhase;
 constexpr long kServoEvery = 3, kUnloadEvery = 20, kTiltEvery = 100, kCheckEvery = 200;
 // Solid fractions near which pressures are reached, about; for the progress.
 constexpr double kDense2 = 0.84, kDense3 = 0.64;
+// Spheres of a gap are drawn from a seed of their own.
+constexpr std::uint64_t kGapSeed = 0x9a95b1e5;
 
 class SampleRun final : public ArchivedRun {
  public:
@@ -63,11 +66,16 @@ class SampleRun final : public ArchivedRun {
   }
   Cell<3> cell_at_start() const;
   std::unique_ptr<Engine> empty_engine() const;
+  /// Between grains, in this phase.
+  double friction() const {
+    return has_other_friction(plan_) && prepares() ? plan_.prepared_friction : settings_.friction;
+  }
   bool prepares() const { return phases_.now() <= Phase::rest; }
   void change_friction();
 
   void begin(Phase phase);
   void decide();
+  void decide_drop();
   void decide_compression();
   void decide_rest();
   void probe(long steps);
@@ -87,10 +95,13 @@ class SampleRun final : public ArchivedRun {
   EngineSettings settings_;
   std::array<double, 3> box_{};  // edges at the start, m
   double solid_volume_ = 0;      // of all grains, m3 (m2)
+  double dropped_fraction_ = 0;  // solid fraction as the lid has been put on
+  int gap_spheres_ = 0;          // below it
   double compression_time_ = 0;  // s, at least
   CellServo cell_servo_;
   SampleProber prober_{setup_};
-  Phases<Phase> phases_{{{"compress", true, 0, 0.3},
+  Phases<Phase> phases_{{{"drop", true, 0, 0.2},
+                         {"compress", true, 0, 0.3},
                          {"rest", true, 0.3, 0.4},
                          {"probe", true, 0.4, 0.42},
                          {"precompress", false, 0.42, 0.5},
@@ -130,7 +141,7 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
   for (const NewGrain& grain : place_sample(plan_, grains, box_, density, random)) {
     engine_->add(grain);
   }
-  begin(Phase::compress);
+  begin(is_dropped(plan_) ? Phase::drop : Phase::compress);
 }
 
 Cell<3> SampleRun::cell_at_start() const {
@@ -146,9 +157,9 @@ Cell<3> SampleRun::cell_at_start() const {
 // With the friction of the phase.
 std::unique_ptr<Engine> SampleRun::empty_engine() const {
   EngineSettings settings = settings_;
+  settings.friction = friction();
   double of_walls = setup_.material.wall_friction;
   if (has_other_friction(plan_) && prepares()) {
-    settings.friction = plan_.prepared_friction;
     of_walls = std::min(of_walls, plan_.prepared_friction);
   }
   std::unique_ptr<Engine> engine = make_engine(settings);
@@ -199,7 +210,11 @@ void SampleRun::begin(Phase phase) {
   if (probes(phase)) {
     return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared");
   }
-  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
+  const bool drops = phase == Phase::drop;
+  engine_->set_background_damping(drops                   ? plan_.drop_damping
+                                  : phases_.info().damped ? setup_.rest.background_damping
+                                                          : 0);
+  if (drops) engine_->set_gravity(0, 0, -plan_.drop_gravity);
   cell_servo_.forget();
   if (phase == Phase::precompress) {
     next_record_ = steps_to(plan_, plan_.precompression, engine_->time_step());
@@ -212,6 +227,9 @@ void SampleRun::begin(Phase phase) {
 void SampleRun::decide() {
   const bool due = phases_.is_due(every());
   switch (phases_.now()) {
+    case Phase::drop:
+      if (due) decide_drop();
+      return;
     case Phase::compress:
       if (due) decide_compression();
       return;
@@ -257,6 +275,27 @@ void SampleRun::decide_deformation() {
     tilt_sides(*engine_, plan_, strain(kTiltEvery), kTiltEvery);
   }
   if (is_led_now() && phases_.is_due(kCheckEvery)) note_error();
+}
+
+// At rest on the floor: the lid is put on, the gap filled, gravity taken away.
+void SampleRun::decide_drop() {
+  const Diagnostics d = engine_->measure();
+  if (d.contacts == 0 || !at_rest(d, setup_.rest)) {
+    if (in_phase() > setup_.rest.max_time) {
+      fail_to_rest(d, setup_.rest, "dropped into the box", ", or change sample.drop_damping");
+    }
+    return;
+  }
+  Random random(seed_ ^ kGapSeed);
+  const FilledBox filled = put_lid_on(engine_->snapshot(), plan_, setup_.material.density, random);
+  gap_spheres_ = filled.spheres;
+  dropped_fraction_ = filled.solid_share;
+  solid_volume_ = filled.solid_share * box_[0] * box_[1] * filled.height;
+  box_[2] = filled.height;
+  EngineSettings settings = settings_;
+  settings.friction = friction();
+  engine_ = make_engine(settings, filled.snapshot);
+  begin(Phase::compress);
 }
 
 void SampleRun::decide_compression() {
@@ -359,6 +398,9 @@ Progress SampleRun::progress() const {
   p.phase = phases_.info().name;
   double share = 1;
   switch (phases_.now()) {
+    case Phase::drop:
+      share = rest_progress(d, setup_.rest);
+      break;
     case Phase::compress:
       share = compresses_to_pressure(plan_) ? fraction() / (plan_.dim == 2 ? kDense2 : kDense3)
                                             : compressed();
@@ -399,6 +441,12 @@ void SampleRun::visit(Archive& archive) {
   archive(stress_error_);
   archive(squared_errors_);
   archive(measured_);
+  if (is_dropped(plan_)) {
+    archive(box_);
+    archive(solid_volume_);
+    archive(dropped_fraction_);
+    archive(gap_spheres_);
+  }
   archive(next_record_);
   cell_servo_.visit(archive);
   prober_.visit(archive);
@@ -426,6 +474,10 @@ RunResult SampleRun::result() const {
   for (std::size_t k = 0; k < states_.size(); ++k)
     out.snapshots.emplace_back(state_name(k), *states_[k]);
   add_engine_figures(*engine_, engine_->measure(), out.figures);
+  if (is_dropped(plan_)) {
+    out.figures["sample.gap_spheres"] = gap_spheres_;
+    out.figures["sample.dropped_solid_fraction"] = dropped_fraction_;
+  }
   if (any_led(plan_, Phase::deform)) {
     out.figures["sample.stress_error"] = stress_error_;
     out.figures["sample.stress_rms_error"] =

@@ -7,6 +7,7 @@
 #include "dem/packing/loose.h"
 #include "dem/shapes/superellipsoid.h"
 #include "dem/space/elementary.h"
+#include "dem/study/sample_drop.h"
 
 namespace grainfield::dem {
 namespace {
@@ -141,7 +142,11 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
                               const std::vector<ShapedGrain>& grains) {
   if (is_superellipsoid(p)) {
     GrainExtremes extremes;
-    for (const ShapedGrain& grain : grains) {
+    std::vector<ShapedGrain> all = grains;
+    if (is_dropped(p)) {  // the least sphere that may fill its gap
+      all.emplace_back().axes.fill(p.axis_min * p.radius);
+    }
+    for (const ShapedGrain& grain : all) {
       const FeltMass felt = felt_mass(superellipsoid(grain.axes, grain.exponents), density);
       // Of Hertz' laws the stiffness goes by the radius.
       const bool first = extremes.least_radius == 0;
@@ -161,6 +166,12 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
 }
 
 std::array<double, 3> sample_box(const SamplePlan& p, double volume) {
+  if (is_dropped(p)) {
+    // The base is that of the filled box; so high that the loose grains have their places.
+    std::array<double, 3> box = sample_box(as_filled(p), volume);
+    box[2] = volume / p.start_fraction / (box[0] * box[1]);
+    return box;
+  }
   const double level = volume / p.start_fraction / p.height_ratio;
   const double edge = p.dim == 2 ? std::sqrt(level) : cube_root(level);
   std::array<double, 3> box{edge, edge, edge};

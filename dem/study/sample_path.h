@@ -4,9 +4,10 @@
 
 namespace grainfield::dem {
 
-/// compress -> rest -> (probe_prepared) -> (precompress -> settle) -> (probe_first) -> deform ->
-/// (unload) -> done; those in brackets where the plan asks for them.
+/// (drop) -> compress -> rest -> (probe_prepared) -> (precompress -> settle) -> (probe_first) ->
+/// deform -> (unload) -> done; those in brackets where the plan asks for them.
 enum class SamplePhase : int {
+  drop,
   compress,
   rest,
   probe_prepared,

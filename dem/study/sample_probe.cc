@@ -102,7 +102,8 @@ long SampleProber::until_due() const {
 
 bool SampleProber::is_calm(const Diagnostics& d) const {
   const double strain = setup_.plan.probe_strain, motion = kCalmMotion * strain;
-  return d.contacts > 0 && d.unbalanced_force_ratio <= kCalmForces * strain &&
+  const double unbalanced = std::max(d.unbalanced_force_ratio, d.unbalanced_moment_ratio);
+  return d.contacts > 0 && unbalanced <= kCalmForces * strain &&
          d.kinetic_energy <= motion * motion * d.elastic_energy;
 }
 

@@ -29,6 +29,10 @@ struct SamplePlan {
   std::string boundary = "periodic";  ///< periodic | walls
   double height_ratio = 1;            ///< edge along the last axis over the others, at the start
   double start_fraction = 0.3;        ///< solid fraction of the loose grains
+  std::string filling = "placed";     ///< placed | dropped (walls, 3D)
+  double base_fraction = 0.6;         ///< dropped: solid fraction that the base is made for
+  double drop_gravity = 9.81;         ///< dropped: m/s2, downwards
+  double drop_damping = 10;           ///< dropped: 1/s, of all motion
 
   // -- compression
   std::string compression = "isotropic";        ///< isotropic | uniaxial (along the last axis)
@@ -62,11 +66,12 @@ struct SamplePlan {
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
                     corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
-                    boundary, height_ratio, start_fraction, compression, compress_to, pressure,
-                    solid_fraction, compression_strain, compression_rate, prepared_with,
-                    prepared_friction, precompression, probe, probe_strain, deformation, constant,
-                    sides, strain, strain_rate, ramp_time, records, unload, unload_strain,
-                    unload_stress, unload_records);
+                    boundary, height_ratio, start_fraction, filling, base_fraction, drop_gravity,
+                    drop_damping, compression, compress_to, pressure, solid_fraction,
+                    compression_strain, compression_rate, prepared_with, prepared_friction,
+                    precompression, probe, probe_strain, deformation, constant, sides, strain,
+                    strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
+                    unload_records);
   }
 };
 

@@ -74,6 +74,25 @@ void place(SectionKeys& s) {
       "start_fraction", "-", IN(start_fraction), {0.01, dem::kMostLoose2},
       "solid fraction of the grains placed at random; lower: a longer compression, less memory "
       "of the places");
+  s.word(
+      "filling", IN(filling), {"placed", "dropped"},
+      "the box is filled by its compression alone; or grains fall into it under gravity, the lid "
+      "is put on the highest, the gap below filled with spheres, and then gravity taken away "
+      "(walls)",
+      "Wellmann 6");
+  s.space();
+  const auto dropped = [&] { s.only("sample.filling", {"dropped"}); };
+  s.number("base_fraction", "-", IN(base_fraction), {0.02, 1},
+           "solid fraction at which the base would be filled up to sample.height_ratio; lower: a "
+           "wider base and a lower bed");
+  dropped();
+  s.number("drop_gravity", "m/s2", IN(drop_gravity), kAcceleration, "downwards, while they fall");
+  dropped();
+  s.number("drop_damping", "1/s", IN(drop_damping), {1e-6, 1e9},
+           "of all motion while they fall: velocities decay so fast; higher: they fall at gravity "
+           "over this and come to rest sooner",
+           "Wellmann 6");
+  dropped();
 }
 
 void compression(SectionKeys& s) {

@@ -107,6 +107,8 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
 
 const std::vector<std::string>& shown_figures() {
   static const std::vector<std::string> keys{"dem.grains",
+                                             "sample.gap_spheres",
+                                             "sample.dropped_solid_fraction",
                                              "sample.initial_pressure",
                                              "sample.initial_solid_fraction",
                                              "sample.initial_coordination",
@@ -341,7 +343,9 @@ Study sample_study() {
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
   out.dimension_key = "sample.dim";
   out.check = [](const Case& value) {
-    check_block(value.get<BlockSetup>(), value.get<dem::SampleSetup>().plan);
+    const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+    check_rves(value.get<RveSetup>(), plan);
+    check_block(value.get<BlockSetup>(), plan);
   };
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_sample_run(value.get<dem::SampleSetup>(), realization_seed(value, number),
