@@ -6,6 +6,7 @@
 
 #include "coupling/case/study.h"
 #include "coupling/elastic_constants/space_symmetry.h"
+#include "coupling/output/tables.h"
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
