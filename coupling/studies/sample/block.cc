@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "continuum/constants.h"
 #include "continuum/model.h"
 #include "coupling/studies/sample/state_figures.h"
 #include "dem/study/sample_path.h"
@@ -65,6 +66,14 @@ struct Angles {
   double friction = 0, dilation = 0;
 };
 
+// The friction angle of a law that carries tan = tau/sigma on the planes that slide with this
+// dilation (Davis 1968): tan = sin phi cos psi/(1 - sin phi sin psi). 90 degrees: none does.
+double friction_behind(double plane_deg, double dilation_deg) {
+  const double t = std::tan(plane_deg * kDegree), psi = dilation_deg * kDegree;
+  const double sine = t / (std::cos(psi) + t * std::sin(psi));
+  return std::asin(std::min(1.0, sine)) / kDegree;
+}
+
 // nan: the grains do not tell.
 Angles angles_of(const BlockSetup& setup, const std::vector<StrengthPath>& paths, std::size_t r) {
   if (setup.angles == "given") return {setup.friction_deg, setup.dilation_deg};
@@ -73,7 +82,9 @@ Angles angles_of(const BlockSetup& setup, const std::vector<StrengthPath>& paths
   const double dilation = paths[r].volumetric.size() == 0 ? 0
                           : peak                          ? s.dilation_at_peak
                                                           : s.residual_dilation;
-  return {peak ? s.peak_friction : s.residual_friction, dilation};
+  const double friction = peak ? s.peak_friction : s.residual_friction;
+  if (paths[r].test == StrengthTest::axial) return {friction, dilation};
+  return {friction_behind(friction, std::max(0.0, dilation)), dilation};
 }
 
 // Law by law the material of a realization; throws BadParameter where there is none.
