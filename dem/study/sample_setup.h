@@ -23,6 +23,8 @@ struct SamplePlan {
   double fraction_small = 0.5;            ///< bidisperse: share of the smaller ones, by number
   int corners_min = 6, corners_max = 8;   ///< rand1, regular
   double axis_min = 0.5, axis_max = 1.5;  ///< superellipsoid: semi-axes over the radius
+  std::string axes_times =
+      "one";  ///< superellipsoid: one | sizes; what the semi-axes are scaled by
   double exponent_min = 0.7, exponent_max = 1.3;  ///< superellipsoid
 
   // -- where they are
@@ -65,9 +67,9 @@ struct SamplePlan {
 
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
-                    corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
-                    boundary, height_ratio, start_fraction, filling, base_fraction, drop_gravity,
-                    drop_damping, compression, compress_to, pressure, solid_fraction,
+                    corners_min, corners_max, axis_min, axis_max, axes_times, exponent_min,
+                    exponent_max, boundary, height_ratio, start_fraction, filling, base_fraction,
+                    drop_gravity, drop_damping, compression, compress_to, pressure, solid_fraction,
                     compression_strain, compression_rate, prepared_with, prepared_friction,
                     precompression, probe, probe_strain, deformation, constant, sides, strain,
                     strain_rate, ramp_time, records, unload, unload_strain, unload_stress,

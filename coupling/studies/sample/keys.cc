@@ -56,6 +56,9 @@ void grains(SectionKeys& s) {
   s.number("axis_max", "-", IN(axis_max), {0.05, 20},
            "largest one; each of the three is uniform between both", kWellmann);
   superellipsoid();
+  s.word("axes_times", IN(axes_times), {"one", "sizes"},
+         "the semi-axes are drawn as they are, or times a size drawn as sample.sizes says");
+  superellipsoid();
   s.number("exponent_min", "-", IN(exponent_min), {dem::kLeastExponent, dem::kMostExponent},
            "least exponent: 1 is an ellipsoid, below it faces are flat", kWellmann);
   superellipsoid();
