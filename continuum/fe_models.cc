@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <mutex>
 
+#include "continuum/fe/block.h"
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
 #include "continuum/settings.h"
@@ -44,17 +45,20 @@ void* open_library() {
       built.filename().string()));
 }
 
-fe::MakeFunction plugin() {
+// A function of the library, which is loaded once.
+void* function_of_library(const char* symbol) {
   static std::mutex once;
-  static fe::MakeFunction function = nullptr;
+  static void* library = nullptr;
   const std::lock_guard lock(once);
-  if (function == nullptr) {
-    void* symbol = dlsym(open_library(), fe::kMakeSymbol);
-    if (symbol == nullptr)
-      throw ComputationFailed("the finite-element library is of another version");
-    function = reinterpret_cast<fe::MakeFunction>(symbol);
-  }
+  if (library == nullptr) library = open_library();
+  void* function = dlsym(library, symbol);
+  if (function == nullptr)
+    throw ComputationFailed("the finite-element library is of another version");
   return function;
+}
+
+fe::MakeFunction plugin() {
+  return reinterpret_cast<fe::MakeFunction>(function_of_library(fe::kMakeSymbol));
 }
 
 template <const char* name>
@@ -216,6 +220,15 @@ std::unique_ptr<Model> make_in_fe_library(const char* name, const Settings& sett
   std::unique_ptr<Model> model;
   plugin()(name, settings, g_ranks, model);
   return model;
+}
+
+std::vector<BlockState> load_block(const BlockMaterial& material,
+                                   const Eigen::Matrix3d& initial_stress,
+                                   const std::vector<BlockLoad>& path, int cells) {
+  std::vector<BlockState> states;
+  reinterpret_cast<fe::BlockFunction>(function_of_library(fe::kBlockSymbol))(
+      material, initial_stress, path, cells, states);
+  return states;
 }
 
 ModelInfo fe_elastic_layer_info() {

@@ -59,15 +59,19 @@ class MohrCoulombLaw {
   Vector4 elastic_strain(const Vector4& stress) const;
   const MohrCoulomb& constants() const { return constants_; }
 
- private:
+  /// The return among principal values: the tangent is d stress / d principal trial strain.
   struct Principal {
     Eigen::Vector3d stress;
     Eigen::Matrix3d tangent;
     Regime regime;
   };
+  /// Of principal trial stresses in descending order.
+  Principal principal_return(const Eigen::Vector3d& trial) const;
+  double shear_modulus() const { return shear_; }
+
+ private:
   Principal to_plane(const Eigen::Vector3d& trial) const;
   bool to_edge(const Eigen::Vector3d& trial, Regime edge, Principal& found) const;
-  Principal principal_return(const Eigen::Vector3d& trial) const;
   Eigen::Vector3d gradient(int i, int j, double sine) const;
 
   MohrCoulomb constants_;

@@ -1,6 +1,7 @@
 #include "coupling/case/apply.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "coupling/case/study.h"
 #include "dem/shapes/registry.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -27,6 +29,23 @@ std::string of_three_dimensions(const Key& key, const std::string& word) {
   return fmt::format("\"{}\" is a shape of 3D; the grains of this study are in 2D", word);
 }
 
+// The keys of numbers that continue a word's name, as unload_strain does unload; may be empty.
+std::string numbers_of(const Key& key) {
+  std::vector<std::string> out;
+  for (const Key& other : keys()) {
+    if (other.choices.empty() && other.path().starts_with(key.path() + "_")) {
+      out.push_back(other.path());
+    }
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+// Names that begin alike over two thirds of the shorter one, as radius and radii do.
+bool begin_alike(const std::string& a, const std::string& b) {
+  const auto ends = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+  return 3 * (ends.first - a.begin()) >= 2 * static_cast<long>(std::min(a.size(), b.size()));
+}
+
 void check_choice(const Key& key, const Assignment& a, const std::string& value) {
   if (key.choices.empty() ||
       std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
@@ -34,6 +53,11 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
   }
   if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
     reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, allowed(key), why));
+  }
+  if (const std::string keys = numbers_of(key); !keys.empty() && dem::parse_number(value)) {
+    reject(
+        a, key.path(),
+        fmt::format("found \"{}\", allowed: {}; a number goes into {}", value, allowed(key), keys));
   }
   reject(a, key.path(),
          fmt::format("found \"{}\", allowed: {}; nearest: {}", value, allowed(key),
@@ -127,8 +151,8 @@ void set(const Key& key, const Assignment& a, Case& value) {
            fmt::format("found {}, expected a section [{}] (its keys: grainfield keys {})",
                        describe(a), a.path, a.path));
   }
-  // SECTION.NAME may be SECTION_NAME elsewhere; a name that exists in another section is nearer
-  // than any misspelling; else names of this one.
+  // SECTION.NAME may be SECTION_NAME elsewhere; a name of this section that begins alike is
+  // nearest, then one that exists in another section, then any of this one.
   const std::string name = a.path.substr(a.path.rfind('.') + 1);
   std::vector<std::string> here, everywhere;
   std::string near, joined;
@@ -139,6 +163,11 @@ void set(const Key& key, const Assignment& a, Case& value) {
     if (sectioned && key.name == section + "_" + name) joined = key.path();
   }
   if (!joined.empty()) near = joined;
+  if (joined.empty() && std::any_of(here.begin(), here.end(), [&](const std::string& path) {
+        return begin_alike(path.substr(section.size() + 1), name);
+      })) {
+    near.clear();
+  }
   if (near.empty()) near = continuum::nearest(a.path, here.empty() ? everywhere : here);
   reject(a, a.path, "unknown key; nearest: " + near);
 }

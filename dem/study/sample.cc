@@ -1,6 +1,7 @@
 // Grains placed loosely are compressed, rest, and are deformed:
-//   compress -> rest (-> precompress, settle) -> snapshot "state_000" -> deform (-> unload),
-//   with a snapshot at equal steps of strain, or of the axial stress as it is unloaded.
+//   (drop ->) compress -> rest (-> probe) (-> precompress, settle) (-> probe) -> snapshot
+//   "state_000" -> deform (-> unload), with a snapshot at equal steps of strain, or of the axial
+//   stress as it is unloaded.
 // A periodic cell is led by its velocity gradient, between walls by their motion; where a stress is
 // held, by CellServo here and by the engine's servos there.
 #include "dem/study/sample.h"
@@ -15,7 +16,9 @@
 #include "dem/study/phases.h"
 #include "dem/study/sample_cell.h"
 #include "dem/study/sample_checks.h"
+#include "dem/study/sample_drop.h"
 #include "dem/study/sample_goal.h"
+#include "dem/study/sample_probe.h"
 #include "dem/study/sample_record.h"
 #include "dem/study/sample_servo.h"
 #include "dem/study/sample_state.h"
@@ -33,6 +36,8 @@ using Phase = SamplePhase;
 constexpr long kServoEvery = 3, kUnloadEvery = 20, kTiltEvery = 100, kCheckEvery = 200;
 // Solid fractions near which pressures are reached, about; for the progress.
 constexpr double kDense2 = 0.84, kDense3 = 0.64;
+// Spheres of a gap are drawn from a seed of their own.
+constexpr std::uint64_t kGapSeed = 0x9a95b1e5;
 
 class SampleRun final : public ArchivedRun {
  public:
@@ -61,15 +66,21 @@ class SampleRun final : public ArchivedRun {
   }
   Cell<3> cell_at_start() const;
   std::unique_ptr<Engine> empty_engine() const;
+  /// Between grains, in this phase.
+  double friction() const {
+    return has_other_friction(plan_) && prepares() ? plan_.prepared_friction : settings_.friction;
+  }
   bool prepares() const { return phases_.now() <= Phase::rest; }
   void change_friction();
 
   void begin(Phase phase);
   void decide();
+  void decide_drop();
   void decide_compression();
   void decide_rest();
+  void probe(long steps);
   void decide_deformation();
-  Phase after_rest() const;
+  Phase after(Phase phase) const;
   void lead();
   void note_error();
   void record();
@@ -84,12 +95,18 @@ class SampleRun final : public ArchivedRun {
   EngineSettings settings_;
   std::array<double, 3> box_{};  // edges at the start, m
   double solid_volume_ = 0;      // of all grains, m3 (m2)
+  double dropped_fraction_ = 0;  // solid fraction as the lid has been put on
+  int gap_spheres_ = 0;          // below it
   double compression_time_ = 0;  // s, at least
   CellServo cell_servo_;
-  Phases<Phase> phases_{{{"compress", true, 0, 0.3},
+  SampleProber prober_{setup_};
+  Phases<Phase> phases_{{{"drop", true, 0, 0.2},
+                         {"compress", true, 0, 0.3},
                          {"rest", true, 0.3, 0.4},
-                         {"precompress", false, 0.4, 0.5},
-                         {"settle", true, 0.5, 0.55},
+                         {"probe", true, 0.4, 0.42},
+                         {"precompress", false, 0.42, 0.5},
+                         {"settle", true, 0.5, 0.53},
+                         {"probe", true, 0.53, 0.55},
                          {"deform", false, 0.55, 0.8},
                          {"unload", false, 0.8, 1},
                          {"done", false, 1, 1}}};
@@ -124,7 +141,7 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
   for (const NewGrain& grain : place_sample(plan_, grains, box_, density, random)) {
     engine_->add(grain);
   }
-  begin(Phase::compress);
+  begin(is_dropped(plan_) ? Phase::drop : Phase::compress);
 }
 
 Cell<3> SampleRun::cell_at_start() const {
@@ -140,9 +157,9 @@ Cell<3> SampleRun::cell_at_start() const {
 // With the friction of the phase.
 std::unique_ptr<Engine> SampleRun::empty_engine() const {
   EngineSettings settings = settings_;
+  settings.friction = friction();
   double of_walls = setup_.material.wall_friction;
   if (has_other_friction(plan_) && prepares()) {
-    settings.friction = plan_.prepared_friction;
     of_walls = std::min(of_walls, plan_.prepared_friction);
   }
   std::unique_ptr<Engine> engine = make_engine(settings);
@@ -178,10 +195,11 @@ void SampleRun::advance(long steps) {
     if (deforms(phases_.now()) || phases_.now() == Phase::precompress) {
       chunk = std::min(chunk, next_record_ - phases_.steps());
     }
+    if (probes(phases_.now())) chunk = std::min(steps, prober_.until_due());
     engine_->step(chunk);
     phases_.advance(chunk);
     steps -= chunk;
-    decide();
+    probes(phases_.now()) ? probe(chunk) : decide();
   }
 }
 
@@ -189,7 +207,14 @@ void SampleRun::begin(Phase phase) {
   const bool prepared = prepares();
   phases_.enter(phase);
   if (has_other_friction(plan_) && prepared && !prepares()) change_friction();
-  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
+  if (probes(phase)) {
+    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared");
+  }
+  const bool drops = phase == Phase::drop;
+  engine_->set_background_damping(drops                   ? plan_.drop_damping
+                                  : phases_.info().damped ? setup_.rest.background_damping
+                                                          : 0);
+  if (drops) engine_->set_gravity(0, 0, -plan_.drop_gravity);
   cell_servo_.forget();
   if (phase == Phase::precompress) {
     next_record_ = steps_to(plan_, plan_.precompression, engine_->time_step());
@@ -202,6 +227,9 @@ void SampleRun::begin(Phase phase) {
 void SampleRun::decide() {
   const bool due = phases_.is_due(every());
   switch (phases_.now()) {
+    case Phase::drop:
+      if (due) decide_drop();
+      return;
     case Phase::compress:
       if (due) decide_compression();
       return;
@@ -216,6 +244,8 @@ void SampleRun::decide() {
     case Phase::deform:
     case Phase::unload:
       return decide_deformation();
+    case Phase::probe_prepared:
+    case Phase::probe_first:
     case Phase::done:
       return;
   }
@@ -247,6 +277,27 @@ void SampleRun::decide_deformation() {
   if (is_led_now() && phases_.is_due(kCheckEvery)) note_error();
 }
 
+// At rest on the floor: the lid is put on, the gap filled, gravity taken away.
+void SampleRun::decide_drop() {
+  const Diagnostics d = engine_->measure();
+  if (d.contacts == 0 || !at_rest(d, setup_.rest)) {
+    if (in_phase() > setup_.rest.max_time) {
+      fail_to_rest(d, setup_.rest, "dropped into the box", ", or change sample.drop_damping");
+    }
+    return;
+  }
+  Random random(seed_ ^ kGapSeed);
+  const FilledBox filled = put_lid_on(engine_->snapshot(), plan_, setup_.material.density, random);
+  gap_spheres_ = filled.spheres;
+  dropped_fraction_ = filled.solid_share;
+  solid_volume_ = filled.solid_share * box_[0] * box_[1] * filled.height;
+  box_[2] = filled.height;
+  EngineSettings settings = settings_;
+  settings.friction = friction();
+  engine_ = make_engine(settings, filled.snapshot);
+  begin(Phase::compress);
+}
+
 void SampleRun::decide_compression() {
   if (!compresses_to_pressure(plan_)) {
     if (compressed() >= 1) begin(Phase::rest);
@@ -257,16 +308,24 @@ void SampleRun::decide_compression() {
   check_pressure_found(setup_, in_phase(), compression_time_, fraction());
 }
 
-Phase SampleRun::after_rest() const {
-  return phases_.now() == Phase::rest && precompresses(plan_) ? Phase::precompress : Phase::deform;
+// What follows a phase of the preparation: the next one that the plan asks for.
+Phase SampleRun::after(Phase phase) const {
+  if (phase == Phase::rest && probes_prepared(plan_)) return Phase::probe_prepared;
+  if (phase <= Phase::probe_prepared && precompresses(plan_)) return Phase::precompress;
+  return phase < Phase::probe_first && probes_first(plan_) ? Phase::probe_first : Phase::deform;
 }
 
 void SampleRun::decide_rest() {
   const Diagnostics d = engine_->measure();
   const bool led = is_led_now();
   const Vec3 held = led ? pressure() : Vec3::Zero();
-  if (is_prepared(setup_, phases_.now(), d, held)) return begin(after_rest());
+  if (is_prepared(setup_, phases_.now(), d, held)) return begin(after(phases_.now()));
   if (in_phase() > setup_.rest.max_time) fail_to_prepare(setup_, d, held);
+}
+
+void SampleRun::probe(long steps) {
+  if (prober_.decide(engine_, steps, [this] { return empty_engine(); }))
+    begin(after(phases_.now()));
 }
 
 // The motion of cell or walls at the beginning of a phase; of a cell's servo at every measurement.
@@ -298,6 +357,8 @@ void SampleRun::record() {
   if (is_led_now()) note_error();
   const std::size_t number = states_.size();
   states_.emplace_back(sample_record(*engine_, plan_, number, number == 0 ? 0 : strain(), seed_));
+  if (number == 0)
+    states_.front()->attributes.insert(prober_.attributes().begin(), prober_.attributes().end());
   const auto count = static_cast<int>(states_.size());
   if (count == states_of(plan_)) return begin(Phase::done);
   if (count == plan_.records + 1) return begin(Phase::unload);
@@ -337,6 +398,9 @@ Progress SampleRun::progress() const {
   p.phase = phases_.info().name;
   double share = 1;
   switch (phases_.now()) {
+    case Phase::drop:
+      share = rest_progress(d, setup_.rest);
+      break;
     case Phase::compress:
       share = compresses_to_pressure(plan_) ? fraction() / (plan_.dim == 2 ? kDense2 : kDense3)
                                             : compressed();
@@ -344,6 +408,10 @@ Progress SampleRun::progress() const {
     case Phase::rest:
     case Phase::settle:
       share = rest_progress(d, setup_.rest);
+      break;
+    case Phase::probe_prepared:
+    case Phase::probe_first:
+      share = prober_.share();
       break;
     case Phase::precompress:
       share = strain_at(plan_, in_phase()) / plan_.precompression;
@@ -373,8 +441,15 @@ void SampleRun::visit(Archive& archive) {
   archive(stress_error_);
   archive(squared_errors_);
   archive(measured_);
+  if (is_dropped(plan_)) {
+    archive(box_);
+    archive(solid_volume_);
+    archive(dropped_fraction_);
+    archive(gap_spheres_);
+  }
   archive(next_record_);
   cell_servo_.visit(archive);
+  prober_.visit(archive);
   archive.engine(engine_, [this] { return empty_engine(); });
   auto count = static_cast<int>(states_.size());
   archive(count);
@@ -399,6 +474,10 @@ RunResult SampleRun::result() const {
   for (std::size_t k = 0; k < states_.size(); ++k)
     out.snapshots.emplace_back(state_name(k), *states_[k]);
   add_engine_figures(*engine_, engine_->measure(), out.figures);
+  if (is_dropped(plan_)) {
+    out.figures["sample.gap_spheres"] = gap_spheres_;
+    out.figures["sample.dropped_solid_fraction"] = dropped_fraction_;
+  }
   if (any_led(plan_, Phase::deform)) {
     out.figures["sample.stress_error"] = stress_error_;
     out.figures["sample.stress_rms_error"] =

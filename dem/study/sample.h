@@ -18,6 +18,8 @@ namespace grainfield::dem {
 /// lost_to_damping, work_of_law and energy_balance since the beginning. Figure
 /// "sample.stress_error": largest relative error of a servo during the deformation, at any of its
 /// measurements, "sample.stress_rms_error" the root of their mean square (where there is a servo).
+/// Dropped: "sample.gap_spheres" and "sample.dropped_solid_fraction", as the lid is put on.
+/// Attributes probe.* of "state_000": what small strains have shown (probe_record.h).
 /// Throws std::invalid_argument naming the key that does not hold ("sample.pressure"). The bits of
 /// the result do not depend on threads.
 std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads);

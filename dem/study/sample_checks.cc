@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dem/shapes/superellipsoid.h"
 #include "dem/space/moving_cell.h"
 #include "dem/study/common.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_checks.h"
+#include "dem/study/sample_drop.h"
 #include "dem/study/sample_path.h"
 
 namespace grainfield::dem {
@@ -23,6 +25,8 @@ constexpr double kMostLoad = 0.1;
 constexpr double kLeastBox = 4;
 // Solid fraction that no compression to a pressure goes beyond, about; smaller cells are refused.
 constexpr double kDense2 = 0.95, kDense3 = 0.8;
+// Below these no packing carries load (random loose ones of round grains: 0.77, 0.55).
+constexpr double kLoosest2 = 0.7, kLoosest3 = 0.5;
 // A wall passes at most this share of the smallest radius a step. The engine refuses a half; boxes
 // differ a little with the sizes that are drawn.
 constexpr double kMostMove = 0.45;
@@ -150,6 +154,43 @@ void check_path(const SamplePlan& p) {
   }
 }
 
+// Gravity wants walls in space, and something that calms the grains.
+void check_drop(const SamplePlan& p) {
+  if (!is_dropped(p)) return;
+  if (p.dim != 3) refuse("filling", "found \"dropped\", allowed with sample.dim = 2: placed");
+  if (is_periodic(p)) {
+    refuse("filling",
+           "found \"dropped\", allowed with sample.boundary = \"periodic\": placed, because a cell "
+           "has no floor");
+  }
+  if (p.base_fraction <= p.start_fraction) {
+    refuse("base_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
+                                        p.base_fraction, p.start_fraction));
+  }
+}
+
+// Until the highest grain has come down and what is left of its motion has died away, s, about.
+double drop_time(const SamplePlan& p, double height) {
+  constexpr double kDecays = 5;
+  return std::sqrt(2 * height / p.drop_gravity) + height * p.drop_damping / p.drop_gravity +
+         kDecays / p.drop_damping;
+}
+
+// Small strains want three dimensions, and something that calms the grains.
+void check_probes(const SampleSetup& s) {
+  const SamplePlan& p = s.plan;
+  if (p.probe == "none") return;
+  if (p.dim != 3) {
+    refuse("probe", fmt::format("found \"{}\", allowed with sample.dim = 2: none", p.probe));
+  }
+  if (!(s.rest.background_damping > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "rest.background_damping: found {:g}, allowed with sample.probe = \"{}\": above "
+        "0, for the grains must come to rest after each small strain",
+        s.rest.background_damping, p.probe));
+  }
+}
+
 void check_strains(const SamplePlan& p) {
   for (const auto& [key, rate] : {std::pair("compression_rate", p.compression_rate),
                                   std::pair("strain_rate", p.strain_rate)}) {
@@ -253,6 +294,8 @@ void check_sample(const SampleSetup& s) {
   check_servo(s.plan);
   check_strains(s.plan);
   check_path(s.plan);
+  check_probes(s);
+  check_drop(s.plan);
   const double most = kMostLoad * stiffness_of(s);
   if (has_servo(s.plan) && s.plan.pressure > most) {
     refuse("pressure",
@@ -274,16 +317,18 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   out.settings.gravity_x = out.settings.gravity_y = out.settings.gravity_z = 0;
   const double step = out.settings.time_step;
   check_background_damping(s.rest, step);
-  const auto box = sample_box(p, mean_volume(p));
-  check_size(p, box);
+  const SamplePlan filled = as_filled(p);
+  const auto box = sample_box(filled, mean_volume(p));
+  check_size(filled, box);
   check_speeds(p, box, step);
   double longest = 0;  // share of an edge that the compression takes
   for (int a = 0; a < p.dim; ++a) {
-    SamplePlan alone = p;
+    SamplePlan alone = filled;
     alone.deformation = "simple_shear";
-    longest = std::max(longest, 1 - shrunk(alone, a, volume_share(p)));
+    longest = std::max(longest, 1 - shrunk(alone, a, volume_share(filled)));
   }
   out.compression_time = longest / p.compression_rate;
+  if (is_dropped(p)) out.drop_time = drop_time(p, sample_box(p, mean_volume(p))[2]);
   const double ramp = p.boundary == "walls" ? 0.5 * p.ramp_time : 0;
   out.deformation_time = p.strain / p.strain_rate + ramp;
   if (p.precompression > 0) out.deformation_time += p.precompression / p.strain_rate + ramp;
@@ -293,6 +338,19 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
     out.deformation_time += back * p.strain / p.strain_rate + ramp;
   }
   return out;
+}
+
+double widest_first_edge(const SamplePlan& plan) {
+  SamplePlan p = as_filled(plan);
+  const auto box = sample_box(p, mean_volume(p));
+  // No deformation yet.
+  p.deformation = "simple_shear";
+  const double loose = p.dim == 2 ? kLoosest2 : kLoosest3;
+  const double share =
+      p.compress_to == "pressure" ? std::min(1.0, p.start_fraction / loose) : volume_share(p);
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < p.dim; ++a) least = std::min(least, box[a] * shrunk(p, a, share));
+  return least;
 }
 
 Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& seeds,
@@ -308,7 +366,7 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
         sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
     if (out.time_step > 0) return;
     out.time_step = frame.settings.time_step;
-    out.time = frame.compression_time + frame.deformation_time;
+    out.time = frame.drop_time + frame.compression_time + frame.deformation_time;
     out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
                                                                    : "sample.strain_rate";
   };

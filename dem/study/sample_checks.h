@@ -9,6 +9,7 @@ namespace grainfield::dem {
 struct SampleFrame {
   EngineSettings settings;      ///< without threads and cell
   double compression_time = 0;  ///< s, at least
+  double drop_time = 0;         ///< s, about; 0: the grains are placed
   double deformation_time = 0;  ///< s
 };
 
@@ -20,5 +21,9 @@ void check_sample(const SampleSetup& setup);
 /// volume). `reserve` as in engine_settings.
 SampleFrame sample_frame(const SampleSetup& setup, const GrainExtremes& extremes,
                          double reserve = 1);
+
+/// Least edge that the sample can have in its first state, at most, m: its grains are of mean
+/// volume, and a pressure is not reached before they fill the least that carries load.
+double widest_first_edge(const SamplePlan& plan);
 
 }  // namespace grainfield::dem

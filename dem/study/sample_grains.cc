@@ -7,6 +7,7 @@
 #include "dem/packing/loose.h"
 #include "dem/shapes/superellipsoid.h"
 #include "dem/space/elementary.h"
+#include "dem/study/sample_drop.h"
 
 namespace grainfield::dem {
 namespace {
@@ -20,10 +21,12 @@ double volume_of(double radius, int dim) {
                   : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
 }
 
-// Semi-axes and exponents uniform, the orientation too (Shoemake 1992).
-ShapedGrain draw_superellipsoid(const SamplePlan& plan, Random& random) {
+bool scales_axes(const SamplePlan& plan) { return plan.axes_times == "sizes"; }
+
+// Semi-axes over `radius` and exponents uniform, the orientation too (Shoemake 1992).
+ShapedGrain draw_superellipsoid(const SamplePlan& plan, double radius, Random& random) {
   ShapedGrain out;
-  for (double& r : out.axes) r = plan.radius * random.uniform(plan.axis_min, plan.axis_max);
+  for (double& r : out.axes) r = radius * random.uniform(plan.axis_min, plan.axis_max);
   for (double& e : out.exponents) e = random.uniform(plan.exponent_min, plan.exponent_max);
   const Solid<3> solid = solid_of(superellipsoid(out.axes, out.exponents));
   out.radius = solid.radius;
@@ -53,7 +56,9 @@ double mean_superellipsoid(const SamplePlan& plan) {
 }
 
 ShapedGrain draw(const SamplePlan& plan, double radius, Random& random) {
-  if (is_superellipsoid(plan)) return draw_superellipsoid(plan, random);
+  if (is_superellipsoid(plan)) {
+    return draw_superellipsoid(plan, scales_axes(plan) ? radius : plan.radius, random);
+  }
   if (is_round(plan)) {
     ShapedGrain grain;
     grain.radius = radius;
@@ -74,6 +79,20 @@ int small_ones(const SamplePlan& plan) {
   return static_cast<int>(std::lround(plan.fraction_small * plan.grains));
 }
 
+// Sizes over the radius: smallest and largest, and the mean of the cube.
+struct SizeRange {
+  double least = 1, most = 1, cube = 1;
+};
+SizeRange size_range(const SamplePlan& p) {
+  const double d = p.polydispersity;
+  if (p.sizes == "uniform") return {1 - d, 1 + d, 1 + d * d};
+  if (p.sizes == "mono") return {};
+  const int few = small_ones(p);
+  const double small = 1 / p.size_ratio, share = 1.0 * few / p.grains;
+  return {few > 0 ? small : 1, few < p.grains ? 1 : small,
+          share * small * small * small + (1 - share)};
+}
+
 }  // namespace
 
 const std::vector<std::string>& sample_shapes(int dim) {
@@ -88,9 +107,12 @@ SampleRadii sample_radii(const SamplePlan& p) {
     // The exponents' ends give the extremes: edges are nearest, corners of boxes farthest.
     const double low = r * p.axis_min, high = r * p.axis_max;
     const double most = p.exponent_max, least = p.exponent_min;
-    return {nearest_of(superellipsoid({low, low, low}, {most, most})),
-            cube_root(mean_superellipsoid(p) / (4.0 / 3 * std::numbers::pi)),
-            farthest_of(superellipsoid({high, high, high}, {least, least}))};
+    const SampleRadii one{nearest_of(superellipsoid({low, low, low}, {most, most})),
+                          cube_root(mean_superellipsoid(p) / (4.0 / 3 * std::numbers::pi)),
+                          farthest_of(superellipsoid({high, high, high}, {least, least}))};
+    if (!scales_axes(p)) return one;
+    const SizeRange sizes = size_range(p);
+    return {one.least * sizes.least, one.mean * cube_root(sizes.cube), one.most * sizes.most};
   }
   if (p.sizes == "uniform") return {r * (1 - p.polydispersity), r, r * (1 + p.polydispersity)};
   if (p.sizes == "mono") return {r, r, r};
@@ -101,7 +123,9 @@ SampleRadii sample_radii(const SamplePlan& p) {
 
 double mean_volume(const SamplePlan& p) {
   const double one = volume_of(p.radius, p.dim), n = p.grains;
-  if (is_superellipsoid(p)) return n * mean_superellipsoid(p);
+  if (is_superellipsoid(p)) {
+    return n * mean_superellipsoid(p) * (scales_axes(p) ? size_range(p).cube : 1);
+  }
   if (p.sizes == "uniform") {
     // Second and third moments of a size uniform in 1 -+ d: 1 + d^2/3 and 1 + d^2.
     const double d2 = p.polydispersity * p.polydispersity;
@@ -130,7 +154,7 @@ double most_start_fraction(const SamplePlan& p) {
   Random random(1);
   double solid = 0, balls = 0;
   for (int k = 0; k < kDraws; ++k) {
-    const ShapedGrain grain = draw_superellipsoid(p, random);
+    const ShapedGrain grain = draw_superellipsoid(p, p.radius, random);
     solid += grain.area;
     balls += volume_of(grain.radius, 3);
   }
@@ -141,7 +165,11 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
                               const std::vector<ShapedGrain>& grains) {
   if (is_superellipsoid(p)) {
     GrainExtremes extremes;
-    for (const ShapedGrain& grain : grains) {
+    std::vector<ShapedGrain> all = grains;
+    if (is_dropped(p)) {  // the least sphere that may fill its gap
+      all.emplace_back().axes.fill(p.axis_min * p.radius);
+    }
+    for (const ShapedGrain& grain : all) {
       const FeltMass felt = felt_mass(superellipsoid(grain.axes, grain.exponents), density);
       // Of Hertz' laws the stiffness goes by the radius.
       const bool first = extremes.least_radius == 0;
@@ -161,6 +189,12 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
 }
 
 std::array<double, 3> sample_box(const SamplePlan& p, double volume) {
+  if (is_dropped(p)) {
+    // The base is that of the filled box; so high that the loose grains have their places.
+    std::array<double, 3> box = sample_box(as_filled(p), volume);
+    box[2] = volume / p.start_fraction / (box[0] * box[1]);
+    return box;
+  }
   const double level = volume / p.start_fraction / p.height_ratio;
   const double edge = p.dim == 2 ? std::sqrt(level) : cube_root(level);
   std::array<double, 3> box{edge, edge, edge};

@@ -12,7 +12,9 @@ bool is_led(const SamplePlan& p, SamplePhase phase, int axis) {
     if (p.deformation == "axial") return axis != last;
     return shears(p) && p.constant == "stress" && axis == last;
   }
-  if (phase == SamplePhase::precompress || phase == SamplePhase::settle) return false;
+  if (phase == SamplePhase::drop) return false;
+  if (phase == SamplePhase::precompress || phase == SamplePhase::settle || probes(phase))
+    return false;
   return compresses_to_pressure(p) && compresses(p, axis);
 }
 

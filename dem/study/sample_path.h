@@ -4,9 +4,20 @@
 
 namespace grainfield::dem {
 
-/// compress -> rest -> (precompress -> settle) -> deform -> (unload) -> done; those in brackets
-/// where the plan asks for them.
-enum class SamplePhase : int { compress, rest, precompress, settle, deform, unload, done };
+/// (drop) -> compress -> rest -> (probe_prepared) -> (precompress -> settle) -> (probe_first) ->
+/// deform -> (unload) -> done; those in brackets where the plan asks for them.
+enum class SamplePhase : int {
+  drop,
+  compress,
+  rest,
+  probe_prepared,
+  precompress,
+  settle,
+  probe_first,
+  deform,
+  unload,
+  done
+};
 
 inline bool is_periodic(const SamplePlan& p) { return p.boundary == "periodic"; }
 inline bool compresses_to_pressure(const SamplePlan& p) { return p.compress_to == "pressure"; }
@@ -23,6 +34,14 @@ inline bool precompresses(const SamplePlan& p) { return p.precompression > 0; }
 inline bool deforms(SamplePhase phase) {
   return phase == SamplePhase::deform || phase == SamplePhase::unload;
 }
+/// Small strains are tried at rest after the preparation, or in the first state.
+inline bool probes(SamplePhase phase) {
+  return phase == SamplePhase::probe_prepared || phase == SamplePhase::probe_first;
+}
+inline bool probes_prepared(const SamplePlan& p) {
+  return p.probe == "prepared" || p.probe == "both";
+}
+inline bool probes_first(const SamplePlan& p) { return p.probe == "first" || p.probe == "both"; }
 /// Recorded states, the first one included.
 inline int states_of(const SamplePlan& p) {
   return p.records + 1 + (unloads(p) ? p.unload_records : 0);

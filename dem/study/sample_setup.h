@@ -23,12 +23,18 @@ struct SamplePlan {
   double fraction_small = 0.5;            ///< bidisperse: share of the smaller ones, by number
   int corners_min = 6, corners_max = 8;   ///< rand1, regular
   double axis_min = 0.5, axis_max = 1.5;  ///< superellipsoid: semi-axes over the radius
+  std::string axes_times =
+      "one";  ///< superellipsoid: one | sizes; what the semi-axes are scaled by
   double exponent_min = 0.7, exponent_max = 1.3;  ///< superellipsoid
 
   // -- where they are
   std::string boundary = "periodic";  ///< periodic | walls
   double height_ratio = 1;            ///< edge along the last axis over the others, at the start
   double start_fraction = 0.3;        ///< solid fraction of the loose grains
+  std::string filling = "placed";     ///< placed | dropped (walls, 3D)
+  double base_fraction = 0.6;         ///< dropped: solid fraction that the base is made for
+  double drop_gravity = 9.81;         ///< dropped: m/s2, downwards
+  double drop_damping = 10;           ///< dropped: 1/s, of all motion
 
   // -- compression
   std::string compression = "isotropic";        ///< isotropic | uniaxial (along the last axis)
@@ -40,6 +46,10 @@ struct SamplePlan {
   std::string prepared_with = "same_friction";  ///< same_friction | other_friction
   double prepared_friction = 0;  ///< other_friction: of the grains, and of walls at most
   double precompression = 0;     ///< strain along the last axis before the first state
+
+  // -- small strains
+  std::string probe = "none";  ///< none | prepared | first | both: the states they are tried in
+  double probe_strain = 1e-5;
 
   // -- deformation
   std::string deformation = "simple_shear";  ///< simple_shear | axial | uniaxial | isotropic
@@ -57,10 +67,11 @@ struct SamplePlan {
 
   auto members() const {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
-                    corners_min, corners_max, axis_min, axis_max, exponent_min, exponent_max,
-                    boundary, height_ratio, start_fraction, compression, compress_to, pressure,
-                    solid_fraction, compression_strain, compression_rate, prepared_with,
-                    prepared_friction, precompression, deformation, constant, sides, strain,
+                    corners_min, corners_max, axis_min, axis_max, axes_times, exponent_min,
+                    exponent_max, boundary, height_ratio, start_fraction, filling, base_fraction,
+                    drop_gravity, drop_damping, compression, compress_to, pressure, solid_fraction,
+                    compression_strain, compression_rate, prepared_with, prepared_friction,
+                    precompression, probe, probe_strain, deformation, constant, sides, strain,
                     strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
                     unload_records);
   }

@@ -3,11 +3,12 @@
 #include "dem/study/sample_view.h"
 
 namespace grainfield::dem {
-namespace {
 
 const char* moved_wall(int axis, int dim) {
   return axis == dim - 1 ? "lid" : axis == 0 ? "right" : "back";
 }
+
+namespace {
 
 WallServo servo_of(const SamplePlan& p, SamplePhase phase, int axis, const Vec3& now,
                    const std::array<double, 3>& box) {

@@ -8,6 +8,9 @@
 
 namespace grainfield::dem {
 
+/// The wall that moves along an axis.
+const char* moved_wall(int axis, int dim);
+
 /// The walls' motion at the beginning of a phase. `box`: the edges when the grains were placed, by
 /// which servos are limited; `first`: those of the first state, by which strains are counted, where
 /// it is there. All m. Sides that tilt are left to tilt_sides.

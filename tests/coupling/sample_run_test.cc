@@ -12,6 +12,7 @@
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "reliability_process.h"
+#include "sample_bits_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -322,64 +323,9 @@ TEST(SampleRun, SpheresInACell) {
   EXPECT_THAT(testing::read_text(folder / "out/grains_state_003.vtu"), HasSubstr("rotation"));
 }
 
-// What a run leaves, without pictures.
-constexpr const char* kBare = " --set output.report=false --set output.vtu=false ";
-
 class SampleBits : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SampleBits, AreTheSameOnThreadsAndAfterAKill) {
-  const Folder folder;
-  const std::string file = folder.write("x.toml", GetParam());
-  std::map<std::string, std::string> one;
-  for (const char* threads : {"1", "2", "3"}) {
-    const std::string out = folder / threads;
-    const Output output = program("run " + file + " -o " + out + kBare + "--threads " + threads);
-    ASSERT_EQ(output.code, 0) << output.err;
-    if (one.empty()) one = testing::contents(out);
-    EXPECT_EQ(testing::contents(out), one) << threads << " threads";
-  }
-  const std::string out = folder / "killed";
-  std::vector<std::string> words{"run",
-                                 file,
-                                 "-o",
-                                 out,
-                                 "--threads",
-                                 "1",
-                                 "--checkpoint-seconds",
-                                 "0",
-                                 "--set",
-                                 "output.report=false",
-                                 "--set",
-                                 "output.vtu=false"};
-  int kills = 0;
-  testing::Ending ending;
-  for (int start = 0; start < 3; ++start) {
-    testing::Start begin;
-    begin.words = words;
-    testing::Child child(begin);
-    const std::string checkpoint = out + "/checkpoint/realization_000.h5.checkpoint";
-    const auto before = testing::fs::exists(checkpoint) ? testing::fs::last_write_time(checkpoint)
-                                                        : testing::fs::file_time_type::min();
-    child.wait_until([&] {
-      std::error_code error;
-      const auto now = testing::fs::last_write_time(checkpoint, error);
-      return !error && now > before && start < 2;
-    });
-    child.send(SIGKILL);
-    ending = child.wait();
-    kills += ending.signal == SIGKILL;
-    if (start == 0) words.emplace_back("--resume");
-    if (ending.signal == 0) break;
-  }
-  EXPECT_GT(kills, 0);
-  if (ending.signal != 0) {
-    testing::Start again;
-    again.words = words;
-    ending = testing::finish(again);
-  }
-  ASSERT_EQ(ending.code, 0) << ending;
-  EXPECT_EQ(testing::contents(out), one) << "after " << kills << " kills";
-}
+TEST_P(SampleBits, AreTheSameOnThreadsAndAfterAKill) { testing::expect_same_bits(GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(All, SampleBits, ::testing::Values(kDisks, kBox, kSpheres));
 

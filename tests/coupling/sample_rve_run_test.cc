@@ -33,7 +33,7 @@ unload = "stress"
 unload_records = 3
 [rve]
 along = 2
-radii = [2, 3, 7]
+radii = [2, 3]
 [material]
 law = "hertz"
 density = 2500
@@ -73,8 +73,6 @@ TEST(SampleRves, TellStressAndStrainOfTheirSample) {
   for (const char* boundary : {"periodic", "walls"}) {
     const Folder folder;
     const Summary summary = run(folder, std::string("--set sample.boundary=") + boundary);
-    // 7 radii do not fit into a box of 200 grains.
-    EXPECT_EQ(summary.count("rve.r7.grains"), 0U);
     const double fraction = number(summary, "sample.initial_solid_fraction");
     for (const double radius : {2.0, 3.0}) {
       const auto of = [&](const char* key) {

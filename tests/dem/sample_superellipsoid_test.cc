@@ -64,6 +64,37 @@ TEST(SampleOfSuperellipsoids, IsDrawnFromItsRanges) {
   EXPECT_NEAR((turned - Eigen::Matrix3d::Identity() / 3).norm(), 0, 0.04);
 }
 
+// Semi-axes times a size: the mean volume goes by the mean of its cube.
+TEST(SampleOfSuperellipsoids, ComeInSizes) {
+  SamplePlan plan = setup_of("penalty", "periodic").plan;
+  plan.grains = 4000;
+  plan.axes_times = "sizes";
+  plan.polydispersity = 0.5;
+  plan.size_ratio = 3;
+  for (const char* sizes : {"mono", "uniform", "bidisperse"}) {
+    plan.sizes = sizes;
+    Random random(4);
+    double volume = 0, least = 9, most = 0;
+    for (const ShapedGrain& g : draw_sample(plan, random)) {
+      volume += g.area;
+      for (const double r : g.axes) {
+        least = std::min(least, r);
+        most = std::max(most, r);
+      }
+      EXPECT_LE(g.radius, sample_radii(plan).most);
+    }
+    // Four standard errors of volumes whose spread is about their mean.
+    EXPECT_NEAR(volume / mean_volume(plan), 1, 0.07) << sizes;
+    const double smallest = plan.sizes == "mono" ? 1 : plan.sizes == "uniform" ? 0.5 : 1.0 / 3;
+    const double largest = plan.sizes == "uniform" ? 1.5 : 1;
+    EXPECT_GE(least, 0.5 * smallest);
+    EXPECT_LT(least, 0.6 * smallest);
+    EXPECT_LE(most, 1.5 * largest);
+    EXPECT_GT(most, 1.35 * largest);
+    EXPECT_LE(sample_radii(plan).least, 0.5 * smallest);
+  }
+}
+
 TEST(SampleOfSuperellipsoids, RestsAtItsPressureInACellAndBetweenWalls) {
   for (const auto& [law, boundary] :
        {std::pair("penalty", "periodic"), {"hertz_elliptic", "walls"}}) {

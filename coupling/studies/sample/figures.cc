@@ -7,6 +7,9 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.initial_pressure", "N/m (3D: Pa)", "p of a sample at rest, before it is deformed"},
       {"sample.initial_solid_fraction", "-", "its solid fraction then; overlaps count twice"},
       {"sample.initial_coordination", "-", "contacts of a grain then, without rattlers"},
+      {"sample.gap_spheres", "-", "dropped: spheres that fill the gap below the lid"},
+      {"sample.dropped_solid_fraction", "-",
+       "dropped: solid fraction as the lid has been put on and the gap filled"},
       {"sample.final_pressure", "N/m (3D: Pa)", "p of the last state of the loading"},
       {"sample.lost_strength", "-",
        "share of the samples that lose their strength: some state has less than 1 % of the first "

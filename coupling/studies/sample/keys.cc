@@ -56,6 +56,9 @@ void grains(SectionKeys& s) {
   s.number("axis_max", "-", IN(axis_max), {0.05, 20},
            "largest one; each of the three is uniform between both", kWellmann);
   superellipsoid();
+  s.word("axes_times", IN(axes_times), {"one", "sizes"},
+         "the semi-axes are drawn as they are, or times a size drawn as sample.sizes says");
+  superellipsoid();
   s.number("exponent_min", "-", IN(exponent_min), {dem::kLeastExponent, dem::kMostExponent},
            "least exponent: 1 is an ellipsoid, below it faces are flat", kWellmann);
   superellipsoid();
@@ -74,6 +77,25 @@ void place(SectionKeys& s) {
       "start_fraction", "-", IN(start_fraction), {0.01, dem::kMostLoose2},
       "solid fraction of the grains placed at random; lower: a longer compression, less memory "
       "of the places");
+  s.word(
+      "filling", IN(filling), {"placed", "dropped"},
+      "the box is filled by its compression alone; or grains fall into it under gravity, the lid "
+      "is put on the highest, the gap below filled with spheres, and then gravity taken away "
+      "(walls)",
+      "Wellmann 6");
+  s.space();
+  const auto dropped = [&] { s.only("sample.filling", {"dropped"}); };
+  s.number("base_fraction", "-", IN(base_fraction), {0.02, 1},
+           "solid fraction at which the base would be filled up to sample.height_ratio; lower: a "
+           "wider base and a lower bed");
+  dropped();
+  s.number("drop_gravity", "m/s2", IN(drop_gravity), kAcceleration, "downwards, while they fall");
+  dropped();
+  s.number("drop_damping", "1/s", IN(drop_damping), {1e-6, 1e9},
+           "of all motion while they fall: velocities decay so fast; higher: they fall at gravity "
+           "over this and come to rest sooner",
+           "Wellmann 6");
+  dropped();
 }
 
 void compression(SectionKeys& s) {
@@ -104,6 +126,17 @@ void compression(SectionKeys& s) {
            "strain by which the last axis alone shortens before the first state, at "
            "sample.strain_rate; the grains rest after it",
            "Wellmann 28");
+}
+
+void probes(SectionKeys& s) {
+  s.word("probe", IN(probe), {"none", "prepared", "first", "both"},
+         "where elastic moduli are measured by small strains, each from the same grains at rest: "
+         "nowhere, after the preparation (the first rest), in the first state, in both");
+  s.space();
+  s.number("probe_strain", "-", IN(probe_strain), {1e-9, 1e-2},
+           "of each of them; much below the overlaps (pressure over stiffness), so that contacts "
+           "neither come nor go");
+  s.only("sample.probe", {"prepared", "first", "both"});
 }
 
 void deformation(SectionKeys& s) {
@@ -153,6 +186,7 @@ void declare_sample_keys(SectionKeys s) {
   grains(s);
   place(s);
   compression(s);
+  probes(s);
   deformation(s);
   unloading(s);
 }

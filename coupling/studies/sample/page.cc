@@ -70,6 +70,7 @@ Report sample_report(const SampleReport& in) {
   Picture stresses = together(in, "Stresses", in.stress_unit, in.stresses);
   stresses.caption = "Compression positive for p; from the contacts alone (Love and Weber).";
   report.sections.emplace_back(std::move(stresses));
+  report.sections.insert(report.sections.end(), in.moduli.begin(), in.moduli.end());
   report.sections.insert(report.sections.end(), in.rves.begin(), in.rves.end());
   Picture energies = together(in, "Energies", "J", in.energies);
   energies.caption =

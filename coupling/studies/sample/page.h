@@ -27,7 +27,8 @@ struct SampleReport {
   std::vector<SampleCurve> energies;   ///< in one frame, J
   /// Of the realization that is drawn; may be null.
   const dem::Snapshot *first = nullptr, *last = nullptr;
-  std::vector<Section> rves;  ///< pictures of RVEs (rve_page.h); may be empty
+  std::vector<Section> rves;    ///< pictures of RVEs (rve_page.h); may be empty
+  std::vector<Section> moduli;  ///< table of small strains (moduli.h); may be empty
   ReportRows figures, made;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "continuum/constants.h"
 #include "coupling/averaging/average.h"
@@ -14,11 +15,16 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/statistics/spread.h"
 #include "dem/snapshot/number.h"
+#include "dem/study/common.h"
+#include "dem/study/sample_checks.h"
 #include "dem/study/sample_path.h"
 #include "dem/study/sample_state.h"
 
 namespace grainfield::coupling {
 namespace {
+
+// Samples whose grains come out larger than the mean have edges up to so much longer.
+constexpr double kEdgeReserve = 1.05;
 
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
@@ -142,6 +148,18 @@ RveStates states_of(const Snapshots& states, int along, double radius, std::size
 }
 
 }  // namespace
+
+void check_rves(const RveSetup& setup, const dem::SamplePlan& plan) {
+  if (setup.along == 0) return;
+  const double most = kEdgeReserve * dem::widest_first_edge(plan) / (2 * plan.radius);
+  for (const double radius : setup.radii) {
+    if (radius <= most) continue;
+    throw std::invalid_argument(
+        fmt::format("rve.radii: found {:g}, allowed for {} grains: up to {:g}, half of the least "
+                    "edge that the sample can have in its first state, over sample.radius",
+                    radius, plan.grains, dem::round_down(most)));
+  }
+}
 
 RveMean mean_over(const std::vector<RveValue>& values, double (*of)(const RveValue&)) {
   std::vector<double> all;

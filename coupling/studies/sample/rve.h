@@ -17,6 +17,9 @@ struct RveSetup {
   std::vector<double> radii{2, 3, 5, 7};  ///< over sample.radius
 };
 
+/// Throws std::invalid_argument naming rve.radii: one that no sample of this plan has room for.
+void check_rves(const RveSetup& setup, const dem::SamplePlan& plan);
+
 /// One RVE in one state. Tensors: strains against the first state, extension positive; stresses
 /// tension positive, Pa.
 struct RveValue {

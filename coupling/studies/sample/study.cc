@@ -9,12 +9,15 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/sample/block.h"
 #include "coupling/studies/sample/keys.h"
+#include "coupling/studies/sample/moduli.h"
 #include "coupling/studies/sample/page.h"
 #include "coupling/studies/sample/path_figures.h"
 #include "coupling/studies/sample/rve_page.h"
 #include "coupling/studies/sample/state_figures.h"
 #include "coupling/studies/sample/state_table.h"
+#include "coupling/studies/sample/strength.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
@@ -104,6 +107,8 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
 
 const std::vector<std::string>& shown_figures() {
   static const std::vector<std::string> keys{"dem.grains",
+                                             "sample.gap_spheres",
+                                             "sample.dropped_solid_fraction",
                                              "sample.initial_pressure",
                                              "sample.initial_solid_fraction",
                                              "sample.initial_coordination",
@@ -114,6 +119,11 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.peak_stress_ratio",
                                              "sample.strain_at_peak",
                                              "sample.peak_friction_angle_deg",
+                                             "strength.peak_friction_deg",
+                                             "strength.residual_friction_deg",
+                                             "strength.peak_dilation_deg",
+                                             "strength.dilation_at_peak_deg",
+                                             "strength.residual_dilation_deg",
                                              "sample.critical_stress_ratio",
                                              "sample.critical_friction_angle_deg",
                                              "sample.critical_drift",
@@ -259,6 +269,24 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   };
 }
 
+// The figures moduli.* and their table, where the case asks for small strains; block.csv, the
+// figures block.* and their pictures, where it asks for a block of finite elements.
+void add_moduli(const Case& value, const std::vector<std::string>& files, const StateTable& table,
+                SampleReport& report, StudyResult& out) {
+  const std::vector<ProbedState> states = probed_moduli(files);
+  add_figures(out.summary, moduli_figures(states));
+  add_symmetry(states, out.summary);
+  report.moduli = moduli_sections(states, out.summary);
+  const BlockSetup& setup = value.get<BlockSetup>();
+  if (setup.law == "none" || states.empty() || states.back().state != "first") return;
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  const BlockComparison comparison =
+      compare_block(setup, table, plan, states.back(), strength_paths(table, plan));
+  add_figures(out.summary, block_figures(comparison));
+  out.texts.emplace_back("block.csv", block_csv(comparison));
+  for (Section& section : block_sections(comparison)) report.moduli.push_back(std::move(section));
+}
+
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
 // spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
@@ -268,6 +296,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
   add_figures(out.summary, path_figures(table, plan));
+  add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.verdict.sentence = sentence(value, table, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
@@ -279,6 +308,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
     }
   }
   SampleReport report = curves_of(value, table);
+  add_moduli(value, files, table, report, out);
   add_rves(value, files, report, out);
   out.member_curves = member_curves(report);
   out.page = [report](const StudyResult& result, const Realization* first) {
@@ -301,16 +331,22 @@ Study sample_study() {
   Study out;
   out.name = "sample";
   out.meaning = "grains in a cell or a box, compressed and sheared: stress, volume and fabric";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys};
+  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys, kBlockKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys};
+  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
+                 block_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };
   out.dimension_key = "sample.dim";
+  out.check = [](const Case& value) {
+    const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+    check_rves(value.get<RveSetup>(), plan);
+    check_block(value.get<BlockSetup>(), plan);
+  };
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_sample_run(value.get<dem::SampleSetup>(), realization_seed(value, number),
                                 threads);

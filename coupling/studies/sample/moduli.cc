@@ -1,0 +1,167 @@
+#include "coupling/studies/sample/moduli.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coupling/run/realization_file.h"
+#include "coupling/run/study_result.h"
+#include "dem/study/probe_record.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using Eigen::Matrix3d;
+
+struct ModulusColumn {
+  const char *key, *unit, *meaning;
+  double (*of)(const ProbedState&, std::size_t);
+};
+
+const std::vector<ModulusColumn>& modulus_columns() {
+  using S = const ProbedState&;
+  using I = std::size_t;
+  // clang-format off
+  static const std::vector<ModulusColumn> columns{
+      {"young", "Pa", "Young's modulus, isotropic fit", [](S s, I r) { return s.moduli[r].young; }},
+      {"poisson", "-", "Poisson's ratio, isotropic fit", [](S s, I r) { return s.moduli[r].poisson; }},
+      {"bulk", "Pa", "bulk modulus, isotropic fit", [](S s, I r) { return s.moduli[r].bulk; }},
+      {"shear", "Pa", "shear modulus, isotropic fit", [](S s, I r) { return s.moduli[r].shear; }},
+      {"e_h", "Pa", "Young's modulus in the level, transversely isotropic fit about z", [](S s, I r) { return s.moduli[r].e_h; }},
+      {"e_v", "Pa", "Young's modulus along z, likewise", [](S s, I r) { return s.moduli[r].e_v; }},
+      {"nu_h", "-", "Poisson's ratio in the level, likewise", [](S s, I r) { return s.moduli[r].nu_h; }},
+      {"nu_vh", "-", "strain of the level over that along z when z is loaded, likewise", [](S s, I r) { return s.moduli[r].nu_vh; }},
+      {"g_vh", "Pa", "shear modulus of planes along z, likewise; needs a probe xz", [](S s, I r) { return s.moduli[r].g_vh; }},
+      {"residual_isotropic", "-", "root of the squared stress that the isotropic fit leaves over all of it", [](S s, I r) { return s.moduli[r].residual_isotropic; }},
+      {"residual_transverse", "-", "the same of the transversely isotropic fit", [](S s, I r) { return s.moduli[r].residual_transverse; }},
+      {"asymmetry", "-", "largest |C_ab - C_ba| of the axes over the mean C_aa; 0 where the stress has a potential", [](S s, I r) { return s.asymmetry[r]; }},
+      {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back", [](S s, I r) { return s.odd[r]; }},
+      {"gained", "-", "contacts that are new after a probe over all, the largest of the probes", [](S s, I r) { return s.gained[r]; }},
+      {"lost", "-", "contacts that are gone after a probe over all, likewise", [](S s, I r) { return s.lost[r]; }},
+      {"newly_sliding", "-", "contacts that slide after a probe and did not before over all, likewise", [](S s, I r) { return s.sliding[r]; }},
+  };
+  // clang-format on
+  return columns;
+}
+
+void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncrements& all) {
+  double gained = 0, lost = 0, sliding = 0, sum = 0, difference = 0;
+  Matrix3d stiffness = Matrix3d::Zero();
+  for (const dem::Probe& probe : probes.probes) {
+    const auto of = [&](std::size_t way) {
+      const dem::ProbeOutcome& o = probe.outcomes[way];
+      gained = std::max(gained, o.gained);
+      lost = std::max(lost, o.lost);
+      sliding = std::max(sliding, o.sliding);
+      return increment_of(o.gradient, probes.stress, o.stress);
+    };
+    const SpaceIncrement forth = of(0), back = of(1);
+    sum += (forth.stress + back.stress).squaredNorm();
+    difference += (forth.stress - back.stress).squaredNorm();
+    // Central: what both ways share (a rest that is not quite one) drops out.
+    all.push_back({0.5 * (forth.stress - back.stress), 0.5 * (forth.strain - back.strain)});
+    if (probe.direction[0] == probe.direction[1]) {
+      const int a = probe.direction[0] - 'x';
+      stiffness.col(a) = all.back().stress.diagonal() / all.back().strain(a, a);
+    }
+  }
+  out.moduli.push_back(space_moduli(all));
+  out.gained.push_back(gained);
+  out.lost.push_back(lost);
+  out.sliding.push_back(sliding);
+  out.odd.push_back(std::sqrt(sum / difference));
+  out.asymmetry.push_back((stiffness - stiffness.transpose()).cwiseAbs().maxCoeff() /
+                          (stiffness.trace() / 3));
+}
+
+}  // namespace
+
+std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files) {
+  std::vector<ProbedState> out;
+  for (const std::string& state : dem::probed_states()) {
+    ProbedState probed;
+    probed.state = state;
+    std::vector<SpaceIncrements> increments;
+    for (const std::string& file : files) {
+      const Realization one = read_realization(file);
+      const dem::StateProbes probes =
+          dem::probes_of(one.snapshots.front().second.attributes, state);
+      if (probes.probes.empty()) break;
+      add_realization(probes, probed, increments.emplace_back());
+    }
+    if (increments.size() != files.size()) continue;
+    probed.symmetry = space_symmetry(increments, {});
+    out.push_back(std::move(probed));
+  }
+  return out;
+}
+
+std::map<std::string, std::vector<double>> moduli_figures(const std::vector<ProbedState>& states) {
+  std::map<std::string, std::vector<double>> out;
+  for (const ProbedState& state : states) {
+    for (const ModulusColumn& column : modulus_columns()) {
+      std::vector<double> values;
+      for (std::size_t r = 0; r < state.moduli.size(); ++r) values.push_back(column.of(state, r));
+      const bool known =
+          std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+      if (known) out[fmt::format("moduli.{}.{}", state.state, column.key)] = values;
+    }
+  }
+  return out;
+}
+
+void add_symmetry(const std::vector<ProbedState>& states, Summary& summary) {
+  for (const ProbedState& state : states) {
+    const std::string begin = "moduli." + state.state + ".";
+    summary[begin + "symmetry"] = state.symmetry.symmetry();
+    const auto put = [&](const char* key, double value) {
+      if (std::isfinite(value)) summary[begin + key] = value;
+    };
+    put("p_isotropic", state.symmetry.isotropic.p());
+    put("p_transverse", state.symmetry.transverse.p());
+  }
+}
+
+std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
+                                     const Summary& summary) {
+  if (states.empty()) return {};
+  Table table;
+  table.title = "Elastic moduli from small strains";
+  table.caption =
+      "Each direction strained forth and back from the same grains at rest; least squares, mean "
+      "over realizations and its standard error. The chances say how often samples of that "
+      "symmetry would look as far from it; below 5 % it is refused.";
+  table.header = {""};
+  for (const ProbedState& state : states) table.header.push_back(state.state + " state");
+  for (const SummaryKey& key : moduli_summary_keys()) {
+    const std::string name = key.pattern.substr(key.pattern.rfind('.') + 1);
+    std::vector<std::string> row{key.meaning + (key.unit == "Pa" ? " (Pa)" : "")};
+    bool any = false;
+    for (const ProbedState& state : states) {
+      row.push_back(shown_with_error(summary, "moduli." + state.state + "." + name));
+      any = any || !row.back().empty();
+    }
+    if (any) table.rows.push_back(std::move(row));
+  }
+  return {table};
+}
+
+std::vector<SummaryKey> moduli_summary_keys() {
+  std::vector<SummaryKey> out;
+  for (const ModulusColumn& column : modulus_columns()) {
+    out.push_back({fmt::format("moduli.*.{}", column.key), column.unit, column.meaning});
+  }
+  out.push_back({"moduli.*.p_isotropic", "-",
+                 "chance of a fit this far from isotropy if the grains are isotropic: over "
+                 "realizations where there are enough of them (Hotelling), else over all equations "
+                 "(F test)"});
+  out.push_back({"moduli.*.p_transverse", "-",
+                 "the same of transverse isotropy about z within orthotropy along x, y, z"});
+  out.push_back({"moduli.*.symmetry", "text",
+                 "isotropic, transversely isotropic or less: the first that its chance does not "
+                 "refuse at 5 %; not known where there is none"});
+  return out;
+}
+
+}  // namespace grainfield::coupling

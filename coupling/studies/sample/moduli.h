@@ -1,0 +1,43 @@
+// Elastic moduli of a sample from small strains at rest (dem/study/sample_probe.h).
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/case/study.h"
+#include "coupling/elastic_constants/space_symmetry.h"
+#include "coupling/output/tables.h"
+#include "coupling/report/report.h"
+
+namespace grainfield::coupling {
+
+/// One state of all realizations.
+struct ProbedState {
+  std::string state;                 ///< "prepared" | "first"
+  std::vector<SpaceModuli> moduli;   ///< by realization
+  std::vector<double> gained, lost;  ///< largest share of the contacts in any probe, likewise
+  std::vector<double> sliding;
+  /// Root of sum |forth + back|^2 over sum |forth - back|^2 of the stress changes: what is not
+  /// linear. 0 of a linear law.
+  std::vector<double> odd;
+  /// Largest |C_ab - C_ba| of the axes over the mean of C_aa: 0 where the stress has a potential.
+  std::vector<double> asymmetry;
+  SpaceSymmetry symmetry;  ///< of all realizations together
+};
+
+/// Those that were probed, in the order of the path. `files`: of the realizations. Throws
+/// std::invalid_argument when an attribute is broken.
+std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files);
+
+/// By summary key moduli.STATE.*, a number for each realization.
+std::map<std::string, std::vector<double>> moduli_figures(const std::vector<ProbedState>& states);
+/// Of all realizations together: the chances and the word of the symmetry.
+void add_symmetry(const std::vector<ProbedState>& states, Summary& summary);
+
+/// A table with a column for each state; none without states.
+std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
+                                     const Summary& summary);
+
+std::vector<SummaryKey> moduli_summary_keys();
+
+}  // namespace grainfield::coupling

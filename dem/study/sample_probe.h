@@ -1,0 +1,58 @@
+// Small strains of a sample at rest, one after the other, each from the same state.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dem/study/archive.h"
+#include "dem/study/probe_record.h"
+#include "dem/study/sample_setup.h"
+
+namespace grainfield::dem {
+
+/// Directions in which the sample's boundary can be strained alone: in a cell all six; between
+/// walls the three axes, and xz where the walls' friction can carry a shear.
+std::vector<std::string> probe_directions(const SampleSetup& setup);
+
+/// Probes a sample: cell and walls stand still until the grains are calmer than any strain would
+/// disturb them; then for each direction, forth and back, its edges are strained by
+/// sample.probe_strain and the grains rest again. Every probe begins from the same bits, and the
+/// engine is given back as it came: the sample's path does not know of them.
+class SampleProber {
+ public:
+  using Make = std::function<std::unique_ptr<Engine>()>;
+
+  explicit SampleProber(const SampleSetup& setup) : setup_(setup) {}
+
+  /// `state`: "prepared" or "first".
+  void begin(Engine& engine, const std::string& state);
+  /// Steps until decide() has something to do.
+  long until_due() const;
+  /// `steps` have been made; make() gives an engine as empty_engine does. True when all is done.
+  /// Throws ComputationFailed: no rest within rest.max_time.
+  bool decide(std::unique_ptr<Engine>& engine, long steps, const Make& make);
+  /// Share of the probes that are done.
+  double share() const;
+  /// Of all states so far.
+  const Attributes& attributes() const { return found_; }
+  void visit(Archive& archive);
+
+ private:
+  enum class Stage : int { calm, move, hold };
+
+  void hold(Engine& engine, Stage stage);
+  void move(Engine& engine);
+  void note(const Engine& engine, const Make& make);
+  bool is_calm(const Diagnostics& d) const;
+  int count() const { return 2 * static_cast<int>(probe_directions(setup_).size()); }
+
+  const SampleSetup& setup_;
+  std::string state_, origin_, base_;  // images: as it came, and calm
+  int number_ = -1;                    // of the probe; -1: before the first one
+  Stage stage_ = Stage::calm;
+  long steps_ = 0, move_ = 0;  // of the stage; of a motion
+  Attributes found_;
+};
+
+}  // namespace grainfield::dem

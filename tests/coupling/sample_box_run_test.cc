@@ -1,0 +1,176 @@
+// Superellipsoids in a box through the real program: small strains, the block of finite elements
+// beside the grains, grains that are dropped, kills, and mistakes.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "check_scene.h"
+#include "coupling/output/tables.h"
+#include "coupling/run/summary_keys.h"
+#include "sample_bits_scene.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::complaint;
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+// cases/box-compression.toml and its like, small.
+std::string box(const std::string& sample, const std::string& rest = "") {
+  return R"(study = "sample"
+[sample]
+dim = 3
+shape = "superellipsoid"
+grains = 70
+radius = 0.001
+boundary = "walls"
+height_ratio = 1.12
+start_fraction = 0.1
+pressure = 1e4
+compression_rate = 60
+prepared_with = "other_friction"
+prepared_friction = 0.05
+strain_rate = 6
+ramp_time = 0.002
+)" + sample +
+         R"(
+[material]
+law = "hertz_elliptic"
+density = 2500
+young = 3e7
+poisson = 0.22
+damping = 0.3
+)" + rest +
+         R"(
+[rest]
+background_damping = 500
+unbalanced_force_ratio = 1e-2
+kinetic_to_elastic_energy = 1e-3
+[ensemble]
+realizations = 1
+)";
+}
+
+const std::string kCompression = R"(deformation = "uniaxial"
+strain = 0.02
+records = 3
+unload = "stress"
+unload_records = 3
+)";
+
+Summary run(const Folder& folder, const std::string& text, const std::string& options = "") {
+  const std::string file = folder.write("x.toml", text);
+  const Output output = program("run " + file + " -o " + (folder / "out") + " " + options);
+  EXPECT_EQ(output.code, 0) << output.err;
+  if (output.code != 0) return {};
+  Summary summary = read_summary(folder / "out/summary.json");
+  EXPECT_NO_THROW(require_documented(summary));
+  return summary;
+}
+
+double number(const Summary& summary, const std::string& key) {
+  const auto at = summary.find(key);
+  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
+    ADD_FAILURE() << "no number " << key;
+    return std::nan("");
+  }
+  return std::get<double>(at->second);
+}
+
+TEST(SampleBox, BitsOfACompressionAreTheSameOnThreadsAndAfterAKill) {
+  testing::expect_same_bits(box(kCompression));
+}
+
+TEST(SampleBox, BitsOfAProbedAndDroppedSampleToo) {
+  testing::expect_same_bits(
+      box("filling = \"dropped\"\nprobe = \"both\"\nprobe_strain = 1e-4\n" + kCompression,
+          "friction = 0.3\nwall_friction = 0.3"));
+}
+
+TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
+  const Folder folder;
+  const Summary summary =
+      run(folder,
+          box("deformation = \"axial\"\nstrain = 0.1\nrecords = 8\nprobe = \"both\"\n"
+              "probe_strain = 3e-5\n[block]\nlaw = \"both\"",
+              "friction = 0.4\nwall_friction = 0"),
+          "--set ensemble.realizations=2");
+  for (const char* state : {"prepared", "first"}) {
+    const auto of = [&](const char* key) {
+      return number(summary, std::string("moduli.") + state + "." + key);
+    };
+    // Less stiff than affine motion of all contacts allows, stiffer than the pressure alone.
+    EXPECT_GT(of("young"), 1e5);
+    EXPECT_LT(of("young"), 3e7);
+    EXPECT_GT(of("poisson"), -0.2);
+    EXPECT_LT(of("poisson"), 0.5);
+    EXPECT_NEAR(of("young"), 9 * of("bulk") * of("shear") / (3 * of("bulk") + of("shear")),
+                0.05 * of("young"));
+    EXPECT_LT(of("lost"), 0.05);
+    EXPECT_LT(of("gained"), 0.05);
+    EXPECT_LT(of("odd_share"), 0.2);
+    EXPECT_LT(of("asymmetry"), 0.2);
+    EXPECT_LE(of("residual_transverse"), of("residual_isotropic") + 1e-12);
+    // Smooth walls carry no shear.
+    EXPECT_EQ(summary.count(std::string("moduli.") + state + ".g_vh"), 0U);
+  }
+  const double friction = number(summary, "strength.peak_friction_deg");
+  EXPECT_GT(friction, 10);
+  EXPECT_LT(friction, 60);
+  EXPECT_GE(friction, number(summary, "strength.residual_friction_deg") - 1e-9);
+  // A perfectly plastic block at the peak angle ends above grains that soften, and an elastic one
+  // far above both.
+  EXPECT_GT(number(summary, "block.elastic.end_ratio"), 2);
+  EXPECT_GT(number(summary, "block.mohr_coulomb.end_ratio"), 0.8);
+  EXPECT_LT(number(summary, "block.mohr_coulomb.rel_l2"), number(summary, "block.elastic.rel_l2"));
+  EXPECT_EQ(number(summary, "block.elastic.leaves"), 1);
+  EXPECT_THAT(testing::read_text(folder / "out/block.csv"),
+              HasSubstr("q_Pa_mohr_coulomb_difference"));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("Elastic moduli from small strains"));
+  EXPECT_THAT(page, HasSubstr("The grains and a block of finite elements"));
+}
+
+TEST(SampleBox, IsFilledByDroppingAndSpheres) {
+  const Folder folder;
+  const Summary summary =
+      run(folder, box("filling = \"dropped\"\n" + kCompression, "friction = 0.3"),
+          "--set output.report=false --set sample.grains=200");
+  const double spheres = number(summary, "sample.gap_spheres");
+  EXPECT_GT(spheres, 3);
+  EXPECT_EQ(number(summary, "dem.grains"), 200 + spheres);
+  // The source's 0.63; small boxes are looser at their walls.
+  EXPECT_GT(number(summary, "sample.dropped_solid_fraction"), 0.5);
+  EXPECT_LT(number(summary, "sample.dropped_solid_fraction"), 0.7);
+  EXPECT_GT(number(summary, "sample.initial_solid_fraction"), 0.55);
+  EXPECT_NEAR(number(summary, "sample.initial_pressure") / 1e4, 1, 0.1);
+}
+
+TEST(SampleBox, MistakesAreNamed) {
+  const std::string text = box(kCompression + "[rve]\nalong = 2\nradii = [2]");
+  const auto says = [&](const Overrides& set, const std::string& what) {
+    EXPECT_THAT(complaint(text, set), HasSubstr(what));
+  };
+  EXPECT_EQ(complaint(text), "");
+  says({"sample.unload=0.02"},
+       "sample.unload: found \"0.02\", allowed: none | strain | stress; a number goes into "
+       "sample.unload_strain, sample.unload_stress, sample.unload_records");
+  says({"rve.radius=2"}, "rve.radius: unknown key; nearest: rve.radii");
+  says({"rve.radii=[2, 9]"}, "rve.radii: found 9, allowed for 70 grains: up to ");
+  says({"block.law=elastic"}, "block.law: found \"elastic\", allowed with sample.probe = \"none\"");
+  says({"block.law=both", "sample.probe=first"},
+       "block.angles: found \"peak\", allowed with sample.deformation = \"uniaxial\": given");
+  says({"block.law=both", "sample.probe=first", "block.angles=given", "block.dilation_deg=40"},
+       "block.dilation_deg: found 40, allowed: up to block.friction_deg = 30");
+  says({"sample.filling=dropped", "sample.boundary=periodic"},
+       "sample.filling: found \"dropped\", allowed with sample.boundary = \"periodic\"");
+  says({"sample.filling=dropped", "sample.base_fraction=0.05"},
+       "sample.base_fraction: found 0.05, allowed: above sample.start_fraction = 0.1");
+  says({"sample.probe=first", "rest.background_damping=0"}, "rest.background_damping: found 0");
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
