@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "dem/laws/materials.h"
 #include "dem/snapshot/snapshot.h"
@@ -30,9 +31,14 @@ class ContactNetwork {
   int per_force() const { return dim_; }
   int per_grain() const { return dim_ == 2 ? 3 : 6; }
 
-  /// External force on every grain, N, from now on. Grains by index, -1: none.
-  virtual void set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
-                        std::int64_t loaded_b, const Vec3& force_b) = 0;
+  /// A force, N, on each of some grains (by index).
+  struct Load {
+    std::vector<std::int64_t> grains;
+    Vec3 force{0, 0, 0};
+  };
+  /// External force on every grain from now on.
+  virtual void set_load(const Vec3& gravity, const std::vector<Load>& loads) = 0;
+  void set_load(const Vec3& gravity) { set_load(gravity, {}); }
   /// Force that makes the residual one, N (> 0).
   void set_scale(double newtons) { scale_ = newtons; }
   double scale() const { return scale_; }

@@ -66,18 +66,16 @@ PlaneNetwork::PlaneNetwork(const Snapshot& start, const Materials& materials)
   commit(zero);
 }
 
-void PlaneNetwork::set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
-                            std::int64_t loaded_b, const Vec3& force_b) {
+void PlaneNetwork::set_load(const Vec3& gravity, const std::vector<Load>& loads) {
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     load_[k] = {shapes_[k].mass * gravity.x(), shapes_[k].mass * gravity.y()};
   }
-  const auto add = [this](std::int64_t grain, const Vec3& f) {
-    if (grain < 0) return;
-    load_[grain][0] += f.x();
-    load_[grain][1] += f.y();
-  };
-  add(loaded_a, force_a);
-  add(loaded_b, force_b);
+  for (const Load& load : loads) {
+    for (const std::int64_t grain : load.grains) {
+      load_[grain][0] += load.force.x();
+      load_[grain][1] += load.force.y();
+    }
+  }
 }
 
 double PlaneNetwork::displacement(int grain, int axis, const Vector& z) const {

@@ -27,8 +27,8 @@ class PlaneNetwork final : public ContactNetwork {
  public:
   PlaneNetwork(const Snapshot& start, const Materials& materials);
 
-  void set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
-                std::int64_t loaded_b, const Vec3& force_b) override;
+  using ContactNetwork::set_load;
+  void set_load(const Vec3& gravity, const std::vector<Load>& loads) override;
   bool residual(const Vector& z, Vector& r) override;
   void tangent(const Vector& z, const Vector& r, const Vector& drag, Matrix& matrix) override;
   Vector drag_unit() const override;

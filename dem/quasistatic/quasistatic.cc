@@ -51,6 +51,19 @@ std::int64_t index_of(const Snapshot& start, std::int64_t id) {
   return -1;
 }
 
+/// Indices of the grains that carry the force; the first one's in front.
+std::vector<std::int64_t> loaded_in(const Snapshot& start, std::int64_t first,
+                                    const std::vector<std::int64_t>& beside) {
+  std::vector<std::int64_t> out;
+  const auto add = [&](std::int64_t id) {
+    const std::int64_t k = id < 0 ? -1 : index_of(start, id);
+    if (k >= 0) out.push_back(k);
+  };
+  add(first);
+  for (const std::int64_t id : beside) add(id);
+  return out;
+}
+
 void check_settings(const QuasistaticSettings& s) {
   const auto refuse = [](const char* key, double found, const char* allowed) {
     throw std::invalid_argument(
@@ -129,14 +142,15 @@ void check_start(const Snapshot& s) {
 class Relaxation {
  public:
   Relaxation(const Snapshot& start, const Materials& materials, const Vec3& gravity,
-             const AppliedForce& force, const QuasistaticSettings& settings)
+             const AppliedForce& force, const std::vector<std::int64_t>& beside,
+             const QuasistaticSettings& settings)
       : start_(start),
         settings_(settings),
         network_(make_contact_network(start, materials)),
         gravity_(gravity),
-        old_grain_(start.loaded_grain < 0 ? -1 : index_of(start, start.loaded_grain)),
-        new_grain_(force.id < 0 ? -1 : index_of(start, force.id)),
-        force_(force.fx, force.fy, force.fz) {
+        before_{loaded_in(start, start.loaded_grain, start.also_loaded), start.applied_force},
+        after_{loaded_in(start, force.id, beside), Vec3(force.fx, force.fy, force.fz)},
+        beside_(beside) {
     problem_.residual = [this](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
       if (!network_->residual(z, r)) return false;
       r -= drag_.cwiseProduct(unit_).cwiseProduct(z);
@@ -173,8 +187,9 @@ class Relaxation {
   double tolerance() const { return kAim * settings_.unbalanced_force_ratio; }
 
   void set_load(double share) {
-    network_->set_load(start_.gravity + share * (gravity_ - start_.gravity), old_grain_,
-                       (1 - share) * start_.applied_force, new_grain_, share * force_);
+    network_->set_load(
+        start_.gravity + share * (gravity_ - start_.gravity),
+        {{before_.grains, (1 - share) * before_.force}, {after_.grains, share * after_.force}});
     rescale();
   }
 
@@ -268,8 +283,10 @@ class Relaxation {
     QuasistaticResult out;
     out.state = network_->snapshot(start_);
     out.state.gravity = gravity_;
-    out.state.loaded_grain = new_grain_ < 0 ? -1 : start_.grains[new_grain_].id;
-    out.state.applied_force = new_grain_ < 0 ? Vec3(0, 0, 0) : force_;
+    const bool loaded = !after_.grains.empty();
+    out.state.loaded_grain = loaded ? start_.grains[after_.grains.front()].id : -1;
+    out.state.applied_force = loaded ? after_.force : Vec3(0, 0, 0);
+    out.state.also_loaded = beside_;
     out.unbalanced_force_ratio = b.ratio;
     out.unbalanced_moment_ratio = b.moment_ratio;
     out.steps = steps_;
@@ -295,8 +312,8 @@ class Relaxation {
   const QuasistaticSettings& settings_;
   std::unique_ptr<ContactNetwork> network_;
   Vec3 gravity_;
-  std::int64_t old_grain_, new_grain_;  // indices, -1: none
-  Vec3 force_;
+  ContactNetwork::Load before_, after_;
+  std::vector<std::int64_t> beside_;
   SparseProblem problem_;
   Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness
   double share_ = 0;             // of the change that is done
@@ -306,7 +323,8 @@ class Relaxation {
 }  // namespace
 
 QuasistaticResult relax(const Snapshot& start, const Materials& materials, const Vec3& gravity,
-                        const AppliedForce& force, const QuasistaticSettings& settings) {
+                        const AppliedForce& force, const QuasistaticSettings& settings,
+                        const std::vector<std::int64_t>& beside) {
   check_settings(settings);
   check_start(start);
   if (!materials.materials.empty()) {
@@ -323,20 +341,22 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
   if (!gravity.allFinite()) {
     throw std::invalid_argument("quasi-static relaxation: found a gravity that is not finite");
   }
-  if (force.id >= 0) {
-    const std::int64_t k = index_of(start, force.id);
+  std::vector<std::int64_t> loaded = beside;
+  if (force.id >= 0) loaded.insert(loaded.begin(), force.id);
+  for (const std::int64_t id : loaded) {
+    const std::int64_t k = index_of(start, id);
     if (k < 0 || start.grains[k].fixed) {
       throw std::invalid_argument(
           fmt::format("quasi-static relaxation: found a force on grain {}, allowed: the id of a "
                       "free grain",
-                      force.id));
+                      id));
     }
     if (!std::isfinite(force.fx) || !std::isfinite(force.fy) || !std::isfinite(force.fz)) {
       throw std::invalid_argument(fmt::format(
           "quasi-static relaxation: found a force on grain {} that is not finite", force.id));
     }
   }
-  return Relaxation(start, materials, gravity, force, settings).run();
+  return Relaxation(start, materials, gravity, force, beside, settings).run();
 }
 
 }  // namespace grainfield::dem

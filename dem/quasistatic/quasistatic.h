@@ -8,6 +8,7 @@
 #pragma once
 #include <functional>
 #include <stdexcept>
+#include <vector>
 
 #include "dem/computation_failed.h"
 #include "dem/laws/materials.h"
@@ -40,11 +41,13 @@ struct QuasistaticResult {
   int contacts_gained = 0, contacts_lost = 0, newly_sliding = 0;  ///< against the start
 };
 
-/// The packing `start` at rest under the gravity and the force given (start.applied_force is
-/// replaced). `materials`: contact law and friction of the grains, one for all; walls keep their
-/// own friction. Throws std::invalid_argument for a start that does not fit, and ComputationFailed
-/// saying how far it came (share of the change, ratio reached) and what to try.
+/// The packing `start` at rest under the gravity and the force given, which the grains `beside`
+/// carry each, too (start.applied_force is replaced). `materials`: contact law and friction of the
+/// grains, one for all; walls keep their own friction. Throws std::invalid_argument for a start
+/// that does not fit, and ComputationFailed saying how far it came (share of the change, ratio
+/// reached) and what to try.
 QuasistaticResult relax(const Snapshot& start, const Materials& materials, const Vec3& gravity,
-                        const AppliedForce& force, const QuasistaticSettings& settings);
+                        const AppliedForce& force, const QuasistaticSettings& settings,
+                        const std::vector<std::int64_t>& beside = {});
 
 }  // namespace grainfield::dem

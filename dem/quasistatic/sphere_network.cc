@@ -125,11 +125,11 @@ double SphereNetwork::mean_stiffness() const {
   return law_.repulsion(kLightDepth * radius, 0.5 * radius).slope;
 }
 
-void SphereNetwork::set_load(const Vec3& gravity, std::int64_t loaded_a, const Vec3& force_a,
-                             std::int64_t loaded_b, const Vec3& force_b) {
+void SphereNetwork::set_load(const Vec3& gravity, const std::vector<Load>& loads) {
   for (std::size_t k = 0; k < spheres_.size(); ++k) load_[k] = spheres_[k].mass * gravity;
-  if (loaded_a >= 0) load_[loaded_a] += force_a;
-  if (loaded_b >= 0) load_[loaded_b] += force_b;
+  for (const Load& load : loads) {
+    for (const std::int64_t grain : load.grains) load_[grain] += load.force;
+  }
 }
 
 Vec3 SphereNetwork::displacement(int grain, const Vector& z) const {

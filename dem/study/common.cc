@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/quasistatic/sphere_law.h"
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/replace_file.h"
 #include "dem/study/outlook.h"
@@ -89,12 +90,13 @@ double round_down(double value) {
 }
 
 void check_method(const char* key, const std::string& method, const MaterialSetup& material,
-                  const MotionSetup& motion) {
+                  const MotionSetup& motion, int dim) {
   if (method != "newton") return;
-  if (RollingLaw::of(material).on()) {
+  if (dim == 3) SphereLaw{law_of(material)};  // refuses the laws that it does not know
+  if (dim == 2 && RollingLaw::of(material).on()) {
     throw std::invalid_argument(fmt::format(
         "{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
-        "(the quasi-static solver knows no resistance against rolling)",
+        "(in the plane the quasi-static solver knows no resistance against rolling)",
         key, material.rolling_friction));
   }
   if (motion.energy_balance) {

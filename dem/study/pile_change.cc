@@ -149,7 +149,7 @@ class PileChangeRun final : public ArchivedRun {
   // The forces that the law gives at these places carry the weight, or the law is another one.
   void check_balance() const {
     const auto network = make_contact_network(pile_, settings_);
-    network->set_load(pile_.gravity, -1, Vec3(0, 0, 0), -1, Vec3(0, 0, 0));
+    network->set_load(pile_.gravity);
     const double ratio = network->balance().ratio;
     const double allowed = std::max(kBalanced, 10 * setup_.rest.unbalanced_force_ratio);
     if (!(ratio <= allowed)) {

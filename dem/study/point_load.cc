@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "dem/packing/packing.h"
-#include "dem/quasistatic/quasistatic.h"
 #include "dem/study/fingerprint.h"
 #include "dem/study/layer_figures.h"
+#include "dem/study/load_by_newton.h"
 #include "dem/study/phases.h"
 #include "dem/study/point_load_space.h"
 
@@ -24,7 +24,6 @@ constexpr long kCheckEvery = 200;
 constexpr double kSettledShare = 0.01;
 // ... but is given at least the time of its fall and at most this, s.
 constexpr double kMaxSettleTime = 2.0;
-constexpr double kInstant = 1e-15;  // s
 
 enum class Phase : int { deposit, rest, load, hold, done };
 
@@ -196,31 +195,21 @@ AppliedForce PointLoadRun::load_on(const Snapshot& s) const {
 
 // The load by Newton's method. Told to stop it leaves the run as it was.
 void PointLoadRun::solve() {
-  QuasistaticSettings settings;
-  settings.unbalanced_force_ratio = setup_.load.unbalanced_force_ratio;
+  std::function<bool(double)> go_on;
   if (watch_) {
-    settings.go_on = [this](double share) {
+    go_on = [this](double share) {
       Progress now = progress();
       now.phase = "load";
       now.fraction += (1 - now.fraction) * share;
       return watch_(now);
     };
   }
-  try {
-    QuasistaticResult r =
-        relax(*unloaded_, settings_, unloaded_->gravity, load_on(*unloaded_), settings);
-    reached_ = {r.unbalanced_force_ratio, static_cast<double>(r.steps),
-                static_cast<double>(r.iterations)};
-    loaded_ = std::move(r.state);
-    loaded_->attributes["state"] = "loaded";
-    phases_.enter(Phase::done);
-  } catch (const RelaxationStopped&) {
-    return;
-  } catch (const ComputationFailed& failure) {
-    throw ComputationFailed(
-        fmt::format("load.force = {:g}: {}; or set load.method = damped, or a smaller load.force",
-                    setup_.load.force, failure.what()));
-  }
+  std::optional<LoadedLayer> done =
+      load_by_newton(*unloaded_, settings_, setup_.load, load_on(*unloaded_), {}, go_on);
+  if (!done) return;
+  reached_ = done->reached;
+  loaded_ = std::move(done->state);
+  phases_.enter(Phase::done);
 }
 
 std::int64_t PointLoadRun::choose_loaded_grain(const Snapshot& s) const {
@@ -299,15 +288,9 @@ void PointLoadRun::visit(Archive& archive) {
   archive.require((phases_.now() < Phase::load || unloaded_) && (!done() || loaded_));
 }
 
-/// Of the state that the run ends with. Newton's is not the engine's: its forces are evaluated by
-/// a step so short that nothing moves.
+/// Of the state that the run ends with.
 Diagnostics PointLoadRun::loaded_state() const {
-  if (!by_newton()) return engine_->measure();
-  EngineSettings settings = settings_;
-  settings.time_step = kInstant;
-  const auto engine = make_engine(settings, *loaded_);
-  engine->step(1);
-  return engine->measure();
+  return by_newton() ? diagnostics_of(*loaded_, settings_) : engine_->measure();
 }
 
 RunResult PointLoadRun::result() const {

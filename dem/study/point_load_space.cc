@@ -14,6 +14,7 @@
 #include "dem/snapshot/images.h"
 #include "dem/study/fingerprint.h"
 #include "dem/study/layer_figures.h"
+#include "dem/study/load_by_newton.h"
 #include "dem/study/phases.h"
 
 namespace grainfield::dem {
@@ -52,11 +53,18 @@ class SpaceLoadRun final : public ArchivedRun {
   std::unique_ptr<Engine> empty_engine() const;
   void enter(Phase phase);
   void decide();
+  bool by_newton() const { return setup_.load.method == "newton"; }
+  void solve();
   bool has_settled() const;
   void decide_rest();
   double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
   std::string fingerprint() const override;
   Snapshot take_snapshot(const char* state) const;
+  struct SharedForce {
+    AppliedForce force;                ///< on each
+    std::vector<std::int64_t> beside;  ///< the others that carry it
+  };
+  SharedForce load_on(const Snapshot& snapshot) const;
   std::int64_t choose_loaded_grain(const Snapshot& snapshot) const;
   std::vector<std::int64_t> others_loaded(const Snapshot& snapshot, std::int64_t first) const;
 
@@ -66,6 +74,7 @@ class SpaceLoadRun final : public ArchivedRun {
   std::unique_ptr<Engine> engine_;
   Phases<Phase> phases_;
   std::optional<Snapshot> unloaded_, loaded_;
+  Reached reached_;  // by Newton's method
 };
 
 SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
@@ -94,6 +103,7 @@ void SpaceLoadRun::enter(Phase phase) {
 
 void SpaceLoadRun::advance(long steps) {
   while (steps > 0 && !done()) {
+    if (phases_.now() == Phase::load && by_newton()) return solve();
     steps -= phases_.step(*engine_, steps, kCheckEvery);
     if (phases_.is_due(kCheckEvery)) decide();
   }
@@ -145,13 +155,39 @@ void SpaceLoadRun::decide_rest() {
   }
   unloaded_ = take_snapshot("unloaded");
   enter(Phase::load);
-  AppliedForce force;
-  force.id = choose_loaded_grain(*unloaded_);
-  const std::vector<std::int64_t> beside = others_loaded(*unloaded_, force.id);
-  force.fz = -force_of_load(setup_) / static_cast<double>(1 + beside.size());
-  force.start = engine_->time();
-  force.ramp = setup_.load.ramp_time;
-  engine_->apply(force, beside);
+  if (by_newton()) return;
+  SharedForce load = load_on(*unloaded_);
+  load.force.start = engine_->time();
+  load.force.ramp = setup_.load.ramp_time;
+  engine_->apply(load.force, load.beside);
+}
+
+SpaceLoadRun::SharedForce SpaceLoadRun::load_on(const Snapshot& s) const {
+  SharedForce out;
+  out.force.id = choose_loaded_grain(s);
+  out.beside = others_loaded(s, out.force.id);
+  out.force.fz = -force_of_load(setup_) / static_cast<double>(1 + out.beside.size());
+  return out;
+}
+
+// The load by Newton's method. Told to stop it leaves the run as it was.
+void SpaceLoadRun::solve() {
+  std::function<bool(double)> go_on;
+  if (watch_) {
+    go_on = [this](double share) {
+      Progress now = progress();
+      now.phase = "load";
+      now.fraction += (1 - now.fraction) * share;
+      return watch_(now);
+    };
+  }
+  const SharedForce load = load_on(*unloaded_);
+  std::optional<LoadedLayer> done =
+      load_by_newton(*unloaded_, settings_, setup_.load, load.force, load.beside, go_on);
+  if (!done) return;
+  reached_ = done->reached;
+  loaded_ = std::move(done->state);
+  phases_.enter(Phase::done);
 }
 
 // The grains within load.radius of that one whose centres no higher grain covers.
@@ -244,6 +280,7 @@ std::string SpaceLoadRun::fingerprint() const {
 
 void SpaceLoadRun::visit(Archive& archive) {
   phases_.visit(archive);
+  archive(reached_);
   archive.engine(engine_, [this] { return empty_engine(); });
   archive.snapshot(unloaded_, "unloaded");
   archive.snapshot(loaded_, "loaded");
@@ -255,7 +292,9 @@ RunResult SpaceLoadRun::result() const {
   if (!unloaded_ || !loaded_) return out;
   out.snapshots = {{"unloaded", *unloaded_}, {"loaded", *loaded_}};
   auto& f = out.figures;
-  add_engine_figures(*engine_, engine_->measure(), f);
+  add_engine_figures(*engine_,
+                     by_newton() ? diagnostics_of(*loaded_, settings_) : engine_->measure(), f);
+  add_reached("load", reached_, f);
   const auto sides = layer_sides(setup_.packing);
   add_layer_figures(*unloaded_, *loaded_, space_surface(*unloaded_, setup_.packing), sides[0],
                     sides[0] * sides[1], f);
@@ -272,10 +311,7 @@ RunResult SpaceLoadRun::result() const {
 
 EngineSettings space_load_settings(const PointLoadSetup& s, int threads) {
   check_packing(s.packing);
-  if (s.load.method != "damped") {
-    throw std::invalid_argument(fmt::format(
-        "load.method: found \"{}\" with packing.dim = 3, allowed: \"damped\"", s.load.method));
-  }
+  check_method("load.method", s.load.method, s.material, s.motion, 3);
   const double least = smallest_radius(s.packing);
   GrainExtremes extremes;
   extremes.least_radius = least;
@@ -286,7 +322,9 @@ EngineSettings space_load_settings(const PointLoadSetup& s, int threads) {
   out.gravity_z = -s.material.gravity;
   out.cell = layer_cell(s.packing);
   check_background_damping(s.rest, out.time_step);
-  check_countable("load.ramp_time", s.load.ramp_time, out.time_step);
+  if (s.load.method != "newton") {
+    check_countable("load.ramp_time", s.load.ramp_time, out.time_step);
+  }
   return out;
 }
 

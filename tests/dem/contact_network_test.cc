@@ -1,11 +1,10 @@
 // The equations of a contact network: their tangent, balance and invariance.
-#include "dem/quasistatic/plane_network.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "dem/quasistatic/plane_network.h"
 #include "tests/dem/quasistatic_scene.h"
 
 namespace grainfield::dem {
@@ -50,7 +49,7 @@ TEST(ContactNetwork, TangentIsTheDerivativeOfTheResidual) {
       for (Wall& w : s.walls) w.friction = 0;
     }
     PlaneNetwork network(s, e);
-    network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
+    network.set_load({0, -kG, 0});
     network.set_scale(100);
     const int n = network.size();
     Eigen::VectorXd z(n), r, plus, minus;
@@ -83,7 +82,7 @@ TEST(ContactNetwork, ATrialThatIsTakenBackLeavesNoTrace) {
   for (int trial = 0; trial < 20; ++trial) {
     Snapshot s = cluster(random, trial % 2 == 1);
     PlaneNetwork network(s, area_law(0.4));
-    network.set_load({0, -kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
+    network.set_load({0, -kG, 0});
     Eigen::VectorXd z(network.size()), before, after;
     for (int k = 0; k < network.size(); ++k) z[k] = 1e-3 * random.uniform(-1, 1);
     network.commit(z);  // with loaded springs

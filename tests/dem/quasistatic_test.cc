@@ -107,7 +107,7 @@ TEST(Quasistatic, RelaxingARelaxedStateChangesNothing) {
 TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
   const Snapshot rest = relax(block(8, 5, 5), area_law(5), {0, -kG, 0}, {}, {}).state;
   PlaneNetwork network(rest, area_law(5));
-  network.set_load({0, -0.8 * kG, 0}, -1, {0, 0, 0}, -1, {0, 0, 0});
+  network.set_load({0, -0.8 * kG, 0});
   network.set_scale(network.balance().mean_contact_force);
   SparseProblem problem;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(network.size());
@@ -244,7 +244,8 @@ TEST(Quasistatic, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal(s, area_law(0.5), force, {}), testing::HasSubstr("force on grain 7"));
   Snapshot bad = s;
   bad.dim = 3;
-  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("relaxation of spheres: linear"));
+  EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}),
+              testing::HasSubstr("relaxation of spheres: linear"));
   bad = s;
   bad.cell.periodic[0] = true;
   EXPECT_THAT(refusal(bad, area_law(0.5), {}, {}), testing::HasSubstr("found a periodic cell"));

@@ -79,6 +79,34 @@ TEST(SpaceLoad, LinearLawToo) {
   EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2);
 }
 
+// By Newton's method as by slow damped dynamics, on one grain and on several.
+TEST(SpaceLoad, BothMethodsAgree) {
+  for (const double radius : {0.0, 0.012}) {
+    PointLoadSetup s = spheres("random");
+    s.load.weights = 0.05;
+    s.load.radius = radius;
+    s.load.ramp_time = 0.1;
+    s.rest.unbalanced_force_ratio = 1e-7;
+    const RunResult damped = result_of(s);
+    s.load.method = "newton";
+    s.load.unbalanced_force_ratio = 1e-7;
+    const RunResult newton = result_of(s);
+    const Snapshot &a = damped.snapshots[1].second, &b = newton.snapshots[1].second;
+    EXPECT_EQ(a.loaded_grain, b.loaded_grain);
+    EXPECT_EQ(a.also_loaded, b.also_loaded);
+    EXPECT_EQ(a.also_loaded.empty(), radius == 0);
+    EXPECT_NEAR(newton.figures.at("base.response_over_load"), 1, 1e-3);
+    EXPECT_GT(newton.figures.at("load.iterations"), 0);
+    const auto sunk = [](const RunResult& r) {
+      const Snapshot &from = r.snapshots[0].second, &to = r.snapshots[1].second;
+      const auto k = static_cast<std::size_t>(to.loaded_grain);
+      return from.grains[k].position.z() - to.grains[k].position.z();
+    };
+    EXPECT_NEAR(sunk(newton) / sunk(damped), 1, 0.02) << radius;
+    expect_balanced(b, 1e-6);
+  }
+}
+
 // The grains seen from above within the radius share the force.
 TEST(SpaceLoad, ADiskOfGrainsSharesTheForce) {
   PointLoadSetup s = spheres("random");
@@ -194,7 +222,9 @@ TEST(SpaceLoad, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal(s), HasSubstr("packing.columns: found 2, allowed: 4 or more"));
   s = spheres("random");
   s.load.method = "newton";
-  EXPECT_THAT(refusal(s), HasSubstr("load.method: found \"newton\" with packing.dim = 3"));
+  s.material.law = "hertz_elliptic";
+  EXPECT_THAT(refusal(s),
+              HasSubstr("material.law: found hertz_elliptic, allowed for quasi-static"));
   s = spheres("random");
   s.motion.time_step = 1;
   EXPECT_THAT(refusal(s), HasSubstr("motion.time_step: found 1 s, allowed: at most "));

@@ -83,7 +83,7 @@ TEST(SphereNetwork, TangentIsTheDerivativeOfTheResidual) {
     const AnyLaw& law = laws()[trial % laws().size()];
     const Cluster c = cluster(random, law, trial % 3 == 0, trial % 2 == 0);
     SphereNetwork network(c.start, c.materials);
-    network.set_load({0, 0, -9.81}, -1, {0, 0, 0}, -1, {0, 0, 0});
+    network.set_load({0, 0, -9.81});
     network.set_scale(10);
     const int n = network.size();
     network.commit(random_step(random, n, 1e-3));  // springs of slip, rolling and twisting

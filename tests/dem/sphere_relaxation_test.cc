@@ -93,7 +93,7 @@ TEST(SphereRelaxation, BothLinearSolversAgree) {
   const EngineSettings e = settings_of(HertzLaw{5e6, 0.3, 0.3}, 0.3);
   const auto engine = settled(e, true, 4, 5);
   SphereNetwork network(engine->snapshot(), e);
-  network.set_load({0, 0, -kG}, -1, {0, 0, 0}, -1, {0, 0, 0});
+  network.set_load({0, 0, -kG});
   network.set_scale(mass_of(kRadius) * kG);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network.size());
   Eigen::SparseMatrix<double> matrix;
