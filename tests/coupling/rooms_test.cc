@@ -18,6 +18,7 @@ const std::vector<Room>& rooms() {
       {"strain", {"averaging", "statistics"}},
       {"structure", {"averaging", "statistics"}},
       {"import", {"averaging", "system"}},
+      {"export", {}},
       {"compare", {"averaging", "statistics"}},
       {"heap", {"averaging", "statistics"}},
       {"output", {"compare", "system"}},
@@ -53,7 +54,7 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "fit", "heap", "import", "models", "output", "run",
         "strain", "studies/pile", "studies/point_load"}},
       {"app",
-       {"averaging", "case", "files", "import", "output", "reproduce", "run", "statistics",
+       {"averaging", "case", "export", "files", "import", "output", "reproduce", "run", "statistics",
         "structure", "system"}},
   };
   return kRooms;

@@ -61,7 +61,7 @@ struct Forgetful {
 };
 // What fingerprint_of asserts.
 static_assert(detail::count_members<Forgetful>() == 2);
-static_assert(detail::count_members<PackingSetup>() == 17);
+static_assert(detail::count_members<PackingSetup>() == 20);
 
 }  // namespace
 }  // namespace grainfield::dem

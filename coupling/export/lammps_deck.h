@@ -1,0 +1,38 @@
+// A packing of spheres as LAMMPS reads it, with an input deck that has the same law, walls, gravity
+// and load: to go on on many processors, and to come back by `grainfield import`.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dem/laws/material_setup.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// What a snapshot does not tell.
+struct LammpsSetup {
+  dem::MaterialSetup material;
+  double background_damping = 0;     ///< 1/s, of velocities
+  double time_step = 1e-5;           ///< s
+  std::vector<std::int64_t> loaded;  ///< ids of the grains that share the load; empty: none
+  dem::Vec3 force{0, 0, 0};          ///< on each of them, N
+};
+
+struct LammpsDeck {
+  std::string data;   ///< packing.data, for read_data; LAMMPS' ids are ours plus one
+  std::string input;  ///< in.lammps
+  /// What LAMMPS does differently, one line each.
+  std::vector<std::string> notes;
+};
+
+/// Throws std::invalid_argument naming what LAMMPS has not: packings in the plane, other shapes
+/// than spheres, other laws than linear and hertz, walls that are no planes across an axis, cells
+/// that are sheared, several materials.
+LammpsDeck lammps_deck(const dem::Snapshot& packing, const LammpsSetup& setup);
+
+/// The restitution coefficient that LAMMPS' `damping tsuji` turns into the prefactor alpha
+/// (Tsuji, Tanaka and Ishida 1992; its polynomial), for 0 <= alpha <= 1.2728; 0 beyond.
+double tsuji_restitution(double alpha);
+
+}  // namespace grainfield::coupling
