@@ -123,8 +123,13 @@ void choose_models(Draft& draft) {
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
     try {
       const auto& info = continuum::find_model(choice.name);
+      const auto& fills = study_of(value).fills;
+      continuum::Settings settings = choice.settings;
+      if (info.dim == 0 && std::find(fills.begin(), fills.end(), "dim") != fills.end()) {
+        settings.emplace("dim", std::to_string(dimension_of(value)));
+      }
       if (study_of(value).has_grains() &&
-          continuum::dimension(info, choice.settings) != dimension_of(value)) {
+          continuum::dimension(info, settings) != dimension_of(value)) {
         reject(where, "compare.models",
                fmt::format("\"{}\" is {}-dimensional, the grains are not", label,
                            dimension_of(value) == 2 ? "three" : "two"));

@@ -12,7 +12,7 @@
 namespace grainfield::dem {
 
 /// Solid fraction that a settled layer is taken to have when its grains are counted out.
-inline constexpr double kSettledFraction = 0.6;
+inline constexpr double kSettledFraction = 0.55;
 
 /// As check_packing, of packing.dim = 3.
 void check_space_layer(const PackingSetup& packing);

@@ -65,7 +65,7 @@ void declare_packing_keys(SectionKeys s) {
   s.number(
       "depth", "m", IN(packing.depth), kLength,
       "rows are dropped until the surface is this high; of spheres, as many are placed as fill "
-      "it at a solid fraction of 0.6",
+      "it at a solid fraction of 0.55",
       kRoul);
   s.only("packing.kind", {"layered", "random"});
   s.word("sides", IN(packing.sides), {"periodic", "walls"},
