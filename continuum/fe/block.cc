@@ -38,6 +38,8 @@ using plasticity::Vector6;
 constexpr double kConverged = 1e-11;
 constexpr int kIterations = 30, kFirstSteps = 8;
 constexpr double kLeastStep = 1e-6;
+// Pivots of the tangent below this share of the largest are rounding.
+constexpr double kSingular = 1e-9;
 
 Vector6 vector_of(const Eigen::Matrix3d& m, double shear) {
   Vector6 out;
@@ -195,7 +197,10 @@ bool Block::step(const BlockLoad& load, const Vector6& wanted) {
     }
     if (unknowns == 0 || residual.cwiseAbs().maxCoeff() <= kConverged * scale_) return true;
     if (!residual.allFinite()) return false;
-    const Eigen::VectorXd move = matrix.completeOrthogonalDecomposition().solve(residual);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    factors.setThreshold(kSingular);
+    factors.compute(matrix);
+    const Eigen::VectorXd move = factors.solve(residual);
     next_ -= move.head(inside_);
     for (std::size_t h = 0; h < held.size(); ++h) {
       reached_[held[h]] -= move[inside_ + static_cast<Eigen::Index>(h)];

@@ -180,11 +180,11 @@ TEST(SampleProber, GoesOnFromAnyMoment) {
   auto run = make_sample_run(setup, 5, 1);
   int taken = 0, in_probes = 0;
   while (!run->done()) {
-    run->advance(1777);
+    run->advance(777);
     if (run->done()) break;
     const bool probing = run->progress().phase == "probe";
-    // Of the probes every third time, of the rest every tenth.
-    if (++taken % (probing ? 3 : 10) != 0) continue;
+    // Of the probes every second time, of the rest every twentieth.
+    if (++taken % (probing ? 2 : 20) != 0) continue;
     in_probes += probing;
     run->save(file);
     run = make_sample_run(setup, 5, 2);

@@ -104,12 +104,12 @@ std::string block_csv(const BlockComparison& c) {
     out += fmt::format("{},{:.9g}", k, c.strain[k]);
     for (const BlockQuantity& q : c.quantities) {
       const Spread grains = spread_in(q.grains, k);
-      out += "," + block_number(grains.mean) + "," + block_number(grains.standard_error);
+      out += fmt::format(",{},{}", block_number(grains.mean), block_number(grains.standard_error));
       for (const std::string& law : c.laws) {
         const Stage s = stage_of(q, law, k);
         for (const double v :
              {s.law.mean, s.difference.mean, s.difference.standard_error, s.over_error()}) {
-          out += "," + block_number(v);
+          out += fmt::format(",{}", block_number(v));
         }
       }
     }
