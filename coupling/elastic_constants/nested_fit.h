@@ -69,7 +69,9 @@ struct NormalSums {
   }
   /// nan where the constants cannot be told apart.
   Eigen::Matrix<double, Constants, 1> solve() const {
-    const Eigen::LDLT<Eigen::Matrix<double, Constants, Constants>> factors(matrix);
+    // Of nine constants and more GCC 12 takes Eigen's estimate of the condition for uninitialized.
+    constexpr int kSize = Constants < 9 ? Constants : Eigen::Dynamic;
+    const Eigen::LDLT<Eigen::Matrix<double, kSize, kSize>> factors(matrix);
     Eigen::Matrix<double, Constants, 1> c = Eigen::Matrix<double, Constants, 1>::Constant(kNan);
     if (factors.info() == Eigen::Success && factors.rcond() > std::pow(kLargestCondition, -2))
       c = factors.solve(right);
