@@ -20,14 +20,14 @@
 namespace grainfield::coupling {
 namespace {
 
-struct Given {
+struct ExportRequest {
   std::string to, case_file, snapshots, group, output;
   std::vector<std::string> sets;
   bool quick = false;
 };
 
 /// The group asked for, or the first one that ends with "unloaded", or the first.
-std::string chosen_group(const Given& given) {
+std::string chosen_group(const ExportRequest& given) {
   const std::vector<std::string> groups = dem::list_snapshots(given.snapshots);
   if (given.group.empty()) {
     const auto found = std::find_if(groups.begin(), groups.end(),
@@ -68,7 +68,7 @@ void write_text(const std::string& path, const std::string& text) {
   if (!(out << text).flush()) throw dem::StorageFailed("cannot write " + path);
 }
 
-int export_packing(const Given& given) {
+int export_packing(const ExportRequest& given) {
   if (given.to != "lammps") {
     throw std::invalid_argument(fmt::format("--to: found \"{}\", allowed: lammps", given.to));
   }
@@ -105,7 +105,7 @@ int export_packing(const Given& given) {
 void add_export(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("export", "a packing of spheres as LAMMPS' data and input deck");
-  auto given = std::make_shared<Given>();
+  auto given = std::make_shared<ExportRequest>();
   command->add_option("case", given->case_file, "case file with law, friction and damping")
       ->required();
   command->add_option("snapshots", given->snapshots, "HDF5 file of ours")->required();
