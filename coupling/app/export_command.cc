@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -13,9 +12,9 @@
 #include "coupling/case/case.h"
 #include "coupling/case/study.h"
 #include "coupling/export/lammps_deck.h"
+#include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -63,11 +62,6 @@ void take_load(const std::string& file, const std::string& group, const dem::Sna
   }
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  if (!(out << text).flush()) throw dem::StorageFailed("cannot write " + path);
-}
-
 int export_packing(const ExportRequest& given) {
   if (given.to != "lammps") {
     throw std::invalid_argument(fmt::format("--to: found \"{}\", allowed: lammps", given.to));
@@ -89,8 +83,8 @@ int export_packing(const ExportRequest& given) {
   const LammpsDeck deck = lammps_deck(packing, setup);
   OutputFolder folder(given.output, "grainfield export");
   folder.require_other_than({given.case_file, given.snapshots});
-  write_text(folder.staging("packing.data"), deck.data);
-  write_text(folder.staging("in.lammps"), deck.input);
+  write_text_file(folder.staging("packing.data"), deck.data);
+  write_text_file(folder.staging("in.lammps"), deck.input);
   folder.publish();
   say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots, packing.grains.size(),
       packing.walls.size(),
