@@ -32,7 +32,7 @@ struct LoadSetup {
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
   double ramp_time = 0.5;                ///< s from 0 to the full force (smooth ramp); damped
   double position = 0.5;    ///< of the width: the top grain nearest to it carries the force
-  double weights = 1;       ///< 3D: force over a grain's mean weight; 0: load.force
+  double weights = 0.1;     ///< 3D: force over a grain's mean weight; 0: load.force
   double position_y = 0.5;  ///< 3D: likewise along y
   double radius = 0;        ///< m; 3D: grains of the surface so near to that one share the force
 

@@ -47,6 +47,7 @@ damping = 0.3
 [rest]
 background_damping = 60
 [load]
+weights = 1
 ramp_time = 0.02
 [ensemble]
 realizations = 2
@@ -193,9 +194,9 @@ TEST(SpaceLoadRun, SameFilesOnAnyThreadsAndAfterAKill) {
   ASSERT_EQ(program("run " + file + " -o " + (folder / "one") + " --threads 1").code, 0);
   ASSERT_EQ(program("run " + file + " -o " + (folder / "two") + " --threads 2").code, 0);
   // Killed in the midst of it, and resumed.
-  const Output killed = program(
-      "run " + file + " -o " + (folder / "three") + " --threads 2 --checkpoint-seconds 0.2",
-      "timeout -s KILL 1.5");
+  const Output killed =
+      program("run " + file + " -o " + (folder / "three") + " --threads 2 --checkpoint-seconds 0.2",
+              "timeout -s KILL 1.5");
   EXPECT_NE(killed.code, 0);
   ASSERT_EQ(program("run " + file + " -o " + (folder / "three") + " --threads 1 --resume").code, 0);
   const auto one = testing::contents(folder / "one");

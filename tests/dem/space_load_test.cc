@@ -34,6 +34,7 @@ PointLoadSetup spheres(const std::string& kind) {
   s.material.damping = 0.3;
   s.rest.background_damping = 60;
   s.load.ramp_time = 0.02;
+  s.load.weights = 1;
   return s;
 }
 
