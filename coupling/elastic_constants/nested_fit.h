@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "continuum/constants.h"
@@ -69,7 +70,10 @@ struct NormalSums {
   }
   /// nan where the constants cannot be told apart.
   Eigen::Matrix<double, Constants, 1> solve() const {
-    const Eigen::LDLT<Eigen::Matrix<double, Constants, Constants>> factors(matrix);
+    // GCC 12 takes the condition's signs of larger fixed sizes for uninitialized.
+    using Matrix = std::conditional_t<Constants <= 4, Eigen::Matrix<double, Constants, Constants>,
+                                      Eigen::MatrixXd>;
+    const Eigen::LDLT<Matrix> factors{Matrix(matrix)};
     Eigen::Matrix<double, Constants, 1> c = Eigen::Matrix<double, Constants, 1>::Constant(kNan);
     if (factors.info() == Eigen::Success && factors.rcond() > std::pow(kLargestCondition, -2))
       c = factors.solve(right);
