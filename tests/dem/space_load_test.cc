@@ -49,7 +49,9 @@ TEST(SpaceLoad, BaseCarriesWeightAndLoad) {
     for (const char* floor : {"smooth", "rough"}) {
       for (const char* sides : {"periodic", "walls"}) {
         // Where a close packing ends at a wall some spheres are held by nothing and creep.
-        if (kind == "close_packed" && std::string(sides) == "walls") continue;
+        const bool walled = std::string(sides) == "walls", rough = std::string(floor) == "rough";
+        if (kind == "close_packed" && walled) continue;
+        if (kind == "random" && walled != rough) continue;  // half of the four: they take long
         PointLoadSetup s = spheres(kind);
         s.packing.floor = floor;
         s.packing.sides = sides;
