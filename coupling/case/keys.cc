@@ -153,6 +153,18 @@ std::string limits(const Key& key) {
   return own_studies(key) + (with.empty() ? "" : "with " + with + ": ");
 }
 
+// Whether members of the sweep may differ in their grains' number of dimensions.
+bool varies_dimension(const Case& value) {
+  const Study* study = find_study(value.study);
+  if (study == nullptr || study->dimension_key.empty()) return false;
+  const std::string& key = study->dimension_key;
+  if (value.sweep.key != "variant") return value.sweep.key == key;
+  return std::any_of(value.variants.begin(), value.variants.end(), [&](const Variant& variant) {
+    return std::any_of(variant.keys.begin(), variant.keys.end(),
+                       [&](const std::string& text) { return text.rfind(key, 0) == 0; });
+  });
+}
+
 }  // namespace
 
 std::string toml_text(const std::string& text) {
@@ -236,12 +248,7 @@ bool may_be_in_space(const std::string& study) {
 }
 
 bool is_without_effect(const Key& key, const Case& value) {
-  if (key.space && dimension_of(value) == 2) {
-    const Study* study = find_study(value.study);
-    const bool varied = value.sweep.key == "variant" ||
-                        (study != nullptr && value.sweep.key == study->dimension_key);
-    if (!varied) return true;
-  }
+  if (key.space && dimension_of(value) == 2 && !varies_dimension(value)) return true;
   return unmet_need(key, value) != nullptr;
 }
 

@@ -108,7 +108,8 @@ TEST(IdleKeys, DependOnKeysAndValuesThatExist) {
   }
 }
 
-// With the choice that leaves it without effect the grains come to the same bits, whatever the key says.
+// With the choice that leaves it without effect the grains come to the same bits, whatever the key
+// says.
 TEST(IdleKeys, ChangeNothing) {
   const Words of_grains{"shape", "source", "packing", "material", "motion", "sleep", "change"};
   std::map<std::string, std::vector<double>> baselines;
@@ -138,7 +139,8 @@ TEST(IdleKeys, ChangeNothing) {
       EXPECT_THAT(e.what(), HasSubstr("allowed"));  // refused, which says it too
       continue;
     }
-    ASSERT_THAT(with.without_effect, ::testing::Contains(HasSubstr("--set: " + key.path()))) << key.path();
+    ASSERT_THAT(with.without_effect, ::testing::Contains(HasSubstr("--set: " + key.path())))
+        << key.path();
     const std::string baseline =
         fmt::format("{} {}", pile, fmt::join(set.begin(), set.end() - 1, " "));
     if (baselines.count(baseline) == 0) baselines[baseline] = outcome(without);
@@ -168,7 +170,8 @@ TEST(IdleKeys, AreNamedWithLineAndRemedy) {
 TEST(IdleKeys, AreNotWhatARunVaries) {
   const std::string text = "study = \"pile\"\n[source]\nheight = 0.4\nlength = 0.9\n";
   EXPECT_THAT(read(text).without_effect, ElementsAre(HasSubstr("source.length")));
-  EXPECT_THAT(read(text + "[sweep]\nkey = \"source.kind\"\nvalues = [\"line\", \"point\"]\n").without_effect,
+  EXPECT_THAT(read(text + "[sweep]\nkey = \"source.kind\"\nvalues = [\"line\", \"point\"]\n")
+                  .without_effect,
               IsEmpty());
 }
 
@@ -194,17 +197,20 @@ TEST(IdleKeys, MayHaveSeveralNeeds) {
                    {"sample.sides=upright", "sample.boundary=walls", "sample.deformation=axial"})
                   .without_effect,
               ElementsAre("--set: sample.sides: has no effect, " + only + "\"axial\")"));
-  EXPECT_THAT(read(kTinySample, {"sample.sides=upright", "sample.boundary=walls"}).without_effect, IsEmpty());
+  EXPECT_THAT(read(kTinySample, {"sample.sides=upright", "sample.boundary=walls"}).without_effect,
+              IsEmpty());
 }
 
 TEST(IdleKeys, OfSamplesChangeNothing) {
   const auto periodic = outcome(read(kTinySample));
   const Case rough = read(kTinySample, {"material.wall_friction=0.7"});
-  EXPECT_THAT(rough.without_effect, ElementsAre(HasSubstr("material.wall_friction: has no effect, only with "
-                                                "sample.boundary = walls (study sample) (now ")));
+  EXPECT_THAT(rough.without_effect,
+              ElementsAre(HasSubstr("material.wall_friction: has no effect, only with "
+                                    "sample.boundary = walls (study sample) (now ")));
   EXPECT_EQ(outcome(rough), periodic);
-  EXPECT_THAT(read(kTinySample, {"material.wall_friction=0.7", "sample.boundary=walls"}).without_effect,
-              IsEmpty());
+  EXPECT_THAT(
+      read(kTinySample, {"material.wall_friction=0.7", "sample.boundary=walls"}).without_effect,
+      IsEmpty());
   const Overrides axial{"sample.boundary=walls", "sample.deformation=axial"};
   Overrides upright = axial;
   upright.emplace_back("sample.sides=upright");
@@ -219,7 +225,8 @@ TEST(IdleKeys, OfPathsAreTheTimeStepAndItsIntegrator) {
   for (const char* set :
        {"motion.time_step=1.0", "motion.time_step_fraction=0.5", "motion.integrator=gear"}) {
     const Case other = read(path, {set});
-    EXPECT_THAT(other.without_effect, ElementsAre(HasSubstr("only with pair.kind = collision"))) << set;
+    EXPECT_THAT(other.without_effect, ElementsAre(HasSubstr("only with pair.kind = collision")))
+        << set;
     EXPECT_EQ(outcome(other), outcome(usual)) << set;
   }
   EXPECT_THAT(read("study = \"pair\"\n", {"motion.integrator=gear"}).without_effect, IsEmpty());
@@ -253,7 +260,8 @@ TEST(IdleKeys, OfShippedCasesAreNone) {
   for (const auto& entry : std::filesystem::directory_iterator(GRAINFIELD_CASES)) {
     if (entry.path().extension() != ".toml") continue;
     for (const bool quick : {false, true}) {
-      EXPECT_THAT(read_case(entry.path().string(), quick, {}).without_effect, IsEmpty()) << entry.path();
+      EXPECT_THAT(read_case(entry.path().string(), quick, {}).without_effect, IsEmpty())
+          << entry.path();
     }
   }
 }
@@ -266,7 +274,7 @@ TEST(IdleKeys, AreWarnedOfByRunAndCheck) {
                                     "ensemble.realizations=1");
   EXPECT_EQ(out.code, 0) << out.err;
   EXPECT_THAT(out.err, HasSubstr("grainfield: warning: --set: packing.width: has no effect, only "
-                                 "with packing.kind = layered (now \"triangular\")"));
+                                 "with packing.kind = layered or random (now \"triangular\")"));
   const auto check = testing::program("check " + file + " --set packing.width=0.2");
   EXPECT_EQ(check.code, 0);
   EXPECT_THAT(check.err, HasSubstr("grainfield: warning: --set: packing.width: has no effect"));
