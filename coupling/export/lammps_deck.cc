@@ -52,7 +52,10 @@ void check(const dem::Snapshot& s, const LammpsSetup& setup) {
     require(off.isZero(0), "found a sheared cell, allowed: one with edges along the axes");
     require(s.cell.velocity_gradient.isZero(0), "found a cell that flows, allowed: one at rest");
   }
+  require(s.gravity.norm() > 0, "found no gravity, allowed: packings that rest under their weight");
   for (const dem::Wall& w : s.walls) {
+    require(w.velocity.isZero(0) && w.angular_velocity.isZero(0),
+            fmt::format("wall {}: found one that moves, allowed: walls at rest", w.name));
     require(w.shape == "plane" && w.normal.cwiseAbs().maxCoeff() == 1 && w.material.empty(),
             fmt::format("wall {}: found a {}, allowed: planes across an axis without a material of "
                         "their own",
@@ -153,9 +156,9 @@ std::string walls_of(const dem::Snapshot& s, const dem::MaterialSetup& m, Lammps
     w.normal.cwiseAbs().maxCoeff(&axis);
     const std::string place = fmt::format("{:.17g}", w.point[axis]);
     const bool low = w.normal[axis] > 0;
-    out += fmt::format("fix {} all wall/gran granular {} {}plane {} {} contacts\n", name_of(w, k),
-                       law_of(m, w.friction, deck), kAxes[axis], low ? place : "NULL",
-                       low ? "NULL" : place);
+    out += fmt::format("fix wall_{} all wall/gran granular {} {}plane {} {} contacts\n",
+                       name_of(w, k), law_of(m, w.friction, deck), kAxes[axis],
+                       low ? place : "NULL", low ? "NULL" : place);
   }
   return out;
 }
@@ -171,7 +174,8 @@ std::string import_command(const dem::Snapshot& s, const char* state) {
     int axis = 0;
     w.normal.cwiseAbs().maxCoeff(&axis);
     const std::string name = name_of(w, k);
-    out += fmt::format(" --wall {}:{}={:.10g}:fix=f_{}", name, kAxes[axis], w.point[axis], name);
+    out +=
+        fmt::format(" --wall {}:{}={:.10g}:fix=f_wall_{}", name, kAxes[axis], w.point[axis], name);
   }
   return out;
 }
@@ -179,7 +183,7 @@ std::string import_command(const dem::Snapshot& s, const char* state) {
 std::string dump_of(const dem::Snapshot& s, const char* state) {
   std::string walls;
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
-    walls += fmt::format(" f_{}[*]", name_of(s.walls[k], k));
+    walls += fmt::format(" f_wall_{}[*]", name_of(s.walls[k], k));
   }
   return fmt::format(
       "dump grains all custom 1 {0}.grains id type x y z radius mass vx vy vz omegax omegay "
@@ -199,6 +203,7 @@ std::string rest(const char* label) {
       "label {0}\n"
       "run 2500\n"
       "if \"$(v_quiet) > 0\" then \"next turn\" \"jump SELF {0}\"\n"
+      "if \"$(v_quiet) > 0\" then \"print 'not at rest: raise the loop of turns'\" \"quit 1\"\n"
       "variable turn delete\n",
       label);
 }
@@ -213,7 +218,7 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
     largest = std::max(largest, g.radius);
     any_fixed |= g.fixed;
     if (g.fixed) continue;
-    weight += g.mass * std::max(gravity, 1e-300);
+    weight += g.mass * gravity;
     ++free;
   }
   // A grain's share of this energy lifts it by a ten-thousandth of the largest radius.

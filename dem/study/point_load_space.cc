@@ -210,15 +210,16 @@ std::vector<std::int64_t> SpaceLoadRun::others_loaded(const Snapshot& s, std::in
   return out;
 }
 
-// The highest grain within a radius of the wanted place, or where there is none within more; ties
-// go to the nearer one.
+// The highest grain within two diameters of the wanted place, or where there is none within more:
+// within a radius, as in the plane, there may be a pit alone, whose highest grain lies deep below the
+// surface. Ties go to the nearer one.
 std::int64_t SpaceLoadRun::choose_loaded_grain(const Snapshot& s) const {
   const auto sides = layer_sides(setup_.packing);
   const Vec3 wanted((setup_.load.position - 0.5) * sides[0],
                     (setup_.load.position_y - 0.5) * sides[1], 0);
   std::int64_t best = -1;
   double height = 0;
-  for (double reach = largest_radius(setup_.packing); best < 0; reach *= 2) {
+  for (double reach = 4 * largest_radius(setup_.packing); best < 0; reach *= 2) {
     for (const Grain& g : s.grains) {
       Vec3 way = g.position - wanted;
       way.z() = 0;

@@ -105,8 +105,10 @@ void declare_load_keys(SectionKeys s) {
   s.number("ramp_time", "s", IN(load.ramp_time), kTime,
            "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
   s.only("load.method", {"damped"});
-  s.number("position", "-", IN(load.position), {0, 1},
-           "share of the width: the top grain nearest to it carries the force");
+  s.number(
+      "position", "-", IN(load.position), {0, 1},
+      "share of the width: the top grain nearest to it carries the force, in space the highest "
+      "within two diameters");
   s.number("position_y", "-", IN(load.position_y), {0, 1}, "likewise along y");
   s.space();
   s.number(
