@@ -74,7 +74,9 @@ TEST(SpaceModuli, AreFoundAgain) {
     EXPECT_NEAR(m.nu_h, 0.1, 1e-9);
     EXPECT_NEAR(m.nu_vh, 0.25, 1e-9);
     EXPECT_EQ(std::isnan(m.g_vh), !shears);
-    if (shears) EXPECT_NEAR(m.g_vh, 9e5, 1);
+    if (shears) {
+      EXPECT_NEAR(m.g_vh, 9e5, 1);
+    }
     EXPECT_LT(m.residual_transverse, 1e-12);
     EXPECT_GT(m.residual_isotropic, 0.05);
   }

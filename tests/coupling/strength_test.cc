@@ -50,7 +50,9 @@ TEST(Strength, OfKnownPaths) {
       EXPECT_NEAR(s.strain_at_peak, 0.05, peak == residual ? 0.2 : 1e-12);
       EXPECT_NEAR(s.residual_friction, residual, 1e-9);
       EXPECT_NEAR(s.peak_dilation, dilation, 1e-9);
-      if (peak != residual) EXPECT_NEAR(s.dilation_at_peak, dilation, 1e-9);
+      if (peak != residual) {
+        EXPECT_NEAR(s.dilation_at_peak, dilation, 1e-9);
+      }
       EXPECT_NEAR(s.residual_dilation, 0, 1e-9);
     }
   }
