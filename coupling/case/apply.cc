@@ -163,7 +163,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
     if (sectioned && key.name == section + "_" + name) joined = key.path();
   }
   if (!joined.empty()) near = joined;
-  if (joined.empty() && std::any_of(here.begin(), here.end(), [&](const std::string& path) {
+  if (std::any_of(here.begin(), here.end(), [&](const std::string& path) {
         return begin_alike(path.substr(section.size() + 1), name);
       })) {
     near.clear();

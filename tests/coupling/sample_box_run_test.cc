@@ -24,7 +24,7 @@ std::string box(const std::string& sample, const std::string& rest = "") {
 [sample]
 dim = 3
 shape = "superellipsoid"
-grains = 70
+grains = 110
 radius = 0.001
 boundary = "walls"
 height_ratio = 1.12
@@ -159,7 +159,7 @@ TEST(SampleBox, MistakesAreNamed) {
        "sample.unload: found \"0.02\", allowed: none | strain | stress; a number goes into "
        "sample.unload_strain, sample.unload_stress, sample.unload_records");
   says({"rve.radius=2"}, "rve.radius: unknown key; nearest: rve.radii");
-  says({"rve.radii=[2, 9]"}, "rve.radii: found 9, allowed for 70 grains: up to ");
+  says({"rve.radii=[2, 9]"}, "rve.radii: found 9, allowed for 110 grains: up to ");
   says({"block.law=elastic"}, "block.law: found \"elastic\", allowed with sample.probe = \"none\"");
   says({"block.law=both", "sample.probe=first"},
        "block.angles: found \"peak\", allowed with sample.deformation = \"uniaxial\": given");
