@@ -84,7 +84,7 @@ TEST(SampleBox, BitsOfACompressionAreTheSameOnThreadsAndAfterAKill) {
   testing::expect_same_bits(box(kCompression));
 }
 
-// Not seen to end within twenty minutes on a busy machine: the dropped grains do not come to rest.
+// Not seen to end within twenty minutes on a busy machine; where it stays was not looked at.
 TEST(SampleBox, DISABLED_BitsOfAProbedAndDroppedSampleToo) {
   testing::expect_same_bits(
       box("filling = \"dropped\"\nprobe = \"both\"\nprobe_strain = 1e-4\n" + kCompression,
@@ -135,7 +135,7 @@ TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
   EXPECT_THAT(page, HasSubstr("The grains and a block of finite elements"));
 }
 
-// Not seen to end within twenty minutes on a busy machine: the dropped grains do not come to rest.
+// Not seen to end within twenty minutes on a busy machine; where it stays was not looked at.
 TEST(SampleBox, DISABLED_IsFilledByDroppingAndSpheres) {
   const Folder folder;
   const Summary summary =
