@@ -70,9 +70,9 @@ struct Cylinder {
   int cells = 4;  ///< squares of four triangles through the wall
 };
 struct CylinderCheck {
-  double pressure = 0;      ///< over the cohesion
-  double stress_error = 0;  ///< 2-norm of the error of rr and tt over that of the stress
-  double yielded_error = 0;   ///< of the yielded share of the volume, against the exact one
+  double pressure = 0;       ///< over the cohesion
+  double stress_error = 0;   ///< 2-norm of the error of rr and tt over that of the stress
+  double yielded_error = 0;  ///< of the yielded share of the volume, against the exact one
   std::vector<fe::LoadStep> steps;
 };
 CylinderCheck check_cylinder(const Cylinder& cylinder);

@@ -211,8 +211,8 @@ std::vector<std::int64_t> SpaceLoadRun::others_loaded(const Snapshot& s, std::in
 }
 
 // The highest grain within two diameters of the wanted place, or where there is none within more:
-// within a radius, as in the plane, there may be a pit alone, whose highest grain lies deep below the
-// surface. Ties go to the nearer one.
+// within a radius, as in the plane, there may be a pit alone, whose highest grain lies deep below
+// the surface. Ties go to the nearer one.
 std::int64_t SpaceLoadRun::choose_loaded_grain(const Snapshot& s) const {
   const auto sides = layer_sides(setup_.packing);
   const Vec3 wanted((setup_.load.position - 0.5) * sides[0],

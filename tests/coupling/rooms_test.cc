@@ -54,8 +54,8 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "fit", "heap", "import", "models", "output", "run",
         "strain", "studies/pile", "studies/point_load"}},
       {"app",
-       {"averaging", "case", "export", "files", "import", "output", "reproduce", "run", "statistics",
-        "structure", "system"}},
+       {"averaging", "case", "export", "files", "import", "output", "reproduce", "run",
+        "statistics", "structure", "system"}},
   };
   return kRooms;
 }
