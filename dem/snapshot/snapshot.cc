@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
 
 namespace grainfield::dem {
@@ -53,11 +55,13 @@ namespace {
 std::vector<std::int64_t> ids_of(const std::string& text, const std::string& where) {
   std::istringstream in(text);
   std::vector<std::int64_t> out;
-  for (std::int64_t id = 0; in >> id;) {
-    if (id < 0 || (!out.empty() && id <= out.back())) in.setstate(std::ios::failbit);
-    out.push_back(id);
+  bool good = true;
+  for (std::string word; in >> word;) {
+    const std::optional<long long> id = parse_integer(word);
+    good = good && id && *id >= 0 && (out.empty() || *id > out.back());
+    out.push_back(id.value_or(-1));
   }
-  if (out.empty() || !in.eof())
+  if (out.empty() || !good)
     throw std::invalid_argument(
         fmt::format("{}: also_loaded: found \"{}\", allowed: ids in ascending order", where, text));
   return out;

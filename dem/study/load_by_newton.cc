@@ -27,10 +27,14 @@ std::optional<LoadedLayer> load_by_newton(const Snapshot& unloaded, const Engine
   } catch (const RelaxationStopped&) {
     return std::nullopt;
   } catch (const ComputationFailed& failure) {
+    const bool by_weights = unloaded.dim == 3 && load.weights > 0;
+    const char* key = by_weights ? "load.weights" : "load.force";
     throw ComputationFailed(fmt::format(
-        "load.force = {:g}: {}; or set load.method = damped, or a smaller load.force",
-        std::hypot(force.fx, force.fy, force.fz) * static_cast<double>(1 + beside.size()),
-        failure.what()));
+        "{} = {:g}: {}; or set load.method = damped, or a smaller {}", key,
+        by_weights
+            ? load.weights
+            : std::hypot(force.fx, force.fy, force.fz) * static_cast<double>(1 + beside.size()),
+        failure.what(), key));
   }
 }
 

@@ -18,7 +18,7 @@ struct LoadedLayer {
 
 /// `force` on its grain and on those `beside`. `go_on` is asked with the share of the load that is
 /// done (empty: never); where it says no there is no result. Throws ComputationFailed naming
-/// load.force.
+/// load.force or, in space where it decides, load.weights.
 std::optional<LoadedLayer> load_by_newton(const Snapshot& unloaded, const EngineSettings& settings,
                                           const LoadSetup& load, const AppliedForce& force,
                                           const std::vector<std::int64_t>& beside,

@@ -195,17 +195,8 @@ AppliedForce PointLoadRun::load_on(const Snapshot& s) const {
 
 // The load by Newton's method. Told to stop it leaves the run as it was.
 void PointLoadRun::solve() {
-  std::function<bool(double)> go_on;
-  if (watch_) {
-    go_on = [this](double share) {
-      Progress now = progress();
-      now.phase = "load";
-      now.fraction += (1 - now.fraction) * share;
-      return watch_(now);
-    };
-  }
   std::optional<LoadedLayer> done =
-      load_by_newton(*unloaded_, settings_, setup_.load, load_on(*unloaded_), {}, go_on);
+      load_by_newton(*unloaded_, settings_, setup_.load, load_on(*unloaded_), {}, watch_of("load"));
   if (!done) return;
   reached_ = done->reached;
   loaded_ = std::move(done->state);

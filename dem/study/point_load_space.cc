@@ -172,18 +172,9 @@ SpaceLoadRun::SharedForce SpaceLoadRun::load_on(const Snapshot& s) const {
 
 // The load by Newton's method. Told to stop it leaves the run as it was.
 void SpaceLoadRun::solve() {
-  std::function<bool(double)> go_on;
-  if (watch_) {
-    go_on = [this](double share) {
-      Progress now = progress();
-      now.phase = "load";
-      now.fraction += (1 - now.fraction) * share;
-      return watch_(now);
-    };
-  }
   const SharedForce load = load_on(*unloaded_);
   std::optional<LoadedLayer> done =
-      load_by_newton(*unloaded_, settings_, setup_.load, load.force, load.beside, go_on);
+      load_by_newton(*unloaded_, settings_, setup_.load, load.force, load.beside, watch_of("load"));
   if (!done) return;
   reached_ = done->reached;
   loaded_ = std::move(done->state);

@@ -60,6 +60,18 @@ class Run {
   void set_watch(std::function<bool(const Progress&)> watch) { watch_ = std::move(watch); }
 
  protected:
+  /// Asks the watch with progress() in this phase, the share of what is left that is done; empty
+  /// without a watch.
+  std::function<bool(double)> watch_of(const char* phase) const {
+    if (!watch_) return nullptr;
+    return [this, phase](double share) {
+      Progress now = progress();
+      now.phase = phase;
+      now.fraction += (1 - now.fraction) * share;
+      return watch_(now);
+    };
+  }
+
   std::function<bool(const Progress&)> watch_;
 };
 

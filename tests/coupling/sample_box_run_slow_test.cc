@@ -84,8 +84,7 @@ TEST(SampleBox, BitsOfACompressionAreTheSameOnThreadsAndAfterAKill) {
   testing::expect_same_bits(box(kCompression));
 }
 
-// Not seen to end within twenty minutes on a busy machine; where it stays was not looked at.
-TEST(SampleBox, DISABLED_BitsOfAProbedAndDroppedSampleToo) {
+TEST(SampleBox, BitsOfAProbedAndDroppedSampleToo) {
   testing::expect_same_bits(
       box("filling = \"dropped\"\ndrop_damping = 25\ncompression = \"uniaxial\"\nprobe = "
           "\"both\"\nprobe_strain = 1e-4\n" +
@@ -137,8 +136,7 @@ TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
   EXPECT_THAT(page, HasSubstr("The grains and a block of finite elements"));
 }
 
-// Not seen to end within twenty minutes on a busy machine; where it stays was not looked at.
-TEST(SampleBox, DISABLED_IsFilledByDroppingAndSpheres) {
+TEST(SampleBox, IsFilledByDroppingAndSpheres) {
   const Folder folder;
   const Summary summary = run(
       folder,
@@ -176,7 +174,8 @@ TEST(SampleBox, MistakesAreNamed) {
        "sample.filling: found \"dropped\", allowed with sample.boundary = \"periodic\"");
   says({"sample.filling=dropped"},
        "sample.compression: found \"isotropic\", allowed with sample.filling = \"dropped\"");
-  says({"sample.filling=dropped", "sample.compression=uniaxial", "sample.base_fraction=0.05"},
+  says({"sample.filling=dropped", "sample.compression=uniaxial", "sample.base_fraction=0.05",
+        "rve.radii=[1]"},
        "sample.base_fraction: found 0.05, allowed: above sample.start_fraction = 0.1");
   says({"sample.probe=first", "rest.background_damping=0"}, "rest.background_damping: found 0");
 }

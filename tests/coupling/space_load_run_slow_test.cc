@@ -225,6 +225,10 @@ TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
   EXPECT_THAT(complaint(with("[load]\n", "[load]\nforce = 5\n")),
               HasSubstr("load.force: found 5 beside load.weights = 1"));
   EXPECT_EQ(complaint(with("[load]\n", "[load]\nmethod = \"newton\"\n")), "");
+  const Folder folder;
+  const std::string disk = folder.write("x.toml", with("[load]\n", "[load]\nradius = 0.02\n"));
+  EXPECT_THAT(program("check " + disk).err,
+              HasSubstr("load.radius: found 0.02: the models beside"));
   EXPECT_THAT(complaint(with("\"boussinesq\", ", "\"flamant\", ")), HasSubstr("compare.models"));
   EXPECT_THAT(complaint(with("width = 0.08", "width = 0.02")),
               HasSubstr("packing.width: found 0.02"));

@@ -44,6 +44,18 @@ class SnapshotFile : public testing::Test {
 };
 
 // Every value, one by one: all differ from each other and from the defaults.
+TEST_F(SnapshotFile, RefusesIdsThatAreNotInOrder) {
+  for (const std::vector<std::int64_t>& ids :
+       {std::vector<std::int64_t>{5, 3}, {2, 2}, {1, -4}, {-1}}) {
+    Snapshot s = full_snapshot(3);
+    s.also_loaded = ids;
+    write_snapshot(file_, "/s", s);
+    EXPECT_THAT(message([&] { read_snapshot(file_, "/s"); }),
+                testing::HasSubstr("allowed: ids in ascending order"));
+    std::filesystem::remove(file_);
+  }
+}
+
 TEST_F(SnapshotFile, ComesBackBitForBit) {
   const auto texts = [](const Snapshot& s) {
     std::vector<std::string> all;

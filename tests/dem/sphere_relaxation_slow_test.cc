@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <vector>
 
 #include "dem/quasistatic/quasistatic.h"
@@ -66,9 +67,12 @@ TEST(SphereRelaxationSlow, AgreesWithSlowDampedDynamics) {
     EXPECT_EQ(changes.gained + changes.lost, 0);
     ASSERT_EQ(newton.contacts_gained + newton.contacts_lost, 0);
     if (!run.rolls) expect_balanced(newton.state, 1e-8);
-    // Measured: 1e-5 to 1e-4, and one grain of 64 in the first run.
-    EXPECT_LT(difference_of_forces(start, damped, newton.state), 1e-3);
-    EXPECT_LT(share_apart(start, damped, newton.state, 1e-2), 0.05);
+    const double forces = difference_of_forces(start, damped, newton.state);
+    const double apart = share_apart(start, damped, newton.state, 1e-2);
+    std::printf("forces differ by %.1e of their change, %.3f of the spheres are apart\n", forces,
+                apart);
+    EXPECT_LT(forces, 1e-3);
+    EXPECT_LT(apart, 0.05);
     EXPECT_NEAR(base_force(newton.state).z() / weight_of(newton.state), 1, 1e-6);
   }
 }

@@ -313,6 +313,13 @@ Study point_load_study() {
     return dem::foresee_point_load(value.get<dem::PointLoadSetup>(), realization_seeds(value),
                                    draws);
   };
+  out.left_unused = [](const Case& value) -> std::string {
+    const auto& setup = value.get<dem::PointLoadSetup>();
+    if (setup.packing.dim == 2 || setup.load.radius == 0) return "";
+    return fmt::format(
+        "load.radius: found {:g}: the models beside stay those of a load on one point",
+        setup.load.radius);
+  };
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int threads) {
     if (value.get<dem::PointLoadSetup>().packing.dim == 3) {
       return analyse_space_load(value, files, threads);
