@@ -18,11 +18,6 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A support of the layer, or an image of one.
-struct Carrier {
-  Vector3d point, force;  // m; on the layer, N
-};
-
 struct Reach {
   Vector2d low, high;
 
@@ -31,9 +26,33 @@ struct Reach {
   }
 };
 
-// Every contact of a free grain with the floor or a fixed grain.
-std::vector<Carrier> carriers_of(const dem::Snapshot& snapshot) {
-  std::vector<Carrier> out;
+// Those with their images that are inside.
+std::vector<BaseSupport> supports_within(const dem::Snapshot& snapshot, const Reach& inside) {
+  const dem::Cell<3>& cell = snapshot.cell;
+  std::array<int, 2> most{};
+  for (int a = 0; a < 2; ++a) {
+    if (!cell.periodic[a]) continue;
+    const double away =
+        std::max(std::fabs(inside.low[a] - cell.low[a]), std::fabs(inside.high[a] - cell.low[a]));
+    most[a] = 1 + static_cast<int>(std::ceil(away / cell.edges(a, a)));
+  }
+  const std::vector<BaseSupport> own = base_supports(snapshot);
+  std::vector<BaseSupport> out;
+  for (int i = -most[0]; i <= most[0]; ++i) {
+    for (int j = -most[1]; j <= most[1]; ++j) {
+      const Vector3d shift = dem::shift_to(cell, {i, j, 0});
+      for (const BaseSupport& s : own) {
+        if (inside.holds(s.point + shift)) out.push_back({s.point + shift, s.force});
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<BaseSupport> base_supports(const dem::Snapshot& snapshot) {
+  std::vector<BaseSupport> out;
   for (const dem::Contact& contact : snapshot.contacts) {
     const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
     if (contact.j < 0) {
@@ -48,31 +67,6 @@ std::vector<Carrier> carriers_of(const dem::Snapshot& snapshot) {
   }
   return out;
 }
-
-// Those with their images that are inside.
-std::vector<Carrier> carriers_within(const dem::Snapshot& snapshot, const Reach& inside) {
-  const dem::Cell<3>& cell = snapshot.cell;
-  std::array<int, 2> most{};
-  for (int a = 0; a < 2; ++a) {
-    if (!cell.periodic[a]) continue;
-    const double away =
-        std::max(std::fabs(inside.low[a] - cell.low[a]), std::fabs(inside.high[a] - cell.low[a]));
-    most[a] = 1 + static_cast<int>(std::ceil(away / cell.edges(a, a)));
-  }
-  const std::vector<Carrier> own = carriers_of(snapshot);
-  std::vector<Carrier> out;
-  for (int i = -most[0]; i <= most[0]; ++i) {
-    for (int j = -most[1]; j <= most[1]; ++j) {
-      const Vector3d shift = dem::shift_to(cell, {i, j, 0});
-      for (const Carrier& s : own) {
-        if (inside.holds(s.point + shift)) out.push_back({s.point + shift, s.force});
-      }
-    }
-  }
-  return out;
-}
-
-}  // namespace
 
 double seen_from_above(const Kernel& kernel, double d) {
   const double half = kernel.range() * kernel.range() - d * d;
@@ -95,7 +89,7 @@ Field base_stress(const dem::Snapshot& snapshot, const Eigen::MatrixXd& places,
     const double range = kernel.range();
     const Reach reach{places.colwise().minCoeff().transpose().array() - range,
                       places.colwise().maxCoeff().transpose().array() + range};
-    for (const Carrier& s : carriers_within(snapshot, reach)) {
+    for (const BaseSupport& s : supports_within(snapshot, reach)) {
       for (Index p = 0; p < places.rows(); ++p) {
         const double dx = places(p, 0) - s.point.x(), dy = places(p, 1) - s.point.y();
         const double squared = dx * dx + dy * dy;

@@ -34,15 +34,15 @@ struct Flank {
   double top = kNan, slope = kNan;  // height above the floor on the axis, fall per length
 };
 
-Flank flank_of(const Roof& roof, const ConeFrame& frame) {
+// `sector`: of it alone; -1: of all.
+Flank flank_of(const Roof& roof, const ConeFrame& frame, int sector = -1) {
   std::vector<Eigen::Vector2d> surface;
   for (Eigen::Index i = 0; i < roof.heights().rows(); ++i)
     for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
       const double height = roof.heights()(i, j) - frame.floor, share = height / frame.height;
-      if (share > kLeastShare && share < kMostShare)
-        surface.emplace_back(
-            std::hypot(roof.middle(i, j).x() - frame.apex_x, roof.middle(i, j).y() - frame.apex_y),
-            height);
+      const Eigen::Vector2d out = roof.middle(i, j) - Eigen::Vector2d(frame.apex_x, frame.apex_y);
+      if (sector >= 0 && cone_sector(out.x(), out.y()) != sector) continue;
+      if (share > kLeastShare && share < kMostShare) surface.emplace_back(out.norm(), height);
     }
   if (surface.size() < kLeastColumns) return {};
   const auto n = static_cast<Eigen::Index>(surface.size());
@@ -77,6 +77,12 @@ double fraction_inside(const dem::Snapshot& grains, const ConeFrame& frame, cons
 
 }  // namespace
 
+int cone_sector(double x, double y) {
+  const double turns = std::atan2(y, x) / (2 * std::numbers::pi);
+  return static_cast<int>(std::floor((turns < 0 ? turns + 1 : turns) * kConeSectors)) %
+         kConeSectors;
+}
+
 Eigen::MatrixXd ConeFrame::to_packing(const Eigen::MatrixXd& scaled) const {
   return (height * scaled).rowwise() + Eigen::RowVector3d(apex_x, apex_y, floor + height);
 }
@@ -108,6 +114,10 @@ ConeFrame cone_frame(const dem::Snapshot& heap) {
   const Flank flank = flank_of(roof, frame);
   frame.foot = std::isfinite(flank.slope) ? flank.top / flank.slope : reach;
   frame.repose_deg = std::atan(flank.slope) / kDegree;
+  for (int k = 0; k < kConeSectors; ++k) {
+    frame.sector_repose_deg[static_cast<std::size_t>(k)] =
+        std::atan(flank_of(roof, frame, k).slope) / kDegree;
+  }
   frame.volume_fraction = fraction_inside(grains, frame, flank, roof);
   return frame;
 }

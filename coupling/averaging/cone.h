@@ -1,10 +1,16 @@
 // A conical heap in coordinates that heaps of slightly different height share.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
+
+/// A cone is looked at in so many sectors.
+inline constexpr int kConeSectors = 8;
+/// That of a place about the axis.
+int cone_sector(double x, double y);
 
 /// Origin at the apex, z up, lengths over the height h: inside is z < 0 down to the floor z = -1.
 struct ConeFrame {
@@ -13,6 +19,8 @@ struct ConeFrame {
   double height = 0;              ///< h: highest point of the heap above the floor, m
   double foot = 0;                ///< radius at which the flank's line meets the floor, m
   double repose_deg = 0;          ///< slope of that line; nan: too few columns
+  /// The same of kConeSectors equal sectors, counter-clockwise from the x axis.
+  std::array<double, kConeSectors> sector_repose_deg{};
   double volume_fraction = 0;     ///< mean of the inside (see cone_frame)
   double grain_density = 0;       ///< mass over volume of the grains, kg/m3
   double gravity = 0;             ///< m/s2

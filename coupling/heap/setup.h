@@ -14,4 +14,7 @@ struct HeapSetup {
   double axis_from = 0.1, axis_to = 0.6;
 };
 
+/// Throws std::invalid_argument beginning with the key: windows that overlap or are empty.
+void check_heap_windows(const HeapSetup& setup);
+
 }  // namespace grainfield::coupling

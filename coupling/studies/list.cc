@@ -9,6 +9,7 @@
   STUDY(pile) \
   STUDY(pile_fields) \
   STUDY(pile_fit) \
+  STUDY(cone) \
   STUDY(lattice_pile) \
   STUDY(sample) \
   STUDY(pair) \

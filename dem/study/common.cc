@@ -107,6 +107,11 @@ void check_method(const char* key, const std::string& method, const MaterialSetu
   }
 }
 
+SleepSettings sleep_settings(const SleepSetup& s) {
+  return {s.on,          s.quiet_time, s.quiet_move, s.quiet_creep,
+          s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach};
+}
+
 void check_background_damping(const RestSetup& rest, double time_step) {
   if (rest.background_damping * time_step <= 1) return;
   throw std::invalid_argument(fmt::format(

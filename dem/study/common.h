@@ -31,6 +31,7 @@ void add_reached(const std::string& prefix, const Reached& reached,
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular = false,
                                double reserve = 1, ShapeKind shape = {});
+SleepSettings sleep_settings(const SleepSetup& sleep);
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
 /// Throws std::invalid_argument naming `key` where the method is "newton" and the grains have what

@@ -45,9 +45,7 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   }
   settings_.shape = (setup_.shape.kind != "disk" || setup_.source.opening > 0) ? ShapeKind::polygon
                                                                                : ShapeKind::disk;
-  const SleepSetup& s = setup_.sleep;
-  settings_.sleep = {s.on,          s.quiet_time, s.quiet_move, s.quiet_creep,
-                     s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach};
+  settings_.sleep = sleep_settings(setup_.sleep);
   engine_ = empty_engine();
   add_floor_grains();
   for (const NewGrain& plate : funnel_plates(setup_.source, setup_.material.density)) {

@@ -370,28 +370,6 @@ class PileAnalysis {
 
 }  // namespace
 
-namespace {
-
-void check(const Case& value) {
-  const auto& h = value.get<HeapSetup>();
-  if (h.shoulder_from >= h.shoulder_to) {
-    throw std::invalid_argument(
-        fmt::format("heap.shoulder_from: found {:g}, allowed: below heap.shoulder_to = {:g}",
-                    h.shoulder_from, h.shoulder_to));
-  }
-  if (h.centre > h.shoulder_from) {
-    throw std::invalid_argument(
-        fmt::format("heap.centre: found {:g}, allowed: up to heap.shoulder_from = {:g}", h.centre,
-                    h.shoulder_from));
-  }
-  if (h.axis_from >= h.axis_to) {
-    throw std::invalid_argument(fmt::format(
-        "heap.axis_from: found {:g}, allowed: below heap.axis_to = {:g}", h.axis_from, h.axis_to));
-  }
-}
-
-}  // namespace
-
 StudyResult analyse_pile(const Case& value, const std::vector<std::string>& realizations,
                          int threads) {
   StudyResult out = PileAnalysis(value, realizations, threads).run();
@@ -406,7 +384,7 @@ Study pile_study() {
   out.sections.push_back(kChangeKeys);
   out.sections.push_back(kAverageKeys);
   out.sections.push_back(kHeapKeys);
-  out.check = check;
+  out.check = [](const Case& value) { check_heap_windows(value.get<HeapSetup>()); };
   out.averaged = [](const Case& value) {
     return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);
   };

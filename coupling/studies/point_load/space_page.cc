@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "coupling/run/radial_page.h"
 #include "coupling/studies/point_load/page.h"
 
 namespace grainfield::coupling {
@@ -11,38 +10,9 @@ namespace {
 
 constexpr const char* kStressLabel = "response of -σ_{zz}  (F/h²)";
 
-std::string shown_or_dash(double value, int digits = 3) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
-}
-
-std::string with_spread(double value, double error) {
-  return std::isfinite(error) ? shown_or_dash(value) + " ± " + shown_or_dash(error, 1)
-                              : shown_or_dash(value);
-}
-
-// Profile k and the models there, lengths in h and stresses in F/h^2.
-Frame radial_frame(const Comparison& c, std::size_t k) {
-  const Profile& p = c.profiles[k];
-  Frame out;
-  out.title = p.name;
-  Series grains;
-  grains.label = c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
-  grains.simulation = true;
-  grains.x = p.x / c.depth;
-  grains.y = p.mean / c.unit();
-  if (p.error.size() > 0) grains.error = p.error / c.unit();
-  out.series.push_back(std::move(grains));
-  for (const ModelProfiles& m : c.models) {
-    out.series.push_back({m.label, p.x / c.depth, m.values[k] / c.unit(), {}, false});
-  }
-  return out;
-}
-
 void add_radial(Report& report, const Comparison& c) {
-  std::vector<Frame> frames;
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) frames.push_back(radial_frame(c, k));
-  Picture picture = curves("Response by radius, against the models", "radius / h, to both sides",
-                           kStressLabel, frames);
+  Picture picture = radial_profiles("Response by radius, against the models",
+                                    "radius / h, to both sides", kStressLabel, c);
   picture.caption = fmt::format(
       "Vertical pressure added by the load, mean over the angle about it, in units of F/h² = "
       "{:.4g} "
@@ -90,44 +60,6 @@ void add_maps(Report& report, const SpaceLoadPage& page, const Comparison& c) {
                                           page.cut.nz, 2, label, model ? &model->cut : nullptr, c));
 }
 
-void add_space_tables(Report& report, const StudyResult& result) {
-  const Comparison& c = result.comparison;
-  Table distances{"Distance of the models from the grains",
-                  "Relative L2: root of the sum of squared differences over that of the grains, "
-                  "points evenly spaced in the radius. chi2/dof: squared differences over squared "
-                  "standard errors, corrected for the number of realizations.",
-                  {"model", "relative L2", "largest difference (F/h²)", "at r/h", "in", "chi2/dof"},
-                  {}};
-  for (const ModelComparison& r : c.results) {
-    distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
-                              shown_or_dash(r.overall.largest / c.unit()),
-                              shown_or_dash(std::fabs(r.overall.largest_at) / c.depth, 2),
-                              r.overall.largest_in, shown_or_dash(r.overall.chi2_per_dof)});
-  }
-  report.sections.emplace_back(std::move(distances));
-  Table shapes{
-      "Shape of the profiles",
-      "By radius, drawn to both sides: one peak is a peak below the load, two are a ring. "
-      "Peak in F/h², widths in h; standard errors of the grains by leaving one realization "
-      "out at a time.",
-      {"profile", "of", "peak", "at r/h", "full width at half maximum", "peaks"},
-      {}};
-  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
-                       double peak_error, double width_error) {
-    shapes.rows.push_back({profile, of, with_spread(s.peak / c.unit(), peak_error / c.unit()),
-                           shown_or_dash(std::fabs(s.peak_at) / c.depth, 2),
-                           with_spread(s.fwhm / c.depth, width_error / c.depth),
-                           fmt::format("{}", s.peaks)});
-  };
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k].peak, c.shape_errors[k].fwhm);
-    for (const ModelComparison& r : c.results) {
-      row("", r.label, r.shapes[k], std::nan(""), std::nan(""));
-    }
-  }
-  report.sections.emplace_back(std::move(shapes));
-}
-
 void add_before(Report& report, const SpaceLoadPage& page) {
   const Column* column = page.base_unloaded.find("sigma_zz");
   Series series{"grains before loading", page.base_unloaded.points.col(0), -column->value,
@@ -153,7 +85,7 @@ Report space_load_page(const StudyResult& result, const Realization* first,
         slice("The loaded packing, cut in the middle", (*first)["loaded"]));
   }
   add_before(report, page);
-  add_space_tables(report, result);
+  add_radial_tables(report, c, "F/h²");
   ReportRows figures = figure_rows(result.summary, {"dem.grains",
                                                     "dem.contacts",
                                                     "dem.volume_fraction",

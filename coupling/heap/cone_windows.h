@@ -1,0 +1,17 @@
+// The dip of the base pressure under a cone's apex.
+#pragma once
+#include "coupling/averaging/cone.h"
+#include "coupling/heap/dip.h"
+#include "coupling/heap/setup.h"
+
+namespace grainfield::coupling {
+
+struct ConeWindows {
+  BaseWindows mean;         ///< by radius over the foot's, over the angle
+  double sector_error = 0;  ///< standard error of shoulder - centre over the sectors, rho g h
+};
+/// Mean vertical pressure of one cone in a disk and a ring of its base, from the forces on the base
+/// themselves (no smearing), in units of its rho g h.
+ConeWindows cone_windows(const dem::Snapshot& cone, const ConeFrame& frame, const HeapSetup& setup);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,31 @@
+#include "coupling/studies/cone/keys.h"
+
+namespace grainfield::coupling {
+
+std::vector<SummaryKey> cone_figures() {
+  return {
+      {"cone.source", "text", "point | rain | cylinder"},
+      {"cone.grains_lost", "-", "grains that left the floor"},
+      {"cone.pour_time", "s", "simulated time of pouring"},
+      {"cone.awake_mean", "-", "grains awake, mean over the pouring"},
+      {"cone.height", "m", "h of a cone: its highest point above the floor"},
+      {"cone.foot", "m", "radius at which the flank's line meets the floor"},
+      {"cone.repose_deg", "deg",
+       "slope of the flank: line through the surface between 15 % and 85 % of the height"},
+      {"cone.sector_repose_deviation_deg", "deg",
+       "standard deviation of the slopes of eight sectors"},
+      {"cone.volume_fraction", "-", "mean of the inside"},
+      {"cone.rho_g_h", "Pa",
+       "unit of pressure: grain density times cone.volume_fraction times g times height"},
+      {"cone.mean_diameter", "m", "of the grains"},
+      {"cone.coordination", "-", "contacts of a grain"},
+      {"cone.base_over_weight", "-", "force on the base from its rings, over that on the floor"},
+      {"dip.sector_error", "rho g h",
+       "standard error of shoulder - centre over the eight sectors of a cone"},
+      {"base.largest_shear", "rho g h",
+       "largest radial shear stress on the base, ensemble mean, smeared; outwards on the floor"},
+      {"base.largest_shear_at", "h", "its distance from the axis"},
+  };
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,108 @@
+#include "coupling/studies/cone/page.h"
+
+#include <fmt/format.h>
+
+#include "coupling/run/radial_page.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr const char* kPressure = "-σ_{zz}  (ρgh)";
+
+void add_cone_profiles(Report& report, const StudyResult& result, const ConePage& page) {
+  const Comparison& c = result.comparison;
+  Picture picture = radial_profiles("Vertical pressure by radius", "radius / h, to both sides",
+                                    kPressure, c);
+  picture.caption = fmt::format(
+      "Mean over the angle about the axis; on the base the forces on the floor, above it {}. "
+      "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike. The grey band is one standard "
+      "error on either side.",
+      page.averaged, c.unit(), c.depth);
+  report.sections.emplace_back(std::move(picture));
+
+  const Column& shear = *page.rings.find("sigma_rz");
+  const double outwards = -1;
+  Series series{"grains", page.rings.points.col(0), outwards * shear.value,
+                shear.error.size() ? shear.error : Eigen::VectorXd(), true};
+  Picture drawn = curves("Radial shear on the base", "radius / h", "-σ_{rz}  (ρgh)",
+                         {{"", {std::move(series)}}});
+  drawn.caption = "Above 0 the grains push the floor outwards.";
+  report.sections.emplace_back(std::move(drawn));
+}
+
+void add_cone_maps(Report& report, const Comparison& c, const ConePage& page) {
+  const Eigen::VectorXd on_base = -page.base.find("sigma_zz")->value;
+  Eigen::MatrixXd square(page.base.points.rows(), 2);
+  square << page.base.points.leftCols(2);
+  Picture base = maps("Pressure on the base", "x / h", "y / h", kPressure,
+                      {{"grains", page.base.nx, page.base.ny, square, on_base}}, false);
+  base.caption = "Mean over the realizations, axes of the packing.";
+  report.sections.emplace_back(std::move(base));
+
+  Eigen::MatrixXd half(page.inside.points.rows(), 2);
+  half << page.inside.points.col(0), page.inside.points.col(2);
+  const Eigen::VectorXd grains = -page.inside.find("sigma_zz")->value;
+  std::vector<Map> all{{"grains", page.inside.nx, page.inside.nz, half, grains}};
+  for (const ConePage::Model& m : page.models) {
+    if (m.key != c.verdict.best_model) continue;
+    all.push_back({m.label, page.inside.nx, page.inside.nz, half, -m.inside});
+    all.push_back({"grains - " + m.label, page.inside.nx, page.inside.nz, half, grains + m.inside});
+  }
+  Picture inside = maps("Inside, by radius and height", "radius / h", "z / h", kPressure, all);
+  inside.caption =
+      "Mean over the angle and the realizations; apex at 0, floor at -1. One colour scale for all; "
+      "it ends at the 99 % quantile.";
+  report.sections.emplace_back(std::move(inside));
+}
+
+}  // namespace
+
+Report cone_page(const StudyResult& result, const Realization* first, const ConePage& page) {
+  const Comparison& c = result.comparison;
+  Report report;
+  report.title = title_of(result.value);
+  report.subtitle = fmt::format("{} cone{}, h = {:.4g} m", c.realizations,
+                                c.realizations == 1 ? "" : "s", c.depth);
+  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_cone_profiles(report, result, page);
+  if (first != nullptr) {
+    report.sections.emplace_back(slice("The cone, cut in the middle", (*first)["pile"]));
+  }
+  add_cone_maps(report, c, page);
+  if (!c.models.empty()) add_radial_tables(report, c, "ρgh");
+  add_rows(report, "Figures",
+           figure_rows(result.summary, {"dem.grains",
+                                        "dem.contacts",
+                                        "cone.grains_lost",
+                                        "cone.height",
+                                        "cone.foot",
+                                        "cone.repose_deg",
+                                        "cone.sector_repose_deviation_deg",
+                                        "cone.volume_fraction",
+                                        "cone.rho_g_h",
+                                        "cone.coordination",
+                                        "base.weight_ratio",
+                                        "cone.base_over_weight",
+                                        "dip.centre",
+                                        "dip.shoulder",
+                                        "dip.difference",
+                                        "dip.standard_error",
+                                        "dip.p_value",
+                                        "dip.sector_error",
+                                        "dip.ratio",
+                                        "base.largest_pressure",
+                                        "base.largest_at",
+                                        "base.largest_shear",
+                                        "base.largest_shear_at",
+                                        "cone.pour_time",
+                                        "cone.awake_mean",
+                                        "dem.time_step",
+                                        "time.dem_cpu_s",
+                                        "dem.unbalanced_force_ratio",
+                                        "average.coarse_graining.balance_rms",
+                                        "average.width"}));
+  add_rows(report, "How it was made", origin_rows(result));
+  return report;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,225 @@
+#include "dem/study/cone_grains.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "dem/study/common.h"
+#include "dem/study/sample_grains.h"
+
+namespace grainfield::dem {
+namespace {
+
+// Solid fraction of grains poured into a cylinder at least, and of a packing at most.
+constexpr double kLoosest = 0.5;
+
+[[noreturn]] void refuse(const char* key, const std::string& text) {
+  throw std::invalid_argument(fmt::format("cone.{}: {}", key, text));
+}
+
+bool is_sphere(const ConePlan& plan) { return plan.shape == "sphere"; }
+
+// The same grains as those of a sample.
+SamplePlan as_sample(const ConePlan& p) {
+  SamplePlan out;
+  out.dim = 3;
+  out.shape = p.shape;
+  out.grains = p.grains;
+  out.sizes = "uniform";
+  out.radius = p.radius;
+  out.polydispersity = p.polydispersity;
+  out.axis_min = p.axis_min;
+  out.axis_max = p.axis_max;
+  out.exponent_min = p.exponent_min;
+  out.exponent_max = p.exponent_max;
+  return out;
+}
+
+// Rows of the floor's spheres: no grain passes between three of them while s / sqrt(3), to the
+// middle of a triangle of spacing s, is below the sum of the radii.
+double floor_spacing(const ConePlan& p) {
+  return std::min(2 * p.radius, 1.6 * (p.radius + sample_radii(as_sample(p)).least));
+}
+double floor_reach(const ConePlan& p) { return p.floor_radius + 2 * p.radius; }
+
+void check_order(const char* less, double least, const char* more, double most) {
+  if (least <= most) return;
+  refuse(less, fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
+}
+
+}  // namespace
+
+void check_cone(const ConeSetup& s) {
+  const ConePlan& p = s.plan;
+  if (s.motion.energy_balance) {
+    throw std::invalid_argument(
+        "motion.energy_balance: found true, allowed with study = \"cone\": false (grains that "
+        "leave the floor are taken away)");
+  }
+  if (!is_sphere(p)) {
+    check_order("axis_min", p.axis_min, "axis_max", p.axis_max);
+    check_order("exponent_min", p.exponent_min, "exponent_max", p.exponent_max);
+  }
+  const double most = sample_radii(as_sample(p)).most;
+  const auto at_least = [&](const char* key, double found, double least, const char* why) {
+    if (found >= least) return;
+    refuse(key, fmt::format("found {:g}, allowed: at least {:.4g} m, {}", found, least, why));
+  };
+  const bool cylinder = p.source == "cylinder";
+  if (p.source != "rain") {
+    at_least("mouth", p.mouth, (cylinder ? 3 : 1) * most,
+             cylinder ? "three of the largest radii" : "the largest radius");
+  }
+  at_least("floor_radius", p.floor_radius, std::max(10 * most, p.source == "rain" ? 0 : p.mouth),
+           "ten of the largest radii and as wide as cone.mouth");
+  at_least("drop", p.drop, 2 * most, "twice the largest radius");
+  const double fixed = floor_grains_of(p);
+  if (fixed > kMostGrains) {
+    refuse("floor_radius", fmt::format("found {:g}, allowed: up to {:.3g} m with grains of this "
+                                       "size on a rough floor: ten million grains",
+                                       p.floor_radius,
+                                       p.floor_radius * std::sqrt(kMostGrains / fixed)));
+  }
+}
+
+void check_cylinder(const ConeSetup& s, double start) {
+  const double rim = cone_walls(s, true).back().length;
+  if (start <= rim) return;
+  throw ComputationFailed(fmt::format(
+      "the grains stand higher in the cylinder than expected: the next would start at {:.3g} m, "
+      "above its rim at {:.3g} m; raise cone.mouth",
+      start, rim));
+}
+
+std::vector<ShapedGrain> draw_cone(const ConePlan& plan, Random& random) {
+  return draw_sample(as_sample(plan), random);
+}
+
+EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>& grains,
+                             int threads, double reserve) {
+  const ConePlan& p = s.plan;
+  std::vector<ShapedGrain> all = grains;
+  if (!is_sphere(p)) all.emplace_back().axes.fill(p.radius);  // the floor's
+  const GrainExtremes extremes = sample_extremes(as_sample(p), s.material.density, all);
+  EngineSettings out =
+      engine_settings(s.material, s.motion, extremes, threads, false, reserve,
+                      is_sphere(p) ? ShapeKind::sphere : ShapeKind::superellipsoid);
+  if (!is_sphere(p) && out.rolling.on()) refuse_rolling_superellipsoids();
+  out.gravity_y = 0;
+  out.gravity_z = -s.material.gravity;
+  out.sleep = sleep_settings(s.sleep);
+  check_background_damping(s.rest, out.time_step);
+  check_countable("cone.rate", p.grains / p.rate, out.time_step);
+  if (p.source == "cylinder") {
+    check_countable("cone.lift_speed", filled_height(p) / p.lift_speed, out.time_step);
+  }
+  return out;
+}
+
+std::vector<NewGrain> cone_floor(const ConePlan& p, double density) {
+  std::vector<NewGrain> out;
+  if (p.floor != "rough") return out;
+  const double spacing = floor_spacing(p), reach = floor_reach(p);
+  const double row = spacing * std::numbers::sqrt3 / 2;
+  const int rows = static_cast<int>(reach / row), along = static_cast<int>(reach / spacing) + 1;
+  for (int j = -rows; j <= rows; ++j) {
+    for (int i = -along; i <= along; ++i) {
+      NewGrain g;
+      g.x = spacing * (i + 0.5 * (j & 1));
+      g.y = row * j;
+      if (std::hypot(g.x, g.y) > reach) continue;
+      g.z = -p.radius;
+      g.radius = p.radius;
+      g.density = density;
+      g.fixed = true;
+      if (!is_sphere(p)) g.axes.fill(p.radius);
+      out.push_back(g);
+    }
+  }
+  return out;
+}
+
+double floor_grains_of(const ConePlan& p) {
+  if (p.floor != "rough") return 0;
+  const double over = floor_reach(p) / floor_spacing(p);
+  return 2 * std::numbers::pi / std::numbers::sqrt3 * over * over;
+}
+
+std::vector<Wall> cone_walls(const ConeSetup& s, bool with_cylinder) {
+  const ConePlan& p = s.plan;
+  Wall floor;
+  floor.name = "floor";
+  floor.point = Vec3(0, 0, p.floor == "rough" ? -4 * p.radius : 0);
+  floor.normal = Vec3::UnitZ();
+  floor.friction = s.material.floor_friction;
+  std::vector<Wall> out{floor};
+  if (!with_cylinder) return out;
+  Wall cylinder;
+  cylinder.name = "cylinder";
+  cylinder.shape = "cylinder";
+  cylinder.normal = Vec3::UnitZ();
+  cylinder.radius = p.mouth;
+  cylinder.length = filled_height(p) + p.drop + 12 * sample_radii(as_sample(p)).most;
+  cylinder.friction = s.material.wall_friction;
+  out.push_back(cylinder);
+  return out;
+}
+
+double source_radius(const ConePlan& p) { return p.source == "rain" ? p.floor_radius : p.mouth; }
+
+double filled_height(const ConePlan& p) {
+  return mean_volume(as_sample(p)) / (kLoosest * std::numbers::pi * p.mouth * p.mouth);
+}
+
+NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, double density) {
+  NewGrain out = grain.at(x, y, density);
+  out.z = z;
+  return out;
+}
+
+double resting_height(const Snapshot& s) {
+  double top = 0;
+  const auto look = [&](std::int64_t k) {
+    if (k < 0) return;
+    const Grain& g = s.grains[static_cast<std::size_t>(k)];
+    const bool slow = g.velocity.squaredNorm() < s.gravity.norm() * g.radius;
+    if (!g.fixed && slow) top = std::max(top, g.position.z() + g.radius);
+  };
+  for (const Contact& c : s.contacts) {
+    look(c.i);
+    look(c.j);
+  }
+  return top;
+}
+
+bool has_left(const Grain& g, double floor_radius) {
+  return g.position.head<2>().norm() > floor_radius || g.position.z() < 0;
+}
+
+void keep_on_floor(double floor_radius, bool with_cylinder, Snapshot& s) {
+  std::vector<std::int64_t> now(s.grains.size(), -1);
+  std::vector<Grain> kept;
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    Grain& g = s.grains[k];
+    if (!g.fixed && has_left(g, floor_radius)) continue;
+    g.id = now[k] = static_cast<std::int64_t>(kept.size());
+    kept.push_back(g);
+  }
+  s.grains = std::move(kept);
+  if (!with_cylinder) s.walls.resize(1);
+  const auto walls = static_cast<std::int64_t>(s.walls.size());
+  std::vector<Contact> contacts;
+  for (Contact c : s.contacts) {
+    const bool wall = c.j < 0;
+    c.i = now[static_cast<std::size_t>(c.i)];
+    if (!wall) c.j = now[static_cast<std::size_t>(c.j)];
+    const bool stays = c.i >= 0 && (wall ? -1 - c.j < walls : c.j >= 0);
+    if (stays) contacts.push_back(c);
+  }
+  s.contacts = std::move(contacts);
+}
+
+}  // namespace grainfield::dem

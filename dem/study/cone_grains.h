@@ -1,0 +1,49 @@
+// What a cone is made of: its grains, floor and walls, and the checks of its settings.
+#pragma once
+#include <vector>
+
+#include "dem/heap/grain_family.h"
+#include "dem/random/random.h"
+#include "dem/study/cone.h"
+
+namespace grainfield::dem {
+
+/// Fewer grains than this have no cone to speak of.
+inline constexpr int kLeastOfCone = 50;
+/// Memory of a grain, as in outlook.cc, about.
+inline constexpr double kBytesOfConeGrain = 4000;
+
+/// What can be judged without the grains. Throws std::invalid_argument naming the key.
+void check_cone(const ConeSetup& setup);
+/// Throws ComputationFailed naming cone.mouth when grains would start above the cylinder's rim, m.
+void check_cylinder(const ConeSetup& setup, double start);
+
+/// The grains in the order in which they are poured.
+std::vector<ShapedGrain> draw_cone(const ConePlan& plan, Random& random);
+/// Of an engine for them. `reserve`: engine_settings, where not all of them were drawn. Throws
+/// std::invalid_argument naming the key.
+EngineSettings cone_settings(const ConeSetup& setup, const std::vector<ShapedGrain>& grains,
+                             int threads, double reserve = 1);
+
+/// The fixed spheres of a rough floor, of the radius cone.radius in rows that let no grain through,
+/// tops at z = 0; none of a smooth one. And their number, about.
+std::vector<NewGrain> cone_floor(const ConePlan& plan, double density);
+double floor_grains_of(const ConePlan& plan);
+/// The plane "floor" (of a rough floor out of reach), and "cylinder".
+std::vector<Wall> cone_walls(const ConeSetup& setup, bool with_cylinder);
+/// Radius within which grains start, m.
+double source_radius(const ConePlan& plan);
+/// Height to which the grains fill the cylinder, about, m.
+double filled_height(const ConePlan& plan);
+
+NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, double density);
+/// Top of the free grains that touch something and move more slowly than sqrt(g r), m; 0 without
+/// any.
+double resting_height(const Snapshot& snapshot);
+/// Whether it lies beyond a floor of this radius, or below it.
+bool has_left(const Grain& grain, double floor_radius);
+/// Takes the grains away that have left, and, unless it is kept, the cylinder; numbers the others
+/// anew in their order.
+void keep_on_floor(double floor_radius, bool with_cylinder, Snapshot& snapshot);
+
+}  // namespace grainfield::dem

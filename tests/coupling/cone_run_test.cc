@@ -1,0 +1,255 @@
+// Cones through the real program: figures, fields, balance, threads, mistakes; and what is measured
+// of a cone that is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "check_scene.h"
+#include "coupling/averaging/base_space.h"
+#include "coupling/averaging/cone.h"
+#include "coupling/heap/cone_windows.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/tables.h"
+#include "coupling/run/summary_keys.h"
+#include "dem/snapshot/snapshot.h"
+#include "reliability_process.h"
+#include "sample_bits_scene.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::complaint;
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+// Three hundred spheres, done in a few seconds.
+constexpr const char* kCone = R"(study = "cone"
+[cone]
+source = "point"
+grains = 300
+radius = 0.002
+polydispersity = 0.2
+mouth = 0.006
+rate = 3000
+drop = 0.008
+speed = 0.3
+floor_radius = 0.045
+[material]
+law = "hertz"
+density = 2500
+young = 3e5
+damping = 0.3
+friction = 0.5
+rolling_stiffness = 10
+rolling_damping = 0.001
+rolling_friction = 0.3
+[rest]
+background_damping = 60
+unbalanced_force_ratio = 1e-4
+kinetic_to_elastic_energy = 1e-6
+[ensemble]
+realizations = 2
+[average]
+methods = ["coarse_graining"]
+width_diameters = 1
+points = 21
+map_columns = 11
+map_rows = 7
+[heap]
+heights = [0.3]
+centre = 0.2
+shoulder_from = 0.2
+shoulder_to = 0.6
+[compare]
+models = ["cone_osl", "cone_bcc"]
+)";
+
+double number(const Summary& summary, const std::string& key) {
+  const auto at = summary.find(key);
+  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
+    ADD_FAILURE() << "no number " << key;
+    return 0;
+  }
+  return std::get<double>(at->second);
+}
+
+// One run for all tests of its results.
+class ConeRun : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new Folder;
+    const Output run = program("run " + folder_->write("c.toml", kCone) + " -o " +
+                               (*folder_ / "out") + " 2> " + (*folder_ / "err"));
+    ASSERT_EQ(run.code, 0) << testing::read_text(*folder_ / "err");
+    summary_ = read_summary(*folder_ / "out/summary.json");
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  static std::string out(const std::string& name) { return *folder_ / ("out/" + name); }
+  static double of(const std::string& key) { return number(summary_, key); }
+
+  static Folder* folder_;
+  static Summary summary_;
+};
+Folder* ConeRun::folder_ = nullptr;
+Summary ConeRun::summary_;
+
+TEST_F(ConeRun, CarriesItsWeightOnItsBase) {
+  EXPECT_NEAR(of("base.weight_ratio"), 1, 1e-4);
+  // Rings about the axis miss only the strays beyond them.
+  EXPECT_NEAR(of("cone.base_over_weight"), 1, 0.06);
+  EXPECT_LT(of("average.coarse_graining.balance_rms"), 2e-3);
+  EXPECT_EQ(of("dem.grains") + of("cone.grains_lost"), 300);
+  // The mean pressure over the foot is the weight over its area: h/3 of a cone, more of a dome.
+  EXPECT_GT(of("dip.shoulder"), 1.0 / 3);
+  EXPECT_LT(of("dip.shoulder"), 1);
+  EXPECT_NEAR(of("cone.height") / of("cone.foot"),
+              std::tan(of("cone.repose_deg") * std::numbers::pi / 180),
+              0.35 * of("cone.height") / of("cone.foot"));
+}
+
+TEST_F(ConeRun, LeavesFieldsThatReadersTake) {
+  for (const char* name : {"base", "base_rings", "coarse_graining_inside",
+                           "coarse_graining_height_0.3", "model_cone_osl", "model_cone_bcc"}) {
+    const Field field = read_field(out("fields.h5"), name);
+    EXPECT_EQ(field.points.cols(), 3) << name;
+    ASSERT_NE(field.find("sigma_zz"), nullptr) << name;
+  }
+  const Field rings = read_field(out("fields.h5"), "base_rings");
+  EXPECT_NEAR(-rings.find("sigma_zz")->value[0], of("base.centre_pressure") * of("cone.rho_g_h"),
+              0.05 * of("cone.rho_g_h"));
+  EXPECT_EQ(rings.find("sigma_rz")->value[0], 0) << "no shear on the axis";
+  const std::string page = testing::read_text(out("report.html"));
+  for (const char* part : {"Vertical pressure by radius", "Radial shear on the base",
+                           "Pressure on the base", "Inside, by radius and height",
+                           "The cone, cut in the middle"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+}
+
+TEST_F(ConeRun, EveryFigureIsDeclared) {
+  for (const auto& [key, value] : summary_) EXPECT_NE(find_summary_key(key), nullptr) << key;
+}
+
+TEST(ConeCase, BitsAreTheSameOnThreadsAndAfterAKill) {
+  std::string text = kCone;
+  text.replace(text.find("source = \"point\""), 16, "source = \"rain\" ");
+  text.replace(text.find("mouth = 0.006\n"), 14, "");
+  text.replace(text.find("floor_radius = 0.045"), 20, "floor_radius = 0.03 ");
+  testing::expect_same_bits(text);
+}
+
+TEST(ConeCase, MistakesAreNamed) {
+  const auto says = [](const std::vector<std::string>& set, const std::string& what) {
+    EXPECT_THAT(complaint(kCone, set), HasSubstr(what));
+  };
+  EXPECT_EQ(complaint(kCone), "");
+  says({"cone.source=rains"}, "cone.source: found \"rains\", allowed: point | rain | cylinder");
+  says({"cone.mouth=0.001"}, "cone.mouth: found 0.001, allowed: at least 0.0024 m");
+  says({"cone.shape=superellipsoid"}, "rolling");
+  says({"cone.lift_speed=0.1"}, "cone.lift_speed");
+  says({"heap.centre=0.3"}, "heap.centre: found 0.3, allowed: up to heap.shoulder_from = 0.2");
+  says({"compare.models=[\"osl\"]"}, "compare.models");
+  says({"motion.energy_balance=true"}, "motion.energy_balance: found true");
+  says({"average.depths=[0.5]"}, "average.depths");
+}
+
+// A cone of points of support with a known pressure p = rho g h (1 - s)(1 + 2 s), s = r/foot.
+dem::Snapshot known_cone(double height, double foot, ConeFrame& frame) {
+  dem::Snapshot s;
+  s.dim = 3;
+  s.gravity = dem::Vec3(0, 0, -10);
+  s.walls.resize(1);
+  s.walls[0].name = "floor";
+  frame = {};
+  frame.height = height;
+  frame.foot = foot;
+  frame.apex_x = 0.3;
+  frame.apex_y = -0.2;
+  frame.volume_fraction = 0.6;
+  frame.grain_density = 2000;
+  frame.gravity = 10;
+  const int rings = 400, around = 64;
+  for (int i = 0; i < rings; ++i) {
+    const double share = (i + 0.5) / rings, r = foot * share;
+    const double area = 2 * std::numbers::pi * r * foot / rings / around;
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * std::numbers::pi * (k + 0.5) / around;
+      dem::Grain g;
+      g.id = static_cast<std::int64_t>(s.grains.size());
+      s.grains.push_back(g);
+      dem::Contact c;
+      c.i = g.id;
+      c.j = -1;
+      c.point = dem::Vec3(frame.apex_x + r * std::cos(angle), frame.apex_y + r * std::sin(angle), 0);
+      c.force = dem::Vec3(0, 0, frame.pressure() * (1 - share) * (1 + 2 * share) * area);
+      s.contacts.push_back(c);
+    }
+  }
+  return s;
+}
+
+TEST(ConeWindows, AreMeansOverDiskAndRing) {
+  ConeFrame frame;
+  const dem::Snapshot cone = known_cone(0.1, 0.2, frame);
+  HeapSetup setup;
+  setup.centre = 0.25;
+  setup.shoulder_from = 0.25;
+  setup.shoulder_to = 0.5;
+  const ConeWindows windows = cone_windows(cone, frame, setup);
+  // Integral of (1 + s - 2 s^2) 2 s ds = s^2 + 2/3 s^3 - s^4.
+  const auto below = [](double s) { return s * s + 2.0 / 3 * s * s * s - s * s * s * s; };
+  EXPECT_NEAR(windows.mean.centre, below(0.25) / (0.25 * 0.25), 1e-3);
+  EXPECT_NEAR(windows.mean.shoulder, (below(0.5) - below(0.25)) / (0.25 - 0.0625), 1e-3);
+  EXPECT_NEAR(windows.sector_error, 0, 1e-9) << "all sectors are alike";
+}
+
+TEST(ConeSectors, ShareTheAngle) {
+  for (int k = 0; k < kConeSectors; ++k) {
+    const double middle = (k + 0.5) * 2 * std::numbers::pi / kConeSectors;
+    for (const double off : {-0.49, 0.0, 0.49}) {
+      const double angle = middle + off * 2 * std::numbers::pi / kConeSectors;
+      EXPECT_EQ(cone_sector(std::cos(angle), std::sin(angle)), k);
+    }
+  }
+  EXPECT_EQ(cone_sector(1, -1e-300), cone_sector(1, 0));
+}
+
+// Spheres filling a cone of a known slope, a little different in each sector.
+TEST(ConeFrame, MeasuresSlopesBySector) {
+  dem::Snapshot s;
+  s.dim = 3;
+  s.gravity = dem::Vec3(0, 0, -9.81);
+  dem::Wall floor;
+  floor.name = "floor";
+  floor.normal = dem::Vec3::UnitZ();
+  s.walls.push_back(floor);
+  const double radius = 0.5, height = 20;
+  const auto slope_at = [](int sector) { return std::tan((24.0 + sector) * std::numbers::pi / 180); };
+  std::mt19937 draw(3);
+  std::uniform_real_distribution<double> place(-50, 50), up(0, height);
+  while (s.grains.size() < 60000) {
+    dem::Grain g;
+    g.position = dem::Vec3(place(draw), place(draw), up(draw));
+    const double r = g.position.head<2>().norm();
+    const double slope = slope_at(cone_sector(g.position.x(), g.position.y()));
+    if (g.position.z() + radius > height - slope * r) continue;
+    g.id = static_cast<std::int64_t>(s.grains.size());
+    g.radius = radius;
+    g.volume = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+    g.mass = g.volume;
+    s.grains.push_back(g);
+  }
+  const ConeFrame frame = cone_frame(s);
+  EXPECT_NEAR(frame.repose_deg, 27.5, 0.7);
+  for (int k = 0; k < kConeSectors; ++k) {
+    EXPECT_NEAR(frame.sector_repose_deg[static_cast<std::size_t>(k)], 24.0 + k, 1.5) << k;
+  }
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
