@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLeastShare = 0.15, kMostShare = 0.85;  // of the height: where the flank is a line
 constexpr int kLeastColumns = 6;
+constexpr int kRounds = 20;  // of choosing the columns of the flank
 
 // The free grains that touch something; all of them where nothing does.
 dem::Snapshot touching(const dem::Snapshot& s) {
@@ -34,26 +35,50 @@ struct Flank {
   double top = kNan, slope = kNan;  // height above the floor on the axis, fall per length
 };
 
-// `sector`: of it alone; -1: of all.
-Flank flank_of(const Roof& roof, const ConeFrame& frame, int sector = -1) {
-  std::vector<Eigen::Vector2d> surface;
-  for (Eigen::Index i = 0; i < roof.heights().rows(); ++i)
-    for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
-      const double height = roof.heights()(i, j) - frame.floor, share = height / frame.height;
-      const Eigen::Vector2d out = roof.middle(i, j) - Eigen::Vector2d(frame.apex_x, frame.apex_y);
-      if (sector >= 0 && cone_sector(out.x(), out.y()) != sector) continue;
-      if (share > kLeastShare && share < kMostShare) surface.emplace_back(out.norm(), height);
-    }
-  if (surface.size() < kLeastColumns) return {};
-  const auto n = static_cast<Eigen::Index>(surface.size());
+struct SurfacePoint {
+  double away, height;  // from the axis; above the floor
+  bool operator==(const SurfacePoint&) const = default;
+};
+
+Flank line_through(const std::vector<SurfacePoint>& points) {
+  if (points.size() < kLeastColumns) return {};
+  const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::MatrixXd line(n, 2), heights(n, 1);
   for (Eigen::Index k = 0; k < n; ++k) {
-    line.row(k) << 1, -surface[static_cast<std::size_t>(k)].x();
-    heights(k, 0) = surface[static_cast<std::size_t>(k)].y();
+    const SurfacePoint& p = points[static_cast<std::size_t>(k)];
+    line.row(k) << 1, -p.away;
+    heights(k, 0) = p.height;
   }
   const Eigen::MatrixXd solved = least_squares(line, heights).solution;
   if (!(solved(1, 0) > 0)) return {};
   return {solved(0, 0), solved(1, 0)};
+}
+
+// Columns are chosen by the height of the line there: by their own it would be too flat. `sector`:
+// of it alone; -1: of all.
+Flank flank_of(const Roof& roof, const ConeFrame& frame, int sector = -1) {
+  const double low = kLeastShare * frame.height, high = kMostShare * frame.height;
+  std::vector<SurfacePoint> all, chosen;
+  for (Eigen::Index i = 0; i < roof.heights().rows(); ++i) {
+    for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
+      const Eigen::Vector2d out = roof.middle(i, j) - Eigen::Vector2d(frame.apex_x, frame.apex_y);
+      if (sector >= 0 && cone_sector(out.x(), out.y()) != sector) continue;
+      all.push_back({out.norm(), roof.heights()(i, j) - frame.floor});
+      if (all.back().height > low && all.back().height < high) chosen.push_back(all.back());
+    }
+  }
+  Flank flank = line_through(chosen);
+  for (int round = 0; round < kRounds && std::isfinite(flank.slope); ++round) {
+    std::vector<SurfacePoint> next;
+    for (const SurfacePoint& p : all) {
+      const double at = flank.top - flank.slope * p.away;
+      if (at > low && at < high) next.push_back(p);
+    }
+    if (next == chosen) break;
+    chosen = std::move(next);
+    flank = line_through(chosen);
+  }
+  return flank;
 }
 
 double fraction_inside(const dem::Snapshot& grains, const ConeFrame& frame, const Flank& flank,

@@ -21,10 +21,10 @@ struct ConeFrame {
   double repose_deg = 0;          ///< slope of that line; nan: too few columns
   /// The same of kConeSectors equal sectors, counter-clockwise from the x axis.
   std::array<double, kConeSectors> sector_repose_deg{};
-  double volume_fraction = 0;     ///< mean of the inside (see cone_frame)
-  double grain_density = 0;       ///< mass over volume of the grains, kg/m3
-  double gravity = 0;             ///< m/s2
-  double diameter = 0;            ///< mean of the grains, m
+  double volume_fraction = 0;  ///< mean of the inside (see cone_frame)
+  double grain_density = 0;    ///< mass over volume of the grains, kg/m3
+  double gravity = 0;          ///< m/s2
+  double diameter = 0;         ///< mean of the grains, m
 
   /// rho g h, Pa: grain density times volume fraction times gravity times height.
   double pressure() const { return grain_density * volume_fraction * gravity * height; }
@@ -33,10 +33,11 @@ struct ConeFrame {
 };
 
 /// Measures a heap of spheres. The flank's line is least squares of height against distance from
-/// the axis, through the free surface (roof.h) between 15 % and 85 % of the height. The inside lies
-/// two mean diameters below that line and one above the floor; where the heap is too small for it,
-/// everything below the free surface. Grains without a contact count for nothing, where there are
-/// contacts. Throws std::invalid_argument for a 2D snapshot or one without a free grain.
+/// the axis, through the free surface (roof.h) where that line is between 15 % and 85 % of the
+/// height. The inside lies two mean diameters below that line and one above the floor; where the
+/// heap is too small for it, everything below the free surface. Grains without a contact count for
+/// nothing, where there are contacts. Throws std::invalid_argument for a 2D snapshot or one without
+/// a free grain.
 ConeFrame cone_frame(const dem::Snapshot& heap);
 
 }  // namespace grainfield::coupling

@@ -20,8 +20,8 @@ ConeWindows cone_windows(const dem::Snapshot& cone, const ConeFrame& frame,
   }
   const double disk = std::numbers::pi * frame.foot * frame.foot;
   const double inner = disk * setup.centre * setup.centre;
-  const double ring = disk * (setup.shoulder_to * setup.shoulder_to -
-                              setup.shoulder_from * setup.shoulder_from);
+  const double ring =
+      disk * (setup.shoulder_to * setup.shoulder_to - setup.shoulder_from * setup.shoulder_from);
   ConeWindows out;
   std::vector<double> differences;
   for (std::size_t k = 0; k < kConeSectors; ++k) {

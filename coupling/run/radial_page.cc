@@ -48,8 +48,8 @@ void add_radial_tables(Report& report, const Comparison& c, const std::string& u
                   "Relative L2: root of the sum of squared differences over that of the grains, "
                   "points evenly spaced in the radius. chi2/dof: squared differences over squared "
                   "standard errors, corrected for the number of realizations.",
-                  {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h", "in",
-                   "chi2/dof"},
+                  {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h",
+                   "in", "chi2/dof"},
                   {}};
   for (const ModelComparison& r : c.results) {
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),

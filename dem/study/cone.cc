@@ -39,12 +39,9 @@ enum class ConePhase : int { pour, fill_settle, lift, settle, rest, done };
 // In the order of ConePhase.
 std::vector<PhaseInfo> phases_of(const ConePlan& plan) {
   const double poured = plan.source == "cylinder" ? 0.4 : 0.75;
-  return {{"pour", false, 0, poured},
-          {"settle", false, poured, poured},
-          {"lift", false, poured, 0.75},
-          {"settle", false, 0.75, 0.75},
-          {"rest", true, 0.75, 1},
-          {"done", true, 1, 1}};
+  return {{"pour", false, 0, poured},    {"settle", false, poured, poured},
+          {"lift", false, poured, 0.75}, {"settle", false, 0.75, 0.75},
+          {"rest", true, 0.75, 1},       {"done", true, 1, 1}};
 }
 
 class ConeRun final : public ArchivedRun {
@@ -168,38 +165,31 @@ void ConeRun::pour() {
   }
 }
 
-// As many of them as find a free place.
+// As many of them as find a free place. Rain begins above the surface where it is, so that it falls
+// on flanks no harder than on the top.
 void ConeRun::release(int count) {
   const Snapshot now = engine_->snapshot();
   top_ = resting_height(now);
-  const double low = top_ + setup_.plan.drop + largest_, high = low + kColumn * largest_;
-  if (cylinder_) check_cylinder(setup_, high + largest_);
-  std::vector<std::array<double, 4>> there;  // grains that may be in the way: place, radius
-  for (const Grain& g : now.grains) {
-    if (g.fixed || g.position.z() < low - 2 * largest_) continue;
-    there.push_back({g.position.x(), g.position.y(), g.position.z(), g.radius});
-  }
-  const auto is_free = [&](double x, double y, double z, double radius) {
-    return std::none_of(there.begin(), there.end(), [&](const auto& other) {
-      const double dx = other[0] - x, dy = other[1] - y, dz = other[2] - z;
-      const double apart = other[3] + radius;
-      return dx * dx + dy * dy + dz * dz < apart * apart;
-    });
-  };
+  const ConePlan& plan = setup_.plan;
+  const double above = plan.drop + largest_, column = kColumn * largest_;
+  if (cylinder_) check_cylinder(setup_, top_ + above + column + largest_);
+  std::optional<LocalTops> tops;
+  if (plan.source == "rain") tops.emplace(now, plan.floor_radius, 2 * largest_);
+  FreePlaces places(now, largest_);
   for (; count > 0; --count) {
     const ShapedGrain& shaped = grains_[static_cast<std::size_t>(poured_)];
-    const double reach = source_radius(setup_.plan) - (cylinder_ ? shaped.radius : 0);
+    const double reach = source_radius(plan) - (cylinder_ ? shaped.radius : 0);
     bool placed = false;
     for (int k = 0; k < kTries && !placed; ++k) {
       const double r = reach * std::sqrt(random_.uniform());
-      const double angle = 2 * std::numbers::pi * random_.uniform();
-      const auto [cosine, sine] = rotation_of(angle);
-      const double x = r * cosine, y = r * sine, z = random_.uniform(low, high);
-      if (!is_free(x, y, z, shaped.radius)) continue;
+      const auto [cosine, sine] = rotation_of(2 * std::numbers::pi * random_.uniform());
+      const double x = r * cosine, y = r * sine;
+      const double low = (tops ? tops->at(x, y) : top_) + above;
+      const double z = random_.uniform(low, low + column);
+      if (!places.take(x, y, z, shaped.radius)) continue;
       NewGrain g = placed_grain(shaped, x, y, z, setup_.material.density);
-      g.vz = -setup_.plan.speed;
+      g.vz = -plan.speed;
       engine_->add(g);
-      there.push_back({x, y, z, shaped.radius});
       placed = true;
     }
     if (!placed) return;

@@ -15,11 +15,11 @@ namespace grainfield::dem {
 /// The case keys [cone].
 struct ConePlan {
   // -- the grains
-  std::string shape = "sphere";  ///< sphere | superellipsoid
-  int grains = 5000;             ///< poured; what leaves the floor is taken away
-  double radius = 0.002;         ///< m; of superellipsoids the unit of their semi-axes
-  double polydispersity = 0.1;   ///< sphere: radii in radius (1 -+ this)
-  double axis_min = 0.8, axis_max = 1.2;          ///< superellipsoid: semi-axes over the radius
+  std::string shape = "sphere";           ///< sphere | superellipsoid
+  int grains = 5000;                      ///< poured; what leaves the floor is taken away
+  double radius = 0.002;                  ///< m; of superellipsoids the unit of their semi-axes
+  double polydispersity = 0.1;            ///< sphere: radii in radius (1 -+ this)
+  double axis_min = 0.8, axis_max = 1.2;  ///< superellipsoid: semi-axes over the radius
   double exponent_min = 0.7, exponent_max = 1.3;  ///< superellipsoid
 
   // -- where they come from

@@ -45,6 +45,22 @@ double floor_spacing(const ConePlan& p) {
 }
 double floor_reach(const ConePlan& p) { return p.floor_radius + 2 * p.radius; }
 
+// Free grains that touch something and move more slowly than sqrt(g r).
+std::vector<const Grain*> lying_grains(const Snapshot& s) {
+  std::vector<bool> touches(s.grains.size(), false);
+  for (const Contact& c : s.contacts) {
+    touches[static_cast<std::size_t>(c.i)] = true;
+    if (c.j >= 0) touches[static_cast<std::size_t>(c.j)] = true;
+  }
+  std::vector<const Grain*> out;
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Grain& g = s.grains[k];
+    const bool slow = g.velocity.squaredNorm() < s.gravity.norm() * g.radius;
+    if (touches[k] && slow && !g.fixed) out.push_back(&g);
+  }
+  return out;
+}
+
 void check_order(const char* less, double least, const char* more, double most) {
   if (least <= most) return;
   refuse(less, fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
@@ -78,10 +94,10 @@ void check_cone(const ConeSetup& s) {
   at_least("drop", p.drop, 2 * most, "twice the largest radius");
   const double fixed = floor_grains_of(p);
   if (fixed > kMostGrains) {
-    refuse("floor_radius", fmt::format("found {:g}, allowed: up to {:.3g} m with grains of this "
-                                       "size on a rough floor: ten million grains",
-                                       p.floor_radius,
-                                       p.floor_radius * std::sqrt(kMostGrains / fixed)));
+    refuse("floor_radius",
+           fmt::format("found {:g}, allowed: up to {:.3g} m with grains of this "
+                       "size on a rough floor: ten million grains",
+                       p.floor_radius, p.floor_radius * std::sqrt(kMostGrains / fixed)));
   }
 }
 
@@ -182,17 +198,64 @@ NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, do
 
 double resting_height(const Snapshot& s) {
   double top = 0;
-  const auto look = [&](std::int64_t k) {
-    if (k < 0) return;
-    const Grain& g = s.grains[static_cast<std::size_t>(k)];
-    const bool slow = g.velocity.squaredNorm() < s.gravity.norm() * g.radius;
-    if (!g.fixed && slow) top = std::max(top, g.position.z() + g.radius);
-  };
-  for (const Contact& c : s.contacts) {
-    look(c.i);
-    look(c.j);
+  for (const Grain* g : lying_grains(s)) top = std::max(top, g->position.z() + g->radius);
+  return top;
+}
+
+LocalTops::LocalTops(const Snapshot& s, double half, double cell)
+    : half_(half), cell_(cell), count_(std::max(1, static_cast<int>(2 * half / cell))) {
+  top_.assign(static_cast<std::size_t>(count_) * static_cast<std::size_t>(count_), 0.0);
+  for (const Grain* g : lying_grains(s)) {
+    double& top = top_[static_cast<std::size_t>(cell_of(g->position.y()) * count_ +
+                                                cell_of(g->position.x()))];
+    top = std::max(top, g->position.z() + g->radius);
+  }
+}
+
+int LocalTops::cell_of(double x) const {
+  return std::clamp(static_cast<int>((x + half_) / cell_), 0, count_ - 1);
+}
+
+double LocalTops::at(double x, double y) const {
+  double top = 0;
+  for (int j = std::max(0, cell_of(y) - 1); j <= std::min(count_ - 1, cell_of(y) + 1); ++j) {
+    for (int i = std::max(0, cell_of(x) - 1); i <= std::min(count_ - 1, cell_of(x) + 1); ++i) {
+      top = std::max(top, top_[static_cast<std::size_t>(j * count_ + i)]);
+    }
   }
   return top;
+}
+
+FreePlaces::FreePlaces(const Snapshot& s, double largest) : cell_(2 * largest) {
+  for (const Grain& g : s.grains) {
+    if (!g.fixed) put({g.position.x(), g.position.y(), g.position.z(), g.radius});
+  }
+}
+
+std::array<std::int64_t, 3> FreePlaces::cell_of(double x, double y, double z) const {
+  const auto along = [this](double at) {
+    return static_cast<std::int64_t>(std::floor(at / cell_));
+  };
+  return {along(x), along(y), along(z)};
+}
+
+void FreePlaces::put(const Ball& ball) { balls_[cell_of(ball.x, ball.y, ball.z)].push_back(ball); }
+
+bool FreePlaces::take(double x, double y, double z, double radius) {
+  const auto [i, j, k] = cell_of(x, y, z);
+  for (std::int64_t a = i - 1; a <= i + 1; ++a) {
+    for (std::int64_t b = j - 1; b <= j + 1; ++b) {
+      for (std::int64_t c = k - 1; c <= k + 1; ++c) {
+        const auto there = balls_.find({a, b, c});
+        if (there == balls_.end()) continue;
+        for (const Ball& ball : there->second) {
+          if (std::hypot(ball.x - x, ball.y - y, ball.z - z) < ball.radius + radius) return false;
+        }
+      }
+    }
+  }
+  put({x, y, z, radius});
+  return true;
 }
 
 bool has_left(const Grain& g, double floor_radius) {

@@ -1,5 +1,7 @@
 // What a cone is made of: its grains, floor and walls, and the checks of its settings.
 #pragma once
+#include <array>
+#include <map>
 #include <vector>
 
 #include "dem/heap/grain_family.h"
@@ -40,6 +42,37 @@ NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, do
 /// Top of the free grains that touch something and move more slowly than sqrt(g r), m; 0 without
 /// any.
 double resting_height(const Snapshot& snapshot);
+/// The same by place: heights of square cells as wide as `cell`, m, over the square of half side
+/// `half` about the axis.
+class LocalTops {
+ public:
+  LocalTops(const Snapshot& snapshot, double half, double cell);
+  /// The highest of the cell at (x, y) and its neighbours; 0 where nothing lies.
+  double at(double x, double y) const;
+
+ private:
+  int cell_of(double x) const;
+  double half_, cell_;
+  int count_;
+  std::vector<double> top_;
+};
+/// Places that no ball takes.
+class FreePlaces {
+ public:
+  /// Taken: those of the snapshot's grains. `largest`: radius of any ball to come, m.
+  FreePlaces(const Snapshot& snapshot, double largest);
+  /// Takes it for a ball; false: another one is there.
+  bool take(double x, double y, double z, double radius);
+
+ private:
+  struct Ball {
+    double x, y, z, radius;
+  };
+  std::array<std::int64_t, 3> cell_of(double x, double y, double z) const;
+  void put(const Ball& ball);
+  double cell_;
+  std::map<std::array<std::int64_t, 3>, std::vector<Ball>> balls_;
+};
 /// Whether it lies beyond a floor of this radius, or below it.
 bool has_left(const Grain& grain, double floor_radius);
 /// Takes the grains away that have left, and, unless it is kept, the cylinder; numbers the others

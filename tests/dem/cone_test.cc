@@ -1,7 +1,10 @@
 // Cones: what they are made of, what leaves the floor, and what stands in the end.
+#include "dem/study/cone.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -10,7 +13,6 @@
 
 #include "dem/computation_failed.h"
 #include "dem/snapshot/contact_changes.h"
-#include "dem/study/cone.h"
 #include "dem/study/cone_grains.h"
 
 namespace grainfield::dem {
@@ -226,6 +228,72 @@ TEST(ConeFloor, LeavesNoGap) {
   }
 }
 
+// Against a look at every ball.
+TEST(FreePlaces, AreApartFromAll) {
+  std::mt19937 draw(2);
+  std::uniform_real_distribution<double> place(-0.03, 0.03), size(0.0005, 0.002);
+  Snapshot s;
+  for (int k = 0; k < 100; ++k) {
+    Grain g;
+    g.position = Vec3(place(draw), place(draw), place(draw));
+    g.radius = size(draw);
+    g.fixed = k % 5 == 0;  // do not count
+    s.grains.push_back(g);
+  }
+  FreePlaces places(s, 0.002);
+  std::vector<Grain> all;
+  for (const Grain& g : s.grains) {
+    if (!g.fixed) all.push_back(g);
+  }
+  int taken = 0;
+  for (int k = 0; k < 4000; ++k) {
+    Grain g;
+    g.position = Vec3(place(draw), place(draw), place(draw));
+    g.radius = size(draw);
+    const bool free = std::none_of(all.begin(), all.end(), [&](const Grain& other) {
+      return (other.position - g.position).norm() < other.radius + g.radius;
+    });
+    ASSERT_EQ(places.take(g.position.x(), g.position.y(), g.position.z(), g.radius), free) << k;
+    if (free) all.push_back(g);
+    taken += free ? 1 : 0;
+  }
+  EXPECT_GT(taken, 500);
+  EXPECT_LT(taken, 3500);
+}
+
+// Never below a lying grain that a new one of the cell's half width could touch from above.
+TEST(LocalTops, AreAboveWhatLiesThere) {
+  std::mt19937 draw(2);
+  std::uniform_real_distribution<double> place(-0.03, 0.03), size(0.0005, 0.002), high(0, 0.02);
+  Snapshot s;
+  s.gravity = Vec3(0, 0, -9.81);
+  s.walls.resize(1);
+  for (int k = 0; k < 200; ++k) {
+    Grain g;
+    g.position = Vec3(place(draw), place(draw), high(draw));
+    g.radius = size(draw);
+    const bool flies = k % 4 == 0, fast = k % 4 == 1;
+    if (flies || fast) g.position.z() = 1;
+    if (fast) g.velocity = Vec3(0, 0, -1);
+    s.grains.push_back(g);
+    Contact c;
+    c.i = k;
+    c.j = -1;
+    if (!flies) s.contacts.push_back(c);
+  }
+  const LocalTops tops(s, 0.03, 0.004);
+  for (int k = 0; k < 2000; ++k) {
+    const double x = place(draw), y = place(draw);
+    EXPECT_LT(tops.at(x, y), 0.022 + 1e-12);
+    for (const Grain& g : s.grains) {
+      if (g.position.z() == 1 || std::hypot(g.position.x() - x, g.position.y() - y) > 0.004)
+        continue;
+      EXPECT_GE(tops.at(x, y), g.position.z() + g.radius);
+    }
+  }
+  EXPECT_EQ(LocalTops(Snapshot(), 0.03, 0.004).at(0, 0), 0);
+}
+
 // Random packings with walls: contacts of those that stay keep their partners.
 TEST(KeepOnFloor, KeepsContactsOfTheOthers) {
   std::mt19937 draw(11);
@@ -282,8 +350,7 @@ TEST(KeepOnFloor, KeepsContactsOfTheOthers) {
     for (const Contact& c : kept.contacts) {
       const double i = kept.grains[static_cast<std::size_t>(c.i)].mass - 1;
       if (c.j >= 0) {
-        EXPECT_EQ(c.normal_force,
-                  100 * i + kept.grains[static_cast<std::size_t>(c.j)].mass - 1);
+        EXPECT_EQ(c.normal_force, 100 * i + kept.grains[static_cast<std::size_t>(c.j)].mass - 1);
       } else {
         EXPECT_EQ(c.normal_force, -i - 1);
         EXPECT_EQ(c.j, -1 - static_cast<int>(i) % 2);

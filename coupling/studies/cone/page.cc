@@ -11,8 +11,8 @@ constexpr const char* kPressure = "-σ_{zz}  (ρgh)";
 
 void add_cone_profiles(Report& report, const StudyResult& result, const ConePage& page) {
   const Comparison& c = result.comparison;
-  Picture picture = radial_profiles("Vertical pressure by radius", "radius / h, to both sides",
-                                    kPressure, c);
+  Picture picture =
+      radial_profiles("Vertical pressure by radius", "radius / h, to both sides", kPressure, c);
   picture.caption = fmt::format(
       "Mean over the angle about the axis; on the base the forces on the floor, above it {}. "
       "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike. The grey band is one standard "

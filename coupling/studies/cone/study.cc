@@ -1,5 +1,7 @@
 // Cones poured from a point, rained, or left by a lifted cylinder: base pressure, dip, stress
 // inside, against models of cones.
+#include "coupling/case/study.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +15,6 @@
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/rings.h"
-#include "coupling/case/study.h"
 #include "coupling/heap/cone_windows.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
@@ -181,11 +182,11 @@ class ConeAnalysis {
       }
       a.inside.add(on(inside_));
       const double half = 0.3 * frame.foot / frame.height;
-      const BalanceResidual balance = balance_residual(
-          cone,
-          frame.to_packing(box_points({-half, -half, kBalanceLow}, {half, half, kBalanceHigh}, 6,
-                                      6, 3)),
-          a.options);
+      const BalanceResidual balance =
+          balance_residual(cone,
+                           frame.to_packing(box_points({-half, -half, kBalanceLow},
+                                                       {half, half, kBalanceHigh}, 6, 6, 3)),
+                           a.options);
       a.balance_rms += balance.rms / static_cast<double>(files_.size());
       a.balance_largest = std::max(a.balance_largest, balance.largest);
     }
@@ -230,10 +231,9 @@ class ConeAnalysis {
     const Field on_rings = base_stress(cone, rings.places, *kernel_);
     const Eigen::MatrixXd out = rings.places.rowwise() - axis.transpose();
     const Eigen::VectorXd away = out.rowwise().norm().cwiseMax(1e-300);
-    const Eigen::VectorXd radial =
-        (on_rings.find("sigma_xz")->value.array() * out.col(0).array() +
-         on_rings.find("sigma_yz")->value.array() * out.col(1).array()) /
-        away.array();
+    const Eigen::VectorXd radial = (on_rings.find("sigma_xz")->value.array() * out.col(0).array() +
+                                    on_rings.find("sigma_yz")->value.array() * out.col(1).array()) /
+                                   away.array();
     Field means;
     means.points = in_space(at_height_share(0));
     const Eigen::VectorXd pressure = ring_means(rings, on_rings.find("sigma_zz")->value);
@@ -459,7 +459,7 @@ Study cone_study() {
   Study out;
   out.name = "cone";
   out.meaning = "cones of spheres or superellipsoids: base pressure and dip, repose, stress inside";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kConeKeys,
+  out.sections = {kMaterialKeys, kMotionKeys,  kRestKeys, kConeKeys,
                   kSleepKeys,    kAverageKeys, kHeapKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::ConeSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::ConeSetup>().motion; };
