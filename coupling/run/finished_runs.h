@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "coupling/case/study.h"
+#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 
@@ -30,6 +32,9 @@ struct FinishedRun {
 /// says; "ensemble.realizations: ..." when there are fewer.
 FinishedRun finished_run(const Case& value, std::int64_t number,
                          const std::vector<std::string>& snapshots, const std::string& study);
+
+/// What a finished run left, as a run that is done: there is nothing to advance or to save.
+std::unique_ptr<dem::Run> run_of(dem::RunResult result);
 
 /// One line where grains.files hold more realizations than the case takes; else empty. Throws as
 /// finished_run.

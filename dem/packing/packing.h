@@ -31,15 +31,20 @@ struct PackingSetup {
   double drop_height = 0.008;      ///< m above the surface from which a row is dropped
   std::string floor = "smooth";    ///< smooth (flat wall with friction) | rough (fixed grains)
   double jitter = 0;               ///< lattices: relative spread of radii, uniform +- (0 = perfect)
-  std::string shape = "disk";      ///< layered: disk | irregular (pentagons; `sizes` is not used)
+  std::string shape = "disk";      ///< layered: disk | irregular (pentagons; `sizes` is not used);
+                                   ///< 3D: disk (spheres) | superellipsoid (random), in `sizes`
   double side = 0.009;             ///< m; irregular: mean length of a side (Roul 5.1)
   std::string sides = "periodic";  ///< 3D: periodic | walls
   std::string stacking = "fcc";    ///< 3D, close_packed: fcc (ABC) | hcp (AB)
+  double axis_min = 0.7;           ///< superellipsoid: semi-axes over the radius
+  double axis_max = 1.3;
+  double exponent_min = 0.7;  ///< superellipsoid
+  double exponent_max = 1.3;
 
   auto members() const {
     return std::tie(dim, kind, sizes, radius, radius_small, fraction_small, radius_min, radius_max,
                     columns, rows, spacing, width, depth, drop_height, floor, jitter, shape, side,
-                    sides, stacking);
+                    sides, stacking, axis_min, axis_max, exponent_min, exponent_max);
   }
 };
 

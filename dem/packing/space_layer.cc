@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/heap/superellipsoid_family.h"
 #include "dem/packing/loose.h"
 
 namespace grainfield::dem {
@@ -39,8 +40,23 @@ void check_lattice(const PackingSetup& p) {
   }
 }
 
+SuperellipsoidFamily family_of(const PackingSetup& p) {
+  return {p.axis_min, p.axis_max, p.exponent_min, p.exponent_max};
+}
+
+void check_family(const PackingSetup& p) {
+  if (p.axis_min > p.axis_max) {
+    refuse("axis_min", fmt::format("{:g}", p.axis_min),
+           fmt::format("up to packing.axis_max = {:g}", p.axis_max));
+  }
+  if (p.exponent_min > p.exponent_max) {
+    refuse("exponent_min", fmt::format("{:g}", p.exponent_min),
+           fmt::format("up to packing.exponent_max = {:g}", p.exponent_max));
+  }
+}
+
 void check_random(const PackingSetup& p) {
-  const double most = largest_radius(p);
+  const double most = farthest_reach(p);
   if (!(p.width >= 2 * kLeastDiameters * most)) {
     refuse("width", fmt::format("{:g}", p.width),
            fmt::format("at least {:g} of the largest diameters", kLeastDiameters));
@@ -128,17 +144,6 @@ std::vector<NewGrain> lattice(const PackingSetup& p, double density, Random& ran
   return grains;
 }
 
-std::vector<double> draw_radii(const PackingSetup& p, Random& random) {
-  const auto sides = layer_sides(p);
-  const double goal = kSettledFraction * sides[0] * sides[1] * p.depth;
-  std::vector<double> radii;
-  for (double filled = 0; filled < goal;) {
-    radii.push_back(draw_radius(p, random));
-    filled += volume_of(radii.back());
-  }
-  return radii;
-}
-
 }  // namespace
 
 void check_space_layer(const PackingSetup& p) {
@@ -148,7 +153,40 @@ void check_space_layer(const PackingSetup& p) {
   if (!(smallest_radius(p) > 0)) {
     refuse("radius", fmt::format("{:g}", smallest_radius(p)), "above 0");
   }
+  if (p.shape == "irregular")
+    refuse("shape", p.shape, "disk | superellipsoid with packing.dim = 3");
+  if (p.shape == "superellipsoid") {
+    if (is_lattice(p))
+      refuse("shape", p.shape, "disk, because packing.kind = close_packed is a lattice");
+    check_family(p);
+  }
   is_lattice(p) ? check_lattice(p) : check_random(p);
+}
+
+bool is_angular(const PackingSetup& p) {
+  return p.dim == 3 && p.kind == "random" && p.shape == "superellipsoid";
+}
+
+double farthest_reach(const PackingSetup& p) {
+  return is_angular(p) ? radii_of(family_of(p), largest_radius(p)).most : largest_radius(p);
+}
+
+std::vector<ShapedGrain> draw_layer(const PackingSetup& p, Random& random, std::int64_t most) {
+  const auto sides = layer_sides(p);
+  const double goal = kSettledFraction * sides[0] * sides[1] * p.depth;
+  std::vector<ShapedGrain> out;
+  for (double filled = 0; filled < goal && static_cast<std::int64_t>(out.size()) < most;) {
+    const double radius = draw_radius(p, random);
+    if (is_angular(p)) {
+      out.push_back(draw_superellipsoid(family_of(p), radius, random));
+    } else {
+      out.emplace_back();
+      out.back().radius = radius;
+      out.back().area = volume_of(radius);
+    }
+    filled += out.back().area;
+  }
+  return out;
 }
 
 double mean_sphere_radius(const PackingSetup& p) {
@@ -160,13 +198,15 @@ double mean_sphere_radius(const PackingSetup& p) {
 }
 
 double mean_sphere_volume(const PackingSetup& p) {
+  // Of superellipsoids that of spheres of the same sizes, times this.
+  const double shape = is_angular(p) ? mean_volume(family_of(p), 1) / volume_of(1) : 1;
   if (p.sizes == "bidisperse") {
-    return p.fraction_small * volume_of(p.radius_small) +
-           (1 - p.fraction_small) * volume_of(p.radius);
+    return shape * (p.fraction_small * volume_of(p.radius_small) +
+                    (1 - p.fraction_small) * volume_of(p.radius));
   }
   // The mean cube of a radius uniform in [a, b] is (a + b)(a^2 + b^2)/4.
   const double a = smallest_radius(p), b = largest_radius(p);
-  return std::numbers::pi / 3 * (a + b) * (a * a + b * b);
+  return shape * (std::numbers::pi / 3 * (a + b) * (a * a + b * b));
 }
 
 std::array<double, 2> layer_sides(const PackingSetup& p) {
@@ -191,8 +231,9 @@ double floor_spheres(const PackingSetup& p) {
 
 double loose_height(const PackingSetup& p) {
   const auto sides = layer_sides(p);
-  return layer_spheres(p) * mean_sphere_volume(p) / (kLooseFraction * sides[0] * sides[1]) +
-         4 * largest_radius(p);
+  const double fraction = kLooseFraction * (is_angular(p) ? share_of_balls(family_of(p)) : 1);
+  return layer_spheres(p) * mean_sphere_volume(p) / (fraction * sides[0] * sides[1]) +
+         4 * farthest_reach(p);
 }
 
 Cell<3> layer_cell(const PackingSetup& p) {
@@ -240,6 +281,7 @@ std::vector<NewGrain> space_floor(const PackingSetup& p, double density, Random&
       const double y = -0.5 * sides[1] + across * (j + 0.5);
       grains.push_back(sphere_at(x, y, -radius, radius, density));
       grains.back().fixed = true;
+      if (is_angular(p)) grains.back().axes.fill(radius);
     }
   }
   return grains;
@@ -247,17 +289,19 @@ std::vector<NewGrain> space_floor(const PackingSetup& p, double density, Random&
 
 std::vector<NewGrain> space_grains(const PackingSetup& p, double density, Random& random) {
   if (is_lattice(p)) return lattice(p, density, random);
-  const std::vector<double> radii = draw_radii(p, random);
+  const std::vector<ShapedGrain> drawn = draw_layer(p, random);
+  std::vector<double> radii;
+  for (const ShapedGrain& g : drawn) radii.push_back(g.radius);
   const auto sides = layer_sides(p);
-  const double margin = largest_radius(p);
+  const double margin = farthest_reach(p);
   const std::array<double, 3> box{sides[0], sides[1], loose_height(p)};
   const bool periodic = p.sides == "periodic";
   const auto places = place_loosely(radii, box, 3, periodic, random);
   std::vector<NewGrain> grains;
   for (std::size_t k = 0; k < radii.size(); ++k) {
     const auto& at = places[k];
-    grains.push_back(sphere_at(at[0] - 0.5 * sides[0], at[1] - 0.5 * sides[1], at[2] + margin,
-                               radii[k], density));
+    grains.push_back(drawn[k].at(at[0] - 0.5 * sides[0], at[1] - 0.5 * sides[1], density));
+    grains.back().z = at[2] + margin;
   }
   return grains;
 }

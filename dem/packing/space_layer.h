@@ -1,7 +1,10 @@
-// Layers of spheres: where grains, floor and sides of a layer in three dimensions start. Up is z,
-// the floor's surface is z = 0, and the layer is centred about x = y = 0.
+// Layers of spheres or superellipsoids: where grains, floor and sides of a layer in three
+// dimensions start. Up is z, the floor's surface is z = 0, and the layer is centred about x = y =
+// 0.
 #pragma once
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -17,9 +20,19 @@ inline constexpr double kSettledFraction = 0.55;
 /// As check_packing, of packing.dim = 3.
 void check_space_layer(const PackingSetup& packing);
 
-/// Mean radius, m, and mean volume, m3, of the spheres that draw_radius gives.
+/// Superellipsoids instead of spheres.
+bool is_angular(const PackingSetup& packing);
+
+/// Mean of the radii that draw_radius gives, m, and mean volume of the grains, m3.
 double mean_sphere_radius(const PackingSetup& packing);
 double mean_sphere_volume(const PackingSetup& packing);
+/// The farthest point of a grain from its centre that can be drawn, m.
+double farthest_reach(const PackingSetup& packing);
+
+/// Grains of a random layer in the order in which they are drawn, as many as fill packing.depth at
+/// kSettledFraction, `most` at most.
+std::vector<ShapedGrain> draw_layer(const PackingSetup& packing, Random& random,
+                                    std::int64_t most = std::numeric_limits<std::int64_t>::max());
 
 /// Lengths of the layer along x and y, m: packing.width both; of a close packing those of its
 /// lattice, whose rows along y are even in number and make it as square as they can.

@@ -186,11 +186,30 @@ void check_spheres(const PackingSetup& p) {
                        ten_million()));
 }
 
-Outlook foresee_space_load(const PointLoadSetup& s) {
+Outlook foresee_space_load(const PointLoadSetup& s, const std::vector<std::uint64_t>& seeds,
+                           std::int64_t most) {
   const PackingSetup& p = s.packing;
   Outlook out;
-  out.time_step = space_load_settings(s, 1).time_step;
   check_spheres(p);
+  if (!is_angular(p)) {
+    out.time_step = space_load_settings(s, 1).time_step;
+  } else {
+    for (const std::uint64_t seed : seeds) {
+      if (most < 1) break;
+      Random random(seed);
+      std::vector<ShapedGrain> shapes;
+      for (const NewGrain& g : space_floor(p, s.material.density, random)) {
+        shapes.emplace_back();
+        shapes.back().axes = g.axes;
+      }
+      const std::vector<ShapedGrain> grains = draw_layer(p, random, most);
+      most -= static_cast<std::int64_t>(grains.size());
+      shapes.insert(shapes.end(), grains.begin(), grains.end());
+      const bool whole = most > 0;
+      const double step = space_load_settings(s, 1, shapes, whole ? 1 : kStepReserve).time_step;
+      if (out.time_step == 0) out.time_step = step;
+    }
+  }
   out.grains = std::ceil(layer_spheres(p));
   out.fixed = floor_spheres(p);
   out.bytes = (out.grains + out.fixed) * kBytesOfSphere;
@@ -210,7 +229,7 @@ Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint6
                            std::int64_t most) {
   const PackingSetup& p = s.packing;
   check_packing(p);
-  if (p.dim == 3) return foresee_space_load(s);
+  if (p.dim == 3) return foresee_space_load(s, seeds, most);
   check_method("load.method", s.load.method, s.material, s.motion);
   Outlook out;
   out.grains = grains_of(p);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "dem/heap/superellipsoid_family.h"
 #include "dem/packing/space_layer.h"
 #include "dem/snapshot/images.h"
 #include "dem/study/fingerprint.h"
@@ -78,15 +79,28 @@ class SpaceLoadRun final : public ArchivedRun {
 };
 
 SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup),
-      seed_(seed),
-      settings_(space_load_settings(setup, threads)),
-      phases_(phases_of(setup.packing)) {
-  engine_ = empty_engine();
+    : setup_(setup), seed_(seed), phases_(phases_of(setup.packing)) {
+  check_packing(setup.packing);
+  const bool angular = is_angular(setup.packing);
+  if (!angular) settings_ = space_load_settings(setup, threads);
   Random random(seed);
   const double density = setup_.material.density;
-  for (const NewGrain& g : space_floor(setup_.packing, density, random)) engine_->add(g);
-  for (const NewGrain& g : space_grains(setup_.packing, density, random)) engine_->add(g);
+  const std::vector<NewGrain> floor = space_floor(setup_.packing, density, random);
+  const std::vector<NewGrain> grains = space_grains(setup_.packing, density, random);
+  std::vector<ShapedGrain> shapes;  // of superellipsoids, and of the spheres of their floor
+  if (angular) {
+    for (const auto* all : {&floor, &grains}) {
+      for (const NewGrain& g : *all) {
+        shapes.emplace_back();
+        shapes.back().axes = g.axes;
+        shapes.back().exponents = g.exponents;
+      }
+    }
+  }
+  if (angular) settings_ = space_load_settings(setup, threads, shapes);
+  engine_ = empty_engine();
+  for (const NewGrain& g : floor) engine_->add(g);
+  for (const NewGrain& g : grains) engine_->add(g);
   enter(setup_.packing.kind == "random" ? Phase::settle : Phase::rest);
 }
 
@@ -301,15 +315,25 @@ RunResult SpaceLoadRun::result() const {
 
 }  // namespace
 
-EngineSettings space_load_settings(const PointLoadSetup& s, int threads) {
+EngineSettings space_load_settings(const PointLoadSetup& s, int threads,
+                                   const std::vector<ShapedGrain>& grains, double reserve) {
   check_packing(s.packing);
+  const bool angular = is_angular(s.packing);
+  if (angular && s.load.method == "newton") {
+    throw std::invalid_argument(
+        "load.method: found \"newton\" with packing.shape = \"superellipsoid\", allowed: "
+        "\"damped\" "
+        "(the quasi-static solver knows spheres)");
+  }
   check_method("load.method", s.load.method, s.material, s.motion, 3);
   const double least = smallest_radius(s.packing);
   GrainExtremes extremes;
   extremes.least_radius = least;
   extremes.least_mass = s.material.density * 4 / 3 * std::numbers::pi * least * least * least;
-  EngineSettings out =
-      engine_settings(s.material, s.motion, extremes, threads, false, 1, ShapeKind::sphere);
+  if (angular) extremes = extremes_of_superellipsoids(grains, s.material.density);
+  EngineSettings out = engine_settings(s.material, s.motion, extremes, threads, false, reserve,
+                                       angular ? ShapeKind::superellipsoid : ShapeKind::sphere);
+  if (angular && out.rolling.on()) refuse_rolling_superellipsoids();
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
   out.cell = layer_cell(s.packing);

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/heap/superellipsoid_family.h"
 #include "dem/packing/loose.h"
-#include "dem/shapes/superellipsoid.h"
 #include "dem/space/elementary.h"
 #include "dem/study/sample_drop.h"
 
@@ -23,41 +23,13 @@ double volume_of(double radius, int dim) {
 
 bool scales_axes(const SamplePlan& plan) { return plan.axes_times == "sizes"; }
 
-// Semi-axes over `radius` and exponents uniform, the orientation too (Shoemake 1992).
-ShapedGrain draw_superellipsoid(const SamplePlan& plan, double radius, Random& random) {
-  ShapedGrain out;
-  for (double& r : out.axes) r = radius * random.uniform(plan.axis_min, plan.axis_max);
-  for (double& e : out.exponents) e = random.uniform(plan.exponent_min, plan.exponent_max);
-  const Solid<3> solid = solid_of(superellipsoid(out.axes, out.exponents));
-  out.radius = solid.radius;
-  out.area = solid.volume;
-  const double part = random.uniform(), rest = std::sqrt(1 - part), root = std::sqrt(part);
-  const Rotation a = rotation_of(2 * std::numbers::pi * random.uniform());
-  const Rotation b = rotation_of(2 * std::numbers::pi * random.uniform());
-  out.orientation = {rest * a.sine, rest * a.cosine, root * b.sine, root * b.cosine};
-  return out;
-}
-
-// Expected volume of a superellipsoid: the axes are independent, the rest is a mean over both
-// exponents (midpoints).
-double mean_superellipsoid(const SamplePlan& plan) {
-  constexpr int kPoints = 8;
-  const double axis = 0.5 * (plan.axis_min + plan.axis_max) * plan.radius;
-  const auto at = [&](int k) {
-    return plan.exponent_min + (plan.exponent_max - plan.exponent_min) * (k + 0.5) / kPoints;
-  };
-  double sum = 0;
-  for (int k = 0; k < kPoints; ++k) {
-    for (int l = 0; l < kPoints; ++l) {
-      sum += solid_of(superellipsoid({axis, axis, axis}, {at(k), at(l)})).volume;
-    }
-  }
-  return sum / (kPoints * kPoints);
+SuperellipsoidFamily family_of(const SamplePlan& p) {
+  return {p.axis_min, p.axis_max, p.exponent_min, p.exponent_max};
 }
 
 ShapedGrain draw(const SamplePlan& plan, double radius, Random& random) {
   if (is_superellipsoid(plan)) {
-    return draw_superellipsoid(plan, scales_axes(plan) ? radius : plan.radius, random);
+    return draw_superellipsoid(family_of(plan), scales_axes(plan) ? radius : plan.radius, random);
   }
   if (is_round(plan)) {
     ShapedGrain grain;
@@ -104,12 +76,8 @@ const std::vector<std::string>& sample_shapes(int dim) {
 SampleRadii sample_radii(const SamplePlan& p) {
   const double r = p.radius;
   if (is_superellipsoid(p)) {
-    // The exponents' ends give the extremes: edges are nearest, corners of boxes farthest.
-    const double low = r * p.axis_min, high = r * p.axis_max;
-    const double most = p.exponent_max, least = p.exponent_min;
-    const SampleRadii one{nearest_of(superellipsoid({low, low, low}, {most, most})),
-                          cube_root(mean_superellipsoid(p) / (4.0 / 3 * std::numbers::pi)),
-                          farthest_of(superellipsoid({high, high, high}, {least, least}))};
+    const FamilyRadii of_one = radii_of(family_of(p), r);
+    const SampleRadii one{of_one.least, of_one.mean, of_one.most};
     if (!scales_axes(p)) return one;
     const SizeRange sizes = size_range(p);
     return {one.least * sizes.least, one.mean * cube_root(sizes.cube), one.most * sizes.most};
@@ -124,7 +92,7 @@ SampleRadii sample_radii(const SamplePlan& p) {
 double mean_volume(const SamplePlan& p) {
   const double one = volume_of(p.radius, p.dim), n = p.grains;
   if (is_superellipsoid(p)) {
-    return n * mean_superellipsoid(p) * (scales_axes(p) ? size_range(p).cube : 1);
+    return n * mean_volume(family_of(p), p.radius) * (scales_axes(p) ? size_range(p).cube : 1);
   }
   if (p.sizes == "uniform") {
     // Second and third moments of a size uniform in 1 -+ d: 1 + d^2/3 and 1 + d^2.
@@ -150,35 +118,17 @@ std::vector<ShapedGrain> draw_sample(const SamplePlan& p, Random& random) {
 
 double most_start_fraction(const SamplePlan& p) {
   if (!is_superellipsoid(p)) return p.dim == 2 ? kMostLoose2 : kMostLoose3;
-  constexpr int kDraws = 500;
-  Random random(1);
-  double solid = 0, balls = 0;
-  for (int k = 0; k < kDraws; ++k) {
-    const ShapedGrain grain = draw_superellipsoid(p, p.radius, random);
-    solid += grain.area;
-    balls += volume_of(grain.radius, 3);
-  }
-  return kMostLoose3 * solid / balls;
+  return kMostLoose3 * share_of_balls(family_of(p));
 }
 
 GrainExtremes sample_extremes(const SamplePlan& p, double density,
                               const std::vector<ShapedGrain>& grains) {
   if (is_superellipsoid(p)) {
-    GrainExtremes extremes;
     std::vector<ShapedGrain> all = grains;
     if (is_dropped(p)) {  // the least sphere that may fill its gap
       all.emplace_back().axes.fill(p.axis_min * p.radius);
     }
-    for (const ShapedGrain& grain : all) {
-      const FeltMass felt = felt_mass(superellipsoid(grain.axes, grain.exponents), density);
-      // Of Hertz' laws the stiffness goes by the radius.
-      const bool first = extremes.least_radius == 0;
-      if (first || felt.mass * extremes.least_radius < extremes.least_mass * felt.radius) {
-        extremes.least_mass = felt.mass;
-        extremes.least_radius = felt.radius;
-      }
-    }
-    return extremes;
+    return extremes_of_superellipsoids(all, density);
   }
   if (!is_round(p)) return extremes_of(grains, density);
   const double least = sample_radii(p).least;

@@ -131,6 +131,21 @@ TEST_F(ConeRun, LeavesFieldsThatReadersTake) {
   }
 }
 
+// The same cones out of their file: the same figures of the analysis.
+TEST_F(ConeRun, IsAnalysedAnewFromItsFile) {
+  const std::string again = *folder_ / "again";
+  const Output run = program("run " + *folder_ / "c.toml" + " -o " + again +
+                             " --set 'grains.files=[\"" + out("snapshots.h5") + "\"]'");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary anew = read_summary(again + "/summary.json");
+  for (const char* key : {"dip.difference", "cone.repose_deg", "base.centre_pressure",
+                          "compare.cone_osl.rel_l2", "dem.grains"}) {
+    EXPECT_EQ(number(anew, key), of(key)) << key;
+  }
+  EXPECT_EQ(anew.count("cone.source"), 0U);
+  EXPECT_EQ(anew.count("dem.steps"), 0U);
+}
+
 TEST_F(ConeRun, EveryFigureIsDeclared) {
   for (const auto& [key, value] : summary_) EXPECT_NE(find_summary_key(key), nullptr) << key;
 }

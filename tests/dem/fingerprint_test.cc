@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/study/cone.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::dem {
@@ -51,7 +52,8 @@ std::size_t texts_of_changes() {
 
 TEST(Fingerprint, EveryMemberCounts) {
   EXPECT_EQ(texts_of_changes<PileSetup>(), 8U + 11 + 2 + 26 + 4 + 5 + 8 + 4);
-  EXPECT_EQ(texts_of_changes<PointLoadSetup>(), 20U + 26 + 4 + 5 + 8);
+  EXPECT_EQ(texts_of_changes<PointLoadSetup>(), 24U + 26 + 4 + 5 + 8);
+  EXPECT_EQ(texts_of_changes<ConeSetup>(), 16U + 26 + 4 + 5 + 8);
   EXPECT_EQ(texts_of_changes<LatticePileSetup>(), 4U + 26 + 4 + 5);
 }
 
@@ -61,7 +63,7 @@ struct Forgetful {
 };
 // What fingerprint_of asserts.
 static_assert(detail::count_members<Forgetful>() == 2);
-static_assert(detail::count_members<PackingSetup>() == 20);
+static_assert(detail::count_members<PackingSetup>() == 24);
 
 }  // namespace
 }  // namespace grainfield::dem

@@ -84,6 +84,40 @@ TEST(SpaceLoad, LinearLawToo) {
   EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2);
 }
 
+PointLoadSetup superellipsoids() {
+  PointLoadSetup s = spheres("random");
+  s.packing.shape = "superellipsoid";
+  s.packing.width = 0.07;
+  s.packing.depth = 0.02;
+  s.material.law = "hertz_elliptic";
+  s.material.young = 3e6;
+  return s;
+}
+
+TEST(SpaceLoad, SuperellipsoidsToo) {
+  for (const char* floor : {"smooth", "rough"}) {
+    PointLoadSetup s = superellipsoids();
+    s.packing.floor = floor;
+    const Outlook seen = foresee_point_load(s, {3}, 100000);
+    const RunResult r = result_of(s), again = result_of(s, 3, 2);
+    EXPECT_EQ(seen.time_step, r.figures.at("dem.time_step"));
+    EXPECT_NEAR(seen.grains, r.figures.at("dem.grains"), 0.1 * seen.grains);
+    EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-4) << floor;
+    EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2) << floor;
+    EXPECT_EQ(r.figures, again.figures) << "two threads";
+    double volume = 0, top = 0;
+    for (const Grain& g : r.snapshots[0].second.grains) {
+      EXPECT_GT(g.axes.minCoeff(), 0);
+      if (g.fixed) continue;
+      volume += g.volume;
+      top = std::max(top, g.position.z() + g.radius);
+    }
+    EXPECT_NEAR(volume / (0.07 * 0.07 * 0.02), kSettledFraction, 0.05);
+    EXPECT_LT(top, 0.04);
+    for (const auto& [name, state] : r.snapshots) expect_balanced(state, 1e-6, floor + name);
+  }
+}
+
 // By Newton's method as by slow damped dynamics, on one grain and on several.
 TEST(SpaceLoad, BothMethodsAgree) {
   for (const double radius : {0.0, 0.012}) {
@@ -230,6 +264,19 @@ TEST(SpaceLoad, RefusesWhatCannotBe) {
   s.material.law = "hertz_elliptic";
   EXPECT_THAT(refusal(s),
               HasSubstr("material.law: found hertz_elliptic, allowed for quasi-static"));
+  s = superellipsoids();
+  s.load.method = "newton";
+  EXPECT_THAT(refusal(s), HasSubstr("load.method: found \"newton\" with packing.shape"));
+  s = superellipsoids();
+  s.packing.axis_min = 2;
+  EXPECT_THAT(refusal(s), HasSubstr("packing.axis_min: found 2, allowed: up to packing.axis_max"));
+  s = superellipsoids();
+  s.material.rolling_friction = 0.1;
+  s.material.rolling_stiffness = 10;
+  EXPECT_THAT(refusal(s), HasSubstr("rolling"));
+  s = spheres("close_packed");
+  s.packing.shape = "superellipsoid";
+  EXPECT_THAT(refusal(s), HasSubstr("packing.shape: found superellipsoid, allowed: disk"));
   s = spheres("random");
   s.motion.time_step = 1;
   EXPECT_THAT(refusal(s), HasSubstr("motion.time_step: found 1 s, allowed: at most "));
@@ -330,6 +377,18 @@ TEST(SpaceLayer, MeanVolumeIsThatOfTheDraws) {
     }
     EXPECT_NEAR(mean_sphere_volume(p), volume, 0.02 * volume) << sizes;
     EXPECT_NEAR(mean_sphere_radius(p), radius, 0.01 * radius) << sizes;
+    p.shape = "superellipsoid";
+    p.width = 0.3;
+    const std::vector<ShapedGrain> drawn = draw_layer(p, random, 20000);
+    double mean = 0, reach = 0;
+    for (const ShapedGrain& g : drawn) {
+      mean += g.area / static_cast<double>(drawn.size());
+      reach = std::max(reach, g.radius);
+    }
+    EXPECT_GT(drawn.size(), 2500U);
+    EXPECT_NEAR(mean_sphere_volume(p), mean, 0.03 * mean) << sizes;
+    EXPECT_LE(reach, farthest_reach(p));
+    EXPECT_GT(reach, 0.6 * farthest_reach(p));
   }
 }
 

@@ -20,6 +20,7 @@
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
@@ -405,7 +406,9 @@ class ConeAnalysis {
   }
 
   void add_own_figures(Summary& summary) const {
-    summary["cone.source"] = value_.get<dem::ConeSetup>().plan.source;
+    if (value_.get<GrainFiles>().files.empty()) {
+      summary["cone.source"] = value_.get<dem::ConeSetup>().plan.source;
+    }
     const Field base = base_rings_.mean();
     const Eigen::VectorXd pressure = -base.find("sigma_zz")->value;
     const Eigen::VectorXd shear = -base.find("sigma_rz")->value;
@@ -453,14 +456,45 @@ dem::ConeSetup setup_of_cone(const Case& value) {
   return out;
 }
 
+const std::vector<std::string> kConeStates{"pile"};
+
+dem::RunResult finished_cone(const FinishedRun& place) {
+  const dem::Snapshot cone = dem::read_snapshot(place.file, place.group + "/pile");
+  if (cone.dim != 3) {
+    throw std::invalid_argument(
+        fmt::format("grains.files: {}:{}/pile is 2D, a 3D one is needed", place.file, place.group));
+  }
+  dem::RunResult out;
+  out.snapshots.emplace_back("pile", cone);
+  out.figures["dem.grains"] = static_cast<double>(std::count_if(
+      cone.grains.begin(), cone.grains.end(), [](const dem::Grain& g) { return !g.fixed; }));
+  return out;
+}
+
+std::unique_ptr<dem::Run> make_cone(const Case& value, std::int64_t number, int threads) {
+  if (value.get<GrainFiles>().files.empty()) {
+    return dem::make_cone_run(setup_of_cone(value), realization_seed(value, number), threads);
+  }
+  return run_of(finished_cone(finished_run(value, number, kConeStates, "cone")));
+}
+
+dem::Outlook foresee_cones(const Case& value, std::int64_t draws) {
+  if (value.get<GrainFiles>().files.empty()) {
+    return dem::foresee_cone(setup_of_cone(value), realization_seeds(value), draws);
+  }
+  try_finished_runs(value, kConeStates, "cone",
+                    [](const FinishedRun& cone) { finished_cone(cone); });
+  return {};
+}
+
 }  // namespace
 
 Study cone_study() {
   Study out;
   out.name = "cone";
   out.meaning = "cones of spheres or superellipsoids: base pressure and dip, repose, stress inside";
-  out.sections = {kMaterialKeys, kMotionKeys,  kRestKeys, kConeKeys,
-                  kSleepKeys,    kAverageKeys, kHeapKeys};
+  out.sections = {kGrainFilesKeys, kMaterialKeys, kMotionKeys,  kRestKeys,
+                  kConeKeys,       kSleepKeys,    kAverageKeys, kHeapKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::ConeSetup>().material; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::ConeSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::ConeSetup>().rest; };
@@ -474,12 +508,9 @@ Study cone_study() {
   out.fills = {"rho_g", "phi_deg", "h", "dim", "depth"};
   out.dimension = [](const Case&) { return 3; };
   out.dimension_key = "study";
-  out.make_run = [](const Case& value, std::int64_t number, int threads) {
-    return dem::make_cone_run(setup_of_cone(value), realization_seed(value, number), threads);
-  };
-  out.foresee = [](const Case& value, std::int64_t draws) {
-    return dem::foresee_cone(setup_of_cone(value), realization_seeds(value), draws);
-  };
+  out.make_run = make_cone;
+  out.foresee = foresee_cones;
+  out.left_unused = [](const Case& value) { return unused_runs(value, kConeStates, "cone"); };
   out.longest_part = [](const Case&, const dem::Outlook& outlook) -> LongestPart {
     if (outlook.time_key != "cone.rate") return {};
     return {"pouring", "; sleeping makes it less"};
