@@ -55,6 +55,14 @@ void check_family(const PackingSetup& p) {
   }
 }
 
+// Least extent of a grain from its centre, m.
+double least_reach(const PackingSetup& p) {
+  const double least = smallest_radius(p);
+  return is_angular(p) ? radii_of(family_of(p), least).least : least;
+}
+
+double floor_gap(const PackingSetup& p);
+
 void check_random(const PackingSetup& p) {
   const double most = farthest_reach(p);
   if (!(p.width >= 2 * kLeastDiameters * most)) {
@@ -63,6 +71,12 @@ void check_random(const PackingSetup& p) {
   }
   if (!(p.depth >= 2 * most)) {
     refuse("depth", fmt::format("{:g}", p.depth), "at least one grain diameter");
+  }
+  if (p.floor == "rough" && least_reach(p) + largest_radius(p) <= floor_gap(p)) {
+    refuse("floor", "rough",
+           fmt::format("smooth with grains down to {:.3g} m, which fall between floor spheres of "
+                       "{:.3g} m",
+                       least_reach(p), largest_radius(p)));
   }
   if (p.sizes == "uniform" && p.radius_max < p.radius_min) {
     refuse("radius_max", fmt::format("{:g}", p.radius_max), "at least packing.radius_min");
@@ -90,6 +104,16 @@ Rows densest(const std::array<double, 2>& sides, double apart) {
   const double rows = sides[1] / (apart * std::sqrt(3.0) / 2);
   out.count = std::max(2, 2 * static_cast<int>(std::floor(rows / 2 * (1 + 1e-9))));
   return out;
+}
+
+// From the middle of three spheres of a rough floor to their centres. A grain passes between them
+// where its radius and theirs are less together.
+double floor_gap(const PackingSetup& p) {
+  const std::array<double, 2> sides{p.width, p.width};
+  const Rows rows = densest(sides, 2 * largest_radius(p));
+  const double spacing =
+      std::max(sides[0] / rows.along, sides[1] / rows.count * 2 / std::sqrt(3.0));
+  return spacing / std::sqrt(3.0);
 }
 
 int rows_of(const PackingSetup& p) {
@@ -274,9 +298,11 @@ std::vector<NewGrain> space_floor(const PackingSetup& p, double density, Random&
   const auto sides = layer_sides(p);
   const Rows rows = densest(sides, 2 * largest_radius(p));
   const double along = sides[0] / rows.along, across = sides[1] / rows.count;
+  const bool would_pass = least_reach(p) + smallest_radius(p) <= floor_gap(p);
   for (int j = 0; j < rows.count; ++j) {
     for (int i = 0; i < rows.along; ++i) {
-      const double radius = draw_radius(p, random);
+      const double drawn = draw_radius(p, random);
+      const double radius = would_pass ? largest_radius(p) : drawn;
       const double x = -0.5 * sides[0] + along * (i + 0.25 + 0.5 * (j % 2));
       const double y = -0.5 * sides[1] + across * (j + 0.5);
       grains.push_back(sphere_at(x, y, -radius, radius, density));

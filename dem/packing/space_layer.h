@@ -50,7 +50,8 @@ Cell<3> layer_cell(const PackingSetup& packing);
 std::vector<Wall> space_walls(const PackingSetup& packing, const MaterialSetup& material);
 
 /// The fixed spheres of a rough floor with their tops at z = 0; none of a smooth one. Under a close
-/// packing a layer of it; else rows that leave no gap for a free sphere, radii as the layer's.
+/// packing a layer of it; else rows that leave no gap for a free grain, radii as the layer's or,
+/// where a small grain would pass between small ones, the largest.
 std::vector<NewGrain> space_floor(const PackingSetup& packing, double density, Random& random);
 
 /// The free spheres. random: apart from each other in a box loose_height() high above the floor, as

@@ -112,6 +112,19 @@ TEST_F(ConeRun, CarriesItsWeightOnItsBase) {
               0.35 * of("cone.height") / of("cone.foot"));
 }
 
+TEST_F(ConeRun, PushesTheFloorOutwards) {
+  const dem::Snapshot pile = dem::read_snapshot(out("snapshots.h5"), "/realization_000/pile");
+  const ConeFrame frame = cone_frame(pile);
+  double inwards = 0;
+  for (const BaseSupport& f : base_supports(pile)) {
+    const Eigen::Vector2d away = f.point.head<2>() - Eigen::Vector2d(frame.apex_x, frame.apex_y);
+    inwards -= f.force.head<2>().dot(away.normalized());
+  }
+  EXPECT_GT(inwards, 0);
+  EXPECT_GT(of("base.largest_shear"), 0.01);
+  EXPECT_LT(of("base.largest_shear"), of("base.largest_pressure"));
+}
+
 TEST_F(ConeRun, LeavesFieldsThatReadersTake) {
   for (const char* name : {"base", "base_rings", "coarse_graining_inside",
                            "coarse_graining_height_0.3", "model_cone_osl", "model_cone_bcc"}) {

@@ -360,6 +360,32 @@ TEST(SpaceLayer, FccAndHcpDifferInTheThirdLayer) {
   EXPECT_NEAR(offset("fcc"), 2 * p.radius / std::sqrt(3.0), 1e-12);
 }
 
+// A free grain of the least size nowhere sinks to the centres of a rough floor.
+TEST(SpaceLayer, FloorsLeaveNoGap) {
+  for (const double least : {0.0045, 0.003, 0.0015}) {
+    PackingSetup p = spheres("random").packing;
+    p.floor = "rough";
+    p.radius_min = least;
+    p.width = 0.1;
+    check_packing(p);
+    Random random(5), places(6);
+    const std::vector<NewGrain> floor = space_floor(p, 2500, random);
+    for (int k = 0; k < 3000; ++k) {
+      const double x = places.uniform(-0.5, 0.5) * p.width, y = places.uniform(-0.5, 0.5) * p.width;
+      bool touches = false;
+      for (const NewGrain& g : floor) {
+        const double dx = std::remainder(g.x - x, p.width), dy = std::remainder(g.y - y, p.width);
+        touches = touches || std::hypot(dx, dy) < g.radius + least;
+      }
+      EXPECT_TRUE(touches) << least << " at " << x << " " << y;
+    }
+  }
+  PointLoadSetup s = spheres("random");
+  s.packing.floor = "rough";
+  s.packing.radius_min = 0.0005;
+  EXPECT_THAT(refusal(s), ::testing::HasSubstr("packing.floor: found rough, allowed: smooth"));
+}
+
 TEST(SpaceLayer, MeanVolumeIsThatOfTheDraws) {
   for (const char* sizes : {"mono", "bidisperse", "uniform"}) {
     PackingSetup p = spheres("random").packing;

@@ -23,7 +23,9 @@ std::vector<SummaryKey> cone_figures() {
       {"dip.sector_error", "rho g h",
        "standard error of shoulder - centre over the eight sectors of a cone"},
       {"base.largest_shear", "rho g h",
-       "largest radial shear stress on the base, ensemble mean, smeared; outwards on the floor"},
+       "largest radial shear stress sigma_rz on the base, ensemble mean, smeared; above 0 the "
+       "grains "
+       "push the floor outwards"},
       {"base.largest_shear_at", "h", "its distance from the axis"},
   };
 }

@@ -21,10 +21,9 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
   report.sections.emplace_back(std::move(picture));
 
   const Column& shear = *page.rings.find("sigma_rz");
-  const double outwards = -1;
-  Series series{"grains", page.rings.points.col(0), outwards * shear.value,
+  Series series{"grains", page.rings.points.col(0), shear.value,
                 shear.error.size() ? shear.error : Eigen::VectorXd(), true};
-  Picture drawn = curves("Radial shear on the base", "radius / h", "-σ_{rz}  (ρgh)",
+  Picture drawn = curves("Radial shear on the base", "radius / h", "σ_{rz}  (ρgh)",
                          {{"", {std::move(series)}}});
   drawn.caption = "Above 0 the grains push the floor outwards.";
   report.sections.emplace_back(std::move(drawn));

@@ -411,7 +411,8 @@ class ConeAnalysis {
     }
     const Field base = base_rings_.mean();
     const Eigen::VectorXd pressure = -base.find("sigma_zz")->value;
-    const Eigen::VectorXd shear = -base.find("sigma_rz")->value;
+    // The floor pulls the grains inwards with -sigma_rz.
+    const Eigen::VectorXd shear = base.find("sigma_rz")->value;
     Index at = 0, shear_at = 0;
     summary["base.centre_pressure"] = pressure[0];
     summary["base.largest_pressure"] = pressure.maxCoeff(&at);
