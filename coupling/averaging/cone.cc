@@ -108,6 +108,10 @@ int cone_sector(double x, double y) {
          kConeSectors;
 }
 
+double ConeFrame::apex_height() const {
+  return std::isfinite(repose_deg) ? foot * std::tan(repose_deg * kDegree) : height;
+}
+
 Eigen::MatrixXd ConeFrame::to_packing(const Eigen::MatrixXd& scaled) const {
   return (height * scaled).rowwise() + Eigen::RowVector3d(apex_x, apex_y, floor + height);
 }

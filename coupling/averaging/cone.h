@@ -26,6 +26,9 @@ struct ConeFrame {
   double gravity = 0;          ///< m/s2
   double diameter = 0;         ///< mean of the grains, m
 
+  /// Height of the cone that the flank's line spans, m: above h where the apex is round. h where no
+  /// line fits.
+  double apex_height() const;
   /// rho g h, Pa: grain density times volume fraction times gravity times height.
   double pressure() const { return grain_density * volume_fraction * gravity * height; }
   /// From scaled coordinates to the packing's axes; n x 3, m.

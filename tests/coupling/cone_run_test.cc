@@ -136,6 +136,18 @@ TEST_F(ConeRun, LeavesFieldsThatReadersTake) {
   EXPECT_NEAR(-rings.find("sigma_zz")->value[0], of("base.centre_pressure") * of("cone.rho_g_h"),
               0.05 * of("cone.rho_g_h"));
   EXPECT_EQ(rings.find("sigma_rz")->value[0], 0) << "no shear on the axis";
+  // The models' cone ends where the grains' flank does.
+  EXPECT_NEAR(of("cone.apex_height") / std::tan(of("cone.repose_deg") * std::numbers::pi / 180),
+              of("cone.foot"), 0.05 * of("cone.foot"));
+  const Field model = read_field(out("fields.h5"), "model_cone_osl");
+  double reach = 0;
+  for (Eigen::Index k = 0; k < model.points.rows(); ++k) {
+    if (model.points(k, 2) > -0.99 * of("cone.height")) continue;
+    if (std::isfinite(model.find("sigma_zz")->value[k])) {
+      reach = std::max(reach, model.points(k, 0));
+    }
+  }
+  EXPECT_NEAR(reach, of("cone.foot"), 0.15 * of("cone.foot"));
   const std::string page = testing::read_text(out("report.html"));
   for (const char* part :
        {"Vertical pressure by radius", "Radial shear on the base", "Pressure on the base",
@@ -275,6 +287,7 @@ TEST(ConeFrame, MeasuresSlopesBySector) {
   }
   const ConeFrame frame = cone_frame(s);
   EXPECT_NEAR(frame.repose_deg, 28, 0.7);
+  EXPECT_NEAR(frame.apex_height(), height, 0.05 * height);
   for (int k = 0; k < kConeSectors; ++k) {
     const double middle = (k + 0.5) * 2 * std::numbers::pi / kConeSectors;
     // The mean of the sine over the eighth.

@@ -10,6 +10,9 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.awake_mean", "-", "grains awake, mean over the pouring"},
       {"cone.height", "m", "h of a cone: its highest point above the floor"},
       {"cone.foot", "m", "radius at which the flank's line meets the floor"},
+      {"cone.apex_height", "m",
+       "height of the cone that the flank's line spans, which is the models': above cone.height "
+       "where the apex is round"},
       {"cone.repose_deg", "deg",
        "slope of the flank: line through the surface between 15 % and 85 % of the height"},
       {"cone.sector_repose_deviation_deg", "deg",

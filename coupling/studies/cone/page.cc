@@ -15,7 +15,8 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
       radial_profiles("Vertical pressure by radius", "radius / h, to both sides", kPressure, c);
   picture.caption = fmt::format(
       "Mean over the angle about the axis; on the base the forces on the floor, above it {}. "
-      "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike. The grey band is one standard "
+      "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike; their cone has the flanks of the "
+      "grains', its apex above theirs where that is round. The grey band is one standard "
       "error on either side.",
       page.averaged, c.unit(), c.depth);
   report.sections.emplace_back(std::move(picture));
@@ -74,6 +75,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
                                         "dem.contacts",
                                         "cone.grains_lost",
                                         "cone.height",
+                                        "cone.apex_height",
                                         "cone.foot",
                                         "cone.repose_deg",
                                         "cone.sector_repose_deviation_deg",

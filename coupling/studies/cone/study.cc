@@ -205,6 +205,7 @@ class ConeAnalysis {
     figures_["cone.sector_repose_deviation_deg"].push_back(deviation(frame.sector_repose_deg));
     figures_["cone.height"].push_back(frame.height);
     figures_["cone.foot"].push_back(frame.foot);
+    figures_["cone.apex_height"].push_back(frame.apex_height());
     figures_["cone.volume_fraction"].push_back(frame.volume_fraction);
     figures_["cone.rho_g_h"].push_back(unit);
     figures_["cone.mean_diameter"].push_back(frame.diameter);
@@ -269,6 +270,19 @@ class ConeAnalysis {
         "heap: apex at (0, 0, 0), floor z = -h; every cone scaled by its own height and rho g h; "
         "means over the angle at (r, 0, z)";
     return field;
+  }
+
+  // Height of the models' cone over h, mean over the cones: its flanks are the grains' own, and its
+  // apex is above a round one.
+  double spanned() const {
+    double sum = 0;
+    for (const ConeFrame& f : frames_) sum += f.apex_height() / f.height;
+    return sum / static_cast<double>(frames_.size());
+  }
+  // From the heap's frame, whose origin is its highest point, to that of the models.
+  Eigen::MatrixXd in_models_axes(Eigen::MatrixXd points) const {
+    points.col(2).array() -= height_ * (spanned() - 1);
+    return points;
   }
 
   double mean(double ConeFrame::*member) const {
@@ -340,7 +354,7 @@ class ConeAnalysis {
 
   RunFacts facts() const {
     RunFacts out;
-    out.height = out.depth = height_;
+    out.height = out.depth = height_ * spanned();
     out.dim = 3;
     out.numbers = {{"rho_g", pressure_ / height_}, {"phi_deg", mean(&ConeFrame::repose_deg)}};
     return out;
@@ -351,12 +365,12 @@ class ConeAnalysis {
     std::vector<PointSet> sets;
     for (const Profile& p : profiles) {
       const Eigen::MatrixXd rings = at_height_share(1 - p.depth / height_);
-      sets.push_back({height_ * in_space(rings),
+      sets.push_back({in_models_axes(height_ * in_space(rings)),
                       p.key == "base" ? Smoothing::marginal : Smoothing::kernel, kernel_.get(),
                       true});
     }
     const Eigen::MatrixXd grid = height_ * in_space(inside_);
-    sets.push_back({grid, Smoothing::none, nullptr, true});
+    sets.push_back({in_models_axes(grid), Smoothing::none, nullptr, true});
     const RunFacts known = facts();
     std::vector<ModelProfiles> all;
     double seconds = 0;
