@@ -63,6 +63,7 @@ Flank flank_of(const Roof& roof, const ConeFrame& frame, int sector = -1) {
     for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
       const Eigen::Vector2d out = roof.middle(i, j) - Eigen::Vector2d(frame.apex_x, frame.apex_y);
       if (sector >= 0 && cone_sector(out.x(), out.y()) != sector) continue;
+      if (!(roof.heights()(i, j) > frame.floor)) continue;  // no grain
       all.push_back({out.norm(), roof.heights()(i, j) - frame.floor});
       if (all.back().height > low && all.back().height < high) chosen.push_back(all.back());
     }
@@ -74,9 +75,10 @@ Flank flank_of(const Roof& roof, const ConeFrame& frame, int sector = -1) {
       const double at = flank.top - flank.slope * p.away;
       if (at > low && at < high) next.push_back(p);
     }
-    if (next == chosen) break;
+    const Flank better = line_through(next);
+    if (next == chosen || !std::isfinite(better.slope)) break;
     chosen = std::move(next);
-    flank = line_through(chosen);
+    flank = better;
   }
   return flank;
 }

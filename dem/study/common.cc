@@ -107,6 +107,17 @@ void check_method(const char* key, const std::string& method, const MaterialSetu
   }
 }
 
+void check_superellipsoid_material(const MaterialSetup& material) {
+  const auto laws = words_where<AnyLaw>(
+      []<class L>() { return ContactLaw<L, 3> && L::measures != Measures::curvature; });
+  if (std::find(laws.begin(), laws.end(), material.law) == laws.end()) {
+    throw std::invalid_argument(
+        fmt::format("material.law: found \"{}\", allowed for superellipsoids: {}", material.law,
+                    fmt::join(laws, ", ")));
+  }
+  if (RollingLaw::of(material).on()) refuse_rolling_superellipsoids();
+}
+
 SleepSettings sleep_settings(const SleepSetup& s) {
   return {s.on,          s.quiet_time, s.quiet_move, s.quiet_creep,
           s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach};

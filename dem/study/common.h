@@ -32,6 +32,9 @@ EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup&
                                const GrainExtremes& extremes, int threads, bool irregular = false,
                                double reserve = 1, ShapeKind shape = {});
 SleepSettings sleep_settings(const SleepSetup& sleep);
+/// Throws std::invalid_argument naming the key: a law to which superellipsoids cannot offer what it
+/// measures, or resistance against rolling.
+void check_superellipsoid_material(const MaterialSetup& material);
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
 /// Throws std::invalid_argument naming `key` where the method is "newton" and the grains have what

@@ -21,8 +21,6 @@ namespace {
 
 // Grains are released, and settling and rest judged, every so many steps.
 constexpr long kCheckEvery = 200;
-// They start in a column as many of the largest radii high.
-constexpr double kColumn = 8;
 // Settled: kinetic energy below this share of m g r for each grain, ...
 constexpr double kSettledShare = 1e-3;
 // ... but at most this long, s.
@@ -64,7 +62,9 @@ class ConeRun final : public ArchivedRun {
   bool is_poured() const { return poured_ == setup_.plan.grains; }
   bool settled() const;
   void settle();
+  double fall_time() const;
   void begin_lift();
+  void lift();
   void rest();
   void check_enough() const;
   // Whether more grains than this share of all are beyond the floor.
@@ -83,7 +83,8 @@ class ConeRun final : public ArchivedRun {
   Phases<ConePhase> phases_;
   int poured_ = 0, lost_ = 0;
   bool cylinder_ = false;  // whether it stands
-  double top_ = 0;         // of the grains that lie, m
+  double top_ = 0;         // of the grains that lie; while it is lifted: within the cylinder, m
+  double filled_ = 0;      // top_ when the lift began
   double pour_time_ = 0, awake_sum_ = 0;
   long awake_samples_ = 0;
   long steps_before_ = 0;  // of the engines before this one
@@ -130,18 +131,11 @@ void ConeRun::decide() {
     case ConePhase::pour:
       return pour();
     case ConePhase::fill_settle:
+      if (in_phase() < 2 * fall_time()) return;
       if (settled() || in_phase() > kMaxSettleTime) begin_lift();
       return;
     case ConePhase::lift:
-      // Its lower rim has passed the highest grain.
-      if (setup_.plan.lift_speed * in_phase() > top_) {
-        take_away(false);
-        enter(ConePhase::settle);
-      } else if (phases_.steps() % (10 * kCheckEvery) == 0) {
-        top_ = resting_height(engine_->snapshot());
-        if (strays(kStrayShare)) take_away(true);
-      }
-      return;
+      return lift();
     case ConePhase::settle:
       return settle();
     case ConePhase::rest:
@@ -202,8 +196,32 @@ bool ConeRun::settled() const {
   return engine_->motion().kinetic_energy <= kSettledShare * lift * engine_->grains();
 }
 
+// From where grains start to the floor, s.
+double ConeRun::fall_time() const {
+  const double height = top_ + setup_.plan.drop + (2 + kColumn) * largest_;
+  return std::sqrt(2 * height / setup_.material.gravity);
+}
+
+void ConeRun::lift() {
+  const double lifted = setup_.plan.lift_speed * in_phase();
+  if (lifted > top_) {  // its lower rim has passed the highest grain within
+    take_away(false);
+    enter(ConePhase::settle);
+    return;
+  }
+  if (lifted > 2 * filled_) {
+    throw ComputationFailed(
+        fmt::format("grains ride up with the cylinder, to {:.3g} m; raise cone.mouth or lower "
+                    "material.wall_friction",
+                    top_));
+  }
+  if (phases_.steps() % (10 * kCheckEvery) != 0) return;
+  top_ = top_within(engine_->snapshot(), setup_.plan.mouth);
+  if (strays(kStrayShare)) take_away(true);
+}
+
 void ConeRun::begin_lift() {
-  top_ = resting_height(engine_->snapshot());
+  filled_ = top_ = top_within(engine_->snapshot(), setup_.plan.mouth);
   WallMotion up;
   up.velocity = Vec3(0, 0, setup_.plan.lift_speed);
   engine_->set_wall_motion("cylinder", up);
@@ -211,10 +229,8 @@ void ConeRun::begin_lift() {
 }
 
 void ConeRun::settle() {
-  // The last grains are still in the air.
-  const double fall =
-      std::sqrt(2 * (setup_.plan.drop + (2 + kColumn) * largest_) / setup_.material.gravity);
-  if (in_phase() < 2 * fall) return;
+  // The last grains may still be in the air.
+  if (in_phase() < 2 * fall_time()) return;
   if (!settled() && in_phase() < kMaxSettleTime) return;
   if (strays(0)) take_away(false);
   check_enough();
@@ -252,10 +268,9 @@ void ConeRun::check_enough() const {
 }
 
 bool ConeRun::strays(double share) const {
-  const double radius = setup_.plan.floor_radius;
   int count = 0;
   for (const Grain& g : engine_->snapshot().grains) {
-    count += !g.fixed && has_left(g, radius) ? 1 : 0;
+    count += !g.fixed && has_left(g, setup_.plan) ? 1 : 0;
   }
   return count > share * engine_->grains();
 }
@@ -264,7 +279,7 @@ void ConeRun::take_away(bool keep_cylinder) {
   Snapshot s = engine_->snapshot();
   const int before = engine_->grains();
   cylinder_ = cylinder_ && keep_cylinder;
-  keep_on_floor(setup_.plan.floor_radius, cylinder_, s);
+  keep_on_floor(setup_.plan, cylinder_, s);
   steps_before_ += engine_->steps();
   engine_ = make_engine(settings_, s);
   if (phases_.now() == ConePhase::rest) engine_->set_sleep(false);
@@ -306,6 +321,7 @@ void ConeRun::visit(Archive& archive) {
   archive(lost_);
   archive(cylinder_);
   archive(top_);
+  archive(filled_);
   archive(pour_time_);
   archive(awake_sum_);
   archive(awake_samples_);
@@ -339,7 +355,11 @@ Outlook foresee_cone(const ConeSetup& s, const std::vector<std::uint64_t>& seeds
   Outlook out;
   const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
     const EngineSettings settings = cone_settings(s, grains, 1, reserve);
-    if (out.time_step == 0) out.time_step = settings.time_step;
+    if (out.time_step > 0) return;
+    out.time_step = settings.time_step;
+    // What only an engine refuses.
+    const std::unique_ptr<Engine> engine = make_engine(settings);
+    for (const Wall& wall : cone_walls(s, p.source == "cylinder")) engine->add_wall(wall);
   };
   // Of spheres the extremes are known; superellipsoids are drawn, as many as allowed.
   if (p.shape == "sphere") {

@@ -13,8 +13,12 @@
 namespace grainfield::dem {
 namespace {
 
-// Solid fraction of grains poured into a cylinder at least, and of a packing at most.
+// Solid fraction of grains poured into a cylinder at least.
 constexpr double kLoosest = 0.5;
+// Cells of the surface along a side, at most.
+constexpr double kMostCells = 1000;
+// A grain or a wall passes less than this share of the least radius in a step.
+constexpr double kMostWay = 0.25;
 
 [[noreturn]] void refuse(const char* key, const std::string& text) {
   throw std::invalid_argument(fmt::format("cone.{}: {}", key, text));
@@ -45,18 +49,35 @@ double floor_spacing(const ConePlan& p) {
 }
 double floor_reach(const ConePlan& p) { return p.floor_radius + 2 * p.radius; }
 
-// Free grains that touch something and move more slowly than sqrt(g r).
+// Free grains that a chain of contacts ties to the floor, which is the first wall, or to fixed
+// grains.
 std::vector<const Grain*> lying_grains(const Snapshot& s) {
-  std::vector<bool> touches(s.grains.size(), false);
+  std::vector<std::vector<std::size_t>> touched(s.grains.size());
+  std::vector<bool> lies(s.grains.size(), false);
+  std::vector<std::size_t> open;
+  const auto add = [&](std::size_t k) {
+    if (lies[k]) return;
+    lies[k] = true;
+    open.push_back(k);
+  };
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    if (s.grains[k].fixed) add(k);
+  }
   for (const Contact& c : s.contacts) {
-    touches[static_cast<std::size_t>(c.i)] = true;
-    if (c.j >= 0) touches[static_cast<std::size_t>(c.j)] = true;
+    const auto i = static_cast<std::size_t>(c.i);
+    if (c.j == -1) add(i);
+    if (c.j < 0) continue;
+    touched[i].push_back(static_cast<std::size_t>(c.j));
+    touched[static_cast<std::size_t>(c.j)].push_back(i);
+  }
+  while (!open.empty()) {
+    const std::size_t k = open.back();
+    open.pop_back();
+    for (const std::size_t other : touched[k]) add(other);
   }
   std::vector<const Grain*> out;
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
-    const Grain& g = s.grains[k];
-    const bool slow = g.velocity.squaredNorm() < s.gravity.norm() * g.radius;
-    if (touches[k] && slow && !g.fixed) out.push_back(&g);
+    if (lies[k] && !s.grains[k].fixed) out.push_back(&s.grains[k]);
   }
   return out;
 }
@@ -70,12 +91,22 @@ void check_order(const char* less, double least, const char* more, double most) 
 
 void check_cone(const ConeSetup& s) {
   const ConePlan& p = s.plan;
+  if (s.motion.integrator != "verlet") {
+    throw std::invalid_argument(fmt::format(
+        "motion.integrator: found {}, allowed with study = \"cone\": verlet", s.motion.integrator));
+  }
   if (s.motion.energy_balance) {
     throw std::invalid_argument(
         "motion.energy_balance: found true, allowed with study = \"cone\": false (grains that "
         "leave the floor are taken away)");
   }
   if (!is_sphere(p)) {
+    if (p.source == "cylinder") {
+      refuse("source",
+             "found cylinder, allowed with cone.shape = superellipsoid: point | rain (walls of "
+             "superellipsoids are planes)");
+    }
+    check_superellipsoid_material(s.material);
     check_order("axis_min", p.axis_min, "axis_max", p.axis_max);
     check_order("exponent_min", p.exponent_min, "exponent_max", p.exponent_max);
   }
@@ -123,12 +154,22 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
   EngineSettings out =
       engine_settings(s.material, s.motion, extremes, threads, false, reserve,
                       is_sphere(p) ? ShapeKind::sphere : ShapeKind::superellipsoid);
-  if (!is_sphere(p) && out.rolling.on()) refuse_rolling_superellipsoids();
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
   out.sleep = sleep_settings(s.sleep);
   check_background_damping(s.rest, out.time_step);
   check_countable("cone.rate", p.grains / p.rate, out.time_step);
+  const double most = kMostWay * sample_radii(as_sample(p)).least / out.time_step;
+  const auto check_speed = [&](const char* key, double found, double speed) {
+    if (speed <= most) return;
+    refuse(key, fmt::format("found {:g}, allowed: so that nothing moves at more than {:.3g} m/s, a "
+                            "quarter of the least radius in a step of {:.3g} s",
+                            found, most, out.time_step));
+  };
+  if (p.source == "cylinder") check_speed("lift_speed", p.lift_speed, p.lift_speed);
+  check_speed("speed", p.speed, p.speed);
+  const double fall = p.drop + kColumn * sample_radii(as_sample(p)).most;
+  check_speed("drop", p.drop, std::sqrt(p.speed * p.speed + 2 * s.material.gravity * fall));
   if (p.source == "cylinder") {
     check_countable("cone.lift_speed", filled_height(p) / p.lift_speed, out.time_step);
   }
@@ -202,8 +243,20 @@ double resting_height(const Snapshot& s) {
   return top;
 }
 
+double top_within(const Snapshot& s, double radius) {
+  double top = 0;
+  for (const Grain& g : s.grains) {
+    if (!g.fixed && g.position.head<2>().norm() < radius) {
+      top = std::max(top, g.position.z() + g.radius);
+    }
+  }
+  return top;
+}
+
 LocalTops::LocalTops(const Snapshot& s, double half, double cell)
-    : half_(half), cell_(cell), count_(std::max(1, static_cast<int>(2 * half / cell))) {
+    : half_(half),
+      count_(static_cast<int>(std::clamp(std::floor(2 * half / cell), 1.0, kMostCells))) {
+  cell_ = 2 * half / count_;
   top_.assign(static_cast<std::size_t>(count_) * static_cast<std::size_t>(count_), 0.0);
   for (const Grain* g : lying_grains(s)) {
     double& top = top_[static_cast<std::size_t>(cell_of(g->position.y()) * count_ +
@@ -258,16 +311,16 @@ bool FreePlaces::take(double x, double y, double z, double radius) {
   return true;
 }
 
-bool has_left(const Grain& g, double floor_radius) {
-  return g.position.head<2>().norm() > floor_radius || g.position.z() < 0;
+bool has_left(const Grain& g, const ConePlan& p) {
+  return g.position.head<2>().norm() > p.floor_radius || g.position.z() < -2 * p.radius;
 }
 
-void keep_on_floor(double floor_radius, bool with_cylinder, Snapshot& s) {
+void keep_on_floor(const ConePlan& plan, bool with_cylinder, Snapshot& s) {
   std::vector<std::int64_t> now(s.grains.size(), -1);
   std::vector<Grain> kept;
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     Grain& g = s.grains[k];
-    if (!g.fixed && has_left(g, floor_radius)) continue;
+    if (!g.fixed && has_left(g, plan)) continue;
     g.id = now[k] = static_cast<std::int64_t>(kept.size());
     kept.push_back(g);
   }

@@ -14,6 +14,8 @@ namespace grainfield::dem {
 inline constexpr int kLeastOfCone = 50;
 /// Memory of a grain, as in outlook.cc, about.
 inline constexpr double kBytesOfConeGrain = 4000;
+/// Grains start in a column as many of the largest radii high.
+inline constexpr double kColumn = 8;
 
 /// What can be judged without the grains. Throws std::invalid_argument naming the key.
 void check_cone(const ConeSetup& setup);
@@ -39,11 +41,12 @@ double source_radius(const ConePlan& plan);
 double filled_height(const ConePlan& plan);
 
 NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, double density);
-/// Top of the free grains that touch something and move more slowly than sqrt(g r), m; 0 without
-/// any.
+/// Top of the free grains that a chain of contacts ties to the floor, m; 0 without any.
 double resting_height(const Snapshot& snapshot);
-/// The same by place: heights of square cells as wide as `cell`, m, over the square of half side
-/// `half` about the axis.
+/// Top of the free grains within this distance from the axis, m; 0 without any.
+double top_within(const Snapshot& snapshot, double radius);
+/// resting_height by place: heights of square cells, `cell` wide or more, m, over the square of
+/// half side `half` about the axis.
 class LocalTops {
  public:
   LocalTops(const Snapshot& snapshot, double half, double cell);
@@ -73,10 +76,11 @@ class FreePlaces {
   double cell_;
   std::map<std::array<std::int64_t, 3>, std::vector<Ball>> balls_;
 };
-/// Whether it lies beyond a floor of this radius, or below it.
-bool has_left(const Grain& grain, double floor_radius);
+/// Whether it lies beyond the floor, or below it: a small grain in a hollow of a rough floor does
+/// not.
+bool has_left(const Grain& grain, const ConePlan& plan);
 /// Takes the grains away that have left, and, unless it is kept, the cylinder; numbers the others
 /// anew in their order.
-void keep_on_floor(double floor_radius, bool with_cylinder, Snapshot& snapshot);
+void keep_on_floor(const ConePlan& plan, bool with_cylinder, Snapshot& snapshot);
 
 }  // namespace grainfield::dem

@@ -325,6 +325,7 @@ EngineSettings space_load_settings(const PointLoadSetup& s, int threads,
         "\"damped\" "
         "(the quasi-static solver knows spheres)");
   }
+  if (angular) check_superellipsoid_material(s.material);
   check_method("load.method", s.load.method, s.material, s.motion, 3);
   const double least = smallest_radius(s.packing);
   GrainExtremes extremes;
@@ -333,7 +334,6 @@ EngineSettings space_load_settings(const PointLoadSetup& s, int threads,
   if (angular) extremes = extremes_of_superellipsoids(grains, s.material.density);
   EngineSettings out = engine_settings(s.material, s.motion, extremes, threads, false, reserve,
                                        angular ? ShapeKind::superellipsoid : ShapeKind::sphere);
-  if (angular && out.rolling.on()) refuse_rolling_superellipsoids();
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
   out.cell = layer_cell(s.packing);

@@ -58,14 +58,7 @@ void check_superellipsoids(const SampleSetup& s) {
   for (const double e : {p.exponent_min, p.exponent_max}) {
     superellipsoid({p.axis_min, p.axis_min, p.axis_min}, {e, e});
   }
-  const auto laws = words_where<AnyLaw>(
-      []<class L>() { return ContactLaw<L, 3> && L::measures != Measures::curvature; });
-  if (!holds(laws, s.material.law)) {
-    throw std::invalid_argument(
-        fmt::format("material.law: found \"{}\", allowed for superellipsoids: {}", s.material.law,
-                    fmt::join(laws, ", ")));
-  }
-  if (RollingLaw::of(s.material).on()) refuse_rolling_superellipsoids();
+  check_superellipsoid_material(s.material);
 }
 
 void check_dimension(const SampleSetup& s) {

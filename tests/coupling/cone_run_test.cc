@@ -190,7 +190,7 @@ TEST(ConeCase, MistakesAreNamed) {
   EXPECT_EQ(complaint(kCone), "");
   says({"cone.source=rains"}, "cone.source: found \"rains\", allowed: point | rain | cylinder");
   says({"cone.mouth=0.001"}, "cone.mouth: found 0.001, allowed: at least 0.0024 m");
-  says({"cone.shape=superellipsoid"}, "rolling");
+  says({"cone.shape=superellipsoid"}, "material.law: found \"hertz\", allowed for superellipsoids");
   says({"heap.centre=0.3"}, "heap.centre: found 0.3, allowed: up to heap.shoulder_from = 0.2");
   says({"compare.models=[\"osl\"]"}, "compare.models");
   says({"motion.energy_balance=true"}, "motion.energy_balance: found true");

@@ -16,7 +16,8 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.repose_deg", "deg",
        "slope of the flank: line through the surface between 15 % and 85 % of the height"},
       {"cone.sector_repose_deviation_deg", "deg",
-       "standard deviation of the slopes of eight sectors"},
+       "standard deviation of the slopes of eight sectors; nan where half of them have too few "
+       "columns for a line"},
       {"cone.volume_fraction", "-", "mean of the inside"},
       {"cone.rho_g_h", "Pa",
        "unit of pressure: grain density times cone.volume_fraction times g times height"},

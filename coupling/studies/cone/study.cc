@@ -10,7 +10,9 @@
 #include <memory>
 #include <numbers>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/average.h"
+#include "coupling/averaging/base.h"
 #include "coupling/averaging/base_space.h"
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/layer.h"
@@ -27,6 +29,7 @@
 #include "coupling/studies/cone/keys.h"
 #include "coupling/studies/cone/page.h"
 #include "coupling/studies/pile/keys.h"
+#include "coupling/studies/pile/pile_ensemble.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/cone.h"
 
@@ -37,7 +40,7 @@ using Eigen::Index;
 
 // Profiles and maps reach beyond the feet by this factor.
 constexpr double kReachOfCones = 1.08;
-// Places on a ring of the base are this share of the kernel's width apart.
+// Places on a ring of the base are this share of half the kernel's range apart.
 constexpr double kSpacingOnBase = 1.0 / 3;
 // Heights inside a cone, over its own, where the balance of forces is looked at.
 constexpr double kBalanceLow = -0.8, kBalanceHigh = -0.6;
@@ -66,20 +69,15 @@ Eigen::MatrixXd both_sides_of_each(const Eigen::MatrixXd& by_radius) {
   return out;
 }
 
-// Contacts of a free grain; one with the floor counts once.
-double contacts_per_grain(const dem::Snapshot& s) {
-  double ends = 0, grains = 0;
-  const auto free = [&](std::int64_t g) {
-    return g >= 0 && !s.grains[static_cast<std::size_t>(g)].fixed;
-  };
-  for (const dem::Contact& c : s.contacts) ends += free(c.i) + free(c.j);
-  for (const dem::Grain& g : s.grains) grains += g.fixed ? 0 : 1;
-  return ends / grains;
-}
-
+// Of those sectors that have a slope; nan where half of them have none.
 double deviation(const std::array<double, kConeSectors>& values) {
-  const Eigen::Map<const Eigen::ArrayXd> v(values.data(), kConeSectors);
-  return std::sqrt((v - v.mean()).square().sum() / (kConeSectors - 1));
+  std::vector<double> known;
+  for (const double v : values) {
+    if (std::isfinite(v)) known.push_back(v);
+  }
+  if (known.size() <= kConeSectors / 2) return kNan;
+  const Eigen::Map<const Eigen::ArrayXd> v(known.data(), static_cast<Index>(known.size()));
+  return std::sqrt((v - v.mean()).square().sum() / static_cast<double>(known.size() - 1));
 }
 
 // One averaging method over the ensemble: by radius at each of heap.heights, and inside.
@@ -104,6 +102,15 @@ class ConeAnalysis {
       pressure_ += f.pressure() / n;
       diameter += f.diameter / n;
       reach = std::max(reach, kReachOfCones * f.foot / f.height);
+    }
+    const auto [low, high] = std::minmax_element(
+        frames_.begin(), frames_.end(),
+        [](const ConeFrame& a, const ConeFrame& b) { return a.height < b.height; });
+    if (high->height > kUnlikeHeights * low->height) {
+      throw std::invalid_argument(fmt::format(
+          "cones of one ensemble are {:.3g} to {:.3g} m high, allowed: up to {:g} times "
+          "the lowest",
+          low->height, high->height, kUnlikeHeights));
     }
     columns_ = static_cast<int>(setup_.map_columns);
     rows_ = static_cast<int>(setup_.map_rows);
@@ -209,7 +216,7 @@ class ConeAnalysis {
     figures_["cone.volume_fraction"].push_back(frame.volume_fraction);
     figures_["cone.rho_g_h"].push_back(unit);
     figures_["cone.mean_diameter"].push_back(frame.diameter);
-    figures_["cone.coordination"].push_back(contacts_per_grain(cone));
+    figures_["cone.coordination"].push_back(coordination(cone));
     figures_["dip.centre"].push_back(windows.mean.centre);
     figures_["dip.shoulder"].push_back(windows.mean.shoulder);
     figures_["dip.sector_error"].push_back(windows.sector_error);
@@ -386,8 +393,14 @@ class ConeAnalysis {
           {choice.label, model_label(choice), e.stresses.back().col(2) / pressure_});
       Field field = model_field(choice, known, grid, e.stresses.back(), columns_, 1);
       field.nz = rows_;
+      field.attributes["apex_z"] = fmt::format("{}", height_ * (spanned() - 1));
       out.fields.emplace_back("model_" + choice.label, std::move(field));
-      add_model(out.summary, choice, e.figures, e.seconds);
+      // Over the model's own height and rho g h there, over those of the grains here.
+      std::map<std::string, double> figures = e.figures;
+      for (const char* name : {"base_centre", "base_largest", "base_largest_at"}) {
+        if (figures.count(name) > 0) figures[name] *= spanned();
+      }
+      add_model(out.summary, choice, figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
     return all;
@@ -478,6 +491,13 @@ dem::RunResult finished_cone(const FinishedRun& place) {
   if (cone.dim != 3) {
     throw std::invalid_argument(
         fmt::format("grains.files: {}:{}/pile is 2D, a 3D one is needed", place.file, place.group));
+  }
+  const bool any = std::any_of(cone.grains.begin(), cone.grains.end(),
+                               [](const dem::Grain& g) { return !g.fixed; });
+  if (!any || !has_base(cone)) {
+    throw std::invalid_argument(
+        fmt::format("grains.files: {}:{}/pile has no {}", place.file, place.group,
+                    any ? "base: a wall \"floor\" or fixed grains" : "free grain"));
   }
   dem::RunResult out;
   out.snapshots.emplace_back("pile", cone);
