@@ -214,14 +214,18 @@ TEST(PileRun, SameBitsAfterKills) {
         "timeout -s KILL " + std::to_string(seconds));
     kills += output.code == 137;
   } while (output.code == 137 && kills < 200);
-  // The last kill may have come between the run's end and the program's.
-  if (output.err.find("is finished") == std::string::npos) {
+  // The last kill may have come between the run's end and the program's: then something that the
+  // program takes away in the end may still be there.
+  const bool finished_before = output.err.find("is finished") != std::string::npos;
+  if (!finished_before) {
     ASSERT_EQ(output.code, 0) << output.err;
   }
   EXPECT_GT(kills, 2);
   EXPECT_GT(resumed, 1);
   const auto pieces = testing::contents(folder / "killed");
-  ASSERT_EQ(pieces.size(), whole.size());
+  if (!finished_before) {
+    EXPECT_EQ(pieces.size(), whole.size());
+  }
   for (const auto& [name, text] : whole) {
     ASSERT_EQ(pieces.count(name), 1U) << name;
     EXPECT_TRUE(pieces.at(name) == text) << name << " differs after " << kills << " kills";
