@@ -25,6 +25,10 @@ TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
               HasSubstr("material.damping_model: found \"critical\", allowed: only in three "
                         "dimensions: critical | viscoelastic; the grains of"));
   EXPECT_THAT(complaint(layer, {"packing.shape=sphere"}),
+              HasSubstr("found \"sphere\", allowed: disk | irregular (2D) | superellipsoid (3D)"));
+  EXPECT_THAT(complaint(layer, {"packing.shape=superellipsoid"}),
+              HasSubstr("packing.shape: found \"superellipsoid\", allowed: "));
+  EXPECT_THAT(complaint(testing::small_case("pile"), {"shape.kind=sphere"}),
               HasSubstr("\"sphere\" is a shape of 3D; the grains of this study are in 2D"));
   // What is no word of any dimension is still told the nearest one.
   EXPECT_THAT(complaint(layer, {"material.law=hertzz"}), HasSubstr("nearest: "));

@@ -42,6 +42,8 @@ using Eigen::Index;
 constexpr double kReachOfCones = 1.08;
 // Places on a ring of the base are this share of half the kernel's range apart.
 constexpr double kSpacingOnBase = 1.0 / 3;
+// Share of a ring's places that some contact must reach for the ring to have a value.
+constexpr double kCovered = 0.5;
 // Heights inside a cone, over its own, where the balance of forces is looked at.
 constexpr double kBalanceLow = -0.8, kBalanceHigh = -0.6;
 
@@ -248,6 +250,12 @@ class ConeAnalysis {
     const Eigen::VectorXd pressure = ring_means(rings, on_rings.find("sigma_zz")->value);
     means.add("sigma_zz", "1").value = pressure / unit;
     means.add("sigma_rz", "1").value = ring_means(rings, radial) / unit;
+    // Beyond the heap nothing is measured, and nothing has no spread.
+    const Eigen::VectorXd covered = ring_means(rings, on_rings.find("contacts")->value);
+    for (Index k = 0; k < covered.size(); ++k) {
+      if (covered[k] >= kCovered) continue;
+      for (Column& column : means.columns) column.value[k] = kNan;
+    }
     base_rings_.add(means);
     double force = 0;
     for (Index k = 0; k + 1 < radii_.size(); ++k) {
@@ -441,10 +449,14 @@ class ConeAnalysis {
     // The floor pulls the grains inwards with -sigma_rz.
     const Eigen::VectorXd shear = base.find("sigma_rz")->value;
     Index at = 0, shear_at = 0;
+    for (Index k = 1; k < pressure.size(); ++k) {
+      if (pressure[k] > pressure[at]) at = k;
+      if (shear[k] > shear[shear_at]) shear_at = k;
+    }
     summary["base.centre_pressure"] = pressure[0];
-    summary["base.largest_pressure"] = pressure.maxCoeff(&at);
+    summary["base.largest_pressure"] = pressure[at];
     summary["base.largest_at"] = radii_[at];
-    summary["base.largest_shear"] = shear.maxCoeff(&shear_at);
+    summary["base.largest_shear"] = shear[shear_at];
     summary["base.largest_shear_at"] = radii_[shear_at];
     summary["base.smearing_width"] = methods_.front().options.width;
     summary["dip.ratio"] = pressure[0] / pressure[at];
