@@ -6,8 +6,12 @@
 
 namespace grainfield::coupling {
 
+/// Fewer contacts than this in the disk say nothing of its pressure.
+inline constexpr int kLeastInDisk = 5;
+
 struct ConeWindows {
   BaseWindows mean;         ///< by radius over the foot's, over the angle
+  int in_disk = 0;          ///< contacts in the disk; below kLeastInDisk its pressure is nan
   double sector_error = 0;  ///< standard error of shoulder - centre over the sectors, rho g h
 };
 /// Mean vertical pressure of one cone in a disk and a ring of its base, from the forces on the base

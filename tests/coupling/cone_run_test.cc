@@ -163,7 +163,7 @@ TEST_F(ConeRun, IsAnalysedAnewFromItsFile) {
                              " --set 'grains.files=[\"" + out("snapshots.h5") + "\"]'");
   ASSERT_EQ(run.code, 0) << run.err;
   const Summary anew = read_summary(again + "/summary.json");
-  for (const char* key : {"dip.difference", "cone.repose_deg", "base.centre_pressure",
+  for (const char* key : {"dip.shoulder", "cone.repose_deg", "base.centre_pressure",
                           "compare.cone_osl.rel_l2", "dem.grains"}) {
     EXPECT_EQ(number(anew, key), of(key)) << key;
   }
@@ -246,6 +246,13 @@ TEST(ConeWindows, AreMeansOverDiskAndRing) {
   EXPECT_NEAR(windows.mean.centre, below(0.25) / (0.25 * 0.25), 1e-3);
   EXPECT_NEAR(windows.mean.shoulder, (below(0.5) - below(0.25)) / (0.25 - 0.0625), 1e-3);
   EXPECT_NEAR(windows.sector_error, 0, 1e-9) << "all sectors are alike";
+  EXPECT_EQ(windows.in_disk, 100 * 64);
+  // Too few contacts say nothing: no false dip from an empty disk.
+  setup.centre = 1e-4;
+  const ConeWindows empty = cone_windows(cone, frame, setup);
+  EXPECT_EQ(empty.in_disk, 0);
+  EXPECT_TRUE(std::isnan(empty.mean.centre));
+  EXPECT_EQ(judge_dip({empty.mean, empty.mean, empty.mean, empty.mean}).verdict, "undecided");
 }
 
 TEST(ConeSectors, ShareTheAngle) {

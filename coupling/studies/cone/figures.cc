@@ -24,6 +24,9 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.mean_diameter", "m", "of the grains"},
       {"cone.coordination", "-", "contacts of a grain"},
       {"cone.base_over_weight", "-", "force on the base from its rings, over that on the floor"},
+      {"dip.contacts_in_disk", "-",
+       "contacts with a cone's base within heap.centre of the foot's radius; with fewer than five "
+       "its dip is nan"},
       {"dip.sector_error", "rho g h",
        "standard error of shoulder - centre over the eight sectors of a cone"},
       {"base.largest_shear", "rho g h",

@@ -90,6 +90,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
                                         "dip.standard_error",
                                         "dip.p_value",
                                         "dip.sector_error",
+                                        "dip.contacts_in_disk",
                                         "dip.ratio",
                                         "base.largest_pressure",
                                         "base.largest_at",

@@ -222,6 +222,7 @@ class ConeAnalysis {
     figures_["dip.centre"].push_back(windows.mean.centre);
     figures_["dip.shoulder"].push_back(windows.mean.shoulder);
     figures_["dip.sector_error"].push_back(windows.sector_error);
+    figures_["dip.contacts_in_disk"].push_back(windows.in_disk);
   }
 
   // Returns the force within the rings, N.
@@ -470,6 +471,13 @@ class ConeAnalysis {
     out.summary["dip.p_value"] = dip.difference.p_value;
     out.summary["dip.verdict"] = dip.verdict;
     std::string sentence = dip_sentence(dip);
+    if (std::isnan(dip.centre)) {
+      sentence = fmt::format(
+          "Whether there is a dip cannot be said: of some cone fewer than {} contacts with the "
+          "base "
+          "are within heap.centre = {:g} of the foot's radius; raise it, or take more grains.",
+          kLeastInDisk, heap().centre);
+    }
     if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
     out.comparison.verdict.sentence = sentence;
     out.summary["verdict.sentence"] = sentence;
