@@ -95,6 +95,12 @@ void check_cone(const ConeSetup& s) {
     throw std::invalid_argument(fmt::format(
         "motion.integrator: found {}, allowed with study = \"cone\": verlet", s.motion.integrator));
   }
+  if (s.material.rolling_friction > 0 && !(s.material.rolling_stiffness > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "material.rolling_stiffness: found {:g}, allowed with material.rolling_friction "
+        "= {:g}: above 0 (without a spring nothing resists rolling at rest)",
+        s.material.rolling_stiffness, s.material.rolling_friction));
+  }
   if (s.motion.energy_balance) {
     throw std::invalid_argument(
         "motion.energy_balance: found true, allowed with study = \"cone\": false (grains that "

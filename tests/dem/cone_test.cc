@@ -191,6 +191,9 @@ TEST(Cone, RefusesWhatDoesNotHold) {
         s.material.law = "hertz_elliptic";
       },
       "rolling");
+  says(
+      [](ConeSetup& s) { s.material.rolling_stiffness = 0; },
+      "material.rolling_stiffness: found 0, allowed with material.rolling_friction = 0.3: above 0");
   says([](ConeSetup& s) { s.motion.time_step = 1; }, "motion.time_step: found 1");
 }
 
