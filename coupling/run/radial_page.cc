@@ -36,6 +36,19 @@ Frame radial_frame(const Comparison& c, std::size_t k) {
 
 }  // namespace
 
+Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius) {
+  const Eigen::Index n = by_radius.size();
+  Eigen::VectorXd out(2 * n - 1);
+  out << by_radius.tail(n - 1).reverse(), by_radius;
+  return out;
+}
+Eigen::MatrixXd both_sides(const Eigen::MatrixXd& by_radius) {
+  const Eigen::Index n = by_radius.rows();
+  Eigen::MatrixXd out(2 * n - 1, by_radius.cols());
+  out << by_radius.bottomRows(n - 1).colwise().reverse(), by_radius;
+  return out;
+}
+
 Picture radial_profiles(const std::string& title, const std::string& x_label,
                         const std::string& y_label, const Comparison& c) {
   std::vector<Frame> frames;

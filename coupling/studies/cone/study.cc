@@ -24,6 +24,7 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
+#include "coupling/run/radial_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/cone/keys.h"
@@ -55,19 +56,6 @@ Field in_units(const Field& field, const Eigen::MatrixXd& points, double pressur
     if (!column.name.starts_with("sigma_")) continue;
     out.add(column.name, "1").value = column.value / pressure;
   }
-  return out;
-}
-
-Eigen::VectorXd both_sides_of(const Eigen::VectorXd& by_radius) {
-  const Index n = by_radius.size();
-  Eigen::VectorXd out(2 * n - 1);
-  out << by_radius.tail(n - 1).reverse(), by_radius;
-  return out;
-}
-Eigen::MatrixXd both_sides_of_each(const Eigen::MatrixXd& by_radius) {
-  const Index n = by_radius.rows();
-  Eigen::MatrixXd out(2 * n - 1, by_radius.cols());
-  out << by_radius.bottomRows(n - 1).colwise().reverse(), by_radius;
   return out;
 }
 
@@ -347,11 +335,11 @@ class ConeAnalysis {
     out.depth = (1 - share) * height_;
     out.quantity = "-sigma_zz";
     out.unit = "Pa";
-    out.x = height_ * both_sides_of(radii_);
+    out.x = height_ * both_sides(radii_);
     out.x.head(radii_.size() - 1) *= -1;
-    out.mean = both_sides_of(-pressure_ * column.value);
-    if (column.error.size() > 0) out.error = both_sides_of(pressure_ * column.error);
-    out.samples = both_sides_of_each(-pressure_ * ensemble.samples("sigma_zz"));
+    out.mean = both_sides(Eigen::VectorXd(-pressure_ * column.value));
+    if (column.error.size() > 0) out.error = both_sides(Eigen::VectorXd(pressure_ * column.error));
+    out.samples = both_sides(Eigen::MatrixXd(-pressure_ * ensemble.samples("sigma_zz")));
     out.independent_length = 2 * kernel_->independent_length();  // either side says the same
     return out;
   }
@@ -395,7 +383,7 @@ class ConeAnalysis {
       seconds += e.seconds;
       ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
       for (std::size_t s = 0; s + 1 < sets.size(); ++s) {
-        m.values.push_back(both_sides_of(-e.stresses[s].col(2)));
+        m.values.push_back(both_sides(Eigen::VectorXd(-e.stresses[s].col(2))));
       }
       all.push_back(std::move(m));
       page.models.push_back(
@@ -474,8 +462,7 @@ class ConeAnalysis {
     if (std::isnan(dip.centre)) {
       sentence = fmt::format(
           "Whether there is a dip cannot be said: of some cone fewer than {} contacts with the "
-          "base "
-          "are within heap.centre = {:g} of the foot's radius; raise it, or take more grains.",
+          "base are within heap.centre = {:g} of the foot's radius; raise it, or take more grains.",
           kLeastInDisk, heap().centre);
     }
     if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;

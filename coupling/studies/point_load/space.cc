@@ -16,6 +16,7 @@
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
+#include "coupling/run/radial_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/space_page.h"
 #include "dem/snapshot/contact_changes.h"
@@ -53,20 +54,6 @@ struct Radii {
   }
   Eigen::VectorXd own() const { return all.head(profile); }
 };
-
-// To both sides of the axis: the value at |x|.
-Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius) {
-  const Index n = by_radius.size();
-  Eigen::VectorXd out(2 * n - 1);
-  out << by_radius.tail(n - 1).reverse(), by_radius;
-  return out;
-}
-Eigen::MatrixXd both_sides(const Eigen::MatrixXd& by_radius) {
-  const Index n = by_radius.rows();
-  Eigen::MatrixXd out(2 * n - 1, by_radius.cols());
-  out << by_radius.bottomRows(n - 1).colwise().reverse(), by_radius;
-  return out;
-}
 
 // Points (r, 0, z) for these radii.
 Eigen::MatrixXd at_height(const Eigen::VectorXd& radii, double z) {
