@@ -71,6 +71,10 @@ class Search {
       world_.margins[i] = {world_.grains.bodies[i].position, world_.rotation(i), turning_of(i),
                            way};
     }
+    world_.all_round = true;
+    if constexpr (dim == 3) {
+      for (int i = 0; i < n; ++i) world_.all_round &= is_round(world_.grains.inertias[i]);
+    }
     world_.search_needed = false;
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
 #include "dem/motion/local_damping.h"
+#include "dem/motion/round_lanes.h"
 
 namespace grainfield::dem {
 
@@ -37,8 +39,12 @@ class Sweep {
   using Memory = typename World::Acting::Memory;
   /// All pairs are evaluated before any sum, several side by side (batch.h).
   static constexpr bool in_lanes = InLanes<typename World::Shape>;
+  /// Rows of pairs are evaluated and summed side by side, several rows at a time (sphere_lanes.h).
+  static constexpr bool rows_in_lanes = RowsInLanes<typename World::Shape, typename World::Law>;
   /// So nothing looks at other grains while some begin their next step.
-  static constexpr bool begins_in_lanes = in_lanes && requires { World::Integrator::in_lanes; };
+  static constexpr bool begins_in_lanes = (in_lanes || rows_in_lanes) && requires {
+    World::Integrator::in_lanes;
+  };
 
   explicit Sweep(World& world)
       : world_(world),
@@ -98,6 +104,16 @@ class Sweep {
   template <SweepKind kind>
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
     if constexpr (in_lanes) sum_incoming(rank, dt);
+    if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
+      if (!aside_ && world_.acting.kinds() == 1 && lane_width() > 2) {
+        if (world_.cell.is_periodic()) {
+          sweep_rows<true>(rank, applied, dt);
+        } else {
+          sweep_rows<false>(rank, applied, dt);
+        }
+        return;
+      }
+    }
     if (world_.cell.is_periodic()) {
       sweep<kind, true>(rank, applied, dt, first_new);
     } else {
@@ -107,6 +123,12 @@ class Sweep {
 
  private:
   using Sum = ForceSum<dim>;
+
+  /// Grains that begin their next step, together where that is in lanes.
+  struct Begins {
+    bool moved = false;  ///< one has left its margin
+    int waiting = 0, list[kBatch];
+  };
 
   /// Flattened: an overlap, a motion or a force that goes through memory to a function waits for
   /// its stores (a third of the time per step of 1,000 disks). Also begin_block and incoming, so
@@ -119,9 +141,7 @@ class Sweep {
     auto& contacts = world_.contacts;
     auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
-    const bool flows = in_cell && world_.cell.flows();
-    bool moved = false;
-    [[maybe_unused]] int begins[kBatch], waiting = 0;  // grains that begin their next step together
+    Begins begins;
     for (int i = first; i < last; ++i) {
       __builtin_prefetch(&grains.memory[i] + kAhead / 2, 1);
       Vector force = sums_[i].force;
@@ -143,47 +163,174 @@ class Sweep {
         force += across.force;
         torque += across.torque_i;
       }
-      auto& b = grains.bodies[i];
-      if (b.inverse_mass == 0) continue;
-      walls<kind>(i, dt, force, torque);
-      if (world_.is_loaded(i)) force += applied;
-      Damping damping;
-      if (local_damping_ > 0) [[unlikely]] {
-        damping = damping_of(i, force, torque);
-        force += damping.force;
-        torque += damping.torque;
+      if (grains.bodies[i].inverse_mass == 0) continue;
+      end_step<kind, in_cell>(i, force, torque, applied, dt, first_new, begins);
+    }
+    if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
+      begins.moved |= begin_all(begins.list, begins.waiting);
+    }
+    if (begins.moved) moved_.store(true, std::memory_order_relaxed);
+  }
+
+  /// The same, for spheres: pairs are evaluated and added to the sums kBatch at a time, row after
+  /// row; then the grains whose rows are done move, side by side where they can. Bit by bit as pair
+  /// by pair. Pairs that another thread has evaluated, or whose second grain sleeps or is across a
+  /// face, are the last of a row and done by themselves.
+  template <bool in_cell>
+  GRAINFIELD_FLATTEN void sweep_rows(int rank, const Vector& applied, double dt) {
+    const auto& contacts = world_.contacts;
+    const auto& pairs = contacts.pairs;
+    const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
+    const auto& rule = world_.acting.rule(0, 0);
+    const SphereNumbers numbers = rule.law.sphere_numbers(rule.friction, dt);
+    const SphereRows rows = sphere_rows();
+    Begins begins;
+    SphereBatch batch;
+    int done = first;
+    const auto evaluate = [&] {
+      if (batch.count > 0) sphere_forces(numbers, rows, batch);
+      batch.count = 0;
+    };
+    for (int i = first; i < last; ++i) {
+      const int end = in_cell ? first_across(i) : pairs.last(i);
+      int special = end;
+      while (special > pairs.first(i) && pairs[special - 1].j >= last) --special;
+      for (int k = pairs.first(i); k < special; ++k) {
+        if (batch.count == 0) batch.first = k;
+        batch.i[batch.count++] = i;
+        if (batch.count < kBatch) continue;
+        evaluate();
+        end_rows<in_cell>(done, i, applied, dt, begins);
+        done = i;
       }
-      if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
-        record_outer(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
-      }
-      const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
-      if constexpr (kind == SweepKind::start) {
-        if (grains.ids[i] >= first_new) start(i, load);
-      } else {
-        if (flows) {
-          end_in_flow(i, load, damping.force);
-        } else {
-          integrator_.end(b, grains.memory[i], grains.inertias[i], load);
-        }
-        if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
-          begins[waiting++] = i;
-          if (waiting == kBatch) {
-            moved |= begin_all(begins, waiting);
-            waiting = 0;
-          }
-        } else if constexpr (kind == SweepKind::move_on) {
-          if (flows) {
-            moved |= begin_in_flow(i);
-          } else {
-            begin(i, moved);
-          }
-        } else if constexpr (World::Shape::keeps_places && World::Integrator::end_moves) {
-          grains.shapes.place(i, b, grains.memory[i].rotation);
+      if (special < pairs.last(i)) {
+        evaluate();
+        Sum& sum = sums_[i];
+        sum_pairs<SweepKind::move_on>(
+            special, end, last, [&](int k, Force& f) { return pair_force(i, k, dt, f); }, sum.force,
+            sum.torque);
+        if (in_cell && end < pairs.last(i)) {
+          const Force across = sum_across<SweepKind::move_on>(i, last, dt);
+          sum.force += across.force;
+          sum.torque += across.torque_i;
         }
       }
     }
-    if constexpr (begins_in_lanes) moved |= begin_all(begins, waiting);
-    if (moved) moved_.store(true, std::memory_order_relaxed);
+    evaluate();
+    end_rows<in_cell>(done, last, applied, dt, begins);
+    begins.moved |= begin_all(begins.list, begins.waiting);
+    if (begins.moved) moved_.store(true, std::memory_order_relaxed);
+  }
+  SphereRows sphere_rows() {
+    using Pair = typename World::Pair;
+    SphereRows rows;
+    rows.bodies = world_.grains.bodies.data()->position.data();
+    rows.body_size = sizeof(Body) / sizeof(double);
+    rows.pairs = reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]);
+    rows.pair_size = sizeof(Pair);
+    rows.second = offsetof(Pair, j);
+    rows.sums = sums_.data()->force.data();
+    rows.sum_size = sizeof(Sum) / sizeof(double);
+    rows.ahead = kAhead;
+    return rows;
+  }
+  /// The motion of rows [from, to), whose sums are complete.
+  template <bool in_cell>
+  void end_rows(int from, int to, const Vector& applied, double dt, Begins& begins) {
+    const auto& bodies = world_.grains.bodies;
+    const auto& contacts = world_.contacts;
+    const bool together = world_.all_round && !(local_damping_ > 0) && !world_.cell.flows();
+    int list[kBatch], count = 0;
+    for (int i = from; i < to; ++i) {
+      if (bodies[i].inverse_mass == 0) {
+        sums_[i] = Sum{};
+        continue;
+      }
+      if (together && bodies[i].inverse_inertia > 0) {
+        Sum& sum = sums_[i];
+        if (contacts.walls.first(i) < contacts.walls.last(i)) {
+          walls<SweepKind::move_on>(i, dt, sum.force, sum.torque);
+        }
+        if (world_.is_loaded(i)) [[unlikely]]
+          sum.force += applied;
+        list[count++] = i;
+        if (count < kBatch) continue;
+        begins.moved |= step_on(list, count);
+        count = 0;
+        continue;
+      }
+      const Vector force = sums_[i].force;
+      const SpinOf<dim> torque = sums_[i].torque;
+      sums_[i] = Sum{};
+      end_step<SweepKind::move_on, in_cell>(i, force, torque, applied, dt, 0, begins);
+    }
+    begins.moved |= step_on(list, count);
+  }
+  /// End of a step and beginning of the next of spheres that nothing else acts on.
+  bool step_on(const int* list, int count) {
+    if (count == 0) return false;
+    auto& grains = world_.grains;
+    const auto& gravity = world_.around.gravity;
+    using Grip = typename World::Integrator::Memory;
+    RoundRows rows;
+    rows.bodies = grains.bodies.data()->position.data();
+    rows.memories = grains.memory.data()->rotation.coeffs().data();
+    rows.sums = sums_.data()->force.data();
+    rows.inertias = &grains.inertias.data()->mass;
+    rows.margins = world_.margins.data()->position.data();
+    rows.body_size = sizeof(Body) / sizeof(double);
+    rows.memory_size = sizeof(Grip) / sizeof(double);
+    rows.sum_size = sizeof(Sum) / sizeof(double);
+    rows.inertia_size = sizeof(Inertia<dim>) / sizeof(double);
+    rows.margin_size = sizeof(Margin<dim>) / sizeof(double);
+    rows.way = offsetof(Margin<dim>, way) / sizeof(double);
+    return round_steps({world_.time_step, {gravity[0], gravity[1], gravity[2]}, world_.around.drag},
+                       rows, list, count);
+  }
+
+  /// What else acts on a grain that moves, the end of its step, and the beginning of the next.
+  template <SweepKind kind, bool in_cell>
+  void end_step(int i, Vector force, SpinOf<dim> torque, const Vector& applied, double dt,
+                std::int64_t first_new, Begins& begins) {
+    auto& grains = world_.grains;
+    auto& b = grains.bodies[i];
+    const bool flows = in_cell && world_.cell.flows();
+    walls<kind>(i, dt, force, torque);
+    if (world_.is_loaded(i)) force += applied;
+    Damping damping;
+    if (local_damping_ > 0) [[unlikely]] {
+      damping = damping_of(i, force, torque);
+      force += damping.force;
+      torque += damping.torque;
+    }
+    if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
+      record_outer(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
+    }
+    const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
+    if constexpr (kind == SweepKind::start) {
+      if (grains.ids[i] >= first_new) start(i, load);
+    } else {
+      if (flows) {
+        end_in_flow(i, load, damping.force);
+      } else {
+        integrator_.end(b, grains.memory[i], grains.inertias[i], load);
+      }
+      if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
+        begins.list[begins.waiting++] = i;
+        if (begins.waiting == kBatch) {
+          begins.moved |= begin_all(begins.list, begins.waiting);
+          begins.waiting = 0;
+        }
+      } else if constexpr (kind == SweepKind::move_on) {
+        if (flows) {
+          begins.moved |= begin_in_flow(i);
+        } else {
+          begin(i, begins.moved);
+        }
+      } else if constexpr (World::Shape::keeps_places && World::Integrator::end_moves) {
+        grains.shapes.place(i, b, grains.memory[i].rotation);
+      }
+    }
   }
 
   /// The pairs [first, end), of one row. `last`: the end of the block. evaluate(pair, force): false

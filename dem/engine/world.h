@@ -72,6 +72,7 @@ struct World {
   int applied_index = -1;            ///< body that carries the applied force
   std::vector<std::int64_t> beside;  ///< ids, ascending, of others that carry the same
   std::vector<char> carries;         ///< by body: is one of these; empty without such
+  bool all_round = false;  ///< all moments of each awake body are equal; since the last search
   bool search_needed = true;
 
   /// A contact with a wall (a pair of contacts.walls) has a memory, of the law or of rolling.

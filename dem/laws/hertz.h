@@ -18,6 +18,7 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
+#include "dem/laws/sphere_lanes.h"
 #include "dem/words/nearest.h"
 
 namespace grainfield::dem {
@@ -107,6 +108,20 @@ struct HertzLaw {
       memory.contact_radius = a;
     }
     return {normal, friction_force(normal, mu, kt, along, m.slip, dt, memory.spring)};
+  }
+
+  /// The same for spheres side by side.
+  SphereNumbers sphere_numbers(double mu, double dt) const {
+    const double twice = 2 * damping;
+    return {SphereLawKind::hertz,
+            2 * effective_young(),
+            8 * effective_shear(),
+            viscoelastic ? normal_damping : twice,
+            viscoelastic ? tangential_damping : twice,
+            displacement,
+            viscoelastic,
+            mu,
+            dt};
   }
 
   /// The memory of a contact as it is, beside its spring.

@@ -6,6 +6,7 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
+#include "dem/laws/sphere_lanes.h"
 
 namespace grainfield::dem {
 
@@ -47,6 +48,19 @@ struct LinearLaw {
     const auto force = friction_force(normal, mu, tangential_stiffness_, mass * tangential_damping,
                                       m.slip, dt, memory.spring);
     return {normal, force};
+  }
+
+  /// The same for spheres side by side.
+  SphereNumbers sphere_numbers(double mu, double dt) const {
+    return {SphereLawKind::linear,
+            normal_stiffness,
+            tangential_stiffness_,
+            normal_damping,
+            tangential_damping,
+            false,
+            false,
+            mu,
+            dt};
   }
 
   double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }

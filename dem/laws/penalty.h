@@ -7,6 +7,7 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
+#include "dem/laws/sphere_lanes.h"
 
 namespace grainfield::dem {
 
@@ -46,6 +47,19 @@ struct PenaltyLaw {
     const double normal = std::max(repulsion(o) + dashpot * m.approach, 0.0);
     return {normal,
             friction_force(normal, mu, tangential_stiffness_, 0.0, m.slip, dt, memory.spring)};
+  }
+
+  /// The same for spheres side by side.
+  SphereNumbers sphere_numbers(double mu, double dt) const {
+    return {SphereLawKind::penalty,
+            normal_stiffness,
+            tangential_stiffness_,
+            2 * damping,
+            0,
+            false,
+            false,
+            mu,
+            dt};
   }
 
   double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }

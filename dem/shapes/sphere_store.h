@@ -22,6 +22,7 @@ class SphereStore {
   static constexpr bool outlines = false;
   static constexpr bool central = true;
   static constexpr bool keeps_places = false;
+  static constexpr bool rows_in_lanes = true;  ///< whole pairs (laws/sphere_lanes.h)
   static constexpr bool offers(Measures m) {
     return m == Measures::depth || m == Measures::curvature || m == Measures::curvatures;
   }

@@ -54,7 +54,10 @@ void slender_1_to_5(benchmark::State& s) { heptagons(s, 40, 25, 5, 5); }
 void slender_1_to_10(benchmark::State& s) { heptagons(s, 40, 25, 5, 10); }
 
 void spheres_10k(benchmark::State& s) {
-  run(s, grainfield::benchmarks::sphere_scene(static_cast<int>(s.range(0))));
+  run(s, grainfield::benchmarks::sphere_scene(false, static_cast<int>(s.range(0))));
+}
+void hertz_spheres_10k(benchmark::State& s) {
+  run(s, grainfield::benchmarks::sphere_scene(true, static_cast<int>(s.range(0))));
 }
 
 BENCHMARK(disks_1k)->Arg(1)->Arg(2)->UseRealTime();
@@ -67,6 +70,7 @@ BENCHMARK(heptagons_50k)->Arg(1)->UseRealTime();
 BENCHMARK(slender_1_to_2)->Arg(1)->UseRealTime();
 BENCHMARK(slender_1_to_5)->Arg(1)->UseRealTime();
 BENCHMARK(spheres_10k)->Arg(1)->Arg(2)->UseRealTime();
+BENCHMARK(hertz_spheres_10k)->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(slender_1_to_10)->Arg(1)->UseRealTime();
 
 }  // namespace

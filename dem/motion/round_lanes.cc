@@ -1,0 +1,100 @@
+// Compiled for every width (lanes.h): no function of it may be another file's, too.
+#include "dem/motion/round_lanes.h"
+
+#include <cstddef>
+
+#include "dem/motion/lane_turn.h"
+#include "dem/space/lane_rows.h"
+
+namespace grainfield::dem {
+namespace {
+
+template <int W, class Number>
+[[gnu::always_inline]] inline void find_rows(Number* from, int size, const int* list, int left,
+                                             Number* (&rows)[W]) {
+  for (int k = 0; k < W; ++k) rows[k] = from + std::ptrdiff_t{list[k < left ? k : 0]} * size;
+}
+
+/// True when one has left its margin. `left`: so many of the lanes are grains of their own; others
+/// do the first one's work again, for nobody.
+template <int W>
+[[gnu::always_inline]] inline bool step_on(const RoundStep& step, const RoundRows& from,
+                                           const int* list, int left) {
+  using V = Lanes<W>;
+  const V none{};
+  double *bodies[W], *memories[W], *sums[W];
+  const double* margins[W];
+  find_rows<W>(from.bodies, from.body_size, list, left, bodies);
+  find_rows<W>(from.memories, from.memory_size, list, left, memories);
+  find_rows<W>(from.sums, from.sum_size, list, left, sums);
+  find_rows<W>(from.margins, from.margin_size, list, left, margins);
+  const Four<W> body1 = four_of<W>(bodies, 0), body2 = four_of<W>(bodies, 4);
+  const Four<W> body3 = four_of<W>(bodies, 8), turn = four_of<W>(memories, 0);
+  const Four<W> sum1 = four_of<W>(sums, 0), sum2 = four_of<W>(sums, 4);
+  const Three<W> before{body1.a, body1.b, body1.c};
+  Three<W> velocity{body1.d, body2.a, body2.b}, spin{body2.c, body2.d, body3.a};
+  const V inverse_mass = body3.c, inverse_inertia = body3.d;
+  const Three<W> force{sum1.a, sum1.b, sum1.c};
+  Three<W> torque{sum1.d, sum2.a, sum2.b};
+
+  // VerletIntegrator<3>::end.
+  const Three<W> gravity{none + step.gravity[0], none + step.gravity[1], none + step.gravity[2]};
+  const Three<W> acceleration =
+      (scaled<W>(inverse_mass, force) + gravity) - scaled<W>(none + step.drag, velocity);
+  if (step.drag != 0) {
+    const V moment = lanes_of<W>([&](int k) {
+      return from.inertias[std::ptrdiff_t{list[k < left ? k : 0]} * from.inertia_size + 1];
+    });
+    torque = torque - scaled<W>(none + step.drag, scaled<W>(moment, spin));
+  }
+  const V half = none + 0.5 * step.dt, turning = half * inverse_inertia;
+  velocity = velocity + scaled<W>(half, acceleration);
+  spin = spin + scaled<W>(turning, torque);
+
+  // begin.
+  velocity = velocity + scaled<W>(half, acceleration);
+  const Three<W> position = before + scaled<W>(none + step.dt, velocity);
+  spin = spin + scaled<W>(turning, torque);
+  const Turn<W> by = turn_by<W>(scaled<W>(none + step.dt, spin));
+  const Turn<W> rotation = normalized<W>(product<W>(by, Turn<W>{turn.d, {turn.a, turn.b, turn.c}}));
+
+  // Margin::is_left.
+  const Four<W> centre = four_of<W>(margins, 0);
+  const Three<W> moved = position - Three<W>{centre.a, centre.b, centre.c};
+  const V way = lanes_of<W>([&](int k) { return margins[k][from.way]; });
+  const auto stays = (way >= 0) & (dot<W>(moved, moved) <= way * way);
+
+  const auto put = [&](const Four<W>& columns, double* const* rows, int at) {
+    each_row<W>(columns, [&](int k, const Lanes<4>& row) {
+      if (k < left) store<4>(row, rows[k] + at);
+    });
+  };
+  put({position.x, position.y, position.z, velocity.x}, bodies, 0);
+  put({velocity.y, velocity.z, spin.x, spin.y}, bodies, 4);
+  for (int k = 0; k < W && k < left; ++k) bodies[k][8] = spin.z[k];
+  put({rotation.v.x, rotation.v.y, rotation.v.z, rotation.w}, memories, 0);
+  put({acceleration.x, acceleration.y, acceleration.z, torque.x}, memories, 4);
+  each_pair<W>(torque.y, torque.z, [&](int k, const Lanes<2>& row) {
+    if (k < left) store<2>(row, memories[k] + 8);
+  });
+  for (int k = 0; k < W && k < left; ++k) {
+    store<4>(Lanes<4>{}, sums[k]);
+    store<2>(Lanes<2>{}, sums[k] + 4);
+  }
+  bool left_margin = false;
+  for (int k = 0; k < W && k < left; ++k) left_margin |= stays[k] == 0;
+  return left_margin;
+}
+
+}  // namespace
+
+template <int W>
+bool round_steps_of(const RoundStep& step, const RoundRows& rows, const int* list, int count) {
+  bool moved = false;
+  for (int at = 0; at < count; at += W) moved |= step_on<W>(step, rows, list + at, count - at);
+  return moved;
+}
+template bool round_steps_of<GRAINFIELD_LANES>(const RoundStep& step, const RoundRows& rows,
+                                               const int* list, int count);
+
+}  // namespace grainfield::dem

@@ -1,0 +1,120 @@
+// Rows of numbers in memory, one for each lane, as columns of lanes, and back (lanes.h).
+#pragma once
+#include "dem/space/lanes.h"
+
+namespace grainfield::dem {
+
+/// Four columns.
+template <int W>
+struct Four {
+  Lanes<W> a, b, c, d;
+};
+
+namespace lane_rows {
+
+// Of blocks of four rows by four columns; of eight lanes two blocks side by side, rows 0 to 3 and
+// 4 to 7. Its own inverse.
+template <int W>
+[[gnu::always_inline]] inline Four<W> turned_about(const Four<W>& x) {
+  if constexpr (W == 4) {
+    const auto t0 = __builtin_shufflevector(x.a, x.b, 0, 4, 2, 6);
+    const auto t1 = __builtin_shufflevector(x.a, x.b, 1, 5, 3, 7);
+    const auto t2 = __builtin_shufflevector(x.c, x.d, 0, 4, 2, 6);
+    const auto t3 = __builtin_shufflevector(x.c, x.d, 1, 5, 3, 7);
+    return {
+        __builtin_shufflevector(t0, t2, 0, 1, 4, 5), __builtin_shufflevector(t1, t3, 0, 1, 4, 5),
+        __builtin_shufflevector(t0, t2, 2, 3, 6, 7), __builtin_shufflevector(t1, t3, 2, 3, 6, 7)};
+  } else {
+    const auto t0 = __builtin_shufflevector(x.a, x.b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto t1 = __builtin_shufflevector(x.a, x.b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto t2 = __builtin_shufflevector(x.c, x.d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto t3 = __builtin_shufflevector(x.c, x.d, 1, 9, 3, 11, 5, 13, 7, 15);
+    return {__builtin_shufflevector(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15),
+            __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15)};
+  }
+}
+template <class Row>
+[[gnu::always_inline]] inline Lanes<8> two_rows(Row* const* rows, int k, int at) {
+  return __builtin_shufflevector(loaded<4>(rows[k] + at), loaded<4>(rows[k + 4] + at), 0, 1, 2, 3,
+                                 4, 5, 6, 7);
+}
+
+}  // namespace lane_rows
+
+/// Numbers at to at + 3 of each row.
+template <int W, class Row>
+[[gnu::always_inline]] inline Four<W> four_of(Row* const* rows, int at) {
+  using namespace lane_rows;
+  if constexpr (W == 2) {
+    const auto a = loaded<2>(rows[0] + at), b = loaded<2>(rows[1] + at);
+    const auto c = loaded<2>(rows[0] + at + 2), d = loaded<2>(rows[1] + at + 2);
+    return {__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3),
+            __builtin_shufflevector(c, d, 0, 2), __builtin_shufflevector(c, d, 1, 3)};
+  } else if constexpr (W == 4) {
+    return turned_about<4>({loaded<4>(rows[0] + at), loaded<4>(rows[1] + at),
+                            loaded<4>(rows[2] + at), loaded<4>(rows[3] + at)});
+  } else {
+    return turned_about<8>({two_rows(rows, 0, at), two_rows(rows, 1, at), two_rows(rows, 2, at),
+                            two_rows(rows, 3, at)});
+  }
+}
+
+/// The rows of four columns: give(k, row of lane k), one lane after the other.
+template <int W, class Give>
+[[gnu::always_inline]] inline void each_row(const Four<W>& columns, Give give) {
+  const auto join = [](const Lanes<2>& first, const Lanes<2>& second) {
+    return __builtin_shufflevector(first, second, 0, 1, 2, 3);
+  };
+  if constexpr (W == 2) {
+    give(0, join(__builtin_shufflevector(columns.a, columns.b, 0, 2),
+                 __builtin_shufflevector(columns.c, columns.d, 0, 2)));
+    give(1, join(__builtin_shufflevector(columns.a, columns.b, 1, 3),
+                 __builtin_shufflevector(columns.c, columns.d, 1, 3)));
+  } else {
+    const Four<W> rows = lane_rows::turned_about<W>(columns);
+    const auto first = [](const Lanes<W>& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); };
+    give(0, first(rows.a));
+    give(1, first(rows.b));
+    give(2, first(rows.c));
+    give(3, first(rows.d));
+    if constexpr (W == 8) {
+      const auto second = [](const Lanes<8>& x) {
+        return __builtin_shufflevector(x, x, 4, 5, 6, 7);
+      };
+      give(4, second(rows.a));
+      give(5, second(rows.b));
+      give(6, second(rows.c));
+      give(7, second(rows.d));
+    }
+  }
+}
+/// The same of two columns.
+template <int W, class Give>
+[[gnu::always_inline]] inline void each_pair(const Lanes<W>& a, const Lanes<W>& b, Give give) {
+  if constexpr (W == 2) {
+    give(0, __builtin_shufflevector(a, b, 0, 2));
+    give(1, __builtin_shufflevector(a, b, 1, 3));
+  } else if constexpr (W == 4) {
+    const auto even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    const auto odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    give(0, __builtin_shufflevector(even, even, 0, 1));
+    give(1, __builtin_shufflevector(odd, odd, 0, 1));
+    give(2, __builtin_shufflevector(even, even, 2, 3));
+    give(3, __builtin_shufflevector(odd, odd, 2, 3));
+  } else {
+    const auto even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    give(0, __builtin_shufflevector(even, even, 0, 1));
+    give(1, __builtin_shufflevector(odd, odd, 0, 1));
+    give(2, __builtin_shufflevector(even, even, 2, 3));
+    give(3, __builtin_shufflevector(odd, odd, 2, 3));
+    give(4, __builtin_shufflevector(even, even, 4, 5));
+    give(5, __builtin_shufflevector(odd, odd, 4, 5));
+    give(6, __builtin_shufflevector(even, even, 6, 7));
+    give(7, __builtin_shufflevector(odd, odd, 6, 7));
+  }
+}
+
+}  // namespace grainfield::dem
