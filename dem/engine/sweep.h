@@ -223,16 +223,13 @@ class Sweep {
   }
   SphereRows sphere_rows() {
     using Pair = typename World::Pair;
-    SphereRows rows;
-    rows.bodies = world_.grains.bodies.data()->position.data();
-    rows.body_size = sizeof(Body) / sizeof(double);
-    rows.pairs = reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]);
-    rows.pair_size = sizeof(Pair);
-    rows.second = offsetof(Pair, j);
-    rows.sums = sums_.data()->force.data();
-    rows.sum_size = sizeof(Sum) / sizeof(double);
-    rows.ahead = kAhead;
-    return rows;
+    constexpr SphereLawKind kind = World::Law::sphere_kind;
+    static_assert(sizeof(Body) == kSphereBody * sizeof(double));
+    static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
+    static_assert(sizeof(Pair) == pair_size(kind) && offsetof(Pair, j) == second_in_pair(kind));
+    return {world_.grains.bodies.data()->position.data(),
+            reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]),
+            sums_.data()->force.data()};
   }
   /// The motion of rows [from, to), whose sums are complete.
   template <bool in_cell>

@@ -51,9 +51,9 @@ inline double capped(double value, double limit) {
 }
 template <class Derived>
 typename Derived::PlainObject capped(const Eigen::MatrixBase<Derived>& value, double limit) {
-  const double size = value.norm();
-  if (!(size > limit)) return value;
-  return (limit / size) * value;
+  const double square = value.squaredNorm();
+  if (!(square > limit * limit)) return value;
+  return (limit / std::sqrt(square)) * value;
 }
 
 /// Cundall-Strack friction. The spring (the contact's memory, in N, as a force on i) advances by

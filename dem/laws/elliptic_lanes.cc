@@ -13,8 +13,10 @@ constexpr double kMostTurnSquared = 1e-2;
 /// As capped (contact.h).
 template <int W>
 [[gnu::always_inline]] inline Three<W> capped(const Three<W>& v, const Lanes<W>& limit) {
-  const Lanes<W> size = root_of<W>(dot<W>(v, v));
-  return chosen<W>(size > limit, scaled<W>(limit / size, v), v);
+  const Lanes<W> square = dot<W>(v, v);
+  const auto slides = square > limit * limit;
+  if (!any_of(slides)) return v;
+  return chosen<W>(slides, scaled<W>(limit / root_of<W>(square), v), v);
 }
 
 /// As turned_by and turn_with_material.

@@ -111,9 +111,10 @@ struct HertzLaw {
   }
 
   /// The same for spheres side by side.
+  static constexpr SphereLawKind sphere_kind = SphereLawKind::hertz;
   SphereNumbers sphere_numbers(double mu, double dt) const {
     const double twice = 2 * damping;
-    return {SphereLawKind::hertz,
+    return {sphere_kind,
             2 * effective_young(),
             8 * effective_shear(),
             viscoelastic ? normal_damping : twice,

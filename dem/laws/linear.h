@@ -51,8 +51,9 @@ struct LinearLaw {
   }
 
   /// The same for spheres side by side.
+  static constexpr SphereLawKind sphere_kind = SphereLawKind::linear;
   SphereNumbers sphere_numbers(double mu, double dt) const {
-    return {SphereLawKind::linear,
+    return {sphere_kind,
             normal_stiffness,
             tangential_stiffness_,
             normal_damping,

@@ -22,17 +22,19 @@ struct SphereNumbers {
   double friction = 0, dt = 0;  ///< dt > 0, s
 };
 
-/// Where the engine has what is read and written: rows of numbers of one size each. A body is a
-/// Body<3>; a pair begins with the law's memory, of which HertzMemory<3> has four numbers and
-/// SpringMemory<3> three (the next eight bytes are carried along unread); a sum is a ForceSum<3>.
+/// What the kernel expects of the engine's rows. Numbers of a Body<3> and of a ForceSum<3>; a pair
+/// of which the first bytes are the law's memory (HertzMemory<3> four numbers, SpringMemory<3>
+/// three, of which the next eight bytes are carried along unread) and then the second grain's
+/// index, an int; what will be read is asked for so many pairs ahead.
+inline constexpr int kSphereBody = 12, kSphereSum = 8, kPairsAhead = 16;
+constexpr int second_in_pair(SphereLawKind kind) { return kind == SphereLawKind::hertz ? 32 : 24; }
+constexpr int pair_size(SphereLawKind kind) { return second_in_pair(kind) + 8; }
+
+/// Where the engine has what is read and written.
 struct SphereRows {
   const double* bodies = nullptr;
-  int body_size = 0;  ///< numbers
   unsigned char* pairs = nullptr;
-  int pair_size = 0, second = 0;  ///< bytes; where in a pair the second grain's index (int) is
   double* sums = nullptr;
-  int sum_size = 0;  ///< numbers
-  int ahead = 0;     ///< so many pairs on, what will be read is asked for
 };
 
 /// Pairs first, first + 1, ..., with the first grain of each.
@@ -42,7 +44,7 @@ struct SphereBatch {
 };
 
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
-/// on W. Behind the last pair there must be `ahead` idle ones.
+/// on W. Behind the last pair there must be kPairsAhead idle ones.
 template <int W>
 void sphere_forces_of(const SphereNumbers& law, const SphereRows& rows, const SphereBatch& batch);
 inline void sphere_forces(const SphereNumbers& law, const SphereRows& rows,

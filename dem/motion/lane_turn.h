@@ -86,12 +86,15 @@ template <int W>
 }
 
 template <int W>
-[[gnu::always_inline]] inline Turn<W> normalized(const Turn<W>& q) {
-  using V = Lanes<W>;
+[[gnu::always_inline]] inline Lanes<W> squared(const Turn<W>& q) {
   const Three<W>& v = q.v;
-  const V square = (v.x * v.x + v.y * v.y) + (v.z * v.z + q.w * q.w);
-  const V size = square > 0 ? root_of<W>(square) : V{} + 1;
-  return {q.w / size, {v.x / size, v.y / size, v.z / size}};
+  return (v.x * v.x + v.y * v.y) + (v.z * v.z + q.w * q.w);
+}
+template <int W>
+[[gnu::always_inline]] inline Turn<W> normalized(const Turn<W>& q) {
+  const Lanes<W> square = squared<W>(q);
+  const Lanes<W> size = square > 0 ? root_of<W>(square) : Lanes<W>{} + 1;
+  return {q.w / size, {q.v.x / size, q.v.y / size, q.v.z / size}};
 }
 
 }  // namespace grainfield::dem

@@ -56,7 +56,9 @@ template <int W>
   const Three<W> position = before + scaled<W>(none + step.dt, velocity);
   spin = spin + scaled<W>(turning, torque);
   const Turn<W> by = turn_by<W>(scaled<W>(none + step.dt, spin));
-  const Turn<W> rotation = normalized<W>(product<W>(by, Turn<W>{turn.d, {turn.a, turn.b, turn.c}}));
+  Turn<W> rotation = product<W>(by, Turn<W>{turn.d, {turn.a, turn.b, turn.c}});
+  const V share = 1.5 - 0.5 * squared<W>(rotation);
+  rotation = {share * rotation.w, scaled<W>(share, rotation.v)};
 
   // Margin::is_left.
   const Four<W> centre = four_of<W>(margins, 0);

@@ -52,10 +52,12 @@ class VerletIntegrator<3> {
     if (is_round(inertia)) {
       b.spin += (0.5 * dt_ * b.inverse_inertia) * m.torque;
       m.rotation = quaternion_of(dt_ * b.spin) * m.rotation;
+      // It is off 1 by round-off alone, of which one Newton step leaves nothing.
+      m.rotation.coeffs() *= 1.5 - 0.5 * m.rotation.squaredNorm();
     } else {
       drift(b, m, inertia);
+      m.rotation.normalize();
     }
-    m.rotation.normalize();
   }
   /// begin of several bodies: body(k), memory(k) and inertia(k) are those of the k-th. Bit by bit
   /// as one by one.

@@ -44,14 +44,14 @@ class SphereStore {
     const Eigen::Vector3d across = b.position - a.position;
     const double squared = across.squaredNorm(), reach = a.radius + b.radius;
     if (squared >= reach * reach) return false;
-    const double distance = std::sqrt(squared);
+    const double distance = std::sqrt(squared), inverse = 1 / distance;
     o.depth = reach - distance;
-    o.normal = distance > 0 ? Eigen::Vector3d(across / distance) : Eigen::Vector3d::UnitX();
+    o.normal = distance > 0 ? Eigen::Vector3d(inverse * across) : Eigen::Vector3d::UnitX();
     o.radius = a.radius * b.radius / reach;
     double arm_i = 0;  // from a, along the normal
     if (distance > std::fabs(a.radius - b.radius)) {
       // Without cancellation, as of two disks: r_i - arm_i = depth (2 r_j - depth) / (2 d).
-      arm_i = a.radius - o.depth * (2 * b.radius - o.depth) / (2 * distance);
+      arm_i = a.radius - o.depth * (2 * b.radius - o.depth) * (0.5 * inverse);
     } else if (a.radius > b.radius) {
       arm_i = distance;
     }

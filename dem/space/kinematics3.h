@@ -44,12 +44,12 @@ inline Eigen::Vector3d tangential_of(const Eigen::Vector3d& force, const Overlap
 /// its size kept, and by `twist` (rad) about it.
 inline void turn_with_contact(Eigen::Vector3d& spring, const Eigen::Vector3d& normal, double twist,
                               const Overlap3& /*o*/) {
-  const double size = spring.norm();
-  if (!(size > 0)) return;
+  const double before = spring.squaredNorm();
+  if (!(before > 0)) return;
   spring -= spring.dot(normal) * normal;
   spring += twist * normal.cross(spring);
-  const double now = spring.norm();
-  if (now > 0) spring *= size / now;
+  const double now = spring.squaredNorm();
+  if (now > 0) spring *= std::sqrt(before / now);
 }
 
 /// v turned by `turn` (rad, its direction the axis).

@@ -72,6 +72,12 @@ template <int W>
 }
 template <class M>
 [[gnu::always_inline]] inline bool any_of(const M& mask) {
+#if defined(__AVX512DQ__)
+  if constexpr (sizeof(M) == 64) return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) != 0;
+#endif
+#if defined(__AVX__)
+  if constexpr (sizeof(M) == 32) return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+#endif
   std::int64_t any = 0;
   for (unsigned k = 0; k < sizeof(M) / 8; ++k) any |= mask[k];
   return any != 0;
