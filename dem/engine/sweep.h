@@ -105,7 +105,7 @@ class Sweep {
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
     if constexpr (in_lanes) sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
-      if (!aside_ && world_.acting.kinds() == 1 && lane_width() > 2) {
+      if (!books_ && world_.acting.kinds() == 1 && lane_width() > 2) {
         if (world_.cell.is_periodic()) {
           sweep_rows<true>(rank, applied, dt);
         } else {
@@ -183,12 +183,15 @@ class Sweep {
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     const auto& rule = world_.acting.rule(0, 0);
     const SphereNumbers numbers = rule.law.sphere_numbers(rule.friction, dt);
+    const auto& r = rule.rolling;
+    const RollingNumbers rolling{r.stiffness,          r.damping,          r.friction,
+                                 r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
     const SphereRows rows = sphere_rows();
     Begins begins;
     SphereBatch batch;
     int done = first;
     const auto evaluate = [&] {
-      if (batch.count > 0) sphere_forces(numbers, rows, batch);
+      if (batch.count > 0) sphere_forces(numbers, rolling, rows, batch);
       batch.count = 0;
     };
     for (int i = first; i < last; ++i) {
@@ -226,10 +229,11 @@ class Sweep {
     constexpr SphereLawKind kind = World::Law::sphere_kind;
     static_assert(sizeof(Body) == kSphereBody * sizeof(double));
     static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
+    static_assert(sizeof(RollingMemory<dim>) == 4 * sizeof(double));
     static_assert(sizeof(Pair) == pair_size(kind) && offsetof(Pair, j) == second_in_pair(kind));
     return {world_.grains.bodies.data()->position.data(),
-            reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]),
-            sums_.data()->force.data()};
+            reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]), sums_.data()->force.data(),
+            rolls_ ? world_.rolling.pairs.data()->roll.data() : nullptr};
   }
   /// The motion of rows [from, to), whose sums are complete.
   template <bool in_cell>

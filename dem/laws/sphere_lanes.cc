@@ -33,13 +33,17 @@ template <int W>
 struct alignas(64) Passed {
   double normal[3][kBatch], slip[3][kBatch];
   double approach[kBatch], depth[kBatch], inverse_mass[kBatch];
-  double twist[kBatch];                       ///< rad, about the normal
-  double wide[kBatch];                        ///< of Hertz' law: the contact's radius, m
-  double lever_i[kBatch], lever_j[kBatch];    ///< of the contact point along the normal, m
-  double apart[kBatch];                       ///< not 0: the two do not touch
+  double twist[kBatch];                     ///< rad, about the normal
+  double wide[kBatch];                      ///< of Hertz' law: the contact's radius, m
+  double lever_i[kBatch], lever_j[kBatch];  ///< of the contact point along the normal, m
+  double apart[kBatch];                     ///< not 0: the two do not touch
   double spring[3][kBatch], remembered[kBatch];
   double force[3][kBatch], tangential[3][kBatch];  ///< N
   double *sum_i[kBatch], *sum_j[kBatch], *memory[kBatch];
+  // With resistance against rolling:
+  double turning[3][kBatch], radius[kBatch];  ///< w_i - w_j, rad/s; R_eff, m
+  double moment[3][kBatch];                   ///< on i, N m
+  double *rolling[kBatch], roll[3][kBatch], roll_twist[kBatch];
 };
 
 /// As capped (contact.h). Seldom does any of W contacts slide.
@@ -50,6 +54,68 @@ template <int W, class M>
   const auto slides = (square > limit * limit) & ~apart;
   if (!any_of(slides)) return v;
   return chosen<W>(slides, scaled<W>(limit / root_of<W>(square), v), v);
+}
+
+/// turn_with_contact.
+template <int W>
+[[gnu::always_inline]] inline Three<W> turned(const Three<W>& old, const Three<W>& normal,
+                                              const Lanes<W>& twist) {
+  const Lanes<W> before = dot<W>(old, old);
+  Three<W> spring = old - scaled<W>(dot<W>(old, normal), normal);
+  spring = spring + scaled<W>(twist, cross<W>(normal, spring));
+  const Lanes<W> now = dot<W>(spring, spring);
+  spring = chosen<W>(now > 0, scaled<W>(root_of<W>(before / now), spring), spring);
+  return chosen<W>(before > 0, spring, old);
+}
+
+/// friction_force of vectors: the force, and the spring as it is then.
+template <int W, class M>
+[[gnu::always_inline]] inline Three<W> slid(const Lanes<W>& limit, const Lanes<W>& stiffness,
+                                            const Lanes<W>& viscosity, const Three<W>& slip,
+                                            double dt, const M& apart, Three<W>& spring) {
+  const Three<W> viscous = scaled<W>(-viscosity, slip);
+  const Three<W> advance = scaled<W>(stiffness, slip);
+  const Three<W> trial{spring.x - advance.x * dt, spring.y - advance.y * dt,
+                       spring.z - advance.z * dt};
+  const Three<W> sum = trial + viscous;
+  const Three<W> force = capped<W>(sum, limit, apart);
+  const auto all = (force.x == sum.x) & (force.y == sum.y) & (force.z == sum.z);
+  spring = capped<W>(chosen<W>(all, trial, force - viscous), limit, apart);
+  return force;
+}
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> within(const Lanes<W>& value, const Lanes<W>& limit) {
+  const Lanes<W> above = value < -limit ? -limit : value;
+  return limit < above ? limit : above;
+}
+
+/// RollingLaw::moment.
+template <int W>
+[[gnu::always_inline]] inline void roll(const RollingNumbers& law, double dt, int at,
+                                        const Three<W>& normal, const Three<W>& force, Passed& c) {
+  using V = Lanes<W>;
+  const V none{}, repulsion = -dot<W>(force, normal);
+  const auto apart = loaded<W>(c.apart + at) != 0;
+  const Three<W> turning = three<W>(c.turning, at), zero{none, none, none};
+  const V radius = loaded<W>(c.radius + at);
+  const Four<W> memory = four_of<W>(c.rolling + at, 0);
+  Three<W> spring = turned<W>({memory.a, memory.b, memory.c}, normal, loaded<W>(c.twist + at));
+  const Three<W> rolling = scaled<W>(radius, cross<W>(turning, normal));
+  const Three<W> held = slid<W>(law.friction * repulsion, none + law.stiffness, none + law.damping,
+                                rolling, dt, apart, spring);
+  if (!(law.stiffness > 0)) spring = zero;
+
+  const V rate = dot<W>(turning, normal), limit = law.twisting_friction * repulsion;
+  const V viscous = -law.twisting_damping * rate;
+  const V trial = memory.d - law.twisting_stiffness * rate * dt, sum = trial + viscous;
+  const V twisted = within<W>(sum, limit);
+  V twist = within<W>(twisted == sum ? trial : twisted - viscous, limit);
+  if (!(law.twisting_stiffness > 0)) twist = none;
+
+  const Three<W> moment = scaled<W>(radius, cross<W>(normal, held)) + scaled<W>(twisted, normal);
+  put<W>(chosen<W>(apart, zero, moment), c.moment, at);
+  put<W>(chosen<W>(apart, zero, spring), c.roll, at);
+  store<W>(apart ? none : twist, c.roll_twist + at);
 }
 
 /// SphereStore::overlap and motion_at. Lanes beyond the batch do the first one's work again.
@@ -73,6 +139,9 @@ template <int W, SphereLawKind kind>
     body_j[k] = rows.bodies + std::ptrdiff_t{j} * kSphereBody;
     to.sum_j[at + k] = rows.sums + std::ptrdiff_t{j} * kSphereSum;
     const double* const ahead = rows.bodies + std::ptrdiff_t{later} * kSphereBody;
+    if (rows.rolling != nullptr) {
+      to.rolling[at + k] = rows.rolling + std::ptrdiff_t{batch.first + slot} * 4;
+    }
     __builtin_prefetch(ahead);
     __builtin_prefetch(ahead + 8);
     __builtin_prefetch(rows.sums + std::ptrdiff_t{later} * kSphereSum, 1);
@@ -102,42 +171,38 @@ template <int W, SphereLawKind kind>
   if constexpr (kind == SphereLawKind::hertz) {
     store<W>(root_of<W>(a.radius * b.radius / reach * depth), to.wide + at);
   }
+  if (rows.rolling != nullptr) {
+    put<W>(a.spin - b.spin, to.turning, at);
+    store<W>(a.radius * b.radius / reach, to.radius + at);
+  }
   store<W>(lever_i, to.lever_i + at);
   store<W>(lever_j, to.lever_j + at);
   store<W>(apart ? none + 1 : none, to.apart + at);
 }
 
-/// turn_with_contact, the law, friction_force and forces_at, of central contacts; 0 of pairs that do
-/// not touch.
-template <int W, SphereLawKind kind>
-[[gnu::always_inline]] inline void press(const SphereNumbers& law, int at, Passed& at_contact) {
+/// turn_with_contact, the law, friction_force and forces_at, of central contacts; 0 of pairs that
+/// do not touch.
+template <int W, SphereLawKind kind, bool rolls>
+[[gnu::always_inline]] inline void press(const SphereNumbers& law, const RollingNumbers& rolling,
+                                         int at, Passed& c) {
   using V = Lanes<W>;
   const V none{};
-  Passed& c = at_contact;
   const Four<W> memory = four_of<W>(c.memory + at, 0);
   const Three<W> normal = three<W>(c.normal, at), slip = three<W>(c.slip, at);
   const V approach = loaded<W>(c.approach + at), depth = loaded<W>(c.depth + at);
   const auto apart = loaded<W>(c.apart + at) != 0;
 
-  const Three<W> old{memory.a, memory.b, memory.c};
-  const V before = dot<W>(old, old);
-  Three<W> spring = old - scaled<W>(dot<W>(old, normal), normal);
-  spring = spring + scaled<W>(loaded<W>(c.twist + at), cross<W>(normal, spring));
-  const V now = dot<W>(spring, spring);
-  spring = chosen<W>(now > 0, scaled<W>(root_of<W>(before / now), spring), spring);
-  spring = chosen<W>(before > 0, spring, old);
-
+  Three<W> spring = turned<W>({memory.a, memory.b, memory.c}, normal, loaded<W>(c.twist + at));
   const V mass = 1 / loaded<W>(c.inverse_mass + at);
   V stiffness = none + law.tangential, along, pushed, remembered = memory.d;
   if constexpr (kind == SphereLawKind::hertz) {
     const V wide = loaded<W>(c.wide + at), kn = law.normal * wide;
     stiffness = law.tangential * wide;
-    const V across = law.viscoelastic ? law.across * wide * mass
-                                      : law.across * root_of<W>(kn * mass);
+    const V across =
+        law.viscoelastic ? law.across * wide * mass : law.across * root_of<W>(kn * mass);
     along = law.viscoelastic ? law.along * wide * mass : law.along * root_of<W>(stiffness * mass);
     pushed = kn * (2.0 / 3) * depth + across * approach;
-    const auto shrinks =
-        law.displacement ? (wide < memory.d) | (memory.d > 0) : wide < memory.d;
+    const auto shrinks = law.displacement ? (wide < memory.d) | (memory.d > 0) : wide < memory.d;
     spring = chosen<W>(shrinks, scaled<W>(wide / memory.d, spring), spring);
     remembered = apart ? none : wide;
   } else if constexpr (kind == SphereLawKind::linear) {
@@ -149,33 +214,35 @@ template <int W, SphereLawKind kind>
   }
   const V repulsion = pushed < 0 ? none : pushed;
 
-  const V limit = law.friction * repulsion;
-  const Three<W> viscous = scaled<W>(-along, slip);
-  const Three<W> advance = scaled<W>(stiffness, slip);
-  const Three<W> trial{spring.x - advance.x * law.dt, spring.y - advance.y * law.dt,
-                       spring.z - advance.z * law.dt};
-  const Three<W> sum = trial + viscous;
-  const Three<W> tangential = capped<W>(sum, limit, apart);
-  const auto all = (tangential.x == sum.x) & (tangential.y == sum.y) & (tangential.z == sum.z);
-  spring = capped<W>(chosen<W>(all, trial, tangential - viscous), limit, apart);
+  const Three<W> tangential =
+      slid<W>(law.friction * repulsion, stiffness, along, slip, law.dt, apart, spring);
 
   const Three<W> zero{none, none, none};
-  put<W>(chosen<W>(apart, zero, tangential - scaled<W>(repulsion, normal)), c.force, at);
+  const Three<W> force = tangential - scaled<W>(repulsion, normal);
+  put<W>(chosen<W>(apart, zero, force), c.force, at);
   put<W>(chosen<W>(apart, zero, tangential), c.tangential, at);
   put<W>(chosen<W>(apart, zero, spring), c.spring, at);
   store<W>(remembered, c.remembered + at);
+  if constexpr (rolls) roll<W>(rolling, law.dt, at, normal, force, c);
 }
 
 /// To the memories and sums.
-template <int W>
+template <int W, bool rolls>
 [[gnu::always_inline]] inline void give(const SphereBatch& batch, int at, const Passed& c) {
   const int left = batch.count - at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
   const Three<W> tangential = three<W>(c.tangential, at), spring = three<W>(c.spring, at);
-  const Three<W> torque_i =
-      cross<W>(scaled<W>(loaded<W>(c.lever_i + at), normal), tangential);
-  const Three<W> torque_j =
-      -cross<W>(scaled<W>(loaded<W>(c.lever_j + at), normal), tangential);
+  Three<W> torque_i = cross<W>(scaled<W>(loaded<W>(c.lever_i + at), normal), tangential);
+  Three<W> torque_j = -cross<W>(scaled<W>(loaded<W>(c.lever_j + at), normal), tangential);
+  if constexpr (rolls) {
+    const Three<W> moment = three<W>(c.moment, at), spring_roll = three<W>(c.roll, at);
+    torque_i = torque_i + moment;
+    torque_j = torque_j - moment;
+    each_row<W>({spring_roll.x, spring_roll.y, spring_roll.z, loaded<W>(c.roll_twist + at)},
+                [&](int k, const Lanes<4>& row) {
+                  if (k < left) store<4>(row, c.rolling[at + k]);
+                });
+  }
   each_row<W>({spring.x, spring.y, spring.z, loaded<W>(c.remembered + at)},
               [&](int k, const Lanes<4>& row) {
                 if (k < left) store<4>(row, c.memory[at + k]);
@@ -194,29 +261,37 @@ template <int W>
   add(force, torque_i, c.sum_i + at);
 }
 
-template <int W, SphereLawKind kind>
-[[gnu::always_inline]] inline void forces(const SphereNumbers& law, const SphereRows& rows,
-                                          const SphereBatch& batch) {
+template <int W, SphereLawKind kind, bool rolls>
+[[gnu::always_inline]] inline void forces(const SphereNumbers& law, const RollingNumbers& rolling,
+                                          const SphereRows& rows, const SphereBatch& batch) {
   Passed passed;
   for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
-  for (int at = 0; at < batch.count; at += W) press<W, kind>(law, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W>(batch, at, passed);
+  for (int at = 0; at < batch.count; at += W) press<W, kind, rolls>(law, rolling, at, passed);
+  for (int at = 0; at < batch.count; at += W) give<W, rolls>(batch, at, passed);
+}
+template <int W, SphereLawKind kind>
+void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,
+            const SphereBatch& batch) {
+  if (rows.rolling != nullptr) return forces<W, kind, true>(law, rolling, rows, batch);
+  forces<W, kind, false>(law, rolling, rows, batch);
 }
 
 }  // namespace
 
 template <int W>
-void sphere_forces_of(const SphereNumbers& law, const SphereRows& rows, const SphereBatch& batch) {
+void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
+                      const SphereRows& rows, const SphereBatch& batch) {
   switch (law.kind) {
     case SphereLawKind::hertz:
-      return forces<W, SphereLawKind::hertz>(law, rows, batch);
+      return forces<W, SphereLawKind::hertz>(law, rolling, rows, batch);
     case SphereLawKind::linear:
-      return forces<W, SphereLawKind::linear>(law, rows, batch);
+      return forces<W, SphereLawKind::linear>(law, rolling, rows, batch);
     case SphereLawKind::penalty:
-      return forces<W, SphereLawKind::penalty>(law, rows, batch);
+      return forces<W, SphereLawKind::penalty>(law, rolling, rows, batch);
   }
 }
-template void sphere_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law, const SphereRows& rows,
-                                                 const SphereBatch& batch);
+template void sphere_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law,
+                                                 const RollingNumbers& rolling,
+                                                 const SphereRows& rows, const SphereBatch& batch);
 
 }  // namespace grainfield::dem

@@ -1,5 +1,6 @@
 // Pairs of spheres side by side, from the bodies to their sums of forces: overlap, motion, law,
-// friction, operation by operation what is done for one (sphere_store.h, kinematics3.h, contact.h).
+// friction, resistance against rolling, operation by operation what is done for one
+// (sphere_store.h, kinematics3.h, contact.h, rolling.h).
 //
 // Bodies, memories and sums are read and written where the engine has them, so that nothing is
 // copied to a list first: W pairs are gathered by turning W rows of memory into columns.
@@ -22,6 +23,12 @@ struct SphereNumbers {
   double friction = 0, dt = 0;  ///< dt > 0, s
 };
 
+/// Resistance against rolling and twisting, as RollingLaw (rolling.h) has it.
+struct RollingNumbers {
+  double stiffness = 0, damping = 0, friction = 0;
+  double twisting_stiffness = 0, twisting_damping = 0, twisting_friction = 0;
+};
+
 /// What the kernel expects of the engine's rows. Numbers of a Body<3> and of a ForceSum<3>; a pair
 /// of which the first bytes are the law's memory (HertzMemory<3> four numbers, SpringMemory<3>
 /// three, of which the next eight bytes are carried along unread) and then the second grain's
@@ -35,6 +42,7 @@ struct SphereRows {
   const double* bodies = nullptr;
   unsigned char* pairs = nullptr;
   double* sums = nullptr;
+  double* rolling = nullptr;  ///< by pair, RollingMemory<3>: four numbers; null: no resistance
 };
 
 /// Pairs first, first + 1, ..., with the first grain of each.
@@ -46,10 +54,11 @@ struct SphereBatch {
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
 /// on W. Behind the last pair there must be kPairsAhead idle ones.
 template <int W>
-void sphere_forces_of(const SphereNumbers& law, const SphereRows& rows, const SphereBatch& batch);
-inline void sphere_forces(const SphereNumbers& law, const SphereRows& rows,
-                          const SphereBatch& batch) {
-  with_lanes([&](auto width) { sphere_forces_of<width()>(law, rows, batch); });
+void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
+                      const SphereRows& rows, const SphereBatch& batch);
+inline void sphere_forces(const SphereNumbers& law, const RollingNumbers& rolling,
+                          const SphereRows& rows, const SphereBatch& batch) {
+  with_lanes([&](auto width) { sphere_forces_of<width()>(law, rolling, rows, batch); });
 }
 
 }  // namespace grainfield::dem
