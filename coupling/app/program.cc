@@ -39,6 +39,7 @@ int parse_and_act(int argc, char** argv) {
   add_compare(app, action);
   add_fit(app, action);
   add_import(app, action);
+  add_import_field(app, action);
   add_export(app, action);
   add_reproduce(app, action);
   add_strain(app, action);

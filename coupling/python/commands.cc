@@ -1,6 +1,7 @@
 // average, strain, structure, model, fit, compare and run: what the commands of these names do.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -13,6 +14,7 @@
 #include "coupling/case/shipped_cases.h"
 #include "coupling/files/compare_field.h"
 #include "coupling/files/fit_files.h"
+#include "coupling/files/measured_field.h"
 #include "coupling/files/places.h"
 #include "coupling/files/strain_files.h"
 #include "coupling/models/parse_choices.h"
@@ -58,6 +60,7 @@ struct AverageOutcome {
   NamedHeld fields;
   std::vector<std::string> warnings;
   std::string gaps;
+  double seconds = 0;  ///< wall time of average_files
 };
 
 AverageOutcome average(const std::vector<Source>& sources, const std::vector<Source>& unloaded,
@@ -107,7 +110,9 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
     require_columns(request.points, rings ? 2 : first->dim,
                     rings ? "radius and height" : fmt::format("the packing is {}D", first->dim));
   }
+  const auto start = std::chrono::steady_clock::now();
   coupling::NamedFields fields = coupling::average_files(std::move(request), &gaps, &out.warnings);
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   out.gaps = gaps.text(fields.front().second.points);
   for (auto& [name, field] : fields) out.fields.emplace_back(name, held(std::move(field)));
   return out;
@@ -320,6 +325,21 @@ py::dict compare(const std::string& file,
   return out;
 }
 
+HeldField import_field(const std::string& file, const std::string& geometry, int dim, double height,
+                       double left_deg, double right_deg, double rho_g, double load, double width) {
+  coupling::MeasuredRequest request;
+  request.file = file;
+  request.geometry = geometry;
+  request.dim = dim;
+  request.height = height;
+  request.left_deg = left_deg;
+  request.right_deg = right_deg;
+  request.rho_g = rho_g;
+  request.load = load;
+  request.width = width;
+  return held(coupling::measured_field(request));
+}
+
 py::dict progress_dict(const coupling::EnsembleProgress& p) {
   py::dict out;
   out["text"] = coupling::progress_text(p);
@@ -424,7 +444,8 @@ void add_commands(py::module_& module) {
   py::class_<AverageOutcome>(module, "AverageOutcome")
       .def_readonly("fields", &AverageOutcome::fields)
       .def_readonly("warnings", &AverageOutcome::warnings)
-      .def_readonly("gaps", &AverageOutcome::gaps);
+      .def_readonly("gaps", &AverageOutcome::gaps)
+      .def_readonly("seconds", &AverageOutcome::seconds);
   module.def("average", average, py::kw_only(), py::arg("sources"), py::arg("unloaded"),
              py::arg("points"), py::arg("grid"), py::arg("cuts"), py::arg("frame"),
              py::arg("method"), py::arg("kernel"), py::arg("width"), py::arg("free_surface"),
@@ -434,6 +455,9 @@ void add_commands(py::module_& module) {
              py::arg("points"), py::arg("grid"), py::arg("frame"), py::arg("measure"),
              py::arg("support"), py::arg("width"), py::arg("least_grains"), py::arg("threads"));
   module.def("structure", structure);
+  module.def("import_field", import_field);
+  module.def("name_of_measured",
+             [](const HeldField& field) { return coupling::name_of_measured(*field.field); });
   module.def("fit", fit, py::kw_only(), py::arg("files"), py::arg("packings"), py::arg("field"),
              py::arg("models"), py::arg("heights"), py::arg("components"),
              py::arg("width_diameters"), py::arg("case"), py::arg("sets"), py::arg("coverage"),

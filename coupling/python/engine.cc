@@ -114,6 +114,9 @@ class Engine {
   void hold_view() { ++views_; }
   void drop_view() { --views_; }
 
+  /// Wall time of steps so far, without Python's part.
+  double seconds() const { return seconds_; }
+
   // In slices, between which signals are looked at: the bits are those of one call.
   void step(long n) {
     require_idle();
@@ -130,6 +133,7 @@ class Engine {
       }
       left -= slice;
       const double took = std::chrono::duration<double>(Clock::now() - start).count();
+      seconds_ += took;
       if (took < kSliceSeconds / 2 && slice == slice_ && slice_ < (1L << 30)) slice_ *= 2;
       if (took > 2 * kSliceSeconds && slice_ > 1) slice_ /= 2;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -143,7 +147,7 @@ class Engine {
 
   std::unique_ptr<dem::Engine> engine_;
   int dim_ = 2;
-  double density_ = 0;
+  double density_ = 0, seconds_ = 0;
   std::int64_t all_ = 0;
   long slice_ = 64;
   std::atomic<int> views_ = 0;
@@ -354,6 +358,7 @@ void add_engine(py::module_& module) {
       .def_property_readonly("time", [](const Engine& e) { return e.state().time(); })
       .def_property_readonly("steps", [](const Engine& e) { return e.state().steps(); })
       .def_property_readonly("time_step", [](const Engine& e) { return e.state().time_step(); })
+      .def_property_readonly("seconds", &Engine::seconds)
       .def_property_readonly("grains", &Engine::all);
 }
 

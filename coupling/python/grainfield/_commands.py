@@ -127,6 +127,7 @@ def average(
     field = named.pop(next(iter(named)))
     field.beside = named
     field.warnings = out.warnings + ([out.gaps] if out.gaps else [])
+    field.seconds = out.seconds
     _warn(field.warnings)
     return field
 
@@ -256,6 +257,32 @@ def _choices(models: Any) -> list[str]:
     if isinstance(models, Mapping):
         return [f"{label}={text(value)}" for label, value in models.items()]
     return [text(value) for value in ([models] if isinstance(models, (str, Model)) else models)]
+
+
+def import_field(
+    file: str | os.PathLike,
+    *,
+    height: float,
+    geometry: str = "heap",
+    slope: float | tuple[float, float] | None = None,
+    rho_g: float | None = None,
+    load: float | None = None,
+    width: float = 0,
+    dim: int = 2,
+) -> Field:
+    """Stresses measured in a laboratory as a field (docs/import.md), as `grainfield import-field`.
+
+    file: CSV with columns x, component, value, error (and y, in 3D z, off the base), each number
+    with its unit in brackets. height: m, of the heap or layer. Of heaps slope, degrees, one or (left,
+    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. width: radius of the cells, m. Raises
+    ValueError.
+    """
+    nan = float("nan")
+    left, right = slope if isinstance(slope, tuple) else (slope, slope)
+    core = _core.import_field(
+        os.fspath(file), geometry, dim, float(height),
+        *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
+    return Field(core, name=_core.name_of_measured(core))
 
 
 class _Folder:

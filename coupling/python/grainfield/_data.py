@@ -236,6 +236,7 @@ class Field:
         self.beside: dict[str, Field] = {}
         #: what makes the values doubtful, a line each
         self.warnings: list[str] = []
+        self.seconds = 0.0  #: wall time that averaging it took, without Python's part
 
     @property
     def points(self) -> np.ndarray:

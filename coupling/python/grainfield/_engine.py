@@ -63,6 +63,11 @@ class Engine:
     def steps(self) -> int:
         return self._core.steps
 
+    @property
+    def seconds(self) -> float:
+        """Wall time of all steps, without Python's part, s"""
+        return self._core.seconds
+
     def __len__(self) -> int:
         return self._core.grains
 

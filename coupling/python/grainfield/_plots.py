@@ -110,7 +110,7 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None) -> Any:
     for model in models_in(profiles):
         ax.plot(x, profiles[model][here], "--", label=model)
     ax.set_title(profile)
-    ax.set_xlabel(f"x ({profiles.units["x"]})")
+    ax.set_xlabel(f"x ({profiles.units['x']})")
     ax.set_ylabel(profiles.units["simulation"])
     ax.legend()
     return ax
