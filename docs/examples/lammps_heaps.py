@@ -20,5 +20,5 @@ def heap(grains, contacts):
 
 heaps = [heap(*files) for files in zip(sys.argv[2::2], sys.argv[3::2])]
 stress = gf.average(heaps, frame="heap", cuts=[0.05, 0.2])
-fit = gf.fit(heaps, ["osl", "ife"], heights=[0.2])
+fit = gf.fit(heaps, ["osl", "bcc"], heights=[0.2])
 fit.plot().figure.savefig(sys.argv[1])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import grainfield as gf
-from scene import ETA, MU, RHO_G, SLOPE, error_of, heap, program, same
+from scene import ETA, MU, RHO_G, SLOPE, error_of, heap, program, python, same, same_summary
 
 HEAPS = [heap(seed) for seed in (1, 2, 3)]
 
@@ -49,9 +49,9 @@ def test_average_finds_the_stress_that_was_put_in():
     field = gf.average(HEAPS, frame="heap", points=there, width=0.015)
     stress = gf.model("osl", phi_deg=SLOPE, rho_g=RHO_G, eta=ETA, mu=MU)
     height = float(field.attributes["heap.h"].split(",")[0])
-    error = np.stack([field.error(name) for name in ("sigma_xx", "sigma_yy", "sigma_xy")], axis=1)
-    # The field is linear in between the apex' lines; the kernel's bias is below the noise.
-    assert (np.abs(field.stress - stress(there * height)) < 5 * error).all()
+    # The contacts' noise of 5 % (standard deviation), over some hundred of them.
+    np.testing.assert_allclose(field.stress, stress(there * height), atol=0.015 * RHO_G * height)
+    assert (field.error("sigma_yy") > 0).all()
 
 
 def loaded_pair():
@@ -71,8 +71,7 @@ def test_response(tmp_path):
     gf.write(tmp_path / "p.h5", {"a/unloaded": before, "a/loaded": after})
     program("average", tmp_path / "p.h5", "--response", "--grid", "7x5", "--least-grains", "1",
             "-o", tmp_path / "f.h5")
-    with pytest.warns(UserWarning):
-        here = gf.average(after, unloaded=before, grid=(7, 5), least_grains=1)
+    here = gf.average(after, unloaded=before, grid=(7, 5), least_grains=1)
     there = gf.read(tmp_path / "f.h5")
     same(here, there["response"])
     same(here.beside["base_response"], there["base_response"])
@@ -88,11 +87,7 @@ def test_strain_is_affine(file, tmp_path, measure):
     before = HEAPS[0]
     gradient = np.array([[1e-4, 3e-4], [-2e-4, -5e-4]])
     moved = before.positions + before.positions @ gradient.T
-    c = before.contacts
-    at_floor = c.pairs[:, 1] < 0
-    after = gf.packing(moved[:, 0], moved[:, 1], before.radii, mass=before.masses,
-                       contacts={"i": c.pairs[~at_floor, 0], "j": c.pairs[~at_floor, 1],
-                                 "forces": c.forces[~at_floor]})
+    after = gf.packing(moved[:, 0], moved[:, 1], before.radii, mass=before.masses, walls="floor:y=0")
     here = gf.strain(before, after, frame="packing", grid=(7, 4), measure=measure)
     got = np.isfinite(here.strain_xx)
     assert got.sum() > 5
@@ -142,7 +137,7 @@ def test_model(tmp_path):
 
 def test_finite_elements_are_loaded_by_the_module():
     points = [[0.0, -0.5], [0.4, -0.5]]
-    layer = gf.model("fe_elastic_layer", F=1, h=1, refinements=2)
+    layer = gf.model("fe_elastic_layer", F=1, h=1, tolerance=0.01)
     np.testing.assert_allclose(layer(points), gf.model("layer", F=1, h=1)(points), atol=0.02)
     assert layer.figures["unknowns"] > 100
     failed = ["fe_elastic_layer", "--set", "iterations=1"]
@@ -165,19 +160,17 @@ def summary_of(folder):
 
 
 def test_fit_gives_back_the_constants(file, tmp_path):
-    models = ["osl", "ife"]
+    models = ["osl", "bcc"]
     here = gf.fit(HEAPS, models, heights=[0.15, 0.3], set={"fit.bootstrap": 20})
-    program("fit", file, "--model", "osl", "--model", "ife", "--heights", "0.15,0.3", "--set",
+    program("fit", file, "--model", "osl", "--model", "bcc", "--heights", "0.15,0.3", "--set",
             "fit.bootstrap=20", "-o", tmp_path / "f")
-    there = summary_of(tmp_path / "f")
-    text = {key: value for key, value in there.items() if key not in ("case.hash",)}
-    for key, value in text.items():
-        ours = here.summary[key]
-        assert ours == value or (ours != ours and value == "nan"), key
+    # These name the packings.
+    same_summary(here.summary, summary_of(tmp_path / "f"), "case.hash", "fit.warnings")
     np.testing.assert_array_equal(here.profiles["osl"], gf.read(tmp_path / "f" / "profiles.csv")["osl"])
     for name, true in (("eta", ETA), ("mu", MU)):
         value, error = here.constants["osl"][name]
-        assert abs(value - true) < 4 * error, name
+        assert 0 < error < 0.01
+        assert abs(value - true) < 0.01, name  # 25 rows of grains: the steps of the surface count
     assert here.folder is None and "osl" in here.verdict.lower()
 
 
@@ -189,9 +182,7 @@ def test_compare(tmp_path):
             "-o", tmp_path / "c")
     there = summary_of(tmp_path / "c")
     for here in (gf.compare(field, models), gf.compare(tmp_path / "f.h5", models, folder=tmp_path / "d")):
-        for key, value in there.items():
-            ours = here.summary[key]
-            assert ours == value or (ours != ours and value == "nan"), key
+        same_summary(here.summary, there)
         assert here.measures["true"]["rel_l2"] < here.measures["other"]["rel_l2"]
         assert here.verdict == there["verdict.sentence"]
     assert (tmp_path / "d" / "report.html").exists()
@@ -224,5 +215,20 @@ def test_mistakes_have_the_words_of_the_program(file, tmp_path):
         "points: found 3 columns, allowed: 2 (the packing is 2D)")
     assert error_of(lambda: gf.model("flamant")([[0, 0, 0]])) == (
         "points: found 3 columns, allowed: 2 (flamant is 2D here)")
-    with pytest.raises(OSError):
+    with pytest.raises(ValueError, match="/proc/nowhere is not a folder"):
         gf.write("/proc/nowhere/p.h5", HEAPS[0])
+
+
+def test_a_full_disk_is_an_oserror(tmp_path):
+    done = python(f"""
+import resource
+import grainfield as gf
+packing = gf.packing([0.0] * 4000, [0.02 * k for k in range(4000)], 0.01, density=1)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+try:
+    gf.write({str(tmp_path / 'p.h5')!r}, packing)
+except OSError as error:
+    print(type(error).__name__, error)
+""")
+    assert done.stdout.startswith("OSError") and str(tmp_path) in done.stdout, done.stderr
+    assert not (tmp_path / "p.h5").exists()

@@ -32,7 +32,7 @@ def test_floor_carries_the_weight():
     down = packing.contacts.forces[packing.contacts.pairs[:, 1] < 0, 1].sum()
     check = packing.check()
     assert check["support_ratio"] == pytest.approx(down / (9.81 * packing.masses.sum()), rel=1e-12)
-    assert check["support_ratio"] == pytest.approx(1, abs=0.05)  # noise of 20 % on 150 contacts
+    assert check["support_ratio"] == pytest.approx(1, abs=0.03)  # noise of 5 % on 80 contacts, steps of the surface
 
 
 def test_arrays_are_views_that_keep_the_state():

@@ -4,10 +4,8 @@ import json
 import runpy
 import sys
 
-import numpy as np
-
 import grainfield as gf
-from scene import ROOT, import_dumps, program, same, write_dumps
+from scene import ETA, ROOT, import_dumps, program, same, same_summary, write_dumps
 
 SCRIPT = ROOT / "docs/examples/lammps_heaps.py"
 
@@ -20,14 +18,11 @@ def test_the_script_gives_what_the_commands_give(tmp_path, monkeypatch):
     import_dumps(tmp_path / "heaps.h5", files)
     program("average", tmp_path / "heaps.h5", "--frame", "heap", "--cuts", "0.05,0.2", "-o", tmp_path / "f.h5")
     same(made["stress"], gf.read(tmp_path / "f.h5"))
-    program("fit", tmp_path / "heaps.h5", "--model", "osl", "--model", "ife", "--heights", "0.2",
+    program("fit", tmp_path / "heaps.h5", "--model", "osl", "--model", "bcc", "--heights", "0.2",
             "-o", tmp_path / "fit")
     there = json.loads((tmp_path / "fit" / "summary.json").read_text())
-    for key, value in there.items():
-        ours = made["fit"].summary[key]
-        assert ours == value or (ours != ours and value == "nan") or key == "case.hash", key
-    eta, error = made["fit"].constants["osl"]["eta"]
-    assert abs(eta - 0.74) < 4 * error
+    same_summary(made["fit"].summary, there, "case.hash", "fit.warnings")  # these name the packings
+    assert abs(made["fit"].constants["osl"]["eta"][0] - ETA) < 0.01
 
 
 def test_the_script_is_short_and_stands_on_the_page():
