@@ -1,11 +1,12 @@
 // average, strain, structure, model, fit, compare and run: what the commands of these names do.
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -388,10 +389,11 @@ py::dict run(const std::string& case_name, const std::string& folder,
              const std::vector<std::string>& sets, bool quick, bool resume, int threads,
              double checkpoint_seconds, long stop_after_steps, const py::object& progress,
              const py::object& note) {
-  static std::mutex one_run;  // signals and progress are the process's
-  const std::unique_lock alone(one_run, std::try_to_lock);
-  if (!alone)
+  static std::atomic<bool> running = false;  // signals are the process's
+  if (running.exchange(true))
     throw std::runtime_error("run: another run is going on in this process; wait for its end");
+  const std::unique_ptr<std::atomic<bool>, void (*)(std::atomic<bool>*)> at_end(
+      &running, [](std::atomic<bool>* flag) { *flag = false; });
   coupling::RunRequest request;
   request.file = case_name;
   request.folder = folder;

@@ -86,6 +86,15 @@ def test_an_exception_of_the_callback_stops_the_run(case, tmp_path):
     assert not (tmp_path / "r" / "summary.json").exists()
 
 
+def test_one_run_at_a_time(case, tmp_path):
+    def another(progress):
+        gf.run(case, tmp_path / "s")
+
+    with pytest.raises(RuntimeError, match="another run is going on in this process"):
+        gf.run(case, tmp_path / "r", threads=1, progress=another)
+    assert gf.run(case, tmp_path / "t", threads=1).summary["ensemble.realizations"] == 2
+
+
 def test_shipped_cases_have_names():
     assert gf.cases()["point-load-mono"].endswith("point-load-mono.toml")
     assert "nearest: point-load-mono" in error_of(lambda: gf.run("point-load-mno"))
