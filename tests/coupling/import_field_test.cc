@@ -80,13 +80,17 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   EXPECT_LT(osl, 2);
   EXPECT_GT(figure(fit, "fit.bcc.chi2_per_dof"), 5 * osl);
   EXPECT_GT(figure(fit, "fit.bcc.chi2_per_dof"), 5);
+  EXPECT_EQ(std::get<std::string>(fit.at("fit.osl.supported")), "yes");
+  EXPECT_EQ(std::get<std::string>(fit.at("fit.bcc.supported")), "no");
+  EXPECT_EQ(fit.count("fit.warnings"), 0U);
 
   out = program(fmt::format("compare {} --model osl:eta={},mu={} --model bcc -o {}", file, kEta,
                             kMu, folder / "compare"));
   ASSERT_EQ(out.code, 0) << out.err;
   const Summary compare = read_summary(folder / "compare/summary.json");
   EXPECT_LT(figure(compare, "compare.osl.chi2_per_dof"), 2);
-  EXPECT_GT(figure(compare, "compare.bcc.chi2_per_dof"), 5);
+  // Of 25 values 1.3 is as far from 1 as one standard deviation of a true model's.
+  EXPECT_GT(figure(compare, "compare.bcc.chi2_per_dof"), 2.5);
 }
 
 TEST(ImportField, TakesResponsesInTheirOwnUnits) {
@@ -155,7 +159,8 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
           "pressure, shear, sigma_xx, sigma_yy, sigma_xy");
   refused(head + "1,pressure,2,-0.1\n", good,
           "m.csv:2: column error: found -0.1, allowed: 0 and above");
-  refused(head + "1,pressure,two,0.1\n", good, "m.csv:2: column value: found \"two\"");
+  refused(head + "1,pressure,two,0.1\n", good,
+          "m.csv:2: column value (kPa) (value): found \"two\", expected a finite number");
   refused(head + "1,pressure,2,0.1\n1,pressure,3,0.1\n", good,
           "m.csv:3: pressure at x = 0.001 m is there already, at " + (folder / "m.csv") + ":2");
   refused(head, good, "m.csv: holds no value");
