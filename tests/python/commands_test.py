@@ -1,13 +1,14 @@
 """Every function gives what the command of its name gives, to the bit, and refuses with its words."""
 
 import json
+import subprocess
 import warnings
 
 import numpy as np
 import pytest
 
 import grainfield as gf
-from scene import ETA, MU, RHO_G, SLOPE, error_of, heap, program, python, same, same_summary
+from scene import ETA, MU, PROGRAM, RHO_G, SLOPE, error_of, heap, program, python, same, same_summary
 
 HEAPS = [heap(seed) for seed in (1, 2, 3)]
 
@@ -52,6 +53,28 @@ def test_average_finds_the_stress_that_was_put_in():
     # The contacts' noise of 5 % (standard deviation), over some hundred of them.
     np.testing.assert_allclose(field.stress, stress(there * height), atol=0.015 * RHO_G * height)
     assert (field.error("sigma_yy") > 0).all()
+
+
+@pytest.mark.parametrize("options, given", [
+    (["--grid", "4x3x3"], {"grid": (4, 3, 3)}),
+    (["--grid", "4x5", "--rings", "--axis", "0.02,0.02"], {"grid": (4, 5), "rings": True, "axis": (0.02, 0.02)}),
+])
+def test_average_in_space(tmp_path, options, given):
+    d, n = 0.01, 5
+    k = np.stack(np.unravel_index(np.arange(n**3), (n, n, n)), axis=1)
+    places = d * (k + 0.5)
+    i = np.concatenate([np.flatnonzero(k[:, a] < n - 1) for a in range(3)])
+    step = np.repeat([n * n, n, 1], n * n * (n - 1))
+    force = 2.5  # N on every bond: the pressure of the lattice is F/d^2
+    bond = (places[i + step] - places[i]) / d
+    spheres = gf.packing(*places.T[:2], d / 2, places[:, 2], density=2500, gravity=(0, 0, -9.81),
+                         contacts={"i": i, "j": i + step, "forces": -force * bond})
+    here = gf.average(spheres, frame="packing", width=0.008, **given)
+    gf.write(f"{tmp_path / 'p.h5'}:s", spheres)
+    program("average", tmp_path / "p.h5", "--frame", "packing", "--width", "0.008", *options, "-o", tmp_path / "f.h5")
+    same(here, gf.read(tmp_path / "f.h5"))
+    middle = gf.average(spheres, frame="packing", points=[[n * d / 2] * 3], width=0.008)
+    np.testing.assert_allclose(middle.stress[0], -force / d**2 * np.array([1, 1, 1, 0, 0, 0]), rtol=0.01, atol=1e-6 * force / d**2)
 
 
 def loaded_pair():
@@ -186,6 +209,18 @@ def test_compare(tmp_path):
         assert here.measures["true"]["rel_l2"] < here.measures["other"]["rel_l2"]
         assert here.verdict == there["verdict.sentence"]
     assert (tmp_path / "d" / "report.html").exists()
+
+
+def test_warnings_are_those_of_the_program(tmp_path):
+    bare = gf.packing(HEAPS[0].positions[:, 0], HEAPS[0].positions[:, 1], HEAPS[0].radii, mass=1, walls="floor:y=0")
+    gf.write(f"{tmp_path / 'p.h5'}:bare", bare)
+    done = subprocess.run([PROGRAM, "average", tmp_path / "p.h5", "--grid", "5x4", "-o", tmp_path / "f.h5"],
+                          capture_output=True, text=True)
+    with pytest.warns(UserWarning, match="has no contacts: stress and fabric are 0") as told:
+        field = gf.average(f"{tmp_path / 'p.h5'}:bare", grid=(5, 4))
+    lines = [line.removeprefix("grainfield: ").removeprefix("warning: ") for line in done.stderr.splitlines()]
+    ours = [text.replace(":bare", ":/bare") for text in field.warnings]
+    assert ours == lines and len(told) == len(lines)
 
 
 def test_measured_fields(tmp_path):

@@ -26,8 +26,8 @@ def test_fields_and_profiles_show_bands_and_models():
     axes = cut.plot("sigma_yy")
     assert len(axes.lines) == 1 and len(axes.collections) == 1
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), cut.sigma_yy)
-    assert axes.get_ylabel() == "sigma_yy (N/m)"
-    assert gf.average(heaps, frame="heap", grid=(9, 5)).plot().get_title() == ""
+    assert axes.get_xlabel() == "x/h" and axes.get_ylabel() == "sigma_yy (N/m)"
+    assert gf.average(heaps, frame="heap", grid=(9, 5)).plot().get_ylabel() == "y/h"
     axes = gf.compare(cut, [f"osl:eta={ETA},mu={MU}", "ife"]).plot()
     assert [line.get_label() for line in axes.lines] == ["grains", "osl", "ife"]
     with pytest.raises(ValueError, match="profile: found top, allowed: "):

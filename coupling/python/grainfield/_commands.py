@@ -15,9 +15,6 @@ from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing, Summary, Table, read_table
 from ._files import Collection, fields_of, packings_of
 
-Source = "Packing | str | os.PathLike"
-Grid = "str | Sequence[int] | None"
-
 atexit.register(_core.finish_ranks)
 
 

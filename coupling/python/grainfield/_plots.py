@@ -69,6 +69,8 @@ def plot_packing(packing: Packing, ax: Any, *, forces: bool, change: Packing | N
 def plot_field(field: Field, column: str, ax: Any) -> Any:
     values, unit = field[column], field.units[column]
     ax = _axes(ax)
+    frame = field.attributes.get("frame", "")
+    over = "/h" if frame.startswith("heap") and "= -h" not in frame else " (m)"
     shape = field.shape
     points = field.points
     if shape is not None and len(shape) == 2:
@@ -77,17 +79,17 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
                               values.reshape(grid), shading="nearest", cmap="viridis")
         ax.figure.colorbar(drawn, ax=ax, label=f"{column} ({unit})")
         ax.set_aspect("equal")
-        ax.set_xlabel("x")
-        ax.set_ylabel("y")
+        ax.set_xlabel("x" + over)
+        ax.set_ylabel("y" + over)
         return ax
     heights = points[:, -1]
     for height in np.unique(heights):
         row = np.flatnonzero(heights == height)
         row = row[np.argsort(points[row, 0])]
         _band(ax, points[row, 0], values[row], field.error(column), row, f"{height:g}")
-    ax.set_xlabel("x")
+    ax.set_xlabel("x" + over)
     ax.set_ylabel(f"{column} ({unit})")
-    ax.legend(title="height")
+    ax.legend(title="y" + over if points.shape[1] == 2 else "z" + over)
     return ax
 
 
