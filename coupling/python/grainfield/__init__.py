@@ -14,11 +14,7 @@ docs/python.md tells more.
 """
 
 from ._commands import (
-    CompareResult,
-    FitResult,
     Model,
-    Result,
-    Structure,
     average,
     cases,
     compare,
@@ -35,6 +31,7 @@ from ._data import Contacts, Field, Packing, Summary, Table, Walls
 from ._engine import Engine
 from ._files import Collection, read, write
 from ._packing import packing
+from ._results import CompareResult, FitResult, Result, Structure
 
 __all__ = [
     "Collection",

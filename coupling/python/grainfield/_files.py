@@ -62,7 +62,7 @@ def read(path: str | os.PathLike) -> Packing | Field | Summary | Table | Collect
     """
     text = os.fspath(path)
     if os.path.isdir(text):
-        from ._commands import Result
+        from ._results import Result
 
         return Result(text)
     if text.endswith(".json"):
