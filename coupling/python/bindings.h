@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <variant>
@@ -29,10 +30,33 @@ struct HeldField {
   std::shared_ptr<const coupling::Field> field;
 };
 
+/// While it lives, other threads of Python run; and, with `files`, no other call of the module
+/// reads or writes HDF5, which is not built for threads. No Python object may be touched meanwhile.
+/// Throws std::runtime_error, with `files`, while a run goes on.
+class Released {
+ public:
+  explicit Released(bool files);
+
+ private:
+  py::gil_scoped_release released_;
+  std::unique_lock<std::mutex> files_;
+};
+
+/// While it lives, a run goes on in this process. Throws std::runtime_error while another does.
+class OneRun {
+ public:
+  OneRun();
+  ~OneRun();
+  OneRun(const OneRun&) = delete;
+  OneRun& operator=(const OneRun&) = delete;
+};
+
 /// A snapshot as a user of the module names it: in memory, or "FILE.h5[:GROUP]".
 using Source = std::variant<std::string, Packing>;
 /// Those of a list, files without a group opened up. Throws as parse_snapshot_names.
 std::vector<coupling::SnapshotName> names_of(const std::vector<Source>& sources);
+/// Some of them are in files.
+bool in_files(const std::vector<Source>& sources);
 
 /// A read-only array on the memory of `owner`, which it keeps alive. `strides` in bytes.
 template <class T>

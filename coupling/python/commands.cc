@@ -1,12 +1,10 @@
 // average, strain, structure, model, fit, compare and run: what the commands of these names do.
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -38,16 +36,14 @@ coupling::SnapshotName one_of(const Source& source) {
 }
 
 template <class Request>
-void place(Request& request, const py::object& points, const std::string& grid,
-           std::size_t snapshots) {
+GridSize place(Request& request, const py::object& points, const std::string& grid) {
   GridSize size;
   if (!grid.empty()) size = coupling::parse_grid(grid);
   request.nx = size.columns;
   request.ny = size.rows;
   request.nz = size.layers;
   if (!points.is_none()) request.points = matrix_of(points, "points");
-  coupling::require_few_places(static_cast<double>(request.points.rows()), size,
-                               static_cast<double>(snapshots));
+  return size;
 }
 
 // Points of another dimension than the packing's would be read beyond their end.
@@ -55,6 +51,22 @@ void require_columns(const Eigen::MatrixXd& points, int columns, const std::stri
   if (points.rows() > 0 && points.cols() != columns)
     throw std::invalid_argument(
         fmt::format("points: found {} columns, allowed: {} ({})", points.cols(), columns, of));
+}
+
+// Of states before and under the load, as --response takes them.
+std::vector<coupling::SnapshotName> pairs_of(const std::vector<Source>& loaded,
+                                             const std::vector<Source>& unloaded) {
+  const auto after = names_of(loaded), before = names_of(unloaded);
+  if (before.size() != after.size())
+    throw std::invalid_argument(
+        fmt::format("unloaded: found {} states for {} loaded ones", before.size(), after.size()));
+  std::vector<coupling::SnapshotName> pairs;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const std::string pair = fmt::format("pair_{}", k);
+    pairs.push_back({pair, "loaded", coupling::snapshot_of(after[k])});
+    pairs.push_back({pair, "unloaded", coupling::snapshot_of(before[k])});
+  }
+  return pairs;
 }
 
 struct AverageOutcome {
@@ -73,20 +85,6 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
                        bool rings, const std::vector<double>& axis, bool end_at_walls,
                        int threads) {
   coupling::AverageRequest request;
-  request.snapshots = names_of(sources);
-  if (!unloaded.empty()) {  // pairs of states in memory
-    const auto before = names_of(unloaded);
-    if (before.size() != request.snapshots.size())
-      throw std::invalid_argument(fmt::format("unloaded: found {} states for {} loaded ones",
-                                              before.size(), request.snapshots.size()));
-    std::vector<coupling::SnapshotName> pairs;
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      const std::string pair = fmt::format("pair_{}", k);
-      pairs.push_back({pair, "loaded", coupling::snapshot_of(request.snapshots[k])});
-      pairs.push_back({pair, "unloaded", coupling::snapshot_of(before[k])});
-    }
-    request.snapshots = std::move(pairs);
-  }
   request.response = response || !unloaded.empty();
   request.frame = frame;
   request.cuts = cuts;
@@ -102,10 +100,13 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
   options.extend_into_walls = !end_at_walls;
   options.threads = threads;
   settle(request, kernel.has_value(), width.has_value());
-  place(request, points, grid, request.snapshots.size());
+  const GridSize size = place(request, points, grid);
   coupling::Gaps gaps;
   AverageOutcome out;
-  const py::gil_scoped_release released;
+  const Released released(in_files(sources) || in_files(unloaded));
+  request.snapshots = unloaded.empty() ? names_of(sources) : pairs_of(sources, unloaded);
+  require_few_places(static_cast<double>(request.points.rows()), size,
+                     static_cast<double>(request.snapshots.size()));
   if (request.points.rows() > 0 && !request.snapshots.empty()) {
     const auto first = coupling::snapshot_of(request.snapshots.front());
     require_columns(request.points, rings ? 2 : first->dim,
@@ -126,8 +127,6 @@ std::pair<HeldField, std::string> strain(const Source& before, const Source& aft
                                          const std::optional<double>& width, int least_grains,
                                          int threads) {
   coupling::StrainRequest request;
-  request.before = one_of(before);
-  request.after = one_of(after);
   request.frame = frame;
   request.options.measure = measure;
   if (support) request.options.support = *support;
@@ -135,8 +134,11 @@ std::pair<HeldField, std::string> strain(const Source& before, const Source& aft
   request.options.least_grains = least_grains;
   request.options.threads = threads;
   settle(request, support.has_value(), width.has_value());
-  place(request, points, grid, 1);
-  const py::gil_scoped_release released;
+  const GridSize size = place(request, points, grid);
+  require_few_places(static_cast<double>(request.points.rows()), size, 1);
+  const Released released(in_files({before, after}));
+  request.before = one_of(before);
+  request.after = one_of(after);
   if (request.points.rows() > 0) {
     const int dim = coupling::snapshot_of(request.before)->dim;
     require_columns(request.points, dim, fmt::format("the packing is {}D", dim));
@@ -154,11 +156,10 @@ py::array_t<T> of_grains(const coupling::PackingStructure& made, Get get) {
 }
 
 py::dict structure(const Source& source) {
-  const coupling::SnapshotName name = one_of(source);
   coupling::PackingStructure made;
   {
-    const py::gil_scoped_release released;
-    made = coupling::packing_structure(*coupling::snapshot_of(name));
+    const Released released(in_files({source}));
+    made = coupling::packing_structure(*coupling::snapshot_of(one_of(source)));
   }
   using Grain = coupling::GrainStructure;
   py::dict out, grains;
@@ -216,7 +217,7 @@ py::array stress_of(const Model& self, const py::object& points) {
   require_columns(at, self.dim, fmt::format("{} is {}D here", self.name, self.dim));
   Eigen::MatrixXd stress;
   {
-    const py::gil_scoped_release released;
+    const Released released(false);
     stress = self.model->stress(at);
   }
   py::array_t<double> out({stress.rows(), stress.cols()});
@@ -231,7 +232,7 @@ py::dict quantities_of(const Model& self, const py::object& points) {
   require_columns(at, self.dim, fmt::format("{} is {}D here", self.name, self.dim));
   std::vector<continuum::Quantity> found;
   {
-    const py::gil_scoped_release released;
+    const Released released(false);
     found = self.model->quantities(at);
   }
   py::dict out;
@@ -288,7 +289,7 @@ py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& 
   request.threads = threads;
   coupling::FitOutcome outcome;
   {
-    const py::gil_scoped_release released;
+    const Released released(!files.empty());
     outcome = coupling::fit_files(request);
   }
   py::dict out;
@@ -316,7 +317,7 @@ py::dict compare(const std::string& file,
   request.folder = folder;
   coupling::CompareOutcome outcome;
   {
-    const py::gil_scoped_release released;
+    const Released released(fields_held.empty());
     outcome = coupling::compare_field(request);
   }
   py::dict out;
@@ -389,11 +390,7 @@ py::dict run(const std::string& case_name, const std::string& folder,
              const std::vector<std::string>& sets, bool quick, bool resume, int threads,
              double checkpoint_seconds, long stop_after_steps, const py::object& progress,
              const py::object& note) {
-  static std::atomic<bool> running = false;  // signals are the process's
-  if (running.exchange(true))
-    throw std::runtime_error("run: another run is going on in this process; wait for its end");
-  const std::unique_ptr<std::atomic<bool>, void (*)(std::atomic<bool>*)> at_end(
-      &running, [](std::atomic<bool>* flag) { *flag = false; });
+  const OneRun alone;
   coupling::RunRequest request;
   request.file = case_name;
   request.folder = folder;

@@ -1,6 +1,7 @@
 // Packings, fields and summaries as arrays.
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -174,6 +175,7 @@ py::dict checked(const Packing& self) {
 
 void write_packings(const std::string& file, const std::vector<std::string>& groups,
                     const std::vector<Packing>& packings, bool add) {
+  const Released released(true);
   coupling::AtomicFile out(file);
   std::vector<std::string> there;
   if (add && std::filesystem::exists(file)) {
@@ -237,7 +239,7 @@ Packing packing_of(const py::dict& grains, const py::dict& contacts, const py::d
                              of_contacts = table_of("contacts", contacts),
                              of_walls = table_of("walls", walls);
   const double time = options["time"].cast<double>();
-  const py::gil_scoped_release released;
+  const Released released(false);
   Snapshot state = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
   state.time = time;
   return {std::make_shared<const Snapshot>(std::move(state))};
@@ -306,11 +308,14 @@ void add_packing(py::module_& module) {
       });
   module.def("packing", packing_of);
   module.def("read_packing", [](const std::string& file, const std::string& group) {
-    const py::gil_scoped_release released;
+    const Released released(true);
     return Packing{std::make_shared<const Snapshot>(dem::read_snapshot(file, group))};
   });
-  module.def("list_packings", dem::list_snapshots);
-  module.def("write_packings", write_packings, py::call_guard<py::gil_scoped_release>());
+  module.def("list_packings", [](const std::string& file) {
+    const Released released(true);
+    return dem::list_snapshots(file);
+  });
+  module.def("write_packings", write_packings);
 }
 
 void add_field(py::module_& module) {
@@ -348,13 +353,16 @@ void add_field(py::module_& module) {
         return view(samples, self);
       });
   module.def("read_field", [](const std::string& file, const std::string& name) {
-    const py::gil_scoped_release released;
+    const Released released(true);
     return held(coupling::read_field(file, name));
   });
-  module.def("list_fields", coupling::list_fields);
+  module.def("list_fields", [](const std::string& file) {
+    const Released released(true);
+    return coupling::list_fields(file);
+  });
   module.def("write_fields", [](const std::string& file,
                                 const std::vector<std::pair<std::string, HeldField>>& fields) {
-    const py::gil_scoped_release released;
+    const Released released(true);
     if (std::filesystem::path(file).extension() == ".csv") {
       coupling::write_field_csv(file, *fields.front().second.field);
       return;
@@ -363,6 +371,15 @@ void add_field(py::module_& module) {
     for (const auto& [name, field] : fields) named.emplace_back(name, *field.field);
     coupling::write_fields(file, named);
   });
+}
+
+std::mutex& file_access() {
+  static std::mutex one;
+  return one;
+}
+std::atomic<bool>& running() {
+  static std::atomic<bool> flag = false;
+  return flag;
 }
 
 void add_summary(py::module_& module) {
@@ -377,6 +394,24 @@ void add_summary(py::module_& module) {
 }
 
 }  // namespace
+
+Released::Released(bool files) {
+  if (!files) return;
+  files_ = std::unique_lock(file_access());
+  if (running())
+    throw std::runtime_error(
+        "files of HDF5 are not read or written while a run goes on in this process; wait for its "
+        "end");
+}
+
+OneRun::OneRun() {
+  const py::gil_scoped_release released;
+  const std::lock_guard lock(file_access());
+  if (running())
+    throw std::runtime_error("run: another run is going on in this process; wait for its end");
+  running() = true;
+}
+OneRun::~OneRun() { running() = false; }
 
 py::array view(const Eigen::VectorXd& values, const py::handle& owner) {
   return view<double>(values.data(), {values.size()}, {sizeof(double)}, owner);
@@ -413,6 +448,12 @@ py::array array_of(const Eigen::VectorXd& values) {
 
 HeldField held(coupling::Field field) {
   return {std::make_shared<const coupling::Field>(std::move(field))};
+}
+
+bool in_files(const std::vector<Source>& sources) {
+  return std::any_of(sources.begin(), sources.end(), [](const Source& source) {
+    return std::holds_alternative<std::string>(source);
+  });
 }
 
 std::vector<coupling::SnapshotName> names_of(const std::vector<Source>& sources) {

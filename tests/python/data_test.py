@@ -2,6 +2,7 @@
 
 import gc
 import re
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -182,6 +183,23 @@ def test_reading_refuses_as_the_program(tmp_path):
     gf.write(tmp_path / "p.h5", heap())
     group = f"{tmp_path / 'p.h5'}:nothing"
     assert error_of(lambda: gf.read(group)) == program("structure", group, code=2)
+
+
+def test_threads_take_turns_at_files(tmp_path):
+    file, packing = tmp_path / "p.h5", heap()
+    gf.write(file, {f"s{k}": packing for k in range(3)})
+    alone = gf.average(f"{file}:s0", frame="heap", grid=(9, 5))
+
+    def work(number):
+        for _ in range(3):
+            assert len(gf.read(file)) == 3
+            field = gf.average(f"{file}:s{number % 3}", frame="heap", grid=(9, 5))
+            np.testing.assert_array_equal(field.sigma_yy, alone.sigma_yy)
+            gf.write(tmp_path / f"f{number}.h5", field)
+        return number
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(work, range(4))) == [0, 1, 2, 3]
 
 
 @pytest.mark.parametrize("first", ["h5py", "grainfield"])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import grainfield as gf
-from scene import error_of
+from scene import ROOT, error_of
 
 LINEAR = dict(law="linear", normal_stiffness=1e5, tangential_stiffness=3e4, normal_damping=0,
               tangential_damping=0, friction=0.3)
@@ -127,6 +127,17 @@ def test_walls_move():
     assert "lid" in error_of(lambda: engine.move_wall("lid", (0, 0)))
     servo = error_of(lambda: engine.move_wall("right", servo={"fource": 1}))
     assert servo.startswith('servo: found "fource", allowed: force, stress')
+
+
+def test_the_loop_of_the_page():
+    text = (ROOT / "docs/python.md").read_text()
+    loop = text.partition("## The engine in a loop")[2].partition("```python\n")[2].partition("```")[0]
+    names = {"gf": gf, "packing": layer(4, 3)}
+    exec(loop, names)
+    engine, field = names["engine"], names["field"]
+    assert engine.measure()["unbalanced_force_ratio"] < 0.1
+    assert engine.in_order(names["places"])[9, 1] == engine.packing().positions[9, 1]
+    assert field.attributes["F"] == "5" and np.nanmin(field.sigma_yy) < -5 / 0.06
 
 
 def test_what_cannot_be_set_up_is_refused():

@@ -92,6 +92,9 @@ def test_one_run_at_a_time(case, tmp_path):
 
     with pytest.raises(RuntimeError, match="another run is going on in this process"):
         gf.run(case, tmp_path / "r", threads=1, progress=another)
+    packing = gf.packing([0], [0], 1, mass=1)
+    with pytest.raises(RuntimeError, match="files of HDF5 are not read or written while a run goes on"):
+        gf.run(case, tmp_path / "r", threads=1, resume=True, progress=lambda _: gf.write(tmp_path / "p.h5", packing))
     assert gf.run(case, tmp_path / "t", threads=1).summary["ensemble.realizations"] == 2
 
 
