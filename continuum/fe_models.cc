@@ -12,6 +12,7 @@
 #include "continuum/fe/block.h"
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
+#include "continuum/installed.h"
 #include "continuum/settings.h"
 #include "continuum/size.h"
 
@@ -27,13 +28,16 @@ constexpr char cone_name[] = "fe_cone";
 
 Ranks g_ranks = Ranks::all;
 
-// Beside the program, where an installed program has it, or where it was built.
+// Beside the program, where an installed program or module has it, or where it was built.
 void* open_library() {
   std::error_code error;
   const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   const std::filesystem::path built = GRAINFIELD_FE_LIBRARY;
-  for (const auto& file : {folder / built.filename(),
-                           folder.parent_path() / "lib/grainfield" / built.filename(), built}) {
+  std::vector<std::filesystem::path> files{folder / built.filename()};
+  for (const auto& prefix : installed_prefixes())
+    files.push_back(prefix / "lib/grainfield" / built.filename());
+  files.push_back(built);
+  for (const auto& file : files) {
     if (!std::filesystem::exists(file, error)) continue;
     if (void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
     throw ComputationFailed(fmt::format(

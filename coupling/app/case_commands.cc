@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
 #include "coupling/case/cost.h"
 #include "coupling/case/keys.h"
+#include "coupling/case/shipped_cases.h"
 #include "coupling/case/study.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/system/printable.h"

@@ -21,6 +21,7 @@ void add_average(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
+void add_import_field(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
 void add_strain(CLI::App& app, Action& action);

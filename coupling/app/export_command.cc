@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
+#include "coupling/case/shipped_cases.h"
 #include "coupling/case/study.h"
 #include "coupling/export/lammps_deck.h"
 #include "coupling/output/atomic_file.h"

@@ -3,17 +3,17 @@
 
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/model_settings.h"
 #include "coupling/app/points_options.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/compare_field.h"
+#include "coupling/files/places.h"
+#include "coupling/models/parse_choices.h"
 #include "coupling/output/field_csv.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/printable.h"
@@ -21,49 +21,6 @@
 
 namespace grainfield::coupling {
 namespace {
-
-constexpr const char* kLabelLetters =
-    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-
-// "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
-ModelChoice parse_choice(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string head = text.substr(0, colon);
-  const std::size_t equals = head.find('=');
-  ModelChoice out;
-  out.name = equals == std::string::npos ? head : head.substr(equals + 1);
-  out.label = equals == std::string::npos ? head : head.substr(0, equals);
-  if (out.label.empty() || out.label.find_first_not_of(kLabelLetters) != std::string::npos) {
-    throw std::invalid_argument(
-        fmt::format("--model: found the label '{}', allowed: letters, digits, _ and -", out.label));
-  }
-  continuum::find_model(out.name);
-  if (colon == std::string::npos) return out;
-  std::vector<std::string> items;
-  std::string rest = text.substr(colon + 1);
-  for (std::size_t at = 0; at <= rest.size();) {
-    const std::size_t end = std::min(rest.find(',', at), rest.size());
-    items.push_back(rest.substr(at, end - at));
-    at = end + 1;
-  }
-  out.settings = parse_settings(items, "--model " + out.name);
-  return out;
-}
-
-// The same model twice: the settings tell them apart.
-std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
-  std::vector<ModelChoice> out;
-  std::set<std::string> seen;
-  for (const auto& text : texts) {
-    ModelChoice choice = parse_choice(text);
-    const std::string label = choice.label;
-    for (int n = 2; !seen.insert(choice.label).second; ++n) {
-      choice.label = fmt::format("{}_{}", label, n);
-    }
-    out.push_back(std::move(choice));
-  }
-  return out;
-}
 
 // Warns of points without a value; they are nan in the file.
 void print_gaps(const Gaps& gaps, const Field& field) {
@@ -137,21 +94,10 @@ void add_average(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       AverageRequest& request = given->request;
-      if (request.options.method != "coarse_graining" && kernel->count() == 0) {
-        request.options.kernel = "circle";
-      }
-      if (width->count() > 0 && !(request.options.width > 0)) {
-        throw std::invalid_argument(
-            fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
-      }
+      settle(request, kernel->count() > 0, width->count() > 0);
       request.options.extend_into_walls = !given->end_at_walls;
       if (given->output.empty() && !given->balance) {
         throw std::invalid_argument("average: give -o FIELD.h5, or --balance, or both");
-      }
-      for (const double share : request.cuts) {
-        if (!(share >= 0 && share <= 1))
-          throw std::invalid_argument(
-              fmt::format("--cuts: found {:g}, allowed: 0 (floor) to 1 (surface)", share));
       }
       request.snapshots = parse_snapshot_names(given->snapshots);
       std::vector<std::string> inputs{given->where.points};

@@ -4,22 +4,17 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/shipped_cases.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
+#include "coupling/case/shipped_cases.h"
 #include "coupling/files/fit_files.h"
 #include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 namespace {
-
-std::string quoted_list(const std::vector<std::string>& words) {
-  std::vector<std::string> quoted;
-  for (const std::string& word : words) quoted.push_back("\"" + word + "\"");
-  return fmt::format("[{}]", fmt::join(quoted, ", "));
-}
 
 // "FILE:/a, FILE:/b"; of many the first and the last.
 std::string shown(const std::vector<std::string>& names) {
@@ -69,15 +64,10 @@ void add_fit(CLI::App& app, Action& action) {
     action = [=] {
       FitRequest wanted = given->request;
       if (!wanted.case_file.empty()) wanted.case_file = find_case(wanted.case_file);
-      Overrides& set = wanted.overrides;
-      if (!given->models.empty()) set.push_back("fit.models=" + quoted_list(given->models));
-      if (!given->heights.empty()) {
-        set.push_back(fmt::format("fit.heights=[{}]", fmt::join(given->heights, ", ")));
-      }
-      if (!given->components.empty()) {
-        set.push_back("fit.components=" + quoted_list(given->components));
-      }
-      if (width->count() > 0) set.push_back(fmt::format("fit.width_diameters={}", given->width));
+      const Overrides chosen =
+          fit_overrides(given->models, given->heights, given->components,
+                        width->count() > 0 ? std::optional(given->width) : std::nullopt);
+      wanted.overrides.insert(wanted.overrides.end(), chosen.begin(), chosen.end());
       if (wanted.folder.empty()) {
         wanted.folder =
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();

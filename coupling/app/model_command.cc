@@ -10,9 +10,9 @@
 #include "continuum/model.h"
 #include "continuum/settings.h"
 #include "coupling/app/commands.h"
-#include "coupling/app/model_settings.h"
 #include "coupling/app/points_csv.h"
 #include "coupling/app/terminal.h"
+#include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/other_file.h"
 
@@ -58,24 +58,6 @@ void list_parameters(const continuum::ModelInfo& info) {
 }
 
 }  // namespace
-
-continuum::Settings parse_settings(const std::vector<std::string>& texts,
-                                   const std::string& where) {
-  continuum::Settings out;
-  for (const auto& text : texts) {
-    const std::size_t at = text.find('=');
-    if (at == 0 || at == std::string::npos || at + 1 == text.size()) {
-      throw std::invalid_argument(
-          fmt::format("{}: found \"{}\", expected parameter=value", where, text));
-    }
-    const auto [first, fresh] = out.emplace(text.substr(0, at), text.substr(at + 1));
-    if (!fresh)
-      throw std::invalid_argument(fmt::format("{}: {} is given twice, {} and {}; leave one out",
-                                              where, first->first, first->second,
-                                              text.substr(at + 1)));
-  }
-  return out;
-}
 
 void add_model(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("model", "evaluate a continuum model at points");

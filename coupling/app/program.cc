@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <exception>
-#include <filesystem>
-#include <new>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
+#include "coupling/system/failure.h"
 #include "coupling/system/signals.h"
 #include "coupling/version.h"
-#include "dem/storage_failed.h"
-#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -26,21 +22,6 @@ int complain(int code, const std::string& what) {
   wait_if_stopping();
   note("{}", what);
   return code;
-}
-
-// What the name of a file that the user gave can be wrong by.
-bool is_name(const std::error_code& error) {
-  for (const std::errc kind :
-       {std::errc::filename_too_long, std::errc::not_a_directory, std::errc::permission_denied,
-        std::errc::too_many_symbolic_link_levels, std::errc::no_such_file_or_directory,
-        std::errc::is_a_directory}) {
-    if (error == kind) return true;
-  }
-  return false;
-}
-
-int code_of(const std::error_code& error) {
-  return dem::means_storage_failed(error) ? kExitStorage : is_name(error) ? 2 : 1;
 }
 
 int parse_and_act(int argc, char** argv) {
@@ -58,6 +39,7 @@ int parse_and_act(int argc, char** argv) {
   add_compare(app, action);
   add_fit(app, action);
   add_import(app, action);
+  add_import_field(app, action);
   add_export(app, action);
   add_reproduce(app, action);
   add_strain(app, action);
@@ -91,24 +73,9 @@ int parse_and_act(int argc, char** argv) {
 int act(int argc, char** argv) {
   try {
     return parse_and_act(argc, argv);
-  } catch (const Interrupted& e) {
-    return complain(kExitInterrupted, e.what());
-  } catch (const std::invalid_argument& e) {
-    return complain(2, e.what());
-  } catch (const dem::ComputationFailed& e) {
-    return complain(3, e.what());
-  } catch (const continuum::ComputationFailed& e) {
-    return complain(3, e.what());
-  } catch (const dem::StorageFailed& e) {
-    return complain(kExitStorage, e.what());
-  } catch (const std::filesystem::filesystem_error& e) {
-    return complain(code_of(e.code()), e.path1().string() + ": " + e.code().message());
-  } catch (const std::system_error& e) {
-    return complain(code_of(e.code()), e.what());
-  } catch (const std::bad_alloc&) {
-    return complain(1, "out of memory");
-  } catch (const std::exception& e) {
-    return complain(1, e.what());
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    return complain(failure.code, failure.text);
   }
 }
 

@@ -54,13 +54,7 @@ void add_strain(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       StrainRequest& request = given->request;
-      if (width->count() > 0 && !(request.options.width > 0)) {
-        throw std::invalid_argument(
-            fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
-      }
-      if (request.options.measure == "kernel" && support->count() == 0) {
-        request.options.support = "lucy";
-      }
+      settle(request, support->count() > 0, width->count() > 0);
       request.before = one_snapshot(given->before);
       request.after = one_snapshot(given->after);
       require_other_file("-o", given->output,

@@ -6,39 +6,28 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
-#include "coupling/averaging/grain_facts.h"
 #include "coupling/files/average_files.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
-#include "coupling/statistics/exponential_tail.h"
-#include "coupling/structure/base_forces.h"
-#include "coupling/structure/coordination_counts.h"
-#include "coupling/structure/force_chains.h"
-#include "coupling/structure/grain_axes.h"
-#include "coupling/structure/histogram.h"
-#include "coupling/structure/size_factor.h"
-#include "coupling/structure/tensor_axes.h"
+#include "coupling/structure/packing_structure.h"
 #include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 namespace {
 
 // One row per grain.
-std::string grains_csv(const dem::Snapshot& s, const ForceChains& chains) {
+std::string grains_csv(const dem::Snapshot& s, const PackingStructure& made) {
   std::string out =
       "# angles in degrees from x; loads tension positive, N/m (3D: N/m2)\n"
       "id,x,y,z,fixed,contacts,rattler,stress_trace,stress_deviator,compression_angle,fabric_angle,"
       "long_angle,chain\n";
-  const std::vector<GrainFacts> facts = grain_facts(s);
-  for (std::size_t g = 0; g < facts.size(); ++g) {
-    const dem::Grain& grain = *facts[g].grain;
-    const TensorAxes stress = tensor_axes(facts[g].virial / grain.volume, s.dim);
-    const double along = s.dim == 2 ? tensor_axes(facts[g].inertia, 2).angle_deg(1) : NAN;
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const dem::Grain& grain = s.grains[k];
+    const GrainStructure& g = made.grains[k];
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", grain.id, grain.position.x(),
-                       grain.position.y(), grain.position.z(), grain.fixed ? 1 : 0,
-                       facts[g].contacts, facts[g].bearing ? 0 : 1, stress.trace(),
-                       stress.deviator(), stress.angle_deg(s.dim - 1),
-                       tensor_axes(facts[g].fabric, s.dim).angle_deg(), along, chains.chain_of[g]);
+                       grain.position.y(), grain.position.z(), grain.fixed ? 1 : 0, g.contacts,
+                       g.rattler ? 1 : 0, g.stress_trace, g.stress_deviator, g.compression_angle,
+                       g.fabric_angle, g.long_angle, g.chain);
   }
   return out;
 }
@@ -60,41 +49,38 @@ std::string counts_csv(const CoordinationCounts& counts) {
 }
 
 void show(const std::string& title, const dem::Snapshot& s, const std::string& folder) {
-  const CoordinationCounts counts = coordination_counts(s);
-  const SizeFactor size = size_factor(s);
-  const ForceChains chains = force_chains(s);
+  const PackingStructure made = packing_structure(s);
+  const CoordinationCounts& counts = made.counts;
+  const ForceChains& chains = made.chains;
   say("{}: {} free grains, {} rattlers\n", printable_name(title), counts.grains, counts.rattlers);
   say("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
-  say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", size.measured,
-      size.theory);
+  say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", made.size.measured,
+      made.size.theory);
   say("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
       chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
-  if (s.dim == 2) {
-    const GrainAxes axes = grain_axes(s);
-    if (std::isnan(axes.order))
+  if (made.axes) {
+    if (std::isnan(made.axes->order))
       say("  orientation: none (disks)\n");
     else
-      say("  orientation: order {:.3f} along {:.1f} degrees from x\n", axes.order,
-          axes.director_deg);
+      say("  orientation: order {:.3f} along {:.1f} degrees from x\n", made.axes->order,
+          made.axes->director_deg);
   }
-  std::string base_text;
-  try {
-    const BaseForces base = base_forces(s);
-    const ExponentialTail tail = exponential_tail(base.normalised, 1);
-    say("  base: {} grains, mean vertical force {:.4g} N; ", base.force.size(), base.mean);
+  if (made.base) {
+    const ExponentialTail& tail = made.tail;
+    say("  base: {} grains, mean vertical force {:.4g} N; ", made.base->force.size(),
+        made.base->mean);
     if (std::isnan(tail.rate))
       say("{} of them above the mean, too few for a tail\n", tail.count);
     else
       say("P(n) for n > 1 falls as exp(-{:.3g} n) ({:.3g} to {:.3g}), p = {:.2g}\n", tail.rate,
           tail.low, tail.high, tail.p_value);
-    base_text = base_csv(base);
-  } catch (const std::invalid_argument& e) {
-    say("  base: {}\n", e.what());
+  } else {
+    say("  base: {}\n", made.no_base);
   }
   if (folder.empty()) return;
-  write_text_file(folder + "grains.csv", grains_csv(s, chains));
+  write_text_file(folder + "grains.csv", grains_csv(s, made));
   write_text_file(folder + "coordination.csv", counts_csv(counts));
-  if (!base_text.empty()) write_text_file(folder + "base_forces.csv", base_text);
+  if (made.base) write_text_file(folder + "base_forces.csv", base_csv(*made.base));
 }
 
 }  // namespace

@@ -5,10 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "coupling/system/failure.h"
+
 namespace grainfield::coupling {
 
-inline constexpr int kExitStorage = 74;  ///< an output cannot be written (EX_IOERR of sysexits.h)
-inline constexpr int kExitPipe = 141;    ///< as the shell reports a program ended by SIGPIPE
+inline constexpr int kExitPipe = 141;  ///< as the shell reports a program ended by SIGPIPE
 
 /// Puts something harmless where a standard stream is closed, before all else: the next file that
 /// is opened would take its place, and get what is meant for the terminal.

@@ -62,8 +62,6 @@ std::vector<Item> items_of(const AverageRequest& request) {
   return out;
 }
 
-dem::Snapshot read(const SnapshotName& name) { return dem::read_snapshot(name.file, name.group); }
-
 // The packings of all snapshots, as one.
 struct Extents {
   double depth = 0, left = -std::numeric_limits<double>::infinity(),
@@ -94,14 +92,16 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
       wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
   const auto n = static_cast<double>(items.size());
   for (const auto& item : items) {
-    const dem::Snapshot s = read(item.state);
+    const auto held = snapshot_of(item.state);
+    const dem::Snapshot& s = *held;
     if (&item != &items.front() && s.dim != out.dim)
       throw std::invalid_argument(fmt::format("{}:{} is {}D, the snapshot before it {}D",
                                               item.state.file, item.state.group, s.dim, out.dim));
     out.dim = s.dim;
     const Placement placed = place(s, request.frame);
     if (forces) add_warnings(item.state, s, of_forces);
-    if (forces && request.response) add_warnings(item.unloaded, read(item.unloaded), of_forces);
+    if (forces && request.response)
+      add_warnings(item.unloaded, *snapshot_of(item.unloaded), of_forces);
     out.depth += placed.depth / n;
     out.least = std::min(out.least, placed.depth);
     out.most = std::max(out.most, placed.depth);
@@ -202,9 +202,11 @@ Eigen::MatrixXd rings_in_packing(const Eigen::MatrixXd& rings, const Eigen::Vect
 // The field of one item on the frame's points.
 Field field_of(const Item& item, const AverageRequest& request, const Eigen::MatrixXd& points,
                const Eigen::Vector2d& axis, Gaps* gaps) {
-  const dem::Snapshot state = read(item.state);
+  const auto held = snapshot_of(item.state);
+  const dem::Snapshot& state = *held;
   const Placement placed = place(state, request.frame);
-  const dem::Snapshot unloaded = request.response ? read(item.unloaded) : dem::Snapshot{};
+  const auto before = request.response ? snapshot_of(item.unloaded) : held;
+  const dem::Snapshot& unloaded = *before;
   if (!request.rings) {
     const Eigen::MatrixXd there = placed.to_packing(points);
     return request.response ? response(unloaded, state, there, request.options, gaps)
@@ -263,19 +265,39 @@ std::string each(const std::vector<PileFrame>& heaps,
 
 }  // namespace
 
+std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name) {
+  if (name.held) return name.held;
+  return std::make_shared<const dem::Snapshot>(dem::read_snapshot(name.file, name.group));
+}
+
 std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& texts) {
   std::vector<SnapshotName> out;
   for (const auto& text : texts) {
     const std::size_t at = text.rfind(':');
     if (at != std::string::npos && !std::filesystem::exists(text)) {
-      out.push_back({text.substr(0, at), text.substr(at + 1)});
+      out.push_back({text.substr(0, at), text.substr(at + 1), {}});
       continue;
     }
     const auto groups = dem::list_snapshots(text);
     if (groups.empty()) throw std::invalid_argument(text + ": holds no snapshot");
-    for (const auto& group : groups) out.push_back({text, group});
+    for (const auto& group : groups) out.push_back({text, group, {}});
   }
   return out;
+}
+
+void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen) {
+  if (request.options.method != "coarse_graining" && !kernel_chosen) {
+    request.options.kernel = "circle";
+  }
+  if (width_chosen && !(request.options.width > 0)) {
+    throw std::invalid_argument(
+        fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
+  }
+  for (const double share : request.cuts) {
+    if (!(share >= 0 && share <= 1))
+      throw std::invalid_argument(
+          fmt::format("--cuts: found {:g}, allowed: 0 (floor) to 1 (surface)", share));
+  }
 }
 
 NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::string>* warnings) {
@@ -296,11 +318,11 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     request.ny = box ? kSide : kRows;
     request.nz = box && request.cuts.empty() ? kLayers : 0;
   }
-  const Field where = points_of(request, all, read(items.front().state));
+  const Field where = points_of(request, all, *snapshot_of(items.front().state));
   const Eigen::MatrixXd& points = where.points;
   const Eigen::Vector2d axis = request.rings ? axis_of(request, all) : Eigen::Vector2d(0, 0);
   const bool base = request.response && options.method == "coarse_graining" && all.dim == 2 &&
-                    request.frame == "layer" && has_base(read(items.front().state));
+                    request.frame == "layer" && has_base(*snapshot_of(items.front().state));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
     field.attributes["method"] = options.method;
@@ -329,9 +351,10 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     field.nz = where.nz;
     fields.add(field);
     if (base) {
-      const dem::Snapshot state = read(item.state);
-      Field line = base_response(read(item.unloaded), state, x.array() + layer_frame(state).load_x,
-                                 *make_kernel(options.kernel, options.width));
+      const auto state = snapshot_of(item.state);
+      Field line =
+          base_response(*snapshot_of(item.unloaded), *state, x.array() + layer_frame(*state).load_x,
+                        *make_kernel(options.kernel, options.width));
       line.points.resize(x.size(), 2);
       line.points << x, Eigen::VectorXd::Constant(x.size(), -all.depth);
       base_fields.add(line);

@@ -1,18 +1,24 @@
 // Snapshots from files to one averaged field.
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "coupling/averaging/average.h"
 #include "coupling/output/field_io.h"
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 
-/// A snapshot in a file.
+/// A snapshot in a file; or one in memory, which file and group then only name.
 struct SnapshotName {
   std::string file, group;
+  std::shared_ptr<const dem::Snapshot> held{};
 };
+
+/// The snapshot, read or held. Throws as dem::read_snapshot.
+std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name);
 
 /// "FILE.h5" (every snapshot of the file) or "FILE.h5:group". Throws std::invalid_argument.
 std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& texts);
@@ -35,6 +41,11 @@ struct AverageRequest {
   bool rings = false;        ///< in space: averages over rings about the frame's axis (rings.h)
   std::vector<double> axis;  ///< x, y of that axis in frame "packing", m; empty: the middle
 };
+
+/// What a user gave of an averaging, checked and completed, before average_files(): the kernel of
+/// the method where none was chosen, a width above 0 where one was, cuts within 0 and 1. Throws
+/// std::invalid_argument naming the option.
+void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen);
 
 /// Mean and standard error over the snapshots (or pairs), in the frame: field "average" or
 /// "response", and with a response in the layer's frame also "base_response"; of several

@@ -40,11 +40,26 @@ bool is_candidate(const std::string& name, const Field& field) {
          !starts_with(name, "particle_centre") && !starts_with(name, "area_exact");
 }
 
+std::vector<std::string> names_in(const CompareRequest& request) {
+  if (request.held.empty()) return list_fields(request.file);
+  std::vector<std::string> names;
+  for (const auto& [name, field] : request.held) names.push_back(name);
+  return names;
+}
+
+Field field_in(const CompareRequest& request, const std::string& name) {
+  if (request.held.empty()) return read_field(request.file, name);
+  for (const auto& [held, field] : request.held)
+    if (held == name) return field;
+  throw std::invalid_argument(fmt::format("{}: holds no field \"{}\"; there are: {}", request.file,
+                                          name, fmt::join(names_in(request), ", ")));
+}
+
 std::vector<std::string> chosen(const CompareRequest& request) {
   if (!request.fields.empty()) return request.fields;
   std::vector<std::string> lines, maps, heap_lines, heap_maps, others;
-  for (const auto& name : list_fields(request.file)) {
-    const Field field = read_field(request.file, name);
+  for (const auto& name : names_in(request)) {
+    const Field field = field_in(request, name);
     if (!is_candidate(name, field)) continue;
     if (is_heap_field(field)) {
       // The base of a pile's run is "base"; averages of the same place stand beside it.
@@ -224,7 +239,7 @@ Report page_of(const CompareRequest& request, const SceneField& scene, const Com
 
 CompareOutcome compare_field(const CompareRequest& request) {
   OutputFolder results(request.folder, "grainfield compare " + request.file);
-  results.require_other_than({request.file});
+  if (request.held.empty()) results.require_other_than({request.file});
   std::vector<SceneField> scenes;
   std::vector<FieldLine> lines;
   Field map;
@@ -232,7 +247,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   std::vector<std::string> seen;
   for (const auto& name : chosen(request)) {
     const std::string where = request.file + ":" + name;
-    SceneField scene = scene_field(read_field(request.file, name), name, request.lines, where);
+    SceneField scene = scene_field(field_in(request, name), name, request.lines, where);
     if (!scenes.empty()) require_same(scenes.front(), scene, request.file);
     for (auto& line : lines_of(scene, request.lines, where)) lines.push_back(std::move(line));
     if (scene.field.nx > 0 && scene.facts.dim == 2) map = scene.field;

@@ -5,11 +5,13 @@
 
 #include "coupling/files/field_lines.h"
 #include "coupling/models/choice.h"
+#include "coupling/output/field_io.h"
 
 namespace grainfield::coupling {
 
 struct CompareRequest {
   std::string file;                 ///< of write_fields
+  NamedFields held{};               ///< instead: fields in memory; `file` only names them
   std::vector<std::string> fields;  ///< empty: see compare_field
   std::vector<ModelChoice> models;
   LineOptions lines;

@@ -45,7 +45,7 @@ std::vector<SnapshotName> heaps_of(const std::string& file) {
   std::vector<SnapshotName> all, piles;
   bool steps = true, layers = false;
   for (const std::string& group : dem::list_snapshots(file)) {
-    all.push_back({file, group});
+    all.push_back({file, group, {}});
     if (last_name(group) == "pile") piles.push_back(all.back());
     steps = steps && last_name(group).compare(0, 5, "step_") == 0;
     layers = layers || last_name(group) == "loaded";
@@ -84,6 +84,18 @@ struct Chosen {
   std::string field_file, field;  // or one field
 };
 
+// Of what is in memory, if anything is.
+std::string first_name(const FitRequest& request) {
+  if (!request.inputs.empty()) return request.inputs.front();
+  return request.heaps.empty() ? "field" : request.heaps.front().file;
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::vector<std::string> quoted;
+  for (const std::string& word : words) quoted.push_back("\"" + word + "\"");
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
 Chosen choose(const std::vector<std::string>& inputs) {
   Chosen out;
   for (const std::string& text : inputs) {
@@ -109,7 +121,7 @@ Chosen choose(const std::vector<std::string>& inputs) {
     if (input.name.empty()) {
       for (SnapshotName& one : heaps_of(input.file)) out.heaps.push_back(std::move(one));
     } else {
-      out.heaps.push_back({input.file, input.name});
+      out.heaps.push_back({input.file, input.name, {}});
     }
   }
   return out;
@@ -118,9 +130,7 @@ Chosen choose(const std::vector<std::string>& inputs) {
 HeapReader reader_of(std::vector<SnapshotName> heaps) {
   const std::size_t count = heaps.size();
   const auto name = [heaps](std::size_t k) { return heaps[k].file + ":" + heaps[k].group; };
-  return {count,
-          [heaps](std::size_t k) { return dem::read_snapshot(heaps[k].file, heaps[k].group); },
-          name};
+  return {count, [heaps](std::size_t k) { return *snapshot_of(heaps[k]); }, name};
 }
 
 // The settings as TOML that --case reads back.
@@ -155,6 +165,17 @@ std::string coverage_of_heaps(const FitSetup& setup, const Observations& heaps,
 
 }  // namespace
 
+Overrides fit_overrides(const std::vector<std::string>& models, const std::vector<double>& heights,
+                        const std::vector<std::string>& components,
+                        std::optional<double> width_diameters) {
+  Overrides set;
+  if (!models.empty()) set.push_back("fit.models=" + quoted_list(models));
+  if (!heights.empty()) set.push_back(fmt::format("fit.heights=[{}]", fmt::join(heights, ", ")));
+  if (!components.empty()) set.push_back("fit.components=" + quoted_list(components));
+  if (width_diameters) set.push_back(fmt::format("fit.width_diameters={}", *width_diameters));
+  return set;
+}
+
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
   Draft draft;
   draft.file = case_file;
@@ -177,15 +198,21 @@ FitOutcome fit_files(const FitRequest& request) {
   Case value;
   value.study = "pile-fit";
   value.get<FitSetup>() = read_fit_setup(request.case_file, request.overrides);
-  const Chosen chosen = choose(request.inputs);
-  OutputFolder results(request.folder, "grainfield fit " + request.inputs.front());
+  Chosen chosen = choose(request.inputs);
+  chosen.heaps.insert(chosen.heaps.end(), request.heaps.begin(), request.heaps.end());
+  const std::string first = first_name(request);
+  OutputFolder results(request.folder, "grainfield fit " + first);
   std::vector<std::string> inputs{chosen.field_file};
-  for (const SnapshotName& heap : chosen.heaps) inputs.push_back(heap.file);
+  for (const SnapshotName& heap : chosen.heaps)
+    if (!heap.held) inputs.push_back(heap.file);
   results.require_other_than(inputs);
   FitOutcome out;
   Observations data;
   std::function<dem::Snapshot()> drawn;
-  if (!chosen.field.empty()) {
+  if (request.field) {
+    out.packings = {first};
+    data = observe_heap_field(value.get<FitSetup>(), *request.field, first);
+  } else if (!chosen.field.empty()) {
     out.packings = {chosen.field_file + ":" + chosen.field};
     data = observe_heap_field(value.get<FitSetup>(), read_field(chosen.field_file, chosen.field),
                               out.packings.front());
@@ -195,8 +222,8 @@ FitOutcome fit_files(const FitRequest& request) {
     data = observe_heaps(value.get<FitSetup>(), heaps, request.threads);
     drawn = [heaps] { return heaps.read(0); };
   }
-  value.name = fs::path(request.inputs.front()).stem().string();
-  value.title = "Fit of " + fs::path(request.inputs.front()).filename().string();
+  value.name = fs::path(first).stem().string();
+  value.title = "Fit of " + fs::path(first).filename().string();
   out.warnings = data.warnings;
   if (!request.coverage.empty()) {
     out.coverage = coverage_of_heaps(value.get<FitSetup>(), data, request);

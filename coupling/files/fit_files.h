@@ -1,15 +1,20 @@
 // `grainfield fit`: snapshots or averaged fields from files, fitted and written.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
+#include "coupling/field.h"
+#include "coupling/files/average_files.h"
 #include "coupling/fit/setup.h"
 
 namespace grainfield::coupling {
 
 struct FitRequest {
   std::vector<std::string> inputs;  ///< FILE.h5, FILE.h5:GROUP (snapshots) or FILE.h5:FIELD
+  std::vector<SnapshotName> heaps;  ///< instead of inputs: snapshots in memory; or
+  std::optional<Field> field{};     ///< one field in memory
   std::string case_file;            ///< its [fit] counts; empty: the defaults
   Overrides overrides;              ///< "fit.heights=[0.2]"
   std::string folder;
@@ -26,6 +31,12 @@ struct FitOutcome {
   std::string verdict;
   std::string coverage;  ///< tables; empty: not asked for
 };
+
+/// What a user chooses of [fit] beside its keys, as overrides of it; empty lists and no width
+/// choose nothing.
+Overrides fit_overrides(const std::vector<std::string>& models, const std::vector<double>& heights,
+                        const std::vector<std::string>& components,
+                        std::optional<double> width_diameters);
 
 /// Key [fit] of a case file (other sections are not looked at) with overrides. Throws
 /// std::invalid_argument "FILE:LINE: fit.KEY: ...".

@@ -18,10 +18,18 @@ constexpr int kStrainColumns = 81, kStrainRows = 31, kStrainSide = 21;
 
 }  // namespace
 
+void settle(StrainRequest& request, bool support_chosen, bool width_chosen) {
+  if (width_chosen && !(request.options.width > 0)) {
+    throw std::invalid_argument(
+        fmt::format("--width: found {:g}, allowed: above 0", request.options.width));
+  }
+  if (request.options.measure == "kernel" && !support_chosen) request.options.support = "lucy";
+}
+
 StrainOutcome strain_files(const StrainRequest& request) {
   require_frame(request.frame);
-  const dem::Snapshot before = dem::read_snapshot(request.before.file, request.before.group);
-  const dem::Snapshot after = dem::read_snapshot(request.after.file, request.after.group);
+  const auto held_before = snapshot_of(request.before), held_after = snapshot_of(request.after);
+  const dem::Snapshot &before = *held_before, &after = *held_after;
   StrainOptions options = request.options;
   if (options.width == 0) options.width = kWidth * mean_diameter(before);
   const std::int64_t loaded = before.loaded_grain >= 0 ? before.loaded_grain : after.loaded_grain;

@@ -24,6 +24,11 @@ struct StrainOutcome {
   std::string report;  ///< StrainResult::report()
 };
 
+/// What a user gave of it, checked and completed, before strain_files(): the support of the measure
+/// where none was chosen, a width above 0 where one was. Throws std::invalid_argument naming the
+/// option.
+void settle(StrainRequest& request, bool support_chosen, bool width_chosen);
+
 /// Throws std::invalid_argument as strain() and place().
 StrainOutcome strain_files(const StrainRequest& request);
 

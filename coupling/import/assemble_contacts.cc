@@ -99,7 +99,9 @@ void Assembly::add_contacts(const ForeignTable& table) {
     if (s.dim == 2 && c.force.z() != 0)
       row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                              c.force.z()));
-    if (point) c.point = point.of(row);
+    // An empty cell is what a missing column is.
+    const bool pointed = point && !row.empty(point.x);
+    if (pointed) c.point = point.of(row);
     if (s.dim == 2) c.point.z() = 0;
     if (normal) c.normal = normal.of(row);
     if (s.dim == 2) c.normal.z() = 0;
@@ -107,7 +109,7 @@ void Assembly::add_contacts(const ForeignTable& table) {
     set_spring(springs ? std::optional<Vec3>(sign * springs.of(row)) : std::nullopt, c);
     if (!row.empty(spring) && s.dim == 2) c.spring = row.number(spring);
     c.sliding = !row.empty(sliding) && row.number(sliding) != 0;
-    add_contact(std::move(r), bool(normal), bool(point), row.empty(sliding));
+    add_contact(std::move(r), bool(normal), pointed, row.empty(sliding));
   });
 }
 

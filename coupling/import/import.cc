@@ -8,7 +8,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "continuum/model.h"
 #include "coupling/import/assemble.h"
+#include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/number.h"
 
@@ -51,6 +53,30 @@ std::vector<StepChoice> chosen_steps(const ImportOptions& options, const Steps& 
           fmt::format("--step {}: no such time step; there are: {}", choice.step, names_of(steps)));
     if (choice.group.empty() && out.size() == 1) choice.group = options.group;
   }
+  return out;
+}
+
+ForeignTable table_of(const ArrayTable& table, TableKind kind) {
+  ForeignTable out;
+  out.file = table.name;
+  out.kind = kind;
+  std::vector<std::string> known, names;
+  for (const OurColumn& column : our_columns(kind)) known.push_back(column.name);
+  std::vector<ArrayColumn> arrays;
+  for (const auto& [name, column] : table.columns) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::invalid_argument(fmt::format("{}: unknown column \"{}\"; nearest: {}; allowed: {}",
+                                              table.name, name, continuum::nearest(name, known),
+                                              fmt::join(known, ", ")));
+    if (!arrays.empty() && column.rows() != arrays.front().rows())
+      throw std::invalid_argument(fmt::format("{}: {} has {} values, {} has {}", table.name, name,
+                                              column.rows(), names.front(), arrays.front().rows()));
+    names.push_back(name);
+    arrays.push_back(column);
+  }
+  out.rows = arrays.empty() ? 0 : static_cast<long long>(arrays.front().rows());
+  out.columns = std::make_shared<const std::vector<std::string>>(std::move(names));
+  out.arrays = std::make_shared<const std::vector<ArrayColumn>>(std::move(arrays));
   return out;
 }
 
@@ -176,6 +202,25 @@ void import_snapshots(const ImportOptions& options,
     if (stepped) attributes["imported_step"] = fmt::format("{}", choice.step);
     take(std::move(done));
   }
+}
+
+dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
+                            const ArrayTable& contacts, const ArrayTable& walls) {
+  const ImportFormat format = csv_format();
+  ColumnNames names(format.columns);
+  TableReader reader;
+  Assembly assembly(options, format, names, reader);
+  const ForeignTable of_grains = table_of(grains, TableKind::grains);
+  const ForeignTable of_contacts = table_of(contacts, TableKind::contacts);
+  const ForeignTable of_walls = table_of(walls, TableKind::walls);
+  assembly.add_grains(of_grains);
+  if (of_walls.rows > 0) assembly.add_walls(of_walls);
+  assembly.settle();
+  if (of_contacts.rows > 0) assembly.add_contacts(of_contacts);
+  dem::Snapshot out = assembly.finish().snapshot;
+  out.attributes["imported_from"] = "arrays";
+  dem::check_snapshot(out, grains.name);
+  return out;
 }
 
 PackingCheck check_packing(const dem::Snapshot& s) {

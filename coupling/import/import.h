@@ -4,8 +4,10 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "coupling/import/table.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -72,6 +74,17 @@ struct ImportedSnapshot {
 /// or mass not above 0, polygons that are not convex, steps that are not there.
 void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take);
+
+/// A table in memory.
+struct ArrayTable {
+  std::string name;  ///< in messages, with the row from 0: "grains:12"
+  std::vector<std::pair<std::string, ArrayColumn>> columns;  ///< under our names (table.h)
+};
+/// The same of tables in memory, in SI units under our names: contacts and walls may be without
+/// columns. Of the options only those that read no file count. Throws std::invalid_argument
+/// likewise, and for a column of an unknown name or of another length than the first.
+dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
+                            const ArrayTable& contacts, const ArrayTable& walls);
 
 /// How an imported packing can be checked against the program that made it.
 struct PackingCheck {

@@ -271,11 +271,25 @@ ForeignColumn TableColumns::need_theirs(const std::string& theirs) const {
   return {theirs, static_cast<int>(at - columns.begin()), std::nullopt};
 }
 
+const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
+  return arrays == nullptr || column.index < 0 ? nullptr
+                                               : &(*arrays)[static_cast<std::size_t>(column.index)];
+}
+
 std::string_view ForeignRow::text(const ForeignColumn& column) const {
+  if (const ArrayColumn* array = array_of(column)) {
+    if (!array->words.empty()) return array->words[place];
+    const double value = array->numbers[place];
+    if (std::isnan(value)) return {};
+    shown_ = fmt::format("{}", value);
+    return shown_;
+  }
   return column.index >= 0 ? fields[static_cast<std::size_t>(column.index)] : std::string_view();
 }
 
 bool ForeignRow::empty(const ForeignColumn& column) const {
+  const ArrayColumn* array = array_of(column);
+  if (array != nullptr && array->words.empty()) return std::isnan(array->numbers[place]);
   return !column || (!column.constant && text(column).empty());
 }
 
@@ -290,7 +304,10 @@ void ForeignRow::refuse(const std::string& what) const {
 
 double ForeignRow::number(const ForeignColumn& column) const {
   if (column.constant) return *column.constant;
-  const std::optional<double> value = dem::parse_number(text(column));
+  const ArrayColumn* array = array_of(column);
+  const std::optional<double> value = array != nullptr && array->words.empty()
+                                          ? array->numbers[place]
+                                          : dem::parse_number(text(column));
   if (!value || !std::isfinite(*value))
     refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
                        text(column)));
@@ -309,8 +326,22 @@ long long ForeignRow::whole(const ForeignColumn& column) const {
   return static_cast<long long>(value);
 }
 
+void TableReader::read_arrays(const ForeignTable& table,
+                              const std::function<void(const ForeignRow&)>& take) {
+  ForeignRow row;
+  row.file = &table.file;
+  row.columns = table.columns.get();
+  row.arrays = table.arrays.get();
+  for (long long n = 0; n < table.rows; ++n) {
+    row.line = n;
+    row.place = static_cast<std::size_t>(n);
+    take(row);
+  }
+}
+
 void TableReader::read(const ForeignTable& table,
                        const std::function<void(const ForeignRow&)>& take) {
+  if (table.arrays) return read_arrays(table, take);
   auto& lines = files_[table.file];
   if (!lines) lines = std::make_unique<Lines>(table.file);
   lines->seek(table.first);

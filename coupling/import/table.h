@@ -18,6 +18,14 @@ namespace grainfield::coupling {
 
 enum class TableKind { unknown, grains, contacts, walls };
 
+/// A column in memory: numbers (nan: not told), or words.
+struct ArrayColumn {
+  std::vector<double> numbers;
+  std::vector<std::string> words;
+
+  std::size_t rows() const { return words.empty() ? numbers.size() : words.size(); }
+};
+
 /// A table as a format's scan() finds it. Its rows are not read yet.
 struct ForeignTable {
   std::string file;
@@ -31,6 +39,9 @@ struct ForeignTable {
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
   std::string broken;  ///< not empty: why the table cannot be read (truncated)
+  /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
+  /// long as `rows`.
+  std::shared_ptr<const std::vector<ArrayColumn>> arrays;
 };
 
 /// Our column names and what they mean; the first list is of grains, then contacts, then walls.
@@ -93,9 +104,11 @@ class ForeignRow {
   const std::string* file = nullptr;
   long long line = 0;
   const std::vector<std::string>* columns = nullptr;
-  std::vector<std::string_view> fields;
+  std::vector<std::string_view> fields;              ///< of a file's row
+  const std::vector<ArrayColumn>* arrays = nullptr;  ///< of a table in memory
+  std::size_t place = 0;                             ///< of the row in it
 
-  /// "" for a constant.
+  /// "" for a constant. Valid until the next call or row.
   std::string_view text(const ForeignColumn& column) const;
   bool empty(const ForeignColumn& column) const;
   /// Throws std::invalid_argument naming file, line and column unless it is a finite number.
@@ -107,6 +120,9 @@ class ForeignRow {
 
  private:
   std::string name_of(const ForeignColumn& column) const;
+  const ArrayColumn* array_of(const ForeignColumn& column) const;
+
+  mutable std::string shown_;  // a number in memory as text
 };
 
 /// Calls take(row) for every row; comments (#) and blank lines are passed over where the table runs
@@ -117,6 +133,8 @@ class TableReader {
   void read(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
 
  private:
+  void read_arrays(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
+
   std::map<std::string, std::unique_ptr<Lines>> files_;
 };
 

@@ -128,6 +128,11 @@ PolledSignals::~PolledSignals() {
 
 bool interrupted() { return flag; }
 
+void interrupt_polled_work() {
+  const std::lock_guard lock(state().mutex);
+  if (state().polled > 0) flag = true;
+}
+
 HeldSignals::HeldSignals(AfterHold after) : after_(after) {
   const std::lock_guard lock(state().mutex);
   ++state().held;

@@ -41,6 +41,9 @@ class PolledSignals {
 /// Whether a signal has come while PolledSignals lived.
 bool interrupted();
 
+/// Sets that flag as a signal does, where PolledSignals lives: for a host with signals of its own.
+void interrupt_polled_work();
+
 /// What becomes of a signal that had to wait: it is taken then, or forgotten, because the work it
 /// would have stopped is done.
 enum class AfterHold { take, forget };

@@ -118,6 +118,20 @@ struct Motion {
   int awake = 0;              ///< free grains that do not sleep
 };
 
+/// Where the engine keeps its grains, fixed ones too: number k of a column is `stride` bytes behind
+/// number k - 1, a vector's components are side by side. The order is the engine's: ids[k] tells
+/// who is where. Steps change the values and the order, but not the places; add() and restore()
+/// may move all.
+struct GrainArrays {
+  int count = 0, dim = 2;
+  long stride = 0;                   ///< bytes, of all but ids
+  const double* position = nullptr;  ///< dim each, m
+  const double* velocity = nullptr;  ///< dim each, m/s
+  const double* spin = nullptr;      ///< 1 each, in space 3; rad/s
+  const double* radius = nullptr;    ///< m
+  const std::int64_t* ids = nullptr;
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -172,6 +186,8 @@ class Engine {
   virtual Diagnostics measure() const = 0;
   virtual Motion motion() const = 0;
   virtual Snapshot snapshot() const = 0;
+  /// Its grains in place, without a copy; empty without grains.
+  virtual GrainArrays arrays() const = 0;
   /// That of cell_stress(snapshot()), as a sum in another order, and much sooner: for servos.
   /// Throws std::invalid_argument when the cell is not periodic along every axis.
   virtual CellStress cell_stress() const = 0;

@@ -224,6 +224,23 @@ class EngineLoop final : public Engine {
   Diagnostics measure() const override { return Report(world_).measure(); }
   Motion motion() const override { return Report(world_).motion(); }
   Snapshot snapshot() const override { return Report(world_).snapshot(); }
+  GrainArrays arrays() const override {
+    GrainArrays out;
+    const auto& bodies = world_.grains.bodies;
+    out.count = world_.grains.size();
+    out.dim = dim;
+    out.stride = sizeof(typename State::Body);
+    if (bodies.empty()) return out;
+    out.position = bodies.front().position.data();
+    out.velocity = bodies.front().velocity.data();
+    if constexpr (dim == 2)
+      out.spin = &bodies.front().spin;
+    else
+      out.spin = bodies.front().spin.data();
+    out.radius = &bodies.front().radius;
+    out.ids = world_.grains.ids.data();
+    return out;
+  }
   CellStress cell_stress() const override { return Report(world_).cell_stress(); }
 
   /// As frozen contacts without force: the next search hands their memories on.

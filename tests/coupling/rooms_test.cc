@@ -57,8 +57,11 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "fit", "heap", "import", "models", "output", "run",
         "strain", "studies/pile", "studies/point_load"}},
       {"app",
-       {"averaging", "case", "export", "files", "import", "output", "reproduce", "run",
-        "statistics", "structure", "system"}},
+       {"averaging", "case", "export", "files", "import", "models", "output", "reproduce", "run",
+        "structure", "system"}},
+      {"python",
+       {"app", "averaging", "case", "files", "import", "models", "output", "run", "structure",
+        "system"}},
   };
   return kRooms;
 }

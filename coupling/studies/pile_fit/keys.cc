@@ -36,8 +36,9 @@ void declare_fit_keys(SectionKeys s) {
   s.or_none();
   s.word("components", IN(components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
-  s.number("heights", "-", IN(heights), {1e-6, 1},
-           "horizontal lines, shares of the pile's height above the base; all together");
+  s.number("heights", "-", IN(heights), {0, 1},
+           "horizontal lines, shares of the pile's height above the base, 0 the base itself; all "
+           "together");
   s.number("leave_out", "-", IN(leave_out), {1, 1e6},
            "numbers, from 1, of heaps that are left out (of another size, with a stray grain); "
            "warnings name them");

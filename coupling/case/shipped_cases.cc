@@ -1,4 +1,4 @@
-#include "coupling/app/shipped_cases.h"
+#include "coupling/case/shipped_cases.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "continuum/installed.h"
 #include "continuum/model.h"
 
 namespace grainfield::coupling {
@@ -30,9 +31,10 @@ std::vector<fs::path> there() {
 fs::path cases_folder() {
   if (const char* given = std::getenv("GRAINFIELD_CASES")) return given;
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = program.parent_path().parent_path() / "share/grainfield/cases";
-  if (!error && fs::is_directory(installed, error)) return installed;
+  for (const fs::path& prefix : continuum::installed_prefixes()) {
+    const fs::path installed = prefix / "share/grainfield/cases";
+    if (fs::is_directory(installed, error)) return installed;
+  }
   return GRAINFIELD_CASES_DIR;
 }
 

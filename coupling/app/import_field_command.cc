@@ -1,0 +1,67 @@
+// import-field: stresses measured in a laboratory as a field.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <memory>
+
+#include "coupling/app/commands.h"
+#include "coupling/app/terminal.h"
+#include "coupling/files/measured_field.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/other_file.h"
+
+namespace grainfield::coupling {
+
+void add_import_field(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("import-field", "measured stresses as a field");
+  struct Given {
+    MeasuredRequest request;
+    std::string output, name;
+    double slope = 0;
+  };
+  auto given = std::make_shared<Given>();
+  MeasuredRequest& r = given->request;
+  command
+      ->add_option("file", r.file,
+                   fmt::format("CSV with columns x (UNIT), component, value (UNIT), error (UNIT) "
+                               "and, off the base, y (UNIT), in 3D z (UNIT), up; lengths in {}; "
+                               "stresses in {}; components pressure, shear or sigma_xx ...",
+                               fmt::join(length_units(), " "), fmt::join(stress_units(), " ")))
+      ->required();
+  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
+  command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
+  command->add_option("--dim", r.dim, "2 (default; 1 Pa counts as 1 N/m) | 3");
+  command->add_option("--height", r.height, "of the heap or layer, m");
+  auto* slope = command->add_option("--slope", given->slope, "of both sides of a heap, degrees");
+  command->add_option("--left-deg", r.left_deg, "of the left side");
+  command->add_option("--right-deg", r.right_deg, "of the right side");
+  command->add_option("--rho-g", r.rho_g, "weight per volume of a heap, N/m3 (2D: N/m2)");
+  command->add_option("--load", r.load, "on a layer, down, N: the values are its response");
+  command->add_option("--width", r.width,
+                      "radius of the measuring cells, m: models are averaged over it");
+  command->add_option("--name", given->name,
+                      "of the field; default base, or measured where not all is there");
+  command->callback([=, &action] {
+    action = [=] {
+      MeasuredRequest request = given->request;
+      if (slope->count() > 0) {
+        if (std::isnan(request.left_deg)) request.left_deg = given->slope;
+        if (std::isnan(request.right_deg)) request.right_deg = given->slope;
+      }
+      require_other_file("-o", given->output, {request.file});
+      const Field field = measured_field(request);
+      const std::string name = given->name.empty() ? name_of_measured(field) : given->name;
+      write_fields(given->output, {{name, field}});
+      say("{}: {} points, h = {} m\n", name, field.points.rows(), field.attributes.at("h"));
+      for (const Column& column : field.columns) {
+        say("  {}: {} values, {} with errors ({})\n", column.name,
+            column.value.array().isFinite().count(), column.error.array().isFinite().count(),
+            column.unit);
+      }
+      return 0;
+    };
+  });
+}
+
+}  // namespace grainfield::coupling

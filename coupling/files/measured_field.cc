@@ -1,0 +1,286 @@
+#include "coupling/files/measured_field.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "continuum/model.h"
+#include "coupling/files/placement.h"
+#include "coupling/import/format.h"
+#include "dem/snapshot/number.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kSamePlace = 1e-9;   // of h
+constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
+constexpr double kSteepest = 80;      // degrees
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+using Units = std::vector<std::pair<std::string, double>>;
+
+// In m; nan: h.
+const Units& lengths() {
+  static const Units units{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"h", kNan}};
+  return units;
+}
+// In Pa (2D: N/m); nan: rho g h, or F/h of a layer (3D: F/h2).
+const Units& stresses() {
+  static const Units units{{"Pa", 1},     {"kPa", 1e3},   {"MPa", 1e6},  {"N/m", 1},
+                           {"N/m2", 1},   {"kN/m2", 1e3}, {"mbar", 1e2}, {"rho_g_h", kNan},
+                           {"F/h", kNan}, {"F/h2", kNan}};
+  return units;
+}
+
+std::vector<std::string> names_of(const Units& units) {
+  std::vector<std::string> names;
+  for (const auto& [name, factor] : units) names.push_back(name);
+  return names;
+}
+
+// A column of the file: "value (kPa)", "value [kPa]".
+struct Heading {
+  std::string name, unit;
+  int index = -1;
+};
+Heading heading_of(const std::string& text, int index) {
+  const std::size_t open = text.find_first_of("([");
+  if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
+  const std::size_t close = text.find_first_of(")]", open);
+  const std::string_view all = text;
+  return {std::string(trimmed(all.substr(0, open))),
+          std::string(trimmed(all.substr(open + 1, close - open - 1))), index};
+}
+
+// A number's column and what its numbers are times.
+struct Measure {
+  ForeignColumn column;
+  double factor = 1;
+  explicit operator bool() const { return bool(column); }
+  double of(const ForeignRow& row) const { return factor * row.number(column); }
+};
+
+class Reader {
+ public:
+  Reader(const MeasuredRequest& request, const ForeignTable& table)
+      : request_(request), table_(table) {
+    for (std::size_t k = 0; k < table.columns->size(); ++k)
+      headings_.push_back(heading_of((*table.columns)[k], static_cast<int>(k)));
+  }
+
+  ForeignColumn need(const std::string& name) const {
+    if (const Heading* found = find(name)) return {name, found->index, std::nullopt};
+    std::vector<std::string> there;
+    for (const Heading& h : headings_) there.push_back(h.name);
+    refuse(fmt::format("no column \"{}\"; found: {}; nearest: {}", name, fmt::join(there, ", "),
+                       continuum::nearest(name, there)));
+  }
+  Measure length(const std::string& name, bool needed) const {
+    return measure(name, needed, lengths(), request_.height);
+  }
+  Measure stress(const std::string& name, bool needed) const {
+    return measure(name, needed, stresses(), kNan);
+  }
+
+ private:
+  const Heading* find(const std::string& name) const {
+    for (const Heading& h : headings_)
+      if (h.name == name) return &h;
+    return nullptr;
+  }
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::invalid_argument(fmt::format("{}:{}: {}", table_.file, table_.header_line, what));
+  }
+  Measure measure(const std::string& name, bool needed, const Units& units, double own) const {
+    if (needed) need(name);
+    const Heading* heading = find(name);
+    if (heading == nullptr) return {};
+    for (const auto& [unit, factor] : units) {
+      if (unit != heading->unit) continue;
+      const double scale = !std::isnan(factor) ? factor : &units == &lengths() ? own : scaled(unit);
+      return {{name, heading->index, std::nullopt}, scale};
+    }
+    const auto names = names_of(units);
+    refuse(heading->unit.empty()
+               ? fmt::format("column {}: found no unit, expected one in brackets, such as {} ({}); "
+                             "allowed: {}",
+                             name, name, names[1], fmt::join(names, ", "))
+               : fmt::format("column {}: found the unit \"{}\", allowed: {}", name, heading->unit,
+                             fmt::join(names, ", ")));
+  }
+  // Of the heap or the response.
+  double scaled(const std::string& unit) const {
+    const MeasuredRequest& r = request_;
+    double out = kNan;
+    if (unit == "rho_g_h") out = r.rho_g * r.height;
+    if (unit == "F/h" && r.dim == 2) out = r.load / r.height;
+    if (unit == "F/h2" && r.dim == 3) out = r.load / r.height / r.height;
+    if (std::isnan(out))
+      refuse(fmt::format("found the unit \"{}\", which needs {}", unit,
+                         unit == "rho_g_h" ? "--rho-g"
+                                           : fmt::format("--load and {} dimensions",
+                                                         unit == "F/h" ? "two" : "three")));
+    return out;
+  }
+
+  const MeasuredRequest& request_;
+  const ForeignTable& table_;
+  std::vector<Heading> headings_;
+};
+
+// Column of the field and the sign of a value in it.
+std::pair<std::string, double> component_of(const ForeignRow& row, std::string_view word, int dim) {
+  const bool space = dim == 3;
+  if (word == "pressure") return {space ? "sigma_zz" : "sigma_yy", -1};
+  if (word == "shear") return {space ? "sigma_xz" : "sigma_xy", 1};
+  const auto& stresses_known = space ? kSpaceStress : kPlaneStress;
+  if (std::find(stresses_known.begin(), stresses_known.end(), word) == stresses_known.end())
+    row.refuse(fmt::format("component: found \"{}\", allowed: pressure, shear, {}", word,
+                           fmt::join(stresses_known, ", ")));
+  return {std::string(word), 1};
+}
+
+void require_above_zero(const char* option, double value, const char* why) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw std::invalid_argument(std::isnan(value)
+                                  ? fmt::format("{}: is missing; {}", option, why)
+                                  : fmt::format("{}: found {:g}, allowed: above 0", option, value));
+}
+
+void check(const MeasuredRequest& r) {
+  if (r.geometry != "heap" && r.geometry != "layer")
+    throw std::invalid_argument(
+        fmt::format("--geometry: found \"{}\", allowed: heap, layer; nearest: {}", r.geometry,
+                    continuum::nearest(r.geometry, {"heap", "layer"})));
+  if (r.dim != 2 && r.dim != 3)
+    throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", r.dim));
+  require_above_zero("--height", r.height, "the height of the heap or layer, m");
+  if (!(r.width >= 0 && std::isfinite(r.width)))
+    throw std::invalid_argument(fmt::format("--width: found {:g}, allowed: above 0", r.width));
+  if (r.geometry == "layer") {
+    if (!std::isnan(r.load)) require_above_zero("--load", r.load, "");
+    return;
+  }
+  require_above_zero("--rho-g", r.rho_g, "the weight per volume of the heap, N/m3 (2D: N/m2)");
+  for (const auto& [option, slope] :
+       {std::pair{"--left-deg", r.left_deg}, {"--right-deg", r.right_deg}}) {
+    if (!(slope > 0 && slope <= kSteepest))
+      throw std::invalid_argument(
+          std::isnan(slope)
+              ? fmt::format("{}: is missing; --slope sets both sides of the heap", option)
+              : fmt::format("{}: found {:g}, allowed: above 0, up to {:g}", option, slope,
+                            kSteepest));
+  }
+}
+
+struct Value {
+  double value = kNan, error = kNan;
+  long long line = 0;
+};
+struct Place {
+  std::array<double, 3> at{};  ///< x, across, up; m
+  std::map<std::string, Value> values;
+};
+
+}  // namespace
+
+const std::vector<std::string>& length_units() {
+  static const std::vector<std::string> names = names_of(lengths());
+  return names;
+}
+const std::vector<std::string>& stress_units() {
+  static const std::vector<std::string> names = names_of(stresses());
+  return names;
+}
+
+std::string name_of_measured(const Field& field) {
+  const double h = dem::parse_number(field.attributes.at("h")).value();
+  const Eigen::VectorXd heights = field.points.col(field.points.cols() - 1);
+  return (heights.array() + h).abs().maxCoeff() <= kSamePlace * h ? "base" : "measured";
+}
+
+Field measured_field(const MeasuredRequest& request) {
+  check(request);
+  const double h = request.height;
+  const std::vector<ForeignTable> tables = csv_format().scan(request.file);
+  const ForeignTable& table = tables.front();
+  const Reader columns(request, table);
+  const bool space = request.dim == 3;
+  const Measure x = columns.length("x", true), side = columns.length("y", false),
+                up = columns.length("z", false), value = columns.stress("value", true),
+                error = columns.stress("error", true);
+  const ForeignColumn component = columns.need("component");
+  // By place, from left to right, lowest first.
+  std::map<std::array<double, 3>, Place> found;
+  TableReader reader;
+  reader.read(table, [&](const ForeignRow& row) {
+    const Measure& height = space ? up : side;
+    const double at = height && !row.empty(height.column) ? height.of(row) : -h;
+    const double beside = space && side ? side.of(row) : 0;
+    const auto round = [&](double length) { return std::round(length / h / kSamePlace); };
+    const auto [name, sign] = component_of(row, row.text(component), request.dim);
+    Value one{sign * value.of(row), kNan, row.line};
+    if (!row.empty(error.column)) one.error = error.of(row);
+    if (one.error < 0)
+      row.refuse(
+          fmt::format("column error: found {}, allowed: 0 and above", row.text(error.column)));
+    Place& place = found[{round(at), round(beside), round(x.of(row))}];
+    if (place.values.empty()) place.at = {x.of(row), beside, at};
+    const auto [there, fresh] = place.values.emplace(name, one);
+    if (!fresh)
+      row.refuse(fmt::format("{} at x = {:g} m is there already, at {}:{}", row.text(component),
+                             x.of(row), request.file, there->second.line));
+  });
+  if (found.empty()) throw std::invalid_argument(request.file + ": holds no value");
+
+  Field out;
+  const auto n = static_cast<Eigen::Index>(found.size());
+  out.points.resize(n, request.dim);
+  for (const std::string& name : space ? kSpaceStress : kPlaneStress) {
+    const bool measured = std::any_of(found.begin(), found.end(), [&](const auto& place) {
+      return place.second.values.count(name) > 0;
+    });
+    if (!measured) continue;
+    Column& column = out.add(name, space ? "Pa" : "N/m");
+    column.value = column.error = Eigen::VectorXd::Constant(n, kNan);
+  }
+  Eigen::Index k = 0;
+  for (const auto& [key, place] : found) {
+    if (space)
+      out.points.row(k) << place.at[0], place.at[1], place.at[2];
+    else
+      out.points.row(k) << place.at[0], place.at[2];
+    for (Column& column : out.columns) {
+      const auto one = place.values.find(column.name);
+      if (one == place.values.end()) continue;
+      column.value[k] = one->second.value;
+      column.error[k] = one->second.error;
+    }
+    ++k;
+  }
+  auto& about = out.attributes;
+  about["method"] = "measured";
+  about["kernel"] = "heaviside";
+  about["width"] = fmt::format("{}", request.width > 0 ? request.width : kSmallWidth * h);
+  about["h"] = fmt::format("{}", h);
+  about["measured_file"] = request.file;
+  if (request.geometry == "layer") {
+    about["frame"] = frame_text("layer", request.dim);
+    if (!std::isnan(request.load)) about["F"] = fmt::format("{}", request.load);
+    return out;
+  }
+  about["frame"] = fmt::format("heap: apex at (0, 0), floor {} = -h", space ? "z" : "y");
+  about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
+  about["left_deg"] = fmt::format("{}", request.left_deg);
+  about["right_deg"] = fmt::format("{}", request.right_deg);
+  return out;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,42 @@
+// Stresses that were measured in a laboratory as a field like any other.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "coupling/field.h"
+
+namespace grainfield::coupling {
+
+struct MeasuredRequest {
+  std::string file;               ///< CSV; see measured_field
+  std::string geometry = "heap";  ///< heap (plane or cone, apex at 0) | layer (load at 0)
+  int dim = 2;                    ///< 2: stresses in N/m, where 1 Pa counts as 1 N/m; 3: Pa
+  double height = std::numeric_limits<double>::quiet_NaN();  ///< h, m
+  // Of heaps.
+  double left_deg = std::numeric_limits<double>::quiet_NaN(), right_deg = left_deg;
+  double rho_g = std::numeric_limits<double>::quiet_NaN();  ///< N/m3 (2D: N/m2)
+  // Of layers.
+  double load = std::numeric_limits<double>::quiet_NaN();  ///< F, N; nan: at rest
+  double width = 0;  ///< radius of the measuring cells, m; 0: a thousandth of h
+};
+
+/// One row of the file per value: columns x (in space also y), the height y (in space z; default
+/// -h, the base), component, value and error, each number's column with its unit behind its name,
+/// "x (mm)", "value (kPa)"; '#' begins a comment. Components: pressure (-sigma_yy; in space
+/// -sigma_zz), shear (sigma_xy; in space sigma_xz), or a stress by its name, tension positive. An
+/// empty error is none. The field has a column per stress (nan where it was not measured), with
+/// errors, and what `compare` and `fit` ask for as attributes. Throws std::invalid_argument, one
+/// line naming file and line, what was found and what is allowed: a missing column, an unknown unit
+/// or component, no number, a negative error, a value twice; and options that are missing or out of
+/// range.
+Field measured_field(const MeasuredRequest& request);
+
+/// "base" where all of its points are there, else "measured".
+std::string name_of_measured(const Field& field);
+
+/// The units of lengths and of stresses that a file may use, for messages and help.
+const std::vector<std::string>& length_units();
+const std::vector<std::string>& stress_units();
+
+}  // namespace grainfield::coupling

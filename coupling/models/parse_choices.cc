@@ -1,0 +1,74 @@
+#include "coupling/models/parse_choices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr const char* kLabelLetters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+
+// "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
+ModelChoice parse_choice(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string head = text.substr(0, colon);
+  const std::size_t equals = head.find('=');
+  ModelChoice out;
+  out.name = equals == std::string::npos ? head : head.substr(equals + 1);
+  out.label = equals == std::string::npos ? head : head.substr(0, equals);
+  if (out.label.empty() || out.label.find_first_not_of(kLabelLetters) != std::string::npos) {
+    throw std::invalid_argument(
+        fmt::format("--model: found the label '{}', allowed: letters, digits, _ and -", out.label));
+  }
+  continuum::find_model(out.name);
+  if (colon == std::string::npos) return out;
+  std::vector<std::string> items;
+  std::string rest = text.substr(colon + 1);
+  for (std::size_t at = 0; at <= rest.size();) {
+    const std::size_t end = std::min(rest.find(',', at), rest.size());
+    items.push_back(rest.substr(at, end - at));
+    at = end + 1;
+  }
+  out.settings = parse_settings(items, "--model " + out.name);
+  return out;
+}
+
+}  // namespace
+
+continuum::Settings parse_settings(const std::vector<std::string>& texts,
+                                   const std::string& where) {
+  continuum::Settings out;
+  for (const auto& text : texts) {
+    const std::size_t at = text.find('=');
+    if (at == 0 || at == std::string::npos || at + 1 == text.size()) {
+      throw std::invalid_argument(
+          fmt::format("{}: found \"{}\", expected parameter=value", where, text));
+    }
+    const auto [first, fresh] = out.emplace(text.substr(0, at), text.substr(at + 1));
+    if (!fresh)
+      throw std::invalid_argument(fmt::format("{}: {} is given twice, {} and {}; leave one out",
+                                              where, first->first, first->second,
+                                              text.substr(at + 1)));
+  }
+  return out;
+}
+
+std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
+  std::vector<ModelChoice> out;
+  std::set<std::string> seen;
+  for (const auto& text : texts) {
+    ModelChoice choice = parse_choice(text);
+    const std::string label = choice.label;
+    for (int n = 2; !seen.insert(choice.label).second; ++n) {
+      choice.label = fmt::format("{}_{}", label, n);
+    }
+    out.push_back(std::move(choice));
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

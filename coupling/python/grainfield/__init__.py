@@ -1,0 +1,63 @@
+"""grainfield from Python: grains in, fields out, and a verdict on the continuum models.
+
+Every function does what the command of the same name does, through the same code: numbers agree to
+the bit. A mistake in what is given is a ValueError (exit code 2 of the program), a computation that
+fails a RuntimeError (3), an output that cannot be written an OSError (74), each with the program's
+line. SI units; in 2D density is kg/m2, stiffness and stress N/m. Stress is tension positive.
+
+    import grainfield as gf
+    state = gf.read("pile/snapshots.h5:realization_000/pile")
+    field = gf.average(state, frame="heap")
+    print(gf.compare(field, ["osl:eta=0.74,mu=-0.31"]).verdict)
+
+docs/python.md tells more.
+"""
+
+from ._commands import (
+    Model,
+    average,
+    cases,
+    compare,
+    fit,
+    import_field,
+    model,
+    models,
+    run,
+    strain,
+    structure,
+)
+from ._core import version as __version__
+from ._data import Contacts, Field, Packing, Summary, Table, Walls
+from ._engine import Engine
+from ._files import Collection, read, write
+from ._packing import packing
+from ._results import CompareResult, FitResult, Result, Structure
+
+__all__ = [
+    "Collection",
+    "CompareResult",
+    "Contacts",
+    "Engine",
+    "Field",
+    "FitResult",
+    "Model",
+    "Packing",
+    "Result",
+    "Structure",
+    "Summary",
+    "Table",
+    "Walls",
+    "average",
+    "cases",
+    "compare",
+    "fit",
+    "import_field",
+    "model",
+    "models",
+    "packing",
+    "read",
+    "run",
+    "strain",
+    "structure",
+    "write",
+]

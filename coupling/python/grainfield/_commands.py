@@ -1,0 +1,414 @@
+"""average, strain, structure, model, fit, compare, run: what the commands of these names do."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import warnings as _warnings
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from . import _core
+from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
+from ._results import CompareResult, FitResult, Folder, Result, Structure
+
+atexit.register(_core.finish_ranks)
+
+
+def _list(value: Any) -> list:
+    if value is None:
+        return []
+    return list(value) if isinstance(value, (list, tuple, np.ndarray)) else [value]
+
+
+def _core_of(value: Any) -> Any:
+    return value._core if isinstance(value, (Packing, Field)) else os.fspath(value)
+
+
+def _sources(value: Any) -> list:
+    """Packings and texts, of a collection its packings."""
+    if isinstance(value, Mapping):
+        return [_core_of(one) for one in value.values()]
+    return [_core_of(one) for one in _list(value)]
+
+
+def _grid(grid: Any) -> str:
+    return "" if grid is None else grid if isinstance(grid, str) else "x".join(str(n) for n in grid)
+
+
+def _points(points: Any) -> Any:
+    if points is None:
+        return None
+    points = np.asarray(points, float)
+    return points.reshape(1, -1) if points.ndim == 1 else points
+
+
+def _warn(lines: Iterable[str]) -> None:
+    for line in lines:
+        if line:
+            _warnings.warn(line, stacklevel=3)
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_toml(one) for one in value) + "]"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return repr(value.item() if isinstance(value, np.generic) else value)
+
+
+def _overrides(sets: Mapping[str, Any] | Sequence[str] | None) -> list[str]:
+    """{"material.friction": 0.3} as ["material.friction=0.3"]."""
+    if isinstance(sets, Mapping):
+        return [f"{key}={_toml(value)}" for key, value in sets.items()]
+    return _list(sets)
+
+
+def average(
+    snapshots: Any,
+    *,
+    unloaded: Any = None,
+    points: Any = None,
+    grid: Any = None,
+    cuts: Sequence[float] = (),
+    frame: str = "layer",
+    method: str = "coarse_graining",
+    kernel: str | None = None,
+    width: float | None = None,
+    free_surface: str = "open",
+    least_grains: int = 3,
+    quantities: Sequence[str] = (),
+    response: bool = False,
+    rings: bool = False,
+    axis: Sequence[float] = (),
+    end_at_walls: bool = False,
+    threads: int = 1,
+) -> Field:
+    """Averages packings into a field on points (docs/averaging.md), as `grainfield average`.
+
+    snapshots: a packing, "FILE.h5" (all in it) or "FILE.h5:group", or a list of these: realizations
+    of one, whose mean and standard error the field holds. unloaded: states before the load, one for
+    each; the field then is the response, loaded - unloaded; so is it with response=True of files
+    that hold both under these names. points (k, dim) in the frame, m, or a grid (81, 31), or cuts,
+    shares of the height. frame: layer, heap or packing. width: m; default one mean diameter
+    (particle_centre, area_exact: 2.5). rings: in 3D, points are radius and height.
+
+    The field's warnings are also given as Python warnings. Raises ValueError.
+    """
+    sources, before = _sources(snapshots), _sources(unloaded)
+    out = _core.average(
+        sources=sources,
+        unloaded=before,
+        points=_points(points),
+        grid=_grid(grid),
+        cuts=[float(share) for share in cuts],
+        frame=frame,
+        method=method,
+        kernel=kernel,
+        width=width,
+        free_surface=free_surface,
+        least_grains=least_grains,
+        quantities=list(quantities),
+        response=response,
+        rings=rings,
+        axis=[float(place) for place in axis],
+        end_at_walls=end_at_walls,
+        threads=threads,
+    )
+    named = {name: Field(core, name=name) for name, core in out.fields}
+    field = named.pop(next(iter(named)))
+    field.beside = named
+    field.warnings = out.warnings + ([out.gaps] if out.gaps else [])
+    field.seconds = out.seconds
+    _warn(field.warnings)
+    return field
+
+
+def strain(
+    before: Any,
+    after: Any,
+    *,
+    points: Any = None,
+    grid: Any = None,
+    frame: str = "layer",
+    measure: str = "cambou",
+    support: str | None = None,
+    width: float | None = None,
+    least_grains: int = 6,
+    threads: int = 1,
+) -> Field:
+    """Displacement gradient and strain between two states of the same grains (docs/strain.md).
+
+    before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
+    width: m; default three mean diameters. Raises ValueError.
+    """
+    core, report = _core.strain(
+        before=_core_of(before),
+        after=_core_of(after),
+        points=_points(points),
+        grid=_grid(grid),
+        frame=frame,
+        measure=measure,
+        support=support,
+        width=width,
+        least_grains=least_grains,
+        threads=threads,
+    )
+    field = Field(core, name="strain")
+    field.warnings = [report] if report else []
+    _warn(field.warnings)
+    return field
+
+
+def structure(snapshot: Any) -> Structure:
+    """Contacts, base forces, force chains and orientation of a packing or "FILE.h5:group"."""
+    return Structure(_core.structure(_core_of(snapshot)))
+
+
+class Model:
+    """A continuum model with its parameters set; call it with points."""
+
+    def __init__(self, name: str, settings: Mapping[str, Any]):
+        texts = {key: value if isinstance(value, str) else repr(float(value))
+                 for key, value in settings.items()}
+        self._core = _core.Model(name, texts)
+        self.name = name
+        self.settings = dict(settings)
+        self.dim: int = self._core.dim  #: of the points
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the stresses' columns."""
+        return PLANE_STRESS if self.dim == 2 else SPACE_STRESS
+
+    def __call__(self, points: Any) -> np.ndarray:
+        """Stresses (k, 3), in space (k, 6), in N/m (Pa), at points (k, dim), m; nan outside the
+        model. Raises RuntimeError when a solve fails."""
+        return self._core.stress(_points(points))
+
+    def quantities(self, points: Any) -> dict[str, np.ndarray]:
+        """What the model knows besides the stress, such as displacements; of most nothing."""
+        return self._core.quantities(_points(points))
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """Figures of the evaluation, such as iterations."""
+        return self._core.figures()
+
+    def __repr__(self) -> str:
+        return f"<Model {self.name}: {', '.join(f'{k}={v}' for k, v in self.settings.items())}>"
+
+
+def model(name: str, **settings: Any) -> Model:
+    """The model of this name: gf.model("layer", F=300, h=0.15)(points). models() lists them.
+
+    Raises ValueError for an unknown name or parameter, or a value out of range.
+    """
+    return Model(name, settings)
+
+
+def models() -> dict[str, dict[str, Any]]:
+    """Every model: summary, dim and parameters with default, unit, allowed, meaning and source."""
+    return {one.pop("name"): one for one in _core.models()}
+
+
+def _choices(models: Any) -> list[str]:
+    """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or Model}."""
+    def text(value: Any) -> str:
+        if isinstance(value, Model):
+            value = (value.name, value.settings)
+        if isinstance(value, str):
+            return value
+        name, settings = value
+        return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
+
+    if isinstance(models, Mapping):
+        return [f"{label}={text(value)}" for label, value in models.items()]
+    return [text(value) for value in ([models] if isinstance(models, (str, Model)) else models)]
+
+
+def import_field(
+    file: str | os.PathLike,
+    *,
+    height: float,
+    geometry: str = "heap",
+    slope: float | tuple[float, float] | None = None,
+    rho_g: float | None = None,
+    load: float | None = None,
+    width: float = 0,
+    dim: int = 2,
+) -> Field:
+    """Stresses measured in a laboratory as a field (docs/import.md), as `grainfield import-field`.
+
+    file: CSV with columns x, component, value, error (and y, in 3D z, off the base), each number
+    with its unit in brackets. height: m, of the heap or layer. Of heaps slope, degrees, one or (left,
+    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. width: radius of the cells, m. Raises
+    ValueError.
+    """
+    nan = float("nan")
+    left, right = slope if isinstance(slope, tuple) else (slope, slope)
+    core = _core.import_field(
+        os.fspath(file), geometry, dim, float(height),
+        *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
+    return Field(core, name=_core.name_of_measured(core))
+
+
+def compare(
+    field: Any,
+    models: Any,
+    *,
+    fields: Sequence[str] = (),
+    components: Sequence[str] = (),
+    heights: Sequence[float] = (),
+    origin: Sequence[float] = (),
+    folder: str | os.PathLike | None = None,
+) -> CompareResult:
+    """Compares a field with continuum models (docs/comparison.md), as `grainfield compare`.
+
+    field: a Field (with its base response, if it has one), several by name, or "FIELD.h5". models:
+    "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a list of these, or {label: model}. fields: only
+    these. folder: where profiles.*, summary.json and report.html go; without it they are read and
+    removed. Raises ValueError.
+    """
+    held: list = []
+    if isinstance(field, Field):
+        field = {field.name: field} | field.beside
+    if isinstance(field, Mapping):
+        held = [(name, one._core) for name, one in field.items()]
+        field = "field"
+    with Folder(folder) as place:
+        found = _core.compare(
+            file=os.fspath(field),
+            held=held,
+            models=_choices(models),
+            fields=_list(fields),
+            components=_list(components),
+            heights=[float(share) for share in heights],
+            origin=[float(place) for place in origin],
+            folder=place,
+        )
+        result = CompareResult(found, place, None if folder is None else place)
+    _warn([found["lacks"]])
+    return result
+
+
+def fit(
+    inputs: Any,
+    models: Sequence[str] | str | None = None,
+    *,
+    heights: Sequence[float] = (),
+    components: Sequence[str] = (),
+    width_diameters: float | None = None,
+    case: str = "",
+    set: Mapping[str, Any] | Sequence[str] | None = None,
+    coverage: Sequence[int] = (),
+    draws: int = 100,
+    folder: str | os.PathLike | None = None,
+    threads: int = 1,
+) -> FitResult:
+    """Fits stress models to heaps and ranks them (docs/fits.md), as `grainfield fit`.
+
+    inputs: packings, one Field of frame heap, or names as of the command, or a list. models: names;
+    default all for symmetric heaps. heights: shares of the heap's height. set: {"fit.huber": 3}.
+    folder: as of compare(). Raises ValueError, RuntimeError.
+    """
+    if isinstance(inputs, Mapping):
+        inputs = list(inputs.values())
+    given = _list(inputs)
+    fields = [one._core for one in given if isinstance(one, Field)]
+    packings = [one._core for one in given if isinstance(one, Packing)]
+    files = [os.fspath(one) for one in given if not isinstance(one, (Field, Packing))]
+    if len(fields) > 1:
+        raise ValueError("fit: a field is fitted alone; average all packings into one (frame=\"heap\")")
+    with Folder(folder) as place:
+        found = _core.fit(
+            files=files,
+            packings=packings,
+            field=fields[0] if fields else None,
+            models=_list(models),
+            heights=[float(share) for share in heights],
+            components=_list(components),
+            width_diameters=width_diameters,
+            case=case,
+            sets=_overrides(set),
+            coverage=_list(coverage),
+            draws=draws,
+            folder=place,
+            threads=threads,
+        )
+        result = FitResult(found, place, None if folder is None else place)
+    _warn(result.warnings)
+    return result
+
+
+class _ProgressLine:
+    """A line on standard error that is rewritten on a terminal, and nothing elsewhere."""
+
+    def __init__(self) -> None:
+        self._open = False
+
+    def show(self, progress: Mapping[str, Any]) -> None:
+        if sys.stderr is not None and sys.stderr.isatty():
+            sys.stderr.write("\r\x1b[K" + progress["text"])
+            sys.stderr.flush()
+            self._open = True
+
+    def end(self) -> None:
+        if self._open:
+            sys.stderr.write("\n")
+        self._open = False
+
+
+def run(
+    case: str | os.PathLike,
+    folder: str | os.PathLike | None = None,
+    *,
+    quick: bool = False,
+    set: Mapping[str, Any] | Sequence[str] | None = None,
+    resume: bool = False,
+    threads: int = 0,
+    checkpoint_seconds: float = 30,
+    progress: bool | Callable[[Mapping[str, Any]], Any] = True,
+    note: Callable[[str], Any] | None = None,
+    stop_after_steps: int = 0,
+) -> Result | None:
+    """Runs a case, as `grainfield run`, and returns what it left in the folder.
+
+    case: a case file or the name of a shipped one. folder: default results/CASE (CASE-quick). set:
+    {"material.friction": 0.3} or ["material.friction=0.3"]. threads: 0 is all cores; the results do
+    not depend on it. progress: True shows a line on a terminal; a function is called about five times
+    a second with phase, done, total, fraction, simulated_time (s), grains, awake, kinetic_energy (J),
+    unbalanced_force_ratio, seconds_left and text. note: called with lines about what begins.
+
+    Ctrl-C, and any exception out of progress or note, writes a checkpoint and stops; resume=True goes
+    on to the same bits. One run at a time in a process; under mpirun ranks other than the first get
+    None. Raises ValueError, RuntimeError, OSError, KeyboardInterrupt.
+    """
+    line = _ProgressLine()
+    show = line.show if progress is True else progress or None
+    try:
+        found = _core.run(
+            case=os.fspath(case),
+            folder="" if folder is None else os.fspath(folder),
+            sets=_overrides(set),
+            quick=quick,
+            resume=resume,
+            threads=threads,
+            checkpoint_seconds=checkpoint_seconds,
+            stop_after_steps=stop_after_steps,
+            progress=show,
+            note=note,
+        )
+    finally:
+        line.end()
+    _warn(found["warnings"])
+    return Result(found["folder"], found["warnings"]) if found["first"] else None
+
+
+def cases() -> dict[str, str]:
+    """The shipped cases: name to file."""
+    return {os.path.basename(path)[: -len(".toml")]: path for path in _core.cases()}

@@ -1,0 +1,113 @@
+"""Packings from arrays."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from . import _core
+from ._data import Packing
+
+_SHORT = {"velocities": ("vx", "vy", "vz"), "forces": ("fx", "fy", "fz"), "points": ("px", "py", "pz"),
+          "normals": ("nx", "ny", "nz")}
+
+
+def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[str, Sequence[str]]):
+    """Vectors (n, dim) by their components, lists of words as lists, all else as numbers."""
+    out: dict[str, Any] = {}
+    for name, value in given.items():
+        if value is None:
+            continue
+        array = np.asarray(value)
+        if name in vectors:
+            if array.ndim != 2 or array.shape[1] != dim:
+                raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
+                                 f"allowed: (n, {dim})")
+            out.update({part: array[:, k] for k, part in enumerate(vectors[name][:dim])})
+        elif array.dtype.kind in "US" or array.dtype == object:
+            out[name] = [str(word) for word in value]
+        else:
+            out[name] = array.astype(float)
+    return out
+
+
+def packing(
+    x: Any,
+    y: Any,
+    radius: Any,
+    z: Any = None,
+    *,
+    contacts: Mapping[str, Any] | None = None,
+    walls: Mapping[str, Any] | Sequence[str] | None = None,
+    ids: Any = None,
+    mass: Any = None,
+    density: float = 0,
+    velocities: Any = None,
+    fixed: Any = None,
+    outlines: Sequence[Any] | None = None,
+    friction: float | None = None,
+    gravity: Sequence[float] | None = None,
+    periodic: Mapping[str, tuple[float, float]] | None = None,
+    load: tuple[int, Sequence[float]] | None = None,
+    time: float = 0,
+    flip_forces: bool = False,
+    **columns: Any,
+) -> Packing:
+    """A packing of disks, convex polygons (2D) or, with z, spheres (3D) from arrays, in SI units.
+
+    x, y, z, radius: (n) m; radius may be one number. mass (n), kg, or density, kg/m3 (2D: kg/m2).
+    ids (n): whole numbers, each once; default 0, 1, 2, ... velocities (n, dim), m/s. fixed (n):
+    part of the apparatus. outlines: for each grain corners (k, 2) about (x, y), m, or None.
+    gravity: m/s2; default 9.81 down. periodic: {"x": (0, 0.1)}. load: (id, force) on that grain, N.
+
+    contacts: columns of n contacts. i, j (ids; j may be a wall's name), forces (n, dim), N, on i;
+    optional points and normals (n, dim), friction, spring, sliding; or any of the names of
+    docs/import.md. walls: their columns (name, x, y, nx, ny, ...), or texts such as "floor:y=0".
+    friction: of contacts and walls that have no column of it.
+
+    Other keywords are further columns of the grains under the names of docs/import.md (angle, spin,
+    material, ...). The checks are those of `grainfield import`: grains:12 in a message is row 12,
+    from 0. Raises ValueError.
+    """
+    dim = 2 if z is None else 3
+    x = np.atleast_1d(np.asarray(x, float))
+    n = len(x)
+
+    def each(value: Any) -> Any:
+        return np.full(n, value) if np.ndim(value) == 0 else value
+
+    given: dict[str, Any] = {"id": np.arange(n) if ids is None else ids, "x": x, "y": each(y)}
+    if z is not None:
+        given["z"] = each(z)
+    given["radius"] = each(radius)
+    if mass is not None:
+        given["mass"] = each(mass)
+    if velocities is not None:
+        given["velocities"] = velocities
+    if fixed is not None:
+        given["fixed"] = each(fixed)
+    if outlines is not None:
+        given["outline"] = [
+            "" if corners is None else ";".join(f"{a!r} {b!r}" for a, b in np.asarray(corners).tolist())
+            for corners in outlines
+        ]
+    given.update({name: each(value) for name, value in columns.items()})
+    texts = [walls] if isinstance(walls, str) else [] if isinstance(walls, Mapping) else walls or []
+    core = _core.packing(
+        _columns("grains", given, dim, _SHORT),
+        _columns("contacts", contacts or {}, dim, _SHORT),
+        _columns("walls", walls if isinstance(walls, Mapping) else {}, dim, {}),
+        {
+            "dim": dim,
+            "gravity": None if gravity is None else list(gravity),
+            "density": float(density),
+            "friction": friction,
+            "walls": list(texts),
+            "periodic": [f"{axis}={low!r}:{high!r}" for axis, (low, high) in (periodic or {}).items()],
+            "load": None if load is None else (int(load[0]), [float(f) for f in load[1]]),
+            "time": float(time),
+            "flip_forces": flip_forces,
+        },
+    )
+    return Packing(core)

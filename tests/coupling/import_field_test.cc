@@ -1,0 +1,176 @@
+// `grainfield import-field`: what was measured in a laboratory beside the models.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "continuum/closed/osl.h"
+#include "coupling/output/field_io.h"
+#include "coupling/output/tables.h"
+#include "dem/random/random.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+constexpr double kSlope = 30, kHeight = 0.08, kRhoG = 15000, kEta = 0.74, kMu = -0.31;
+
+// Base pressures and shears of OSL with errors of 2 %, in kPa at places in mm.
+std::string measured(std::uint64_t seed) {
+  const auto field = continuum::osl_field(kSlope * std::numbers::pi / 180, {kEta, kMu}, kRhoG);
+  dem::Random random(seed);
+  std::string out = "# a heap of sand\nx (mm),component,value (kPa),error (kPa)\n";
+  const double foot = kHeight / std::tan(kSlope * std::numbers::pi / 180);
+  for (int k = -12; k <= 12; ++k) {
+    const double x = 0.9 * foot * k / 12;
+    const Eigen::Vector3d stress = field.stress(x, -kHeight);
+    for (const auto& [name, value] : {std::pair{"pressure", -stress[1]}, {"shear", stress[2]}}) {
+      const double error = 0.02 * std::max(std::fabs(value), 20.0);
+      // Of unit variance, nearly normal.
+      double off = -6;
+      for (int n = 0; n < 12; ++n) off += random.uniform(0, 1);
+      out +=
+          fmt::format("{},{},{},{}\n", 1000 * x, name, (value + error * off) / 1000, error / 1000);
+    }
+  }
+  return out;
+}
+
+std::string heap_options() {
+  return fmt::format(" --height {} --slope {} --rho-g {} --width 0.002", kHeight, kSlope, kRhoG);
+}
+
+double figure(const Summary& s, const std::string& key) {
+  const auto at = s.find(key);
+  if (at == s.end()) {
+    ADD_FAILURE() << key << " is missing";
+    return std::nan("");
+  }
+  return std::get<double>(at->second);
+}
+
+TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
+  const Folder folder;
+  const std::string file = folder / "field.h5";
+  Output out = program("import-field " + folder.write("m.csv", measured(7)) + heap_options() +
+                       " -o " + file);
+  ASSERT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("base: 25 points, h = 0.08 m"));
+  EXPECT_THAT(out.out, HasSubstr("sigma_yy: 25 values, 25 with errors (N/m)"));
+  out = program("fit " + file +
+                " --heights 0 --components sigma_yy,sigma_xy --model osl --model bcc -o " +
+                (folder / "fit"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary fit = read_summary(folder / "fit/summary.json");
+  for (const auto& [name, value] : {std::pair{"eta", kEta}, {"mu", kMu}}) {
+    const double error = figure(fit, fmt::format("fit.osl.{}.error", name));
+    EXPECT_GT(error, 0);
+    EXPECT_LT(error, 0.1);
+    EXPECT_NEAR(figure(fit, fmt::format("fit.osl.{}", name)), value, 3 * error);
+  }
+  const double osl = figure(fit, "fit.osl.chi2_per_dof");
+  EXPECT_GT(osl, 0.4);
+  EXPECT_LT(osl, 2);
+  EXPECT_GT(figure(fit, "fit.bcc.chi2_per_dof"), 5 * osl);
+  EXPECT_GT(figure(fit, "fit.bcc.chi2_per_dof"), 5);
+  EXPECT_EQ(std::get<std::string>(fit.at("fit.osl.supported")), "yes");
+  EXPECT_EQ(std::get<std::string>(fit.at("fit.bcc.supported")), "no");
+  EXPECT_EQ(std::get<std::string>(fit.at("fit.warnings")), "");
+
+  out = program(fmt::format("compare {} --model osl:eta={},mu={} --model bcc -o {}", file, kEta,
+                            kMu, folder / "compare"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary compare = read_summary(folder / "compare/summary.json");
+  EXPECT_LT(figure(compare, "compare.osl.chi2_per_dof"), 2);
+  // Of 25 values 1.3 is as far from 1 as one standard deviation of a true model's.
+  EXPECT_GT(figure(compare, "compare.bcc.chi2_per_dof"), 2.5);
+}
+
+TEST(ImportField, TakesResponsesInTheirOwnUnits) {
+  const Folder folder;
+  // 2 F/(pi h) (1 + (x/h)^2)^-2 of Flamant on the depth h, in units of h and F/h.
+  std::string text = "x [h],y [h],component,value [F/h],error [F/h]\n";
+  for (int k = -5; k <= 5; ++k) {
+    const double x = 0.2 * k;
+    text += fmt::format("{},-0.5,pressure,{},0.01\n", x,
+                        4 / std::numbers::pi / std::pow(1 + 4 * x * x, 2));
+  }
+  const std::string file = folder / "field.h5";
+  Output out = program("import-field " + folder.write("m.csv", text) +
+                       " --geometry layer --height 0.3 --load 12 --width 0.0001 -o " + file);
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Field field = read_field(file, "measured");
+  EXPECT_NEAR(field.points(0, 0), -0.3, 1e-12);
+  EXPECT_NEAR(field.points(0, 1), -0.15, 1e-12);
+  EXPECT_NEAR(field.find("sigma_yy")->value[5], -4 / std::numbers::pi * 12 / 0.3, 1e-9);
+  EXPECT_NEAR(field.find("sigma_yy")->error[5], 0.01 * 12 / 0.3, 1e-12);
+  out = program("compare " + file + " --model flamant --model layer -o " + (folder / "c"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary compare = read_summary(folder / "c/summary.json");
+  EXPECT_LT(figure(compare, "compare.flamant.rel_l2"), 1e-3);
+  EXPECT_GT(figure(compare, "compare.layer.rel_l2"), 0.05);
+}
+
+TEST(ImportField, TakesConesInSpace) {
+  const Folder folder;
+  std::string text = "x (cm),component,value (Pa),error (Pa)\n";
+  for (int k = -4; k <= 4; ++k)
+    text += fmt::format("{},pressure,{},\n", 2 * k, 1000 - 20 * std::abs(k));
+  Output out = program("import-field " + folder.write("m.csv", text) +
+                       " --dim 3 --height 0.1 --slope 33 --rho-g 15000 -o " + (folder / "f.h5"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Field field = read_field(folder / "f.h5", "base");
+  EXPECT_EQ(field.points.cols(), 3);
+  EXPECT_DOUBLE_EQ(field.points(4, 2), -0.1);
+  EXPECT_DOUBLE_EQ(field.find("sigma_zz")->value[4], -1000);
+  EXPECT_TRUE(std::isnan(field.find("sigma_zz")->error[4]));
+  EXPECT_EQ(program("compare " + (folder / "f.h5") + " --model cone_fpa -o " + (folder / "c")).code,
+            0);
+}
+
+TEST(ImportField, SaysWhatIsWrongInOneLine) {
+  const Folder folder;
+  const auto refused = [&](const std::string& text, const std::string& options,
+                           const std::string& words) {
+    const Output out =
+        program("import-field " + folder.write("m.csv", text) + options + " -o " + (folder / "f"));
+    EXPECT_EQ(out.code, 2) << out.out;
+    EXPECT_THAT(out.err, HasSubstr(words));
+    EXPECT_EQ(std::count(out.err.begin(), out.err.end(), '\n'), 1) << out.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "f"));
+  };
+  const std::string head = "x (mm),component,value (kPa),error (kPa)\n", good = heap_options();
+  refused(
+      "x (mm),komponent,value (kPa),error (kPa)\n", good,
+      "m.csv:1: no column \"component\"; found: x, komponent, value, error; nearest: komponent");
+  refused("x (mm),component,value (bar),error (kPa)\n", good,
+          "m.csv:1: column value: found the unit \"bar\", allowed: Pa, kPa");
+  refused("x,component,value (kPa),error (kPa)\n", good,
+          "m.csv:1: column x: found no unit, expected one in brackets, such as x (cm)");
+  refused(head + "1,presure,2,0.1\n", good,
+          "m.csv:2: component: found \"presure\", allowed: "
+          "pressure, shear, sigma_xx, sigma_yy, sigma_xy");
+  refused(head + "1,pressure,2,-0.1\n", good,
+          "m.csv:2: column error: found -0.1, allowed: 0 and above");
+  refused(head + "1,pressure,two,0.1\n", good,
+          "m.csv:2: column value (kPa) (value): found \"two\", expected a finite number");
+  refused(head + "1,pressure,2,0.1\n1,pressure,3,0.1\n", good,
+          "m.csv:3: pressure at x = 0.001 m is there already, at " + (folder / "m.csv") + ":2");
+  refused(head, good, "m.csv: holds no value");
+  refused(head, " --height 0.1 --slope 30", "--rho-g: is missing");
+  refused(head, " --height 0.1 --rho-g 15000", "--left-deg: is missing; --slope sets both");
+  refused(head, " --rho-g 15000 --slope 30", "--height: is missing");
+  refused(head, good + " --geometry wege", "--geometry: found \"wege\", allowed: heap, layer");
+  refused("x (mm),component,value (F/h),error (F/h)\n", good,
+          "m.csv:1: found the unit \"F/h\", which needs --load");
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

@@ -1,0 +1,47 @@
+"""Pictures, with and without matplotlib."""
+
+import numpy as np
+import pytest
+
+import grainfield as gf
+from scene import ETA, MU, heap, python
+
+pytest.importorskip("matplotlib")
+
+
+def test_packings_show_grains_and_forces():
+    packing = heap()
+    shapes, lines = packing.plot().collections
+    assert len(shapes.get_paths()) == len(packing) and len(lines.get_paths()) == len(packing.contacts)
+    widths = lines.get_linewidths()
+    strongest = packing.contacts.normal_forces.argmax()
+    assert np.argmax(widths) == strongest and max(widths) == 4
+    change = packing.plot(change=packing).collections[1]
+    assert max(change.get_linewidths()) == 0
+
+
+def test_fields_and_profiles_show_bands_and_models():
+    heaps = [heap(seed) for seed in (1, 2)]
+    cut = gf.average(heaps, frame="heap", cuts=[0.2])
+    axes = cut.plot("sigma_yy")
+    assert len(axes.lines) == 1 and len(axes.collections) == 1
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), cut.sigma_yy)
+    assert axes.get_xlabel() == "x/h" and axes.get_ylabel() == "sigma_yy (N/m)"
+    assert gf.average(heaps, frame="heap", grid=(9, 5)).plot().get_ylabel() == "y/h"
+    axes = gf.compare(cut, [f"osl:eta={ETA},mu={MU}", "ife"]).plot()
+    assert [line.get_label() for line in axes.lines] == ["grains", "osl", "ife"]
+    with pytest.raises(ValueError, match="profile: found top, allowed: "):
+        gf.compare(cut, "ife").plot(profile="top")
+
+
+def test_without_matplotlib_the_error_says_what_to_install():
+    done = python("""
+import sys
+sys.modules["matplotlib"] = None
+import grainfield as gf
+try:
+    gf.packing([0], [0], 1, mass=1).plot()
+except ImportError as error:
+    print(error)
+""")
+    assert done.stdout == "plots need matplotlib, which is not installed (Debian: python3-matplotlib)\n", done.stderr
