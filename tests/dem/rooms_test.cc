@@ -21,6 +21,7 @@ const std::vector<Room>& rooms() {
       {"neighbours", {"space"}},
       {"motion", {"space", "words"}},
       {"walls", {"space", "words", "snapshot"}},
+      {"collisions", {"space"}},
       {"contacts", {"space", "neighbours"}},
       {"sleep", {"space", "contacts"}},
       {"engine",
