@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "dem/collisions/sliding.h"
 #include "dem/computation_failed.h"
-#include "dem/space/lever.h"
 
 namespace grainfield::dem {
 namespace {
@@ -19,18 +19,6 @@ constexpr double kLevel = 1e-12;
 // What a grain does alone, beside walls (from 0 on) and faces: -1 - 2 axis, and one less for the
 // upper one.
 constexpr std::int32_t kStopsSliding = -100, kSettles = -101;
-
-// Bodies that part along n more slowly than `least` (m/s) part so fast. Returns the impulse, N s,
-// and the energy that it takes, J.
-template <int D>
-std::array<double, 2> push_apart(Body<D>& a, Body<D>& b, const VectorOf<D>& n, double least) {
-  const double parting = (b.velocity - a.velocity).dot(n);
-  if (!(least > 0 && parting < least)) return {0, 0};
-  const double mass = 1 / (a.inverse_mass + b.inverse_mass), impulse = mass * (least - parting);
-  a.velocity -= impulse * a.inverse_mass * n;
-  b.velocity += impulse * b.inverse_mass * n;
-  return {impulse, 0.5 * mass * (least * least - parting * parting)};
-}
 
 std::int32_t face_code(int axis, int way) { return -1 - 2 * axis - (way > 0 ? 1 : 0); }
 
@@ -116,9 +104,19 @@ void HardEngine<D>::fly(std::int32_t g) {
     return;
   }
   Cold& cold = cold_[g];
+  if (hot.motion == Motion::lies) lost_ += slid(g, dt);
   hot.position += dt * hot.velocity + 0.5 * dt * dt * cold.acceleration;
   hot.velocity += dt * cold.acceleration;
   cold.spin += dt * cold.turning;
+}
+
+template <int D>
+double HardEngine<D>::slid(std::int32_t g, double time) const {
+  const Cold& c = cold_[g];
+  const Vector& v = hot_[g].velocity;
+  const SpinOf<D> spin = c.spin + time * c.turning;
+  return 0.5 / c.inverse_mass * (v.squaredNorm() - (v + time * c.acceleration).squaredNorm()) +
+         0.5 / c.inverse_inertia * (square_of(c.spin) - square_of(spin));
 }
 
 /// What others have planned with it is void.
@@ -175,6 +173,16 @@ double HardEngine<D>::kinetic_energy() const {
     if (b.inverse_mass == 0) continue;
     sum += 0.5 * b.velocity.squaredNorm() / b.inverse_mass;
     if (b.inverse_inertia > 0) sum += 0.5 * square_of(b.spin) / b.inverse_inertia;
+  }
+  return sum;
+}
+
+template <int D>
+double HardEngine<D>::lost() const {
+  double sum = lost_;
+  for (std::size_t k = 0; k < hot_.size(); ++k) {
+    const auto g = static_cast<std::int32_t>(k);
+    if (hot_[k].motion == Motion::lies) sum += slid(g, now_ - hot_[k].time);
   }
   return sum;
 }
@@ -334,8 +342,7 @@ void HardEngine<D>::meet(std::int32_t g) {
   const bool elastic = is_recent(g) || is_recent(other);
   const Impact<D> impact = collide<D>(a, b, n, elastic ? ImpactLaw() : scene_.grains);
   const double press = (acceleration(g) - acceleration(other)).dot(n);
-  const auto [push, gain] =
-      push_apart<D>(a, b, n, press > 0 ? 0.5 * press * scene_.contact_time : 0);
+  const Push push = push_apart<D>(a, b, n, 0.5 * press * scene_.contact_time);
   change(g);
   change(other);
   take(g, a);
@@ -344,8 +351,8 @@ void HardEngine<D>::meet(std::int32_t g) {
   note_collision(other, -1);
   ++tally_.pairs;
   tally_.elastic += elastic;
-  tally_.virial += distance * (impact.normal + push);
-  tally_.lost += impact.lost - gain;
+  tally_.virial += distance * (impact.normal + push.impulse);
+  lost_ += impact.lost - push.gain;
   tally_.deepest = std::max(tally_.deepest, 1 - distance / (a.radius + b.radius));
   for (const std::int32_t k : {g, other}) {
     look_ahead(k);
@@ -362,15 +369,14 @@ void HardEngine<D>::hit(std::int32_t g, std::int32_t w) {
   Body<D> a = as_body(g), b = wall.body();
   const Impact<D> impact = collide<D>(a, b, Vector(-wall.normal), elastic ? ImpactLaw() : wall.law);
   const double press = is_floor_[w] ? 0 : -acceleration(g).dot(wall.normal);
-  const auto [push, gain] =
-      push_apart<D>(b, a, wall.normal, press > 0 ? 0.5 * press * scene_.contact_time : 0);
+  const Push push = push_apart<D>(b, a, wall.normal, 0.5 * press * scene_.contact_time);
   wall_impulses_[w] += (hot_[g].velocity - a.velocity) / a.inverse_mass;
   change(g);
   take(g, a);
   note_collision(g, w);
   ++tally_.walls;
   tally_.elastic += elastic;
-  tally_.lost += impact.lost - gain;
+  lost_ += impact.lost - push.gain;
   if (is_floor_[w] && !elastic) {
     const double up = hot_[g].velocity.dot(wall.normal);
     if (2 * up < scene_.contact_time * scene_.gravity.norm()) lie_down(g, w, up);
@@ -388,25 +394,14 @@ void HardEngine<D>::lie_down(std::int32_t g, std::int32_t w, double up) {
   Cold& cold = cold_[g];
   hot.motion = Motion::lies;
   hot.velocity -= up * wall.normal;
-  tally_.lost += 0.5 * up * up / cold.inverse_mass;
+  lost_ += 0.5 * up * up / cold.inverse_mass;
   cold.floor = w;
   cold.settles = now_ + 2 * up / (gravity * (1 - wall.law.restitution));
-  cold.acceleration = Vector::Zero();
-  cold.turning = zero<SpinOf<D>>();
-  cold.slides_until = -kNever;
-  const Vector arm = -hot.radius * wall.normal;
-  Vector slip = hot.velocity + velocity_at(cold.spin, arm);
-  slip -= slip.dot(wall.normal) * wall.normal;
-  const double size = slip.norm();
-  const double speeds = hot.velocity.norm() + hot.radius * size_of(cold.spin);
-  if (wall.law.friction == 0 || size <= kLevel * speeds) return;
-  // Friction mu m g against the slip, which falls at (1/m + r^2/I) times that.
-  const Vector force = (-wall.law.friction * gravity / (cold.inverse_mass * size)) * slip;
-  cold.acceleration = cold.inverse_mass * force;
-  cold.turning = cold.inverse_inertia * torque_of(arm, force);
-  const double inverse = cold.inverse_mass + hot.radius * hot.radius * cold.inverse_inertia;
-  cold.slides_until = now_ + size / (force.norm() * inverse);
-  tally_.lost += 0.5 * size * size / inverse;
+  const Sliding<D> sliding =
+      sliding_of(as_body(g), wall.normal, gravity, wall.law.friction, kLevel);
+  cold.acceleration = sliding.acceleration;
+  cold.turning = sliding.turning;
+  cold.slides_until = sliding.time > 0 ? now_ + sliding.time : -kNever;
 }
 
 template <int D>

@@ -44,8 +44,6 @@ struct HardTally {
   long crossings = 0;  ///< from cell to cell
   long repeated = 0;   ///< meetings that were void
   double virial = 0;   ///< sum over pairs of r . P, J s: distance of centres times repulsion
-  double lost = 0;     ///< kinetic energy lost in collisions and by sliding, less what grains
-                       ///< got that were pressed together, J
   double deepest = 0;  ///< overlap at a collision, over the distance of the centres
 };
 
@@ -71,8 +69,11 @@ class HardEngine {
   double settled(std::size_t grain) const;
   /// Of the grains, J; without gravity's.
   double kinetic_energy() const;
+  /// Kinetic energy lost since the start in collisions and by sliding, less what grains got that
+  /// were pressed together, J. With moving walls: in the walls' frames.
+  double lost() const;
   const HardTally& tally() const { return tally_; }
-  /// Sum of the impulses of all grains on that wall, N s.
+  /// Sum of the impulses of all collisions on that wall, N s; what lies on it adds none.
   const Vector& wall_impulse(std::size_t wall) const { return wall_impulses_[wall]; }
 
   /// Shows `each` what changes while it goes on; after values have been read settle() says whether
@@ -84,6 +85,7 @@ class HardEngine {
     each(plans_);
     each(wall_impulses_);
     each(tally_);
+    each(lost_);
     each(clock_);
     each(now_);
     each(until_restart_);
@@ -124,6 +126,8 @@ class HardEngine {
   }
   void fly(std::int32_t g);
   void change(std::int32_t g);
+  /// Energy that one that lies loses within such a time after its own, J.
+  double slid(std::int32_t g, double time) const;
   Body<D> as_body(std::int32_t g) const;
   void take(std::int32_t g, const Body<D>& body);
   void note_collision(std::int32_t g, std::int32_t wall);
@@ -151,6 +155,7 @@ class HardEngine {
   std::vector<Plan> plans_;
   std::vector<Vector> wall_impulses_;
   HardTally tally_;
+  double lost_ = 0;             // but for those that slide: up to their own times
   double clock_ = 0, now_ = 0;  // where the clock started, and what it says
   long until_restart_ = 0;
   Cells<D> cells_;

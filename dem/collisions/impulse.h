@@ -105,4 +105,21 @@ Impact<D> collide(Body<D>& a, Body<D>& b, const VectorOf<D>& normal, const Impac
   return out;
 }
 
+struct Push {
+  double impulse = 0;  ///< N s
+  double gain = 0;     ///< kinetic energy that it took, J
+};
+
+/// Bodies that part along the unit vector from the first to the second more slowly than `least`
+/// (m/s) part so fast; where that is not above 0 nothing is done.
+template <int D>
+Push push_apart(Body<D>& a, Body<D>& b, const VectorOf<D>& normal, double least) {
+  const double parting = (b.velocity - a.velocity).dot(normal);
+  if (!(least > 0 && parting < least)) return {};
+  const double mass = 1 / (a.inverse_mass + b.inverse_mass), impulse = mass * (least - parting);
+  a.velocity -= impulse * a.inverse_mass * normal;
+  b.velocity += impulse * b.inverse_mass * normal;
+  return {impulse, 0.5 * mass * (least * least - parting * parting)};
+}
+
 }  // namespace grainfield::dem

@@ -186,7 +186,7 @@ class HardDisksRun final : public ArchivedRun {
     if (cools()) {
       const double seen = records_.back().temperature;
       figures_[name + "temperature"] = seen;
-      const double lost = engine_->kinetic_energy() + now.lost;
+      const double lost = engine_->kinetic_energy() + engine_->lost();
       figures_[name + "energy_drift"] = std::fabs(lost / energy_ - 1);
       if (setup_.friction == 0) {
         figures_[name + "temperature_over_haff"] = seen / setup_.cool_to;
