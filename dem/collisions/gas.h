@@ -58,6 +58,27 @@ double gas_compressibility(double fraction) {
   return (1 + f + f * f - f * f * f) / (rest * rest * rest);
 }
 
+/// The same by the ten virial coefficients that are known (Clisby and McCoy 2006), the rest as a
+/// geometric series. For fractions of a fluid.
+template <int D>
+double gas_virial_series(double fraction) {
+  // B_k over B_2^{k-1} from k = 2 on; B_2 is 2^{D-1} times a grain's volume.
+  constexpr double kDisks[] = {1,         0.78200443, 0.53223180, 0.33355604, 0.1988425,
+                               0.1148728, 0.0649930,  0.0362193,  0.0199537};
+  constexpr double kSpheres[] = {1,          0.625,     0.2869495, 0.110252, 0.03888198,
+                                 0.01302354, 0.0041832, 0.0013094, 0.0004035};
+  const auto& shares = D == 2 ? kDisks : kSpheres;
+  const double x = (D == 2 ? 2 : 4) * fraction;
+  double sum = 1, power = 1, last = 0;
+  for (const double share : shares) {
+    power *= x;
+    last = share * power;
+    sum += last;
+  }
+  const double ratio = x * shares[8] / shares[7];
+  return sum + last * ratio / (1 - ratio);
+}
+
 /// Enskog's collisions of a grain per second, each pair's counted for both: those of a dilute gas
 /// times the value of the pair distribution at contact, (Z - 1)/(2^{D-1} fraction). `speed`:
 /// sqrt(k T/m), m/s.

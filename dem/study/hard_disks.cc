@@ -211,6 +211,7 @@ class HardDisksRun final : public ArchivedRun {
     figures_[name + "compressibility"] = z;
     figures_[name + "theory"] = theory;
     figures_[name + "compressibility_over_theory"] = z / theory;
+    figures_[name + "compressibility_over_virial_series"] = z / gas_virial_series<D>(f);
     figures_[name + "collision_rate"] = rate;
     figures_[name + "collision_rate_over_enskog"] =
         rate / enskog_rate<D>(f, setup_.radius, speed, theory);

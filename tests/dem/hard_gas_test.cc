@@ -64,6 +64,11 @@ TEST(HardGasTheory, HasTheDiluteLimits) {
   // Second virial coefficients: 2 of disks, 4 of spheres.
   EXPECT_NEAR((gas_compressibility<2>(f) - 1) / f, 2, 1e-5);
   EXPECT_NEAR((gas_compressibility<3>(f) - 1) / f, 4, 2e-5);
+  // Both forms are one within 1/2 %.
+  for (const double part : {0.1, 0.3, 0.5}) {
+    EXPECT_NEAR(gas_virial_series<2>(part) / gas_compressibility<2>(part), 1, 5e-3) << part;
+    EXPECT_NEAR(gas_virial_series<3>(0.8 * part) / gas_compressibility<3>(0.8 * part), 1, 5e-3);
+  }
   EXPECT_NEAR(gas_compressibility<2>(0.5), 4.125, 1e-12);
   EXPECT_NEAR(gas_compressibility<3>(0.3), 1.363 / 0.343, 1e-12);
 }

@@ -14,6 +14,8 @@ std::vector<SummaryKey> gas_figures() {
       {"gas.*.compressibility", "-", "Z = p V/(n k T) by the virial of the collisions"},
       {"gas.*.theory", "-", "Z of Henderson 1975 (disks), Carnahan and Starling 1969 (spheres)"},
       {"gas.*.compressibility_over_theory", "-", "the one over the other"},
+      {"gas.*.compressibility_over_virial_series", "-",
+       "over the series of ten virial coefficients (Clisby and McCoy 2006), continued"},
       {"gas.*.collision_rate", "1/s", "collisions of a grain per second"},
       {"gas.*.collision_rate_over_enskog", "-", "over Enskog's, with the theory's Z"},
       {"gas.*.energy_drift", "-",

@@ -12,11 +12,6 @@ namespace {
 
 constexpr int kSmooth = 121;  // points of a line that is known everywhere
 
-double theory_of(const dem::HardDisksSetup& s, double fraction) {
-  return s.in_space() ? dem::gas_compressibility<3>(fraction)
-                      : dem::gas_compressibility<2>(fraction);
-}
-
 const char* theory_name(const dem::HardDisksSetup& s) {
   return s.in_space() ? "Carnahan and Starling" : "Henderson";
 }
@@ -37,7 +32,9 @@ Eigen::VectorXd each(std::size_t count, const Value& value) {
 }
 
 Series grains_of(const Eigen::VectorXd& x, const Eigen::VectorXd& y, const Eigen::VectorXd& error) {
-  return {"grains", x, y, error, true};
+  Series out{"grains", x, y, error, true};
+  out.points = true;
+  return out;
 }
 
 std::vector<Chart> pressure_charts(const GasResults& results) {
@@ -57,28 +54,41 @@ std::vector<Chart> pressure_charts(const GasResults& results) {
                 each(n, [&](std::size_t k) { return states[k].compressibility.error; })));
   frame.series.push_back({name,
                           fine,
-                          fine.unaryExpr([&](double f) { return theory_of(results.setup, f); }),
+                          fine.unaryExpr([&](double f) { return gas_theory(results.setup, f); }),
                           {},
                           false});
   pressure.frames.push_back(std::move(frame));
 
-  Chart rest{"Pressure and collisions over theory",
-             fraction_name(results.setup),
-             "over theory",
-             "Standard errors over the realizations.",
-             {},
-             false};
-  const auto over = [&](const char* title, const Eigen::VectorXd& y, const Eigen::VectorXd& error) {
+  Chart rest{
+      "Pressure and collisions over theory",
+      fraction_name(results.setup),
+      "over theory",
+      fmt::format("Enskog's rate with the pair distribution at contact that follows from {}'s "
+                  "Z. Virial series: ten coefficients, continued.",
+                  name),
+      {},
+      false};
+  const auto over = [&](const std::string& title, const Eigen::VectorXd& y,
+                        const Eigen::VectorXd& error) {
     Frame one;
     one.title = title;
     one.series.push_back(grains_of(x, y, error));
-    one.series.push_back({"theory", x, Eigen::VectorXd::Ones(x.size()), {}, false});
+    one.series.push_back({name, x, Eigen::VectorXd::Ones(x.size()), {}, false});
+    one.series.push_back({"virial series",
+                          x,
+                          each(n,
+                               [&](std::size_t k) {
+                                 const double z = states[k].theory, v = states[k].series;
+                                 return rest.frames.empty() ? v / z : (v - 1) / (z - 1);
+                               }),
+                          {},
+                          false});
     rest.frames.push_back(std::move(one));
   };
-  over("p V / (n k T)",
+  over(fmt::format("p V / (n k T) over {}'s", name),
        each(n, [&](std::size_t k) { return states[k].compressibility.mean / states[k].theory; }),
        each(n, [&](std::size_t k) { return states[k].compressibility.error / states[k].theory; }));
-  over("collisions per second (Enskog)",
+  over("collisions per second over Enskog's",
        each(n, [&](std::size_t k) { return states[k].rate_over_enskog.mean; }),
        each(n, [&](std::size_t k) { return states[k].rate_over_enskog.error; }));
   return {pressure, rest};
@@ -87,7 +97,7 @@ std::vector<Chart> pressure_charts(const GasResults& results) {
 std::vector<Chart> cooling_charts(const GasResults& results) {
   Chart chart{"Cooling",
               "time / Haff's time",
-              "root of T_0 / T",
+              "sqrt(T(0) / T)",
               "Haff's law is the straight line 1 + t/tau; nothing is fitted.",
               {},
               false};
@@ -116,6 +126,15 @@ std::string shown(const GasValue& v) {
 
 }  // namespace
 
+double gas_theory(const dem::HardDisksSetup& s, double fraction) {
+  return s.in_space() ? dem::gas_compressibility<3>(fraction)
+                      : dem::gas_compressibility<2>(fraction);
+}
+
+double gas_series(const dem::HardDisksSetup& s, double fraction) {
+  return s.in_space() ? dem::gas_virial_series<3>(fraction) : dem::gas_virial_series<2>(fraction);
+}
+
 std::vector<Chart> gas_charts(const GasResults& results) {
   return results.setup.kind == "pressure" ? pressure_charts(results) : cooling_charts(results);
 }
@@ -124,15 +143,16 @@ Table gas_table(const GasResults& results) {
   Table out;
   if (results.setup.kind == "pressure") {
     out.title = "Pressure and collisions";
-    out.header = {fraction_name(results.setup), "Z", theory_name(results.setup), "difference",
-                  "collisions per second over Enskog's"};
+    out.header = {fraction_name(results.setup),        "Z",
+                  theory_name(results.setup),          "difference",
+                  "difference from the virial series", "collisions per second over Enskog's"};
+    const auto over = [](const GasValue& z, double theory) {
+      return fmt::format("{:+.2f} ± {:.2f} %", 100 * (z.mean / theory - 1), 100 * z.error / theory);
+    };
     for (const GasState& s : results.states) {
-      const double unit = 100 / s.theory;
       out.rows.push_back({fmt::format("{:g}", s.fraction), shown(s.compressibility),
-                          fmt::format("{:.5g}", s.theory),
-                          fmt::format("{:+.2f} ± {:.2f} %", unit * s.compressibility.mean - 100,
-                                      unit * s.compressibility.error),
-                          shown(s.rate_over_enskog)});
+                          fmt::format("{:.5g}", s.theory), over(s.compressibility, s.theory),
+                          over(s.compressibility, s.series), shown(s.rate_over_enskog)});
     }
     return out;
   }
@@ -156,11 +176,11 @@ std::string gas_csv(const GasResults& results) {
   std::string out;
   if (results.setup.kind == "pressure") {
     out =
-        "fraction,compressibility,standard_error,theory,collision_rate_over_enskog,"
+        "fraction,compressibility,standard_error,theory,virial_series,collision_rate_over_enskog,"
         "standard_error\n";
     for (const GasState& s : results.states) {
-      out += fmt::format("{},{:.9g},{:.3g},{:.9g},{:.9g},{:.3g}\n", s.fraction,
-                         s.compressibility.mean, s.compressibility.error, s.theory,
+      out += fmt::format("{},{:.9g},{:.3g},{:.9g},{:.9g},{:.9g},{:.3g}\n", s.fraction,
+                         s.compressibility.mean, s.compressibility.error, s.theory, s.series,
                          s.rate_over_enskog.mean, s.rate_over_enskog.error);
     }
     return out;
@@ -196,11 +216,11 @@ double gas_largest_difference(const GasResults& results) {
 std::string gas_sentence(const GasResults& results) {
   const double most = 100 * gas_largest_difference(results);
   if (results.setup.kind == "pressure") {
-    return fmt::format("The pressure is {}'s within {:.2g} % at {} of {}.",
-                       theory_name(results.setup), most, results.states.size() == 1 ? "the" : "all",
-                       results.states.size() == 1
-                           ? std::string("fraction that was measured")
-                           : fmt::format("{} fractions", results.states.size()));
+    return fmt::format(
+        "The pressure differs from {}'s by at most {:.2g} %, {}.", theory_name(results.setup), most,
+        results.states.size() == 1
+            ? fmt::format("{} {:g}", fraction_name(results.setup), results.states.front().fraction)
+            : fmt::format("at {} {}s", results.states.size(), fraction_name(results.setup)));
   }
   const GasState& last = results.states.back();
   if (!has_haff(results)) {
@@ -208,8 +228,9 @@ std::string gas_sentence(const GasResults& results) {
                        last.collisions.back(), last.temperature.back().mean);
   }
   return fmt::format(
-      "Haff's law holds within {:.2g} % while the gas cools to {:.3g} of its temperature.", most,
-      results.setup.cool_to);
+      "While Haff's law cools the gas to {:.3g} of its temperature, the grains differ from it by "
+      "{:.2g} % at most.",
+      results.setup.cool_to, most);
 }
 
 std::string gas_subtitle(const dem::HardDisksSetup& s) {

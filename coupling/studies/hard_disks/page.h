@@ -9,6 +9,11 @@
 
 namespace grainfield::coupling {
 
+/// Of a fraction: Henderson's, or Carnahan and Starling's.
+double gas_theory(const dem::HardDisksSetup& setup, double fraction);
+/// And the virial series.
+double gas_series(const dem::HardDisksSetup& setup, double fraction);
+
 /// Mean over the realizations with its standard error (nan: one realization alone).
 struct GasValue {
   double mean = 0, error = 0;
@@ -18,7 +23,7 @@ struct GasValue {
 struct GasState {
   double fraction = 0;
   GasValue compressibility, rate_over_enskog;  ///< pressure
-  double theory = 0;
+  double theory = 0, series = 0;               ///< Henderson's or Carnahan and Starling's; virial
   /// Cooling: time over Haff's, and at each the temperature and that of spins over the first.
   std::vector<double> time, collisions;
   std::vector<GasValue> temperature, spin_temperature;

@@ -111,8 +111,8 @@ class GasAnalysis {
     out.fraction = fraction;
     const std::string state = dem::name_of_fraction(fraction), name = "gas." + state + ".";
     if (results_.setup.kind == "pressure") {
-      out.theory = results_.setup.in_space() ? dem::gas_compressibility<3>(fraction)
-                                             : dem::gas_compressibility<2>(fraction);
+      out.theory = gas_theory(results_.setup, fraction);
+      out.series = gas_series(results_.setup, fraction);
       out.compressibility = value_of(figures_.at(name + "compressibility"));
       out.rate_over_enskog = value_of(figures_.at(name + "collision_rate_over_enskog"));
       return out;
