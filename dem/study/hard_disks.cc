@@ -14,7 +14,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Of a grain, its two heap entries, cells: about.
+// Of a grain with its plans, entries of the heap and cells: about. Snapshots come beside it.
 constexpr double kBytesPerGrain = 500;
 // The box's side over the radius, at least: no pair meets by two images.
 constexpr double kLeastSide = 6.01;
@@ -361,6 +361,14 @@ void check_hard_disks(const HardDisksSetup& s) {
         "gas.restitution: found 1 with gas.kind \"cooling\", allowed: below 1");
   }
   s.in_space() ? check_fractions<3>(s) : check_fractions<2>(s);
+  const double gases = 0.5 * s.grains * static_cast<double>(s.fractions.size());
+  for (const auto& [key, each] : {std::pair("gas.equilibration", s.equilibration),
+                                  std::pair("gas.collisions", s.collisions)}) {
+    if (gases * each <= kMostSteps) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: found {:g}, {:.3g} collisions in all, allowed: at most {:.3g} with so many grains",
+        key, each, gases * each, std::floor(kMostSteps / gases)));
+  }
 }
 
 }  // namespace
@@ -377,7 +385,8 @@ Outlook foresee_hard_disks(const HardDisksSetup& setup) {
   check_hard_disks(setup);
   Outlook out;
   out.grains = setup.grains;
-  out.bytes = kBytesPerGrain * out.grains;
+  const double snapshots = static_cast<double>(setup.fractions.size() * sizeof(Grain));
+  out.bytes = (kBytesPerGrain + snapshots) * out.grains;
   out.bytes_key = "gas.grains";
   return out;
 }

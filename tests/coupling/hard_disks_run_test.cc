@@ -168,6 +168,8 @@ TEST(HardDisksCheck, RefusesWhatRunWould) {
               HasSubstr("x.toml:5: gas.fractions: found 0.75, which 10000 spheres in a cube"));
   EXPECT_THAT(refusal("fractions = [0.95]\n"), HasSubstr("allowed: 0.0001 to 0.9"));
   EXPECT_THAT(refusal("grains = 8\nfractions = [0.8]\n"), HasSubstr("x.toml:4: gas."));
+  EXPECT_THAT(refusal("collisions = 1e8\n"),
+              HasSubstr("x.toml:4: gas.collisions: found 1e+08, 1.5e+12 collisions in all"));
   EXPECT_THAT(refusal("restituton = 0.5\n"), HasSubstr("nearest: gas.restitution"));
   const Folder folder;
   const Output output =
