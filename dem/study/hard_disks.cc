@@ -67,7 +67,7 @@ class HardDisksRun final : public ArchivedRun {
     RunResult out;
     out.figures = figures_;
     out.figures["dem.grains"] = setup_.grains;
-    out.figures["dem.steps"] = static_cast<double>(steps_);
+    out.figures["gas.events"] = static_cast<double>(steps_);
     for (std::size_t k = 0; k < snapshots_.size(); ++k) {
       out.snapshots.emplace_back(name_of_fraction(setup_.fractions[k]), *snapshots_[k]);
     }
@@ -341,8 +341,8 @@ void check_fractions(const HardDisksSetup& s) {
   for (const double f : s.fractions) {
     if (f <= most) continue;
     throw std::invalid_argument(fmt::format(
-        "gas.fractions: found {:g}, which {} {}s in a {} cannot fill, allowed: at most {:.4f} of "
-        "the close packing that fits it",
+        "gas.fractions: found {:g}, which {} {}s in a {} cannot fill, allowed: at most {:.4f}, "
+        "the densest lattice that fits into it",
         f, s.grains, s.shape, D == 2 ? "square" : "cube", std::floor(1e4 * most) / 1e4));
   }
   for (const double f : s.fractions) {

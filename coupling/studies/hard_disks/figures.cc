@@ -11,6 +11,7 @@ std::vector<SummaryKey> gas_figures() {
       {"gas.energy_drift_per_collision", "-",
        "largest drift of a fraction's energy over its collisions"},
       {"gas.overlap", "-", "deepest overlap at any collision, over the distance of the centres"},
+      {"gas.events", "-", "of a realization: collisions, crossings of cells and meetings in vain"},
       {"gas.*.compressibility", "-", "Z = p V/(n k T) by the virial of the collisions"},
       {"gas.*.theory", "-", "Z of Henderson 1975 (disks), Carnahan and Starling 1969 (spheres)"},
       {"gas.*.compressibility_over_theory", "-", "the one over the other"},

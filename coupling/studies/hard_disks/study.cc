@@ -159,14 +159,18 @@ class GasAnalysis {
     const std::string last = dem::name_of_fraction(results.setup.fractions.back());
     const dem::Snapshot* snapshot = first != nullptr ? first->find(last) : nullptr;
     if (snapshot != nullptr) {
-      out.sections.emplace_back(results.setup.in_space() ? slice("At the end", *snapshot)
-                                                         : packing("At the end", *snapshot));
+      Picture grains = results.setup.in_space() ? slice("At the end", *snapshot)
+                                                : packing("At the end", *snapshot);
+      grains.caption =
+          fmt::format("Grains of the first realization in their periodic box, at {:g}.",
+                      results.setup.fractions.back());
+      out.sections.emplace_back(std::move(grains));
     }
     add_rows(
         out, "Figures",
         figure_rows(result.summary,
                     {"dem.grains", "gas.pressure_largest_difference", "gas.haff_largest_difference",
-                     "gas.energy_drift_per_collision", "gas.overlap", "dem.steps"}));
+                     "gas.energy_drift_per_collision", "gas.overlap", "gas.events"}));
     add_rows(out, "How it was made", origin_rows(result));
     return out;
   }
