@@ -101,22 +101,32 @@ std::vector<Chart> cooling_charts(const GasResults& results) {
               "Haff's law is the straight line 1 + t/tau; nothing is fitted.",
               {},
               false};
+  Chart over{"Temperature over Haff's",
+             "collisions a grain",
+             "T over Haff's law",
+             "Grains that stay mixed keep near 1; clusters let them collide less often.",
+             {},
+             false};
   for (const GasState& s : results.states) {
-    Frame frame;
-    frame.title = fmt::format("{} {:g}", fraction_name(results.setup), s.fraction);
     const std::size_t n = s.time.size();
     const Eigen::VectorXd x = each(n, [&](std::size_t k) { return s.time[k]; });
-    const auto root = [&](std::size_t k) { return 1 / std::sqrt(s.temperature[k].mean); };
-    frame.series.push_back(grains_of(x, each(n, root), each(n, [&](std::size_t k) {
-                                       return 0.5 * s.temperature[k].error / s.temperature[k].mean *
-                                              root(k);
-                                     })));
+    const Eigen::VectorXd mean = each(n, [&](std::size_t k) { return s.temperature[k].mean; });
+    const Eigen::VectorXd error = each(n, [&](std::size_t k) { return s.temperature[k].error; });
+    const Eigen::VectorXd root = mean.array().rsqrt();
+    Frame frame, ratio;
+    frame.title = ratio.title = fmt::format("{} {:g}", fraction_name(results.setup), s.fraction);
+    frame.series.push_back(grains_of(x, root, 0.5 * error.cwiseQuotient(mean).cwiseProduct(root)));
     if (has_haff(results)) {
       frame.series.push_back({"Haff", x, x.array() + 1, {}, false});
+      const Eigen::VectorXd law = x.unaryExpr([](double t) { return haff(t); });
+      const Eigen::VectorXd met = each(n, [&](std::size_t k) { return s.collisions[k]; });
+      ratio.series.push_back(grains_of(met, mean.cwiseQuotient(law), error.cwiseQuotient(law)));
+      over.frames.push_back(std::move(ratio));
     }
     chart.frames.push_back(std::move(frame));
   }
-  return {chart};
+  if (over.frames.empty()) return {chart};
+  return {over, chart};
 }
 
 std::string shown(const GasValue& v) {
