@@ -374,6 +374,31 @@ TEST(HardWalls, ThatMoveGiveTwiceTheirSpeed) {
   EXPECT_NEAR(engine.wall_impulse(0).x(), -2.5, 1e-14);
 }
 
+// The virial theorem: 2 K t and the virials of pairs and walls add up to the change of sum m x v,
+// which stays below L sum m |v|. Walls act at the places of the centres: L - 2 r apart.
+TEST(HardWalls, FeelThePressureOfTheGas) {
+  Random random(14);
+  HardScene<2> scene;
+  const auto grains = gas_of<2>(20, 0.4, random, scene.box);
+  scene.walls = walls_of(scene.box, {1, 0});
+  HardEngine<2> engine(scene, grains);
+  const double energy = engine.kinetic_energy();
+  const auto moments = [&] {
+    double sum = 0;
+    for (const Body<2>& g : bodies_of(engine)) sum += g.position.dot(g.velocity) / g.inverse_mass;
+    return sum;
+  };
+  const double begin = moments();
+  collide_pairs(engine, 20000);
+  const double low = 0.5 * (engine.wall_impulse(0).x() + engine.wall_impulse(2).y());
+  const double high =
+      (scene.box.size.x() - 0.5) * (engine.wall_impulse(1).x() + engine.wall_impulse(3).y());
+  EXPECT_GT(engine.tally().walls, 1000);
+  EXPECT_LT(engine.wall_impulse(0).x(), 0);  // of the grains on the wall
+  EXPECT_NEAR(2 * energy * engine.time() + engine.tally().virial - low - high, moments() - begin,
+              1e-10 * engine.tally().virial);
+}
+
 // Of infinite mass: others bounce from it as from a wall.
 TEST(HardEngine, GrainsOfInfiniteMassGoTheirWay) {
   HardScene<2> scene;
