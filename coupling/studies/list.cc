@@ -13,6 +13,7 @@
   STUDY(lattice_pile) \
   STUDY(sample) \
   STUDY(pair) \
+  STUDY(hard_disks) \
   STUDY(elastic_layer) \
   STUDY(elastic_half_space) \
   STUDY(osl_wedge) \

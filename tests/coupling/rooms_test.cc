@@ -49,6 +49,7 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "elastic_constants", "output", "report", "run",
         "statistics", "strain", "structure"}},
       {"studies/pair", {"case", "output", "report", "run"}},
+      {"studies/hard_disks", {"case", "output", "report", "run"}},
       {"studies/solvers", {"averaging", "case", "models", "run", "studies/point_load"}},
       {"studies/wedge",
        {"averaging", "case", "heap", "models", "output", "report", "run", "studies/point_load"}},

@@ -21,6 +21,7 @@ const std::vector<Room>& rooms() {
       {"neighbours", {"space"}},
       {"motion", {"space", "words"}},
       {"walls", {"space", "words", "snapshot"}},
+      {"collisions", {"space", "random"}},
       {"contacts", {"space", "neighbours"}},
       {"sleep", {"space", "contacts"}},
       {"engine",
@@ -30,8 +31,8 @@ const std::vector<Room>& rooms() {
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"engine", "image", "laws", "motion", "heap", "packing", "quasistatic", "random", "shapes",
-        "snapshot", "space", "walls"}},
+       {"collisions", "engine", "image", "laws", "motion", "heap", "packing", "quasistatic",
+        "random", "shapes", "snapshot", "space", "walls"}},
   };
   return kRooms;
 }

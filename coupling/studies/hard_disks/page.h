@@ -1,0 +1,49 @@
+// Pictures, tables and words of gases of hard grains.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "coupling/report/picture.h"
+#include "coupling/report/report.h"
+#include "dem/study/hard_disks.h"
+
+namespace grainfield::coupling {
+
+/// Of a fraction: Henderson's, or Carnahan and Starling's.
+double gas_theory(const dem::HardDisksSetup& setup, double fraction);
+/// And the virial series.
+double gas_series(const dem::HardDisksSetup& setup, double fraction);
+
+/// Mean over the realizations with its standard error (nan: one realization alone).
+struct GasValue {
+  double mean = 0, error = 0;
+};
+
+/// A gas of one fraction.
+struct GasState {
+  double fraction = 0;
+  GasValue compressibility, rate_over_enskog;  ///< pressure
+  double theory = 0, series = 0;               ///< Henderson's or Carnahan and Starling's; virial
+  /// Cooling: time over Haff's, and at each the temperature and that of spins over the first.
+  std::vector<double> time, collisions;
+  std::vector<GasValue> temperature, spin_temperature;
+};
+
+struct GasResults {
+  dem::HardDisksSetup setup;
+  std::vector<GasState> states;
+};
+
+/// Pressure against the fraction, or temperature against time.
+std::vector<Chart> gas_charts(const GasResults& results);
+Table gas_table(const GasResults& results);
+/// profiles.csv: the same numbers.
+std::string gas_csv(const GasResults& results);
+/// The answer in a sentence.
+std::string gas_sentence(const GasResults& results);
+std::string gas_subtitle(const dem::HardDisksSetup& setup);
+
+/// Of all fractions (and times) |value over theory - 1| at most; 0 where there is no theory.
+double gas_largest_difference(const GasResults& results);
+
+}  // namespace grainfield::coupling
