@@ -1,6 +1,6 @@
 // The engine for superellipsoids.
 #include "dem/engine/turning3.h"
-#include "dem/motion/verlet3.h"
+#include "dem/motion/runge_kutta3.h"
 #include "dem/shapes/superellipsoid_store.h"
 #include "dem/space/kinematics3.h"
 // After what it combines: three dimensions add overloads that it must see.

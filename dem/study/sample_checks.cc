@@ -76,11 +76,6 @@ void check_dimension(const SampleSetup& s) {
                     "{}D",
                     s.material.law, p.dim, fmt::join(laws, ", "), 5 - p.dim));
   }
-  if (p.dim == 3 && s.motion.integrator != "verlet") {
-    throw std::invalid_argument(
-        fmt::format("motion.integrator: found \"{}\", allowed with sample.dim = 3: verlet",
-                    s.motion.integrator));
-  }
   if (p.shape == "superellipsoid") check_superellipsoids(s);
   const double most = most_start_fraction(p);
   if (p.start_fraction > most) {
