@@ -11,10 +11,12 @@
 #include "dem/shapes/superellipsoid.h"
 #include "dem/space/moving_cell.h"
 #include "dem/study/common.h"
+#include "dem/study/judge_draws.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_checks.h"
 #include "dem/study/sample_drop.h"
 #include "dem/study/sample_path.h"
+#include "dem/study/sample_probe.h"
 
 namespace grainfield::dem {
 namespace {
@@ -359,9 +361,17 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
         sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
     if (out.time_step > 0) return;
     out.time_step = frame.settings.time_step;
-    out.time = frame.drop_time + frame.compression_time + frame.deformation_time;
-    out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
-                                                                   : "sample.strain_rate";
+    const double probes = probe_time(s, out.time_step);
+    double most = 0;
+    for (const auto& [key, time] : {std::pair("sample.drop_damping", frame.drop_time),
+                                    {"sample.compression_rate", frame.compression_time},
+                                    {"sample.strain_rate", frame.deformation_time},
+                                    {"rest.background_damping", probes}}) {
+      out.time += time;
+      if (time <= most) continue;
+      most = time;
+      out.time_key = key;
+    }
   };
   // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are
   // known.
@@ -369,16 +379,13 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
     judge({}, 1);
     return out;
   }
-  constexpr double kStepReserve = 1.05;
   SamplePlan some = p;
-  for (const std::uint64_t seed : seeds) {
-    if (draws < 1) break;
-    some.grains = static_cast<int>(std::min<std::int64_t>(draws, p.grains));
-    Random random(seed);
-    draws -= some.grains;
-    const bool whole = some.grains == p.grains && (draws > 0 || seed == seeds.back());
-    judge(draw_sample(some, random), whole ? 1 : kStepReserve);
-  }
+  const auto draw = [&](Random& random, std::int64_t& left) {
+    some.grains = static_cast<int>(std::min<std::int64_t>(left, p.grains));
+    left -= some.grains;
+    return draw_sample(some, random);
+  };
+  judge_draws(seeds, draws, draw, judge);
   return out;
 }
 

@@ -32,6 +32,12 @@ std::pair<int, int> axes_of(const std::string& direction) {
   return {direction[0] - 'x', direction[1] - 'x'};
 }
 
+// Of a probe's motion.
+long steps_of_probe(const SampleSetup& s, double time_step) {
+  const double steps = std::ceil(kProbeTime / s.rest.background_damping / time_step);
+  return std::max(kProbeSteps, static_cast<long>(steps));
+}
+
 // The contacts of a state, each with whether it slides.
 std::map<std::tuple<std::int64_t, std::int64_t, std::array<int, 3>>, bool> contacts_of(
     const Snapshot& s) {
@@ -46,6 +52,20 @@ std::vector<std::string> probe_directions(const SampleSetup& s) {
   if (is_periodic(s.plan)) return {"xx", "yy", "zz", "yz", "xz", "xy"};
   if (s.material.wall_friction >= kRoughWall) return {"xx", "yy", "zz", "xz"};
   return {"xx", "yy", "zz"};
+}
+
+double probe_time(const SampleSetup& s, double time_step) {
+  const SamplePlan& p = s.plan;
+  const int states = (probes_prepared(p) ? 1 : 0) + (probes_first(p) ? 1 : 0);
+  if (states == 0) return 0;
+  const double damping = s.rest.background_damping, look = kProbeCheck * time_step;
+  const double one = static_cast<double>(steps_of_probe(s, time_step)) * time_step + look;
+  // Free motion dies away with the whole rate of damping.
+  const double calm =
+      std::log(std::sqrt(s.rest.kinetic_to_elastic_energy) / (kCalmMotion * p.probe_strain)) /
+      damping;
+  const auto count = static_cast<double>(2 * probe_directions(s).size());
+  return states * (std::max(look, calm) + count * one);
 }
 
 void SampleProber::begin(Engine& engine, const std::string& state) {
@@ -71,8 +91,7 @@ void SampleProber::move(Engine& engine) {
   stage_ = Stage::move;
   steps_ = 0;
   const double dt = engine.time_step();
-  move_ = std::max(kProbeSteps,
-                   static_cast<long>(std::ceil(kProbeTime / setup_.rest.background_damping / dt)));
+  move_ = steps_of_probe(setup_, dt);
   const std::string direction = probe_directions(setup_)[static_cast<std::size_t>(number_ / 2)];
   const auto [a, b] = axes_of(direction);
   const double strain = (number_ % 2 == 0 ? 1 : -1) * setup_.plan.probe_strain;

@@ -15,6 +15,10 @@ namespace grainfield::dem {
 /// walls the three axes, and xz where the walls' friction can carry a shear.
 std::vector<std::string> probe_directions(const SampleSetup& setup);
 
+/// What the probes of all states that the plan asks for take, s, at least: motions, looks at the
+/// rest, and the decay from a rest that is reached to the calm that they begin from.
+double probe_time(const SampleSetup& setup, double time_step);
+
 /// Probes a sample: cell and walls stand still until the grains are calmer than any strain would
 /// disturb them; then for each direction, forth and back, its edges are strained by
 /// sample.probe_strain and the grains rest again. Every probe begins from the same bits, and the
