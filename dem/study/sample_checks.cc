@@ -15,6 +15,7 @@
 #include "dem/study/sample.h"
 #include "dem/study/sample_checks.h"
 #include "dem/study/sample_drop.h"
+#include "dem/study/sample_goal.h"
 #include "dem/study/sample_path.h"
 #include "dem/study/sample_probe.h"
 
@@ -253,6 +254,26 @@ void check_size(const SamplePlan& p, const std::array<double, 3>& box) {
   }
 }
 
+// Grains that fill the loosest packing that bears load, or what the compression is to bring, at the
+// least, are shortened further by a wall or a cell that nothing gives way to.
+void check_density(const SamplePlan& p) {
+  const bool both = p.deformation == "isotropic";
+  const double shortened = p.boundary == "walls" ? 1 - p.strain : std::exp(-p.strain);
+  double share = both ? std::pow(shortened, p.dim) : p.deformation == "uniaxial" ? shortened : 1;
+  share *= p.boundary == "walls" ? 1 - p.precompression : std::exp(-p.precompression);
+  double least = p.dim == 2 ? kLoosest2 : kLoosest3;
+  if (!compresses_to_pressure(p)) least = p.start_fraction / volume_share(p);
+  const auto judge = [&](const char* key, double found, double fraction) {
+    if (fraction <= kTooDense) return;
+    refuse(key, fmt::format("found {:g}: grains would be crushed, they would fill {:.3g} of the {} "
+                            "at least, allowed: up to {:g}",
+                            found, fraction, p.boundary == "walls" ? "box" : "cell", kTooDense));
+  };
+  if (p.compress_to == "strain") judge("compression_strain", p.compression_strain, least);
+  judge(share < 1 && p.precompression > p.strain ? "precompression" : "strain",
+        p.precompression > p.strain ? p.precompression : p.strain, least / share);
+}
+
 void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double time_step) {
   const double longest = std::max(box[0], box[p.dim - 1]);
   const bool walls = p.boundary == "walls";
@@ -314,6 +335,7 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   check_background_damping(s.rest, step);
   const SamplePlan filled = as_filled(p);
   const auto box = sample_box(filled, mean_volume(p));
+  check_density(filled);
   check_size(filled, box);
   check_speeds(p, box, step);
   double longest = 0;  // share of an edge that the compression takes
