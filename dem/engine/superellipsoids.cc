@@ -8,6 +8,11 @@
 
 namespace grainfield::dem {
 
+// Compiled beside this file, in superellipsoids_runge_kutta.cc.
+extern template class EngineLoop<SuperellipsoidStore, LinearLaw, RungeKuttaIntegrator<3>>;
+extern template class EngineLoop<SuperellipsoidStore, PenaltyLaw, RungeKuttaIntegrator<3>>;
+extern template class EngineLoop<SuperellipsoidStore, HertzEllipticLaw, RungeKuttaIntegrator<3>>;
+
 template std::unique_ptr<Engine> engine_of<SuperellipsoidStore>(const EngineSettings& settings);
 
 }  // namespace grainfield::dem
