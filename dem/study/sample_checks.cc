@@ -154,11 +154,6 @@ void check_drop(const SamplePlan& p) {
            "found \"dropped\", allowed with sample.boundary = \"periodic\": placed, because a cell "
            "has no floor");
   }
-  if (p.compression != "uniaxial") {
-    refuse("compression", fmt::format("found \"{}\", allowed with sample.filling = \"dropped\": "
-                                      "uniaxial, because the sides stay and the lid comes down",
-                                      p.compression));
-  }
   if (p.base_fraction <= p.start_fraction) {
     refuse("base_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
                                         p.base_fraction, p.start_fraction));

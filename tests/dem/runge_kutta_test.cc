@@ -86,7 +86,7 @@ Tied tied(double time, long steps) {
   return out;
 }
 
-// Torques that change with place are held through a step: second order, as for places.
+// Torques that change with place: second order, as for places.
 TEST(RungeKutta, ATopThatIsTiedConvergesWithTheSecondOrder) {
   const Tied exact = tied<RungeKutta3>(4, 64000);
   double previous = 0;
@@ -103,15 +103,15 @@ TEST(RungeKutta, ATopThatIsTiedConvergesWithTheSecondOrder) {
   EXPECT_LT((other.axis - exact.axis).norm() + (other.momentum - exact.momentum).norm(), 1e-6);
 }
 
-// A torque held through the step as it is, without the exchange at its end, would gain energy at
-// the first order of the step, without bound; leapfrog's error stays where it is.
+// A torque held inside the four evaluations would gain energy at the third order of the step,
+// without bound (1.4e-3 at t = 400); leapfrog's error stays where it is.
 TEST(RungeKutta, ATiedTopKeepsItsEnergyForLong) {
   const double few = tied<RungeKutta3>(40, 2000).drift, many = tied<RungeKutta3>(400, 20000).drift;
-  EXPECT_LT(many, 2 * few);
+  EXPECT_LT(many, 1.2 * few);
   EXPECT_LT(tied<RungeKutta3>(40, 4000).drift, 0.3 * few);
 }
 
-// Held in space, a torque gives the angular momentum M dt, whatever the body does meanwhile.
+// In space a torque gives the angular momentum M dt, whatever the body does meanwhile.
 TEST(RungeKutta, AConstantTorqueGivesItsMomentum) {
   for (const int steps : {50, 100}) {
     const double time = 2;
@@ -193,13 +193,13 @@ TEST(RungeKutta, SameBitsOnThreadsAndAfterARestart) {
       gas::add_box(*engine, 3 * 2.6, 0.2);
       engine->restore(image);
     }
-    engine->step(2000 - engine->steps());
+    engine->step(600 - engine->steps());
     EXPECT_EQ(engine->snapshot().attributes.at("integrator"), "runge_kutta");
     return bits::hash_of(engine->snapshot());
   };
   const std::uint64_t one = run(1, 0);
-  EXPECT_TRUE(run(3, 0) == one);
-  EXPECT_TRUE(run(2, 777) == one);
+  EXPECT_TRUE(run(2, 0) == one);
+  EXPECT_TRUE(run(2, 333) == one);
 }
 
 TEST(RungeKutta, IsForGrainsThatAreNoSpheres) {

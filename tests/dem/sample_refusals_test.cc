@@ -80,7 +80,7 @@ TEST(SampleRefusals, ALidThatWouldCrushItsGrains) {
   s.plan.compression_strain = 0.6;  // 0.3/0.16
   EXPECT_THAT(refusal(s),
               HasSubstr("sample.compression_strain: found 0.6: grains would be crushed, they would "
-                        "fill 1.88 of the cell"));
+                        "fill 1.87 of the cell"));
   // A servo gives way, and a shear keeps the volume.
   s = {};
   s.plan.grains = 4000;
