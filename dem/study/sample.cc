@@ -212,7 +212,9 @@ void SampleRun::begin(Phase phase) {
   phases_.enter(phase);
   if (has_other_friction(plan_) && prepared && !prepares()) change_friction();
   if (probes(phase)) {
-    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared");
+    const bool held = !periodic() && compresses_to_pressure(plan_) &&
+                      !(phase == Phase::probe_first && precompresses(plan_));
+    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared", held);
   }
   const bool drops = phase == Phase::drop;
   engine_->set_background_damping(drops                   ? plan_.drop_damping

@@ -25,6 +25,8 @@ constexpr long kProbeSteps = 500;
 // strain that the pressure has made, which is the square root of the elastic energy); and the
 // forces are balanced to this share of the probe's strain.
 constexpr double kCalmMotion = 0.1, kCalmForces = 1;
+// A sample whose elastic energy falls to this share of what it was has lost its load.
+constexpr double kLostLoad = 1e-4;
 // A wall of less friction carries no shear to speak of.
 constexpr double kRoughWall = 0.1;
 
@@ -68,18 +70,22 @@ double probe_time(const SampleSetup& s, double time_step) {
   return states * (std::max(look, calm) + count * one);
 }
 
-void SampleProber::begin(Engine& engine, const std::string& state) {
+void SampleProber::begin(Engine& engine, const std::string& state, bool held) {
   state_ = state;
   origin_ = engine.image();
+  energy_ = engine.measure().elastic_energy;
   number_ = -1;
   engine.set_background_damping(setup_.rest.background_damping);
-  hold(engine, Stage::calm);
+  if (!held) stand_still(engine);
+  enter(Stage::calm);
 }
 
-// Cell or walls stand still.
-void SampleProber::hold(Engine& engine, Stage stage) {
+void SampleProber::enter(Stage stage) {
   stage_ = stage;
   steps_ = 0;
+}
+
+void SampleProber::stand_still(Engine& engine) const {
   if (is_periodic(setup_.plan)) {
     engine.set_velocity_gradient(Eigen::Matrix3d::Zero());
     return;
@@ -88,8 +94,8 @@ void SampleProber::hold(Engine& engine, Stage stage) {
 }
 
 void SampleProber::move(Engine& engine) {
-  stage_ = Stage::move;
-  steps_ = 0;
+  stand_still(engine);
+  enter(Stage::move);
   const double dt = engine.time_step();
   move_ = steps_of_probe(setup_, dt);
   const std::string direction = probe_directions(setup_)[static_cast<std::size_t>(number_ / 2)];
@@ -129,11 +135,20 @@ bool SampleProber::is_calm(const Diagnostics& d) const {
 bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Make& make) {
   steps_ += steps;
   if (stage_ == Stage::move) {
-    if (steps_ == move_) hold(*engine, Stage::hold);
+    if (steps_ < move_) return false;
+    stand_still(*engine);
+    enter(Stage::hold);
     return false;
   }
   if (steps_ % kProbeCheck != 0) return false;
   const Diagnostics d = engine->measure();
+  if (d.elastic_energy < kLostLoad * energy_) {
+    throw ComputationFailed(fmt::format(
+        "the state \"{}\" bears no load that small strains could change: its elastic energy has "
+        "fallen to {:.1g} of what it was, as grains came to rest with a friction of {:g}; raise "
+        "material.friction, or lower sample.prepared_friction, which packs denser",
+        state_, d.elastic_energy / energy_, setup_.material.friction));
+  }
   if (!is_calm(d)) {
     if (static_cast<double>(steps_) * engine->time_step() > setup_.rest.max_time) {
       throw ComputationFailed(fmt::format(
@@ -199,6 +214,7 @@ void SampleProber::visit(Archive& archive) {
   archive(stage_);
   archive(steps_);
   archive(move_);
+  archive(energy_);
   auto lines = static_cast<std::uint64_t>(found_.size());
   archive(lines);
   Attributes kept = std::move(found_);

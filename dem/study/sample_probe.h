@@ -20,21 +20,22 @@ std::vector<std::string> probe_directions(const SampleSetup& setup);
 double probe_time(const SampleSetup& setup, double time_step);
 
 /// Probes a sample: cell and walls stand still until the grains are calmer than any strain would
-/// disturb them; then for each direction, forth and back, its edges are strained by
-/// sample.probe_strain and the grains rest again. Every probe begins from the same bits, and the
-/// engine is given back as it came: the sample's path does not know of them.
+/// disturb them (walls that servos lead go on to hold their pressure until then); then for each
+/// direction, forth and back, its edges are strained by sample.probe_strain and the grains rest
+/// again. Every probe begins from the same bits, and the engine is given back as it came: the
+/// sample's path does not know of them.
 class SampleProber {
  public:
   using Make = std::function<std::unique_ptr<Engine>()>;
 
   explicit SampleProber(const SampleSetup& setup) : setup_(setup) {}
 
-  /// `state`: "prepared" or "first".
-  void begin(Engine& engine, const std::string& state);
+  /// `state`: "prepared" or "first". `held`: walls are led by servos, which go on until it is calm.
+  void begin(Engine& engine, const std::string& state, bool held);
   /// Steps until decide() has something to do.
   long until_due() const;
   /// `steps` have been made; make() gives an engine as empty_engine does. True when all is done.
-  /// Throws ComputationFailed: no rest within rest.max_time.
+  /// Throws ComputationFailed: no rest within rest.max_time, or a sample that bears no load.
   bool decide(std::unique_ptr<Engine>& engine, long steps, const Make& make);
   /// Share of the probes that are done.
   double share() const;
@@ -45,7 +46,8 @@ class SampleProber {
  private:
   enum class Stage : int { calm, move, hold };
 
-  void hold(Engine& engine, Stage stage);
+  void enter(Stage stage);
+  void stand_still(Engine& engine) const;
   void move(Engine& engine);
   void note(const Engine& engine, const Make& make);
   bool is_calm(const Diagnostics& d) const;
@@ -56,6 +58,7 @@ class SampleProber {
   int number_ = -1;                    // of the probe; -1: before the first one
   Stage stage_ = Stage::calm;
   long steps_ = 0, move_ = 0;  // of the stage; of a motion
+  double energy_ = 0;          // elastic, as it came, J
   Attributes found_;
 };
 
