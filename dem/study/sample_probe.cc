@@ -27,6 +27,9 @@ constexpr long kProbeSteps = 500;
 constexpr double kCalmMotion = 0.1, kCalmForces = 1;
 // A sample whose elastic energy falls to this share of what it was has lost its load.
 constexpr double kLostLoad = 1e-4;
+// Kinetic over elastic energy must fall to this share within so many decay times of the damping,
+// again and again, or grains count as moving for ever.
+constexpr double kSlowest = 0.5, kPatience = 50;
 // A wall of less friction carries no shear to speak of.
 constexpr double kRoughWall = 0.1;
 
@@ -142,23 +145,14 @@ bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Mak
   }
   if (steps_ % kProbeCheck != 0) return false;
   const Diagnostics d = engine->measure();
-  if (d.elastic_energy < kLostLoad * energy_) {
-    throw ComputationFailed(fmt::format(
-        "the state \"{}\" bears no load that small strains could change: its elastic energy has "
-        "fallen to {:.1g} of what it was, as grains came to rest with a friction of {:g}; raise "
-        "material.friction, or lower sample.prepared_friction, which packs denser",
-        state_, d.elastic_energy / energy_, setup_.material.friction));
-  }
   if (!is_calm(d)) {
-    if (static_cast<double>(steps_) * engine->time_step() > setup_.rest.max_time) {
-      throw ComputationFailed(fmt::format(
-          "a probe of the state \"{}\" has not come to rest within rest.max_time = {:g} s: forces "
-          "are balanced to {:.2g}, kinetic over elastic energy is {:.2g}; raise "
-          "sample.probe_strain = {:g}, rest.max_time or rest.background_damping",
-          state_, setup_.rest.max_time, d.unbalanced_force_ratio,
-          d.kinetic_energy / d.elastic_energy, setup_.plan.probe_strain));
-    }
-    return false;
+    StateProbes none;
+    none.state = state_;
+    none.lacking = hopeless(d, engine->time_step());
+    if (none.lacking.empty()) return false;
+    put_probes(none, found_);
+    give_back(engine, make);
+    return true;
   }
   if (number_ < 0) {
     base_ = engine->image();
@@ -166,16 +160,46 @@ bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Mak
     note(*engine, make);
   }
   ++number_;
-  const bool done = number_ == count();
-  engine = make();
-  engine->restore(done ? origin_ : base_);
-  if (done) {
-    origin_.clear();
-    base_.clear();
+  if (number_ == count()) {
+    give_back(engine, make);
     return true;
   }
+  engine = make();
+  engine->restore(base_);
   move(*engine);
   return false;
+}
+
+void SampleProber::give_back(std::unique_ptr<Engine>& engine, const Make& make) {
+  engine = make();
+  engine->restore(origin_);
+  origin_.clear();
+  base_.clear();
+}
+
+// Why it will not be calm; "": it may still be.
+std::string SampleProber::hopeless(const Diagnostics& d, double time_step) {
+  if (d.elastic_energy < kLostLoad * energy_) {
+    return fmt::format("it bears no load as its grains come to rest with a friction of {:g}",
+                       setup_.material.friction);
+  }
+  const double unrest = d.kinetic_energy / d.elastic_energy;
+  const double damping = setup_.rest.background_damping;
+  const auto looks = static_cast<long>(kPatience / (damping * time_step * kProbeCheck)) + 1;
+  const bool again = steps_ % (looks * kProbeCheck) == 0;
+  const bool stuck = again && steps_ > looks * kProbeCheck && unrest > kSlowest * unrest_;
+  if (again) unrest_ = unrest;
+  if (!stuck && static_cast<double>(steps_) * time_step <= setup_.rest.max_time) return "";
+  return fmt::format(
+      "its grains do not come to rest for a strain of {:g}: after {:.3g} s, {:.0f} decay times of "
+      "rest.background_damping, kinetic over elastic energy is {:.2g} and forces are balanced to "
+      "{:.2g}{}",
+      setup_.plan.probe_strain, static_cast<double>(steps_) * time_step,
+      static_cast<double>(steps_) * time_step * damping, unrest,
+      std::max(d.unbalanced_force_ratio, d.unbalanced_moment_ratio),
+      setup_.material.law == "hertz_elliptic" && setup_.material.friction == 0
+          ? "; without friction Hertz' elliptic law, which is no gradient, keeps them moving"
+          : "");
 }
 
 void SampleProber::note(const Engine& engine, const Make& make) {
@@ -215,6 +239,7 @@ void SampleProber::visit(Archive& archive) {
   archive(steps_);
   archive(move_);
   archive(energy_);
+  archive(unrest_);
   auto lines = static_cast<std::uint64_t>(found_.size());
   archive(lines);
   Attributes kept = std::move(found_);

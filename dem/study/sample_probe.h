@@ -34,8 +34,9 @@ class SampleProber {
   void begin(Engine& engine, const std::string& state, bool held);
   /// Steps until decide() has something to do.
   long until_due() const;
-  /// `steps` have been made; make() gives an engine as empty_engine does. True when all is done.
-  /// Throws ComputationFailed: no rest within rest.max_time, or a sample that bears no load.
+  /// `steps` have been made; make() gives an engine as empty_engine does. True when all is done,
+  /// or when the state cannot be probed, which its record says: it bears no load, or its motion
+  /// does not die away (frictionless grains with a law that is no gradient go on for ever).
   bool decide(std::unique_ptr<Engine>& engine, long steps, const Make& make);
   /// Share of the probes that are done.
   double share() const;
@@ -50,7 +51,9 @@ class SampleProber {
   void stand_still(Engine& engine) const;
   void move(Engine& engine);
   void note(const Engine& engine, const Make& make);
+  void give_back(std::unique_ptr<Engine>& engine, const Make& make);
   bool is_calm(const Diagnostics& d) const;
+  std::string hopeless(const Diagnostics& d, double time_step);
   int count() const { return 2 * static_cast<int>(probe_directions(setup_).size()); }
 
   const SampleSetup& setup_;
@@ -59,6 +62,7 @@ class SampleProber {
   Stage stage_ = Stage::calm;
   long steps_ = 0, move_ = 0;  // of the stage; of a motion
   double energy_ = 0;          // elastic, as it came, J
+  double unrest_ = 0;          // kinetic over elastic energy some time ago
   Attributes found_;
 };
 

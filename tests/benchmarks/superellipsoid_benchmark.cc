@@ -148,12 +148,12 @@ void gas_drift(benchmark::State& state, IntegratorKind integrator) {
 }
 BENCHMARK_CAPTURE(gas_drift, verlet, IntegratorKind::verlet)
     ->RangeMultiplier(2)
-    ->Range(125, 4000)
+    ->Range(128, 4096)
     ->Iterations(1)
     ->Unit(benchmark::kSecond);
 BENCHMARK_CAPTURE(gas_drift, runge_kutta, IntegratorKind::runge_kutta)
     ->RangeMultiplier(2)
-    ->Range(125, 4000)
+    ->Range(128, 4096)
     ->Iterations(1)
     ->Unit(benchmark::kSecond);
 

@@ -95,8 +95,10 @@ BlockMaterial material_of(const BlockSetup& setup, const std::string& law, const
   out.constants.E = m.young;
   out.constants.nu = m.poisson;
   out.plastic = law == kMohrCoulomb;
-  if (!std::isfinite(m.young) || !std::isfinite(m.poisson))
+  if (!std::isfinite(m.young) || !std::isfinite(m.poisson)) {
     lacking = "small strains give no moduli";
+    return out;
+  }
   if (!out.plastic) return out;
   const Angles angles = angles_of(setup, paths, r);
   const bool friction = std::isfinite(angles.friction);
