@@ -162,8 +162,9 @@ void declare_material_keys(SectionKeys s) {
 
 void declare_motion_keys(SectionKeys s) {
   s.word("integrator", +MOTION(string, integrator), dem::words_of<dem::AnyIntegrator>(),
-         "velocity Verlet, or Gear's predictor-corrector of fifth order (shorter stable step)",
-         "Roul 2.5");
+         "velocity Verlet; Gear's predictor-corrector of fifth order (in the plane; shorter stable "
+         "step); or leapfrog with a fourth-order Runge-Kutta turning (superellipsoids)",
+         "Roul 2.5, Wellmann 2");
   s.number("time_step", "s", +MOTION(double, time_step), Range{1e-12, 1}.with_zero(),
            "0: time_step_fraction of the stable limit");
   s.number("time_step_fraction", "-", +MOTION(double, time_step_fraction), {1e-6, 2.5},
@@ -176,11 +177,11 @@ void declare_motion_keys(SectionKeys s) {
   s.number(
       "local_damping", "-", +MOTION(double, local_damping), {0, 0.99},
       "Cundall's alpha: against each component of the motion this share of the force along it; "
-      "moves no equilibrium, but makes falling slower. With verlet",
+      "moves no equilibrium, but makes falling slower. Not with gear",
       "Cundall 1987");
   s.flag("energy_balance", +MOTION(bool, energy_balance),
-         "every contact accounts for what becomes of energy (slower): figures energy.*. With "
-         "verlet, without Newton's method");
+         "every contact accounts for what becomes of energy (slower): figures energy.*. Not "
+         "with gear or Newton's method");
 }
 
 void declare_rest_keys(SectionKeys s) {

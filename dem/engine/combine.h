@@ -36,14 +36,12 @@ std::unique_ptr<Engine> engine_of(const EngineSettings& settings) {
       [&]<LawEntry Law>(const Law&) {
         if constexpr (GoesWith<Law, Store>) {
           settings.integrator.visit([&]<IntegratorEntry Kind>(Kind) {
-            if constexpr (IntegratesIn<Kind, Store::dim>) {
+            if constexpr (Moves<Kind, Store>) {
               using Mover = typename Kind::template In<Store::dim>;
               engine = std::make_unique<EngineLoop<Store, Law, Mover>>(
                   settings, Rules<Law>(settings), Kind::name);
             } else {
-              refuse("motion.integrator", Kind::name, words_where<AnyIntegrator>([]<class K>() {
-                       return IntegratesIn<K, Store::dim>;
-                     }));
+              refuse_integrator(settings);
             }
           });
         } else {

@@ -51,7 +51,7 @@ void check_rolling(const EngineSettings& settings) {
     throw std::invalid_argument(
         fmt::format("motion.local_damping: found {}, allowed: 0 or more, below 1", alpha));
   }
-  if (alpha > 0 && settings.integrator != IntegratorKind::verlet) {
+  if (alpha > 0 && !leaps(settings.integrator)) {
     throw std::invalid_argument(fmt::format(
         "motion.local_damping: found {} with motion.integrator \"{}\", allowed: verlet (a force "
         "that leaps with the velocity's sign has no derivatives to predict)",
@@ -124,8 +124,9 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
   check_materials(settings);
   check_cell(settings.cell, settings.shape.visit([](auto kind) { return kind.dim; }),
              settings.time_step);
+  check_integrator(settings);
   check_rolling(settings);
-  if (settings.energy_balance && settings.integrator != IntegratorKind::verlet) {
+  if (settings.energy_balance && !leaps(settings.integrator)) {
     throw std::invalid_argument(
         fmt::format("energy_balance: found motion.integrator \"{}\", allowed: verlet",
                     settings.integrator.name()));

@@ -40,9 +40,9 @@ struct EngineSettings : Materials {
   /// periodic edges. In a cell that flows no grain is fixed or sleeps.
   Cell<3> cell;
   /// Every contact accounts for what it loses (Diagnostics::dissipated_energy); steps take longer.
-  /// With verlet.
+  /// With an integrator that leaps (dem/motion/integrator.h).
   bool energy_balance = false;
-  /// Cundall's alpha in [0, 1): dem/motion/local_damping.h. With verlet.
+  /// Cundall's alpha in [0, 1): dem/motion/local_damping.h. Likewise.
   double local_damping = 0;
 };
 
@@ -244,6 +244,9 @@ void check_rolling(const EngineSettings& settings);
 [[noreturn]] void refuse_rolling_polygons();
 /// The same for superellipsoids, whose shapes resist.
 [[noreturn]] void refuse_rolling_superellipsoids();
+/// Throws std::invalid_argument naming motion.integrator: it does not move grains of this shape.
+void check_integrator(const EngineSettings& settings);
+[[noreturn]] void refuse_integrator(const EngineSettings& settings);
 /// The same, to go on from a snapshot of the shape's dimension, whose grains are numbered 0, 1, 2,
 /// ...: its walls and grains with their materials, mass, moments and velocities (one that never
 /// turns goes on so), the contacts' springs, and the applied force as it is. A spring that another

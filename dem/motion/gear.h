@@ -77,6 +77,8 @@ struct Gear {
   static constexpr const char* name = "gear";
   static constexpr double viscous_limit = 0.16, edge_limit = 0.16;
   static constexpr bool bears_irregular_edges = false;
+  static constexpr bool leaps = false;
+  static constexpr bool moves_round = true;
   template <int D>
   using In = GearIntegrator<D>;
 };

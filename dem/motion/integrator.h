@@ -24,18 +24,25 @@ concept Integrator = requires(const I& integrator, Body<D>& body, typename I::Me
 
 /// A kind of integrator for the registry: its word; its limits of the time step (engine.h:
 /// stable_time_step): largest dt times decay rate of a dashpot, and largest c dt + k dt^2/2 of a
-/// chain of grains edge on edge; whether irregular polygons may go above the latter; and the
-/// integrator in D dimensions, In<D>.
+/// chain of grains edge on edge; whether irregular polygons may go above the latter; whether it
+/// leaps, so that forces see velocities of the half step (what the energy balance and local damping
+/// go by); whether it moves round grains, too; and the integrator in D dimensions, In<D>.
 template <class K>
 concept IntegratorEntry = requires {
   { K::name } -> std::convertible_to<const char*>;
   { K::viscous_limit } -> std::convertible_to<double>;
   { K::edge_limit } -> std::convertible_to<double>;
   { K::bears_irregular_edges } -> std::convertible_to<bool>;
+  { K::leaps } -> std::convertible_to<bool>;
+  { K::moves_round } -> std::convertible_to<bool>;
 };
 
 /// The kind integrates motion in D dimensions.
 template <class K, int D>
 concept IntegratesIn = Integrator<typename K::template In<D>, D>;
+
+/// The kind moves grains of a store: of its dimension, and round ones where it is for these.
+template <class K, class Store>
+concept Moves = IntegratesIn<K, Store::dim> &&(K::moves_round || !Store::central);
 
 }  // namespace grainfield::dem

@@ -56,6 +56,8 @@ struct Verlet {
   static constexpr const char* name = "verlet";
   static constexpr double viscous_limit = 1.0, edge_limit = 1.4;
   static constexpr bool bears_irregular_edges = true;
+  static constexpr bool leaps = true;
+  static constexpr bool moves_round = true;
   template <int D>
   using In = VerletIntegrator<D>;
 };

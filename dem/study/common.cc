@@ -35,8 +35,9 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         m.law, fmt::join(laws_that_feel_edges(), ", ")));
   }
   e.integrator = IntegratorKind::named(motion.integrator);
+  check_integrator(e);
   e.energy_balance = motion.energy_balance;
-  if (e.energy_balance && e.integrator != IntegratorKind::verlet) {
+  if (e.energy_balance && !leaps(e.integrator)) {
     throw std::invalid_argument(
         fmt::format("motion.energy_balance: found true with motion.integrator = \"{}\", allowed "
                     "with verlet",

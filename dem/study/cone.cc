@@ -14,6 +14,7 @@
 #include "dem/space/rotation.h"
 #include "dem/study/cone_grains.h"
 #include "dem/study/fingerprint.h"
+#include "dem/study/judge_draws.h"
 #include "dem/study/phases.h"
 
 namespace grainfield::dem {
@@ -29,8 +30,6 @@ constexpr double kMaxSettleTime = 2;
 constexpr int kTries = 20;
 // Grains beyond the floor are taken away when they are this share of all.
 constexpr double kStrayShare = 0.01;
-// By how much the time step may miss that of grains that were not drawn.
-constexpr double kStepReserve = 1.05;
 
 enum class ConePhase : int { pour, fill_settle, lift, settle, rest, done };
 
@@ -366,14 +365,12 @@ Outlook foresee_cone(const ConeSetup& s, const std::vector<std::uint64_t>& seeds
     judge({}, 1);
   } else {
     ConePlan some = p;
-    for (const std::uint64_t seed : seeds) {
-      if (draws < 1) break;
-      some.grains = static_cast<int>(std::min<std::int64_t>(draws, p.grains));
-      Random random(seed);
-      draws -= some.grains;
-      const bool whole = some.grains == p.grains && (draws > 0 || seed == seeds.back());
-      judge(draw_cone(some, random), whole ? 1 : kStepReserve);
-    }
+    const auto draw = [&](Random& random, std::int64_t& left) {
+      some.grains = static_cast<int>(std::min<std::int64_t>(left, p.grains));
+      left -= some.grains;
+      return draw_cone(some, random);
+    };
+    judge_draws(seeds, draws, draw, judge);
   }
   out.grains = p.grains;
   out.fixed = floor_grains_of(p);

@@ -91,10 +91,6 @@ void check_order(const char* less, double least, const char* more, double most) 
 
 void check_cone(const ConeSetup& s) {
   const ConePlan& p = s.plan;
-  if (s.motion.integrator != "verlet") {
-    throw std::invalid_argument(fmt::format(
-        "motion.integrator: found {}, allowed with study = \"cone\": verlet", s.motion.integrator));
-  }
   if (s.material.rolling_friction > 0 && !(s.material.rolling_stiffness > 0)) {
     throw std::invalid_argument(fmt::format(
         "material.rolling_stiffness: found {:g}, allowed with material.rolling_friction "

@@ -13,8 +13,8 @@
 #include "dem/packing/lattice_pile.h"
 #include "dem/packing/packing.h"
 #include "dem/packing/space_layer.h"
-#include "dem/random/random.h"
 #include "dem/study/common.h"
+#include "dem/study/judge_draws.h"
 #include "dem/study/pile_checks.h"
 #include "dem/study/point_load_space.h"
 
@@ -28,9 +28,9 @@ constexpr double kBytesOfDisk = 2500, kBytesOfPolygon = 4000, kBytesOfSphere = 4
 constexpr double kLayerFraction = 0.85;
 // Grains side by side along the floor of a pile.
 constexpr double kMostOnFloor = 1e5;
-// By how much the time step and the largest grain may miss those of grains that were not drawn; and
-// standard errors of their total area.
-constexpr double kStepReserve = 1.05, kSizeReserve = 1.1, kAreaErrors = 6;
+// By how much the largest grain may miss that of grains that were not drawn; and standard errors of
+// their total area.
+constexpr double kSizeReserve = 1.1, kAreaErrors = 6;
 
 [[noreturn]] void too_many(const std::string& key, double found, double most,
                            const std::string& unit, const std::string& why) {
@@ -194,21 +194,20 @@ Outlook foresee_space_load(const PointLoadSetup& s, const std::vector<std::uint6
   if (!is_angular(p)) {
     out.time_step = space_load_settings(s, 1).time_step;
   } else {
-    for (const std::uint64_t seed : seeds) {
-      if (most < 1) break;
-      Random random(seed);
+    const auto draw = [&](Random& random, std::int64_t& left) {
       std::vector<ShapedGrain> shapes;
       for (const NewGrain& g : space_floor(p, s.material.density, random)) {
-        shapes.emplace_back();
-        shapes.back().axes = g.axes;
+        shapes.emplace_back().axes = g.axes;
       }
-      const std::vector<ShapedGrain> grains = draw_layer(p, random, most);
-      most -= static_cast<std::int64_t>(grains.size());
+      const std::vector<ShapedGrain> grains = draw_layer(p, random, left);
+      left -= static_cast<std::int64_t>(grains.size());
       shapes.insert(shapes.end(), grains.begin(), grains.end());
-      const bool whole = most > 0;
-      const double step = space_load_settings(s, 1, shapes, whole ? 1 : kStepReserve).time_step;
+      return shapes;
+    };
+    judge_draws(seeds, most, draw, [&](const std::vector<ShapedGrain>& shapes, double reserve) {
+      const double step = space_load_settings(s, 1, shapes, reserve).time_step;
       if (out.time_step == 0) out.time_step = step;
-    }
+    });
   }
   out.grains = std::ceil(layer_spheres(p));
   out.fixed = floor_spheres(p);

@@ -148,6 +148,7 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   e.shape = s.in_space()        ? ShapeKind::sphere
             : s.shape == "disk" ? ShapeKind::disk
                                 : ShapeKind::polygon;
+  check_integrator(e);
   e.gravity_y = 0;
   e.threads = threads;
   std::vector<ShapedGrain> grains{a};

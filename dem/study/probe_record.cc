@@ -51,6 +51,11 @@ const std::vector<std::string>& probed_states() {
 
 void put_probes(const StateProbes& all, Attributes& attributes) {
   const std::string begin = "probe." + all.state + ".";
+  if (!all.lacking.empty()) {
+    std::erase_if(attributes, [&](const auto& entry) { return entry.first.starts_with(begin); });
+    attributes[begin + "lacking"] = all.lacking;
+    return;
+  }
   attributes[begin + "before"] = text_of_matrix(all.stress);
   for (const Probe& probe : all.probes) {
     for (std::size_t way = 0; way < 2; ++way) {
@@ -71,6 +76,10 @@ StateProbes probes_of(const Attributes& attributes, const std::string& state) {
     const auto& [name, text] = *at;
     if (name == begin + "before") {
       out.stress = matrix_of(probe_numbers(name, text, 9).data());
+      continue;
+    }
+    if (name == begin + "lacking") {
+      out.lacking = text;
       continue;
     }
     const std::string direction = name.substr(begin.size(), 2);

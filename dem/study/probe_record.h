@@ -28,12 +28,14 @@ struct StateProbes {
   std::string state;                                 ///< "prepared" | "first"
   Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();  ///< before them, Pa
   std::vector<Probe> probes;
+  std::string lacking;  ///< why there are none, where it could not be probed
 };
 
 using Attributes = std::map<std::string, std::string>;
 
 /// As attributes "probe.STATE.before" and "probe.STATE.DIRECTION.forth" and ".back": the numbers in
-/// the order of the members, matrices row by row.
+/// the order of the members, matrices row by row. A state that could not be probed has
+/// "probe.STATE.lacking" instead, and nothing else.
 void put_probes(const StateProbes& probes, Attributes& attributes);
 
 /// Those of a state, none where it has not been probed. Throws std::invalid_argument naming an

@@ -205,10 +205,16 @@ void SampleRun::advance(long steps) {
 
 void SampleRun::begin(Phase phase) {
   const bool prepared = prepares();
+  if (phase == Phase::rest || phase == Phase::settle) {
+    check_not_crushed(setup_, engine_->measure(), "after the compression",
+                      phase == Phase::settle ? "precompression" : goal_key(plan_));
+  }
   phases_.enter(phase);
   if (has_other_friction(plan_) && prepared && !prepares()) change_friction();
   if (probes(phase)) {
-    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared");
+    const bool held = !periodic() && compresses_to_pressure(plan_) &&
+                      !(phase == Phase::probe_first && precompresses(plan_));
+    return prober_.begin(*engine_, phase == Phase::probe_first ? "first" : "prepared", held);
   }
   const bool drops = phase == Phase::drop;
   engine_->set_background_damping(drops                   ? plan_.drop_damping
@@ -295,6 +301,7 @@ void SampleRun::decide_drop() {
   EngineSettings settings = settings_;
   settings.friction = friction();
   engine_ = make_engine(settings, filled.snapshot);
+  check_fraction_ahead(plan_, fraction());
   begin(Phase::compress);
 }
 
@@ -356,7 +363,10 @@ void SampleRun::note_error() {
 void SampleRun::record() {
   if (is_led_now()) note_error();
   const std::size_t number = states_.size();
-  states_.emplace_back(sample_record(*engine_, plan_, number, number == 0 ? 0 : strain(), seed_));
+  const double now = number == 0 ? 0 : strain();
+  check_not_crushed(setup_, engine_->measure(), fmt::format("at a strain of {:.3g}", now),
+                    "strain");
+  states_.emplace_back(sample_record(*engine_, plan_, number, now, seed_));
   if (number == 0)
     states_.front()->attributes.insert(prober_.attributes().begin(), prober_.attributes().end());
   const auto count = static_cast<int>(states_.size());

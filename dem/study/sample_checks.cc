@@ -11,10 +11,13 @@
 #include "dem/shapes/superellipsoid.h"
 #include "dem/space/moving_cell.h"
 #include "dem/study/common.h"
+#include "dem/study/judge_draws.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_checks.h"
 #include "dem/study/sample_drop.h"
+#include "dem/study/sample_goal.h"
 #include "dem/study/sample_path.h"
+#include "dem/study/sample_probe.h"
 
 namespace grainfield::dem {
 namespace {
@@ -75,11 +78,6 @@ void check_dimension(const SampleSetup& s) {
         fmt::format("material.law: found \"{}\", allowed with sample.dim = {}: {}; it is a law of "
                     "{}D",
                     s.material.law, p.dim, fmt::join(laws, ", "), 5 - p.dim));
-  }
-  if (p.dim == 3 && s.motion.integrator != "verlet") {
-    throw std::invalid_argument(
-        fmt::format("motion.integrator: found \"{}\", allowed with sample.dim = 3: verlet",
-                    s.motion.integrator));
   }
   if (p.shape == "superellipsoid") check_superellipsoids(s);
   const double most = most_start_fraction(p);
@@ -155,11 +153,6 @@ void check_drop(const SamplePlan& p) {
     refuse("filling",
            "found \"dropped\", allowed with sample.boundary = \"periodic\": placed, because a cell "
            "has no floor");
-  }
-  if (p.compression != "uniaxial") {
-    refuse("compression", fmt::format("found \"{}\", allowed with sample.filling = \"dropped\": "
-                                      "uniaxial, because the sides stay and the lid comes down",
-                                      p.compression));
   }
   if (p.base_fraction <= p.start_fraction) {
     refuse("base_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
@@ -256,6 +249,26 @@ void check_size(const SamplePlan& p, const std::array<double, 3>& box) {
   }
 }
 
+// Grains that fill the loosest packing that bears load, or what the compression is to bring, at the
+// least, are shortened further by a wall or a cell that nothing gives way to.
+void check_density(const SamplePlan& p) {
+  const bool both = p.deformation == "isotropic";
+  const double shortened = p.boundary == "walls" ? 1 - p.strain : std::exp(-p.strain);
+  double share = both ? std::pow(shortened, p.dim) : p.deformation == "uniaxial" ? shortened : 1;
+  share *= p.boundary == "walls" ? 1 - p.precompression : std::exp(-p.precompression);
+  double least = p.dim == 2 ? kLoosest2 : kLoosest3;
+  if (!compresses_to_pressure(p)) least = p.start_fraction / volume_share(p);
+  const auto judge = [&](const char* key, double found, double fraction) {
+    if (fraction <= kTooDense) return;
+    refuse(key, fmt::format("found {:g}: grains would be crushed, they would fill {:.3g} of the {} "
+                            "at least, allowed: up to {:g}",
+                            found, fraction, p.boundary == "walls" ? "box" : "cell", kTooDense));
+  };
+  if (p.compress_to == "strain") judge("compression_strain", p.compression_strain, least);
+  judge(share < 1 && p.precompression > p.strain ? "precompression" : "strain",
+        p.precompression > p.strain ? p.precompression : p.strain, least / share);
+}
+
 void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double time_step) {
   const double longest = std::max(box[0], box[p.dim - 1]);
   const bool walls = p.boundary == "walls";
@@ -317,6 +330,7 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   check_background_damping(s.rest, step);
   const SamplePlan filled = as_filled(p);
   const auto box = sample_box(filled, mean_volume(p));
+  check_density(filled);
   check_size(filled, box);
   check_speeds(p, box, step);
   double longest = 0;  // share of an edge that the compression takes
@@ -364,9 +378,17 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
         sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
     if (out.time_step > 0) return;
     out.time_step = frame.settings.time_step;
-    out.time = frame.drop_time + frame.compression_time + frame.deformation_time;
-    out.time_key = frame.compression_time > frame.deformation_time ? "sample.compression_rate"
-                                                                   : "sample.strain_rate";
+    const double probes = probe_time(s, out.time_step);
+    double most = 0;
+    for (const auto& [key, time] : {std::pair("sample.drop_damping", frame.drop_time),
+                                    {"sample.compression_rate", frame.compression_time},
+                                    {"sample.strain_rate", frame.deformation_time},
+                                    {"rest.background_damping", probes}}) {
+      out.time += time;
+      if (time <= most) continue;
+      most = time;
+      out.time_key = key;
+    }
   };
   // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are
   // known.
@@ -374,16 +396,13 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
     judge({}, 1);
     return out;
   }
-  constexpr double kStepReserve = 1.05;
   SamplePlan some = p;
-  for (const std::uint64_t seed : seeds) {
-    if (draws < 1) break;
-    some.grains = static_cast<int>(std::min<std::int64_t>(draws, p.grains));
-    Random random(seed);
-    draws -= some.grains;
-    const bool whole = some.grains == p.grains && (draws > 0 || seed == seeds.back());
-    judge(draw_sample(some, random), whole ? 1 : kStepReserve);
-  }
+  const auto draw = [&](Random& random, std::int64_t& left) {
+    some.grains = static_cast<int>(std::min<std::int64_t>(left, p.grains));
+    left -= some.grains;
+    return draw_sample(some, random);
+  };
+  judge_draws(seeds, draws, draw, judge);
   return out;
 }
 

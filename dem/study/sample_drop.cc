@@ -65,15 +65,6 @@ Grain sphere_of(double radius, double density, bool as_superellipsoid) {
   return g;
 }
 
-// Smallest and largest radius of a sphere in the gap.
-std::pair<double, double> gap_radii(const SamplePlan& plan) {
-  if (plan.shape == "superellipsoid") {
-    return {plan.axis_min * plan.radius, plan.axis_max * plan.radius};
-  }
-  const SampleRadii radii = sample_radii(plan);
-  return {radii.least, radii.most};
-}
-
 }  // namespace
 
 SamplePlan as_filled(const SamplePlan& plan) {
@@ -103,15 +94,14 @@ FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density
     if (wall.name == "back") depth = wall.point.y();
   }
   lid_of(s) = out.height = top;
-  const auto [least, most] = gap_radii(plan);
-  const double mean = 0.5 * (least + most);
+  const auto [least, mean, most] = gap_radii(plan);
   const long tries = std::lround(kDropTries * width * depth / (std::numbers::pi * mean * mean));
   std::vector<Grain> near;  // those that a sphere at the lid can meet
   for (const Grain& g : s.grains) {
     if (g.position.z() + g.radius > top - 2 * most) near.push_back(g);
   }
   for (long failures = 0; failures < tries;) {
-    const double r = random.uniform(least, most);
+    const double r = draw_gap_radius(plan, random);
     Grain sphere = sphere_of(r, density, plan.shape == "superellipsoid");
     const double x = random.uniform(r, width - r), y = random.uniform(r, depth - r);
     sphere.position = {x, y, top - r};

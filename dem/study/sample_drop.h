@@ -21,9 +21,9 @@ struct FilledBox {
   double solid_share = 0;  ///< volume of all grains over that of the box
 };
 
-/// The lid touches the highest point of a grain; spheres that touch it, with radii uniform in those
-/// of the plan (superellipsoids: of their semi-axes), are put in at random places where they
-/// overlap nothing, until none finds room any more.
+/// The lid touches the highest point of a grain; spheres that touch it, with radii drawn as the
+/// plan draws those of its grains (superellipsoids: a semi-axis), are put in at random places where
+/// they overlap nothing, until none finds room any more.
 FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density, Random& random);
 
 }  // namespace grainfield::dem

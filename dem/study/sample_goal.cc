@@ -13,10 +13,16 @@ namespace {
 // A compression to a pressure ends at this share of it; what is left comes in the rest. At rest it
 // is met within the second.
 constexpr double kNearTarget = 0.9, kMet = 2e-3;
-// More than grains can fill: they would be inside each other.
-constexpr double kTooDense = 1.3;
+// Overlap over the smaller radius at which a grain counts as crushed: laws of small overlaps, and
+// the common normal of two bodies, say nothing any more.
+constexpr double kCrushed = 0.5;
 
 }  // namespace
+
+const char* goal_key(const SamplePlan& plan) {
+  if (plan.compress_to == "strain") return "compression_strain";
+  return plan.compress_to == "pressure" ? "pressure" : "solid_fraction";
+}
 
 double compressed_share(const SamplePlan& plan, double last_edge, double box, double fraction) {
   if (plan.compress_to == "strain") return (1 - last_edge / box) / plan.compression_strain;
@@ -51,6 +57,24 @@ void check_pressure_found(const SampleSetup& setup, double time, double compress
   }
 }
 
+void check_not_crushed(const SampleSetup& setup, const Diagnostics& state, const std::string& when,
+                       const char* key) {
+  if (!(state.max_overlap_ratio >= kCrushed)) return;
+  const bool by_stiffness = setup.material.law == "linear" || setup.material.law == "penalty";
+  throw ComputationFailed(fmt::format(
+      "a grain is crushed {}: it overlaps by {:.2g} of its radius, allowed: below {:g}; lower "
+      "sample.{}, or raise material.{}",
+      when, state.max_overlap_ratio, kCrushed, key, by_stiffness ? "normal_stiffness" : "young"));
+}
+
+void check_fraction_ahead(const SamplePlan& plan, double fraction) {
+  if (plan.compress_to != "solid_fraction" || fraction < plan.solid_fraction) return;
+  throw ComputationFailed(fmt::format(
+      "sample.solid_fraction = {:g} cannot be compressed to: the sample has a solid fraction of "
+      "{:.4g} before its compression; raise sample.solid_fraction",
+      plan.solid_fraction, fraction));
+}
+
 double servo_error(const SamplePlan& plan, SamplePhase phase, const Vec3& pressure) {
   double worst = 0;
   for (int a = 0; a < plan.dim; ++a) {
@@ -73,8 +97,7 @@ void fail_to_prepare(const SampleSetup& setup, const Diagnostics& state, const V
     throw ComputationFailed(fmt::format(
         "no grain touches another after rest.max_time = {:g} s: the sample is too loose to be "
         "sheared; raise sample.{}",
-        setup.rest.max_time,
-        plan.compress_to == "strain" ? "compression_strain" : "solid_fraction"));
+        setup.rest.max_time, goal_key(plan)));
   }
   if (at_rest(state, setup.rest)) {
     throw ComputationFailed(fmt::format(

@@ -65,6 +65,13 @@ SizeRange size_range(const SamplePlan& p) {
           share * small * small * small + (1 - share)};
 }
 
+// One of those sizes, over the radius.
+double draw_size(const SamplePlan& p, Random& random) {
+  if (p.sizes == "uniform") return 1 + p.polydispersity * random.uniform(-1, 1);
+  if (p.sizes == "mono") return 1;
+  return random.uniform() * p.grains < small_ones(p) ? 1 / p.size_ratio : 1;
+}
+
 }  // namespace
 
 const std::vector<std::string>& sample_shapes(int dim) {
@@ -87,6 +94,22 @@ SampleRadii sample_radii(const SamplePlan& p) {
   const int few = small_ones(p);
   const double small = r / p.size_ratio, share = 1.0 * few / p.grains;
   return {few > 0 ? small : r, share * small + (1 - share) * r, few < p.grains ? r : small};
+}
+
+SampleRadii gap_radii(const SamplePlan& p) {
+  if (!is_superellipsoid(p)) return sample_radii(p);
+  const SizeRange sizes = scales_axes(p) ? size_range(p) : SizeRange{};
+  const double least = p.axis_min * p.radius * sizes.least,
+               most = p.axis_max * p.radius * sizes.most;
+  return {least, 0.5 * (least + most), most};
+}
+
+double draw_gap_radius(const SamplePlan& p, Random& random) {
+  const auto axis = [&] { return random.uniform(p.axis_min * p.radius, p.axis_max * p.radius); };
+  if (!is_superellipsoid(p)) return p.radius * draw_size(p, random);
+  if (!scales_axes(p)) return axis();
+  const double size = draw_size(p, random);
+  return size * axis();
 }
 
 double mean_volume(const SamplePlan& p) {
@@ -126,7 +149,7 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
   if (is_superellipsoid(p)) {
     std::vector<ShapedGrain> all = grains;
     if (is_dropped(p)) {  // the least sphere that may fill its gap
-      all.emplace_back().axes.fill(p.axis_min * p.radius);
+      all.emplace_back().axes.fill(gap_radii(p).least);
     }
     return extremes_of_superellipsoids(all, density);
   }

@@ -25,6 +25,12 @@ SampleRadii sample_radii(const SamplePlan& plan);
 /// superellipsoids of themselves.
 double mean_volume(const SamplePlan& plan);
 
+/// Of the spheres that fill the gap below the lid of a dropped sample, m: those of the grains, of
+/// superellipsoids their semi-axes.
+SampleRadii gap_radii(const SamplePlan& plan);
+/// One of them.
+double draw_gap_radius(const SamplePlan& plan, Random& random);
+
 /// In the order of their ids; of spheres `area` is the volume, m3.
 std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random);
 

@@ -25,11 +25,22 @@ constexpr long kProbeSteps = 500;
 // strain that the pressure has made, which is the square root of the elastic energy); and the
 // forces are balanced to this share of the probe's strain.
 constexpr double kCalmMotion = 0.1, kCalmForces = 1;
+// A sample whose elastic energy falls to this share of what it was has lost its load.
+constexpr double kLostLoad = 1e-4;
+// Kinetic over elastic energy must fall to this share within so many decay times of the damping,
+// again and again, or grains count as moving for ever.
+constexpr double kSlowest = 0.5, kPatience = 50;
 // A wall of less friction carries no shear to speak of.
 constexpr double kRoughWall = 0.1;
 
 std::pair<int, int> axes_of(const std::string& direction) {
   return {direction[0] - 'x', direction[1] - 'x'};
+}
+
+// Of a probe's motion.
+long steps_of_probe(const SampleSetup& s, double time_step) {
+  const double steps = std::ceil(kProbeTime / s.rest.background_damping / time_step);
+  return std::max(kProbeSteps, static_cast<long>(steps));
 }
 
 // The contacts of a state, each with whether it slides.
@@ -48,18 +59,36 @@ std::vector<std::string> probe_directions(const SampleSetup& s) {
   return {"xx", "yy", "zz"};
 }
 
-void SampleProber::begin(Engine& engine, const std::string& state) {
-  state_ = state;
-  origin_ = engine.image();
-  number_ = -1;
-  engine.set_background_damping(setup_.rest.background_damping);
-  hold(engine, Stage::calm);
+double probe_time(const SampleSetup& s, double time_step) {
+  const SamplePlan& p = s.plan;
+  const int states = (probes_prepared(p) ? 1 : 0) + (probes_first(p) ? 1 : 0);
+  if (states == 0) return 0;
+  const double damping = s.rest.background_damping, look = kProbeCheck * time_step;
+  const double one = static_cast<double>(steps_of_probe(s, time_step)) * time_step + look;
+  // Free motion dies away with the whole rate of damping.
+  const double calm =
+      std::log(std::sqrt(s.rest.kinetic_to_elastic_energy) / (kCalmMotion * p.probe_strain)) /
+      damping;
+  const auto count = static_cast<double>(2 * probe_directions(s).size());
+  return states * (std::max(look, calm) + count * one);
 }
 
-// Cell or walls stand still.
-void SampleProber::hold(Engine& engine, Stage stage) {
+void SampleProber::begin(Engine& engine, const std::string& state, bool held) {
+  state_ = state;
+  origin_ = engine.image();
+  energy_ = engine.measure().elastic_energy;
+  number_ = -1;
+  engine.set_background_damping(setup_.rest.background_damping);
+  if (!held) stand_still(engine);
+  enter(Stage::calm);
+}
+
+void SampleProber::enter(Stage stage) {
   stage_ = stage;
   steps_ = 0;
+}
+
+void SampleProber::stand_still(Engine& engine) const {
   if (is_periodic(setup_.plan)) {
     engine.set_velocity_gradient(Eigen::Matrix3d::Zero());
     return;
@@ -68,11 +97,10 @@ void SampleProber::hold(Engine& engine, Stage stage) {
 }
 
 void SampleProber::move(Engine& engine) {
-  stage_ = Stage::move;
-  steps_ = 0;
+  stand_still(engine);
+  enter(Stage::move);
   const double dt = engine.time_step();
-  move_ = std::max(kProbeSteps,
-                   static_cast<long>(std::ceil(kProbeTime / setup_.rest.background_damping / dt)));
+  move_ = steps_of_probe(setup_, dt);
   const std::string direction = probe_directions(setup_)[static_cast<std::size_t>(number_ / 2)];
   const auto [a, b] = axes_of(direction);
   const double strain = (number_ % 2 == 0 ? 1 : -1) * setup_.plan.probe_strain;
@@ -110,21 +138,21 @@ bool SampleProber::is_calm(const Diagnostics& d) const {
 bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Make& make) {
   steps_ += steps;
   if (stage_ == Stage::move) {
-    if (steps_ == move_) hold(*engine, Stage::hold);
+    if (steps_ < move_) return false;
+    stand_still(*engine);
+    enter(Stage::hold);
     return false;
   }
   if (steps_ % kProbeCheck != 0) return false;
   const Diagnostics d = engine->measure();
   if (!is_calm(d)) {
-    if (static_cast<double>(steps_) * engine->time_step() > setup_.rest.max_time) {
-      throw ComputationFailed(fmt::format(
-          "a probe of the state \"{}\" has not come to rest within rest.max_time = {:g} s: forces "
-          "are balanced to {:.2g}, kinetic over elastic energy is {:.2g}; raise "
-          "sample.probe_strain = {:g}, rest.max_time or rest.background_damping",
-          state_, setup_.rest.max_time, d.unbalanced_force_ratio,
-          d.kinetic_energy / d.elastic_energy, setup_.plan.probe_strain));
-    }
-    return false;
+    StateProbes none;
+    none.state = state_;
+    none.lacking = hopeless(d, engine->time_step());
+    if (none.lacking.empty()) return false;
+    put_probes(none, found_);
+    give_back(engine, make);
+    return true;
   }
   if (number_ < 0) {
     base_ = engine->image();
@@ -132,16 +160,46 @@ bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Mak
     note(*engine, make);
   }
   ++number_;
-  const bool done = number_ == count();
-  engine = make();
-  engine->restore(done ? origin_ : base_);
-  if (done) {
-    origin_.clear();
-    base_.clear();
+  if (number_ == count()) {
+    give_back(engine, make);
     return true;
   }
+  engine = make();
+  engine->restore(base_);
   move(*engine);
   return false;
+}
+
+void SampleProber::give_back(std::unique_ptr<Engine>& engine, const Make& make) {
+  engine = make();
+  engine->restore(origin_);
+  origin_.clear();
+  base_.clear();
+}
+
+// Why it will not be calm; "": it may still be.
+std::string SampleProber::hopeless(const Diagnostics& d, double time_step) {
+  if (d.elastic_energy < kLostLoad * energy_) {
+    return fmt::format("it bears no load as its grains come to rest with a friction of {:g}",
+                       setup_.material.friction);
+  }
+  const double unrest = d.kinetic_energy / d.elastic_energy;
+  const double damping = setup_.rest.background_damping;
+  const auto looks = static_cast<long>(kPatience / (damping * time_step * kProbeCheck)) + 1;
+  const bool again = steps_ % (looks * kProbeCheck) == 0;
+  const bool stuck = again && steps_ > looks * kProbeCheck && unrest > kSlowest * unrest_;
+  if (again) unrest_ = unrest;
+  if (!stuck && static_cast<double>(steps_) * time_step <= setup_.rest.max_time) return "";
+  return fmt::format(
+      "its grains do not come to rest for a strain of {:g}: after {:.3g} s, {:.0f} decay times of "
+      "rest.background_damping, kinetic over elastic energy is {:.2g} and forces are balanced to "
+      "{:.2g}{}",
+      setup_.plan.probe_strain, static_cast<double>(steps_) * time_step,
+      static_cast<double>(steps_) * time_step * damping, unrest,
+      std::max(d.unbalanced_force_ratio, d.unbalanced_moment_ratio),
+      setup_.material.law == "hertz_elliptic" && setup_.material.friction == 0
+          ? "; without friction Hertz' elliptic law, which is no gradient, keeps them moving"
+          : "");
 }
 
 void SampleProber::note(const Engine& engine, const Make& make) {
@@ -180,6 +238,8 @@ void SampleProber::visit(Archive& archive) {
   archive(stage_);
   archive(steps_);
   archive(move_);
+  archive(energy_);
+  archive(unrest_);
   auto lines = static_cast<std::uint64_t>(found_.size());
   archive(lines);
   Attributes kept = std::move(found_);

@@ -43,6 +43,9 @@ void Walls<D>::add(const Wall& wall, std::unique_ptr<WallSurface<D>> surface) {
   State state;
   state.place = state.centre = in_space<D>(wall.point);
   walls_.push_back(wall);
+  // Those of a snapshot are told by its contacts, anew.
+  walls_.back().force.setZero();
+  walls_.back().torque.setZero();
   states_.push_back(state);
   first_.push_back(static_cast<int>(wall_of_.size()));
   wall_of_.insert(wall_of_.end(), slots, index);

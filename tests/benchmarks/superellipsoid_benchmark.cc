@@ -10,7 +10,10 @@
 #include <numbers>
 
 #include "dem/engine/engine.h"
+#include "dem/motion/runge_kutta3.h"
 #include "dem/study/sample_grains.h"
+#include "tests/dem/gas_scene.h"
+#include "tests/dem/top_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -73,8 +76,10 @@ const Snapshot& packing(const std::string& name, const Scene& scene) {
   return packings[name];
 }
 
-void steps(benchmark::State& state, const char* name, Kind kind, const AnyLaw& law) {
+void steps(benchmark::State& state, const char* name, Kind kind, const AnyLaw& law,
+           IntegratorKind integrator = IntegratorKind::verlet) {
   Scene start = scene(kind, law);
+  start.settings.integrator = integrator;
   const Snapshot& dense = packing(name, start);
   start.settings.cell = dense.cell;
   start.settings.cell.velocity_gradient.setZero();
@@ -118,6 +123,61 @@ BENCHMARK_CAPTURE(steps, superellipsoids_hertz, "superellipsoids_hertz", Kind::s
     ->Arg(1)
     ->Arg(2)
     ->UseRealTime();
+
+BENCHMARK_CAPTURE(steps, superellipsoids_hertz_runge_kutta, "superellipsoids_hertz",
+                  Kind::superellipsoids, AnyLaw(kHertz), IntegratorKind::runge_kutta)
+    ->Arg(1)
+    ->UseRealTime();
+
+/// What an integrator does to energies: the largest |E/E(0) - 1| of a gas of 27 superellipsoids in
+/// a box, penalty law without damping and friction, until a time of 50; steps in millionths. The
+/// gas is the same for all, so its collisions are the first ones alike.
+void gas_drift(benchmark::State& state, IntegratorKind integrator) {
+  const double step = 1e-6 * static_cast<double>(state.range(0));
+  gas::Drift drift;
+  for (auto _ : state) {
+    EngineSettings s = gas::settings_of(PenaltyLaw{2e3, 0, 0}, step);
+    s.integrator = integrator;
+    const auto engine = make_engine(s);
+    gas::add_box(*engine, 3 * 2.6);
+    gas::add_gas(*engine, 3, 2.6, 0.7, 1.3, 2);
+    drift = gas::drift_of(*engine, 100, std::lround(0.5 / step));
+  }
+  state.counters["step"] = step;
+  state.counters["drift"] = drift.worst;
+}
+BENCHMARK_CAPTURE(gas_drift, verlet, IntegratorKind::verlet)
+    ->RangeMultiplier(2)
+    ->Range(128, 4096)
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(gas_drift, runge_kutta, IntegratorKind::runge_kutta)
+    ->RangeMultiplier(2)
+    ->Range(128, 4096)
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+
+/// The same of a free top (moments 1, 2, 3; about a turn in 5 units of time) after so many steps of
+/// 0.05.
+template <class Integrator>
+void top_drift(benchmark::State& state) {
+  double drift = 0;
+  for (auto _ : state) {
+    const auto steps = static_cast<int>(state.range(0));
+    const top::Ended end = top::turned<Integrator>(0.05 * steps, steps);
+    drift = std::fabs(top::energy_of(end.spin) / top::energy_of(top::kStart) - 1);
+  }
+  state.counters["time"] = 0.05 * static_cast<double>(state.range(0));
+  state.counters["drift"] = drift;
+}
+BENCHMARK_TEMPLATE(top_drift, VerletIntegrator<3>)
+    ->RangeMultiplier(4)
+    ->Range(16, 1 << 18)
+    ->Iterations(1);
+BENCHMARK_TEMPLATE(top_drift, RungeKuttaIntegrator<3>)
+    ->RangeMultiplier(4)
+    ->Range(16, 1 << 18)
+    ->Iterations(1);
 
 }  // namespace
 }  // namespace grainfield::dem

@@ -136,6 +136,20 @@ TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
   EXPECT_THAT(page, HasSubstr("The grains and a block of finite elements"));
 }
 
+// Three states after the first one tell no residual angle: the plastic block is left out, and why.
+TEST(SampleBox, ABlockWithoutItsAngleSaysSo) {
+  const Folder folder;
+  const Summary summary =
+      run(folder, box("deformation = \"axial\"\nstrain = 0.02\nrecords = 3\nprobe = \"first\"\n"
+                      "probe_strain = 1e-4\n[block]\nlaw = \"both\"\nangles = \"residual\"",
+                      "friction = 0.4\nwall_friction = 0"));
+  EXPECT_EQ(summary.count("block.mohr_coulomb.rel_l2"), 0U);
+  EXPECT_EQ(summary.count("block.elastic.rel_l2"), 1U);
+  EXPECT_THAT(testing::read_text(folder / "out/report.html"),
+              HasSubstr("The block of law mohr_coulomb is left out: the grains show no friction "
+                        "angle in the last quarter of the strain"));
+}
+
 TEST(SampleBox, IsFilledByDroppingAndSpheres) {
   const Folder folder;
   const Summary summary = run(

@@ -1,4 +1,5 @@
 // Small samples through the real program: states, figures, threads, kills, mistakes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -401,6 +402,31 @@ TEST(SampleRun, Mistakes) {
         "material.law=energy"},
        "material.rolling_friction: found above 0, allowed for polygons: 0");
   says(kSpheres, {"material.twisting_stiffness=0"}, "twisting_friction");
+  const Overrides superellipsoids{"sample.shape=superellipsoid", "sample.start_fraction=0.1",
+                                  "material.law=hertz_elliptic"};
+  const auto with = [&](const char* set) {
+    Overrides all = superellipsoids;
+    all.insert(all.begin(), set);
+    return all;
+  };
+  for (const char* key : {"sample.exponent_min", "sample.exponent_max"}) {
+    for (const char* value : {"0", "2", "-1"}) {
+      says(kSpheres, with(fmt::format("{}={}", key, value).c_str()),
+           fmt::format("{}: found {}, allowed: 0.1 to 1.9", key, value).c_str());
+    }
+  }
+  says(kSpheres, with("sample.axis_min=0"), "sample.axis_min: found 0, allowed: 0.05 to 20");
+  says(kSpheres, with("sample.axis_max=-1"), "sample.axis_max: found -1, allowed: 0.05 to 20");
+  says(kSpheres, with("sample.radius=0"), "sample.radius: found 0, allowed: ");
+  says(kSpheres, with("material.poisson=0.6"),
+       "material.poisson: found 0.6, allowed: -0.99 to 0.5");
+  says(kSpheres, with("material.poisson=-1"), "material.poisson: found -1, allowed: -0.99 to 0.5");
+  says(kBox, {"sample.deformation=uniaxial", "sample.strain=0.8"},
+       "sample.strain: found 0.8: grains would be crushed");
+  says(kSpheres, {"motion.integrator=runge_kutta"},
+       "motion.integrator: found \"runge_kutta\", allowed for grains of this shape (sphere): "
+       "verlet");
+  EXPECT_EQ(complaint(kSpheres, with("motion.integrator=runge_kutta")), "");
   says(kDisks, {"material.gravity=1"}, "has no meaning for study = \"sample\"");
 }
 

@@ -85,9 +85,17 @@ TEST(SampleRves, TellStressAndStrainOfTheirSample) {
       EXPECT_NEAR(of("strain_ratio"), 1, 0.15) << boundary << radius;
       EXPECT_NEAR(of("fit_ratio"), 1, 0.1) << boundary << radius;
       EXPECT_NEAR(of("grain_stress_ratio"), 1, 0.3) << boundary << radius;
+      // The volume of eq. 29 drops out.
+      EXPECT_NEAR(of("axial_stress_ratio"), number(summary, "sample.end_axial_stress_ratio"), 0.4)
+          << boundary << radius;
       // Over the hull of the centres, which leaves out half of every outer grain.
       EXPECT_GT(of("stress_ratio"), 1.2) << boundary << radius;
     }
+    // The whole deviator is that of the axes, and more.
+    const double axial = number(summary, "sample.end_axial_stress_ratio");
+    EXPECT_GT(axial, 0) << boundary;
+    EXPECT_LE(axial, number(summary, "sample.end_stress_ratio")) << boundary;
+    EXPECT_GT(axial, 0.7 * number(summary, "sample.end_stress_ratio")) << boundary;
     EXPECT_LT(number(summary, "rve.r3.error_bar"), number(summary, "rve.r2.error_bar"));
     EXPECT_GT(number(summary, "sample.plastic_strain"), 0);
     EXPECT_LT(number(summary, "sample.plastic_strain"), 0.01);

@@ -213,7 +213,7 @@ TEST(Cone, IsForeseen) {
     EXPECT_THAT(complaint(s), HasSubstr(what));
     EXPECT_THAT(refused(s), HasSubstr(what));
   };
-  both([](ConeSetup& s) { s.motion.integrator = "gear"; }, "motion.integrator: found gear");
+  both([](ConeSetup& s) { s.motion.integrator = "gear"; }, "motion.integrator: found \"gear\"");
   both([](ConeSetup& s) { s.plan.speed = 1e4; }, "cone.speed: found 10000");
   both([](ConeSetup& s) { s.plan.drop = 1e5; }, "cone.drop: found 100000");
   both(

@@ -138,6 +138,25 @@ TEST_P(FromSnapshot, ForcesGoOnAsTheyWere) {
 }
 
 // Each of what a snapshot brings is needed.
+// What a wall of a snapshot has felt is not felt once more.
+TEST_P(FromSnapshot, WallsFeelTheirContactsAlone) {
+  const auto [dim, hertz] = GetParam();
+  const Snapshot start = moving_heap(dim, hertz)->snapshot();
+  ASSERT_GT(start.walls.front().force.norm(), 0);
+  const auto engine = make_engine(settings(dim, hertz), start);
+  for (int k = 0; k < 2; ++k) {
+    const Snapshot now = engine->snapshot();
+    std::vector<Vec3> felt(now.walls.size(), Vec3::Zero());
+    for (const Contact& c : now.contacts) {
+      if (c.j < 0) felt[static_cast<std::size_t>(-1 - c.j)] -= c.force;
+    }
+    for (std::size_t w = 0; w < felt.size(); ++w) {
+      EXPECT_NEAR((now.walls[w].force - felt[w]).norm(), 0, 1e-12 * (1 + felt[w].norm())) << k;
+    }
+    engine->step(1);
+  }
+}
+
 TEST_P(FromSnapshot, WithoutAnyPartTheyDiffer) {
   const auto [dim, hertz] = GetParam();
   const auto engine = moving_heap(dim, hertz);

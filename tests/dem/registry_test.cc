@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(Registry, WordsAreThoseOfTheKinds) {
-  EXPECT_THAT(words_of<AnyIntegrator>(), ElementsAre("verlet", "gear"));
+  EXPECT_THAT(words_of<AnyIntegrator>(), ElementsAre("verlet", "gear", "runge_kutta"));
   EXPECT_THAT(words_of<AnyLaw>(), testing::IsSupersetOf({"overlap_area", "energy", "linear"}));
   EXPECT_THAT(laws_that_feel_edges(), ElementsAre("overlap_area", "energy"));
   EXPECT_EQ(IntegratorKind::named("gear"), IntegratorKind::gear);
@@ -43,7 +43,7 @@ TEST(Registry, UnknownWordsReachNoEngine) {
   EXPECT_EQ(refusal(material, motion), "accepted");
   motion.integrator = "gaer";
   EXPECT_EQ(refusal(material, motion),
-            "motion.integrator: found \"gaer\", allowed: verlet, gear; did you mean \"gear\"?");
+            "motion.integrator: found \"gaer\", allowed: verlet, gear, runge_kutta; did you mean \"gear\"?");
   motion.integrator = "verlet";
   material.law = "lineer";
   EXPECT_THAT(
@@ -105,6 +105,7 @@ struct Euler {
   static constexpr const char* name = "euler";
   static constexpr double viscous_limit = 1, edge_limit = 1;
   static constexpr bool bears_irregular_edges = false;
+  static constexpr bool leaps = false, moves_round = true;
   template <int D>
   using In = EulerIntegrator<D>;
 };

@@ -2,15 +2,14 @@
 // bits.
 #include <gmock/gmock.h>
 
-#include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "dem/engine/engine.h"
-#include "dem/motion/verlet3.h"
 #include "dem/random/random.h"
 #include "dem/space/kinematics3.h"
 #include "tests/dem/bits_scene.h"
+#include "tests/dem/top_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -18,45 +17,13 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 
-// Euler's top, moments 1 < 2 < 3, omega_2(0) = 0 (Landau and Lifshitz, vol. 1, section 37).
-// Returns the largest error of the spin in the body frame at t = 4.
+// Error of the spin in the body frame at t = 4.
 double top_error(int steps) {
-  const Vector3d moments(1, 2, 3), start(0.9, 0, 1.1);
-  const double energy2 = moments.dot(start.cwiseProduct(start));
-  const double momentum2 = moments.cwiseProduct(start).squaredNorm();
-  const double i1 = 1, i2 = 2, i3 = 3;
-  EXPECT_GT(momentum2, energy2 * i2);
-  const double k2 =
-      (i2 - i1) * (energy2 * i3 - momentum2) / ((i3 - i2) * (momentum2 - energy2 * i1));
-  const double rate = std::sqrt((i3 - i2) * (momentum2 - energy2 * i1) / (i1 * i2 * i3));
-  const double end = 4, tau = rate * end, k = std::sqrt(k2);
-  const Vector3d exact(
-      start[0] * boost::math::jacobi_cn(k, tau),
-      std::sqrt((energy2 * i3 - momentum2) / (i2 * (i3 - i2))) * boost::math::jacobi_sn(k, tau),
-      start[2] * boost::math::jacobi_dn(k, tau));
-
-  const VerletIntegrator<3> integrator(end / steps);
-  Inertia<3> inertia;
-  inertia.mass = 1;
-  inertia.moments = moments;
-  Body<3> b;
-  b.inverse_mass = 1;
-  b.inverse_inertia = 0.5;
-  b.spin = start;
-  VerletIntegrator<3>::Memory m;
-  for (int s = 0; s < steps; ++s) {
-    integrator.begin(b, m, inertia);
-    integrator.end(b, m, inertia, {});
-  }
-  const Vector3d spin = m.rotation.conjugate() * b.spin;
+  const top::Ended end = top::turned<VerletIntegrator<3>>(4, steps);
   // The angular momentum stays where it was.
-  const Vector3d momentum = m.rotation * moments.cwiseProduct(spin);
-  EXPECT_LT((momentum - moments.cwiseProduct(start)).norm(), 1e-11);
-  EXPECT_NEAR(m.rotation.norm(), 1, 1e-14);
-  // Euler's equations also hold with omega_2 turned round: the sign of the sequence of moments.
-  Vector3d mirrored = exact;
-  mirrored[1] = -exact[1];
-  return std::min((spin - exact).norm(), (spin - mirrored).norm());
+  EXPECT_LT((end.momentum - top::kMoments.cwiseProduct(top::kStart)).norm(), 1e-11);
+  EXPECT_LT(end.unit_error, 1e-14);
+  return (end.spin - top::exact_spin(4)).norm();
 }
 
 TEST(Spheres, AFreeTopTurnsAsEulerSays) {
@@ -335,7 +302,11 @@ TEST(Spheres, WhatDoesNotFitIsRefused) {
   EngineSettings s = spheres(LinearLaw{}, 1e-5);
   s.integrator = IntegratorKind::gear;
   EXPECT_EQ(refusal(s),
-            "motion.integrator: found \"gear\", allowed for grains of this shape: verlet");
+            "motion.integrator: found \"gear\", allowed for grains of this shape (sphere): verlet");
+  s.integrator = IntegratorKind::runge_kutta;
+  EXPECT_EQ(refusal(s),
+            "motion.integrator: found \"runge_kutta\", allowed for grains of this shape (sphere): "
+            "verlet");
   s.integrator = IntegratorKind::verlet;
   EXPECT_EQ(refusal(s), "accepted");
   s.law = OverlapAreaLaw{};

@@ -8,7 +8,7 @@
 #include "dem/engine/engine.h"
 #include "dem/shapes/superellipsoid_store.h"
 #include "tests/dem/bits_scene.h"
-#include "tests/dem/superellipsoid_scene.h"
+#include "tests/dem/gas_scene.h"
 
 namespace grainfield::dem {
 namespace {
@@ -16,59 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-EngineSettings settings_of(const AnyLaw& law, double step) {
-  EngineSettings s;
-  s.law = law;
-  s.shape = ShapeKind::superellipsoid;
-  s.time_step = step;
-  s.gravity_y = 0;
-  s.friction = 0;
-  return s;
-}
-
-NewGrain grain_of(const Superellipsoid& body, const Vector3d& at, const RotationOf<3>& turn) {
-  NewGrain g;
-  g.x = at.x();
-  g.y = at.y();
-  g.z = at.z();
-  g.density = 1;
-  g.axes = {body.axes.x(), body.axes.y(), body.axes.z()};
-  g.exponents = body.exponents;
-  g.orientation = {turn.w(), turn.x(), turn.y(), turn.z()};
-  return g;
-}
-
-/// Grains in a box of this half width, on a lattice, moving about.
-void add_gas(Engine& engine, int edge, double spacing, double least, double most, double speed,
-             std::uint64_t seed = 7) {
-  Random random(seed);
-  for (int k = 0; k < edge * edge * edge; ++k) {
-    const Vector3d place(k % edge, k / edge % edge, k / edge / edge);
-    const Vector3d at = spacing * (place + Vector3d::Constant(0.5));
-    const Superellipsoid body = random_superellipsoid(random, least, most);
-    NewGrain g = grain_of(body, at, random_rotation(random));
-    const Vector3d v = speed * random_direction(random), w = speed * random_direction(random);
-    g.vx = v.x();
-    g.vy = v.y();
-    g.vz = v.z();
-    g.spin_x = w.x();
-    g.spin_y = w.y();
-    g.spin = w.z();
-    engine.add(g);
-  }
-}
-void add_box(Engine& engine, double edge, double friction = 0) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d n = Vector3d::Unit(axis);
-    const std::string name(1, "xyz"[axis]);
-    engine.add_wall({"low " + name, {0, 0, 0}, n, friction});
-    engine.add_wall({"high " + name, edge * n, -n, friction});
-  }
-}
-double energy_of(const Engine& engine) {
-  const Diagnostics d = engine.measure();
-  return d.kinetic_energy + d.elastic_energy;
-}
+using gas::add_box, gas::add_gas, gas::energy_of, gas::grain_of, gas::settings_of;
 
 // Round superellipsoids are spheres: the same motion under all laws of both, to round-off's growth.
 TEST(SuperellipsoidEngine, RoundOnesMoveAsSpheresDo) {
@@ -137,15 +85,7 @@ TEST(SuperellipsoidEngine, PenaltyGasKeepsItsEnergy) {
   const double edge = 3 * 2.6;
   add_box(*engine, edge);
   add_gas(*engine, 3, 2.6, 0.7, 1.3, 2);
-  engine->step(1);
-  const double before = energy_of(*engine);
-  double worst = 0;
-  int contacts = 0;
-  for (int k = 0; k < 100; ++k) {
-    engine->step(1000);
-    worst = std::max(worst, std::fabs(energy_of(*engine) / before - 1));
-    contacts += engine->measure().contacts;
-  }
+  const auto [worst, contacts] = gas::drift_of(*engine, 100, 1000);
   RecordProperty("drift", fmt::format("{:.2e}", worst));
   RecordProperty("contacts", contacts);
   EXPECT_GT(contacts, 300);
@@ -158,13 +98,7 @@ TEST(SuperellipsoidEngine, HertzGasDrifts) {
   const auto engine = make_engine(settings_of(HertzEllipticLaw{1e4, 0.3, 0}, 5e-4));
   add_box(*engine, 3 * 2.6);
   add_gas(*engine, 3, 2.6, 0.7, 1.3, 2);
-  engine->step(1);
-  const double before = energy_of(*engine);
-  double worst = 0;
-  for (int k = 0; k < 40; ++k) {
-    engine->step(1000);
-    worst = std::max(worst, std::fabs(energy_of(*engine) / before - 1));
-  }
+  const double worst = gas::drift_of(*engine, 40, 1000).worst;
   RecordProperty("drift", fmt::format("{:.2e}", worst));
   EXPECT_GT(worst, 1e-5);  // more than the integrator's
   EXPECT_LT(worst, 0.5);

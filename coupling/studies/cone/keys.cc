@@ -2,7 +2,7 @@
 #include "coupling/studies/cone/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/shapes/superellipsoid.h"
+#include "coupling/run/superellipsoid_keys.h"
 #include "dem/study/cone.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::ConeSetup, plan.MEMBER)
@@ -21,18 +21,8 @@ void grains(SectionKeys& s) {
   s.number("polydispersity", "-", IN(polydispersity), {0, 0.9},
            "half the width of the radii over their mean; more keeps crystals away");
   s.only("cone.shape", {"sphere"});
-  const auto superellipsoid = [&] { s.only("cone.shape", {"superellipsoid"}); };
-  s.number("axis_min", "-", IN(axis_min), {0.05, 20}, "least semi-axis over the radius");
-  superellipsoid();
-  s.number("axis_max", "-", IN(axis_max), {0.05, 20},
-           "largest one; each of the three is uniform between both");
-  superellipsoid();
-  s.number("exponent_min", "-", IN(exponent_min), {dem::kLeastExponent, dem::kMostExponent},
-           "least exponent: 1 is an ellipsoid, below it faces are flat");
-  superellipsoid();
-  s.number("exponent_max", "-", IN(exponent_max), {dem::kLeastExponent, dem::kMostExponent},
-           "largest one: above 1 there are edges");
-  superellipsoid();
+  declare_superellipsoid_keys(s, "cone.shape",
+                              {IN(axis_min), IN(axis_max), IN(exponent_min), IN(exponent_max)});
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include "coupling/studies/point_load/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/shapes/superellipsoid.h"
+#include "coupling/run/superellipsoid_keys.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PointLoadSetup, MEMBER)
 
@@ -82,22 +82,9 @@ void declare_packing_keys(SectionKeys s) {
          "Roul 5.1");
   s.words_of_dimensions({"irregular"}, {"superellipsoid"});
   s.only("packing.kind", {"layered", "random"});
-  const auto superellipsoid = [&] {
-    s.space();
-    s.only("packing.shape", {"superellipsoid"});
-  };
-  s.number("axis_min", "-", IN(packing.axis_min), {0.05, 20},
-           "least semi-axis of a superellipsoid over its radius");
-  superellipsoid();
-  s.number("axis_max", "-", IN(packing.axis_max), {0.05, 20},
-           "largest one; each of the three is uniform between both");
-  superellipsoid();
-  s.number("exponent_min", "-", IN(packing.exponent_min), {dem::kLeastExponent, dem::kMostExponent},
-           "least exponent: 1 is an ellipsoid, below it faces are flat");
-  superellipsoid();
-  s.number("exponent_max", "-", IN(packing.exponent_max), {dem::kLeastExponent, dem::kMostExponent},
-           "largest one: above 1 there are edges");
-  superellipsoid();
+  declare_superellipsoid_keys(s, "packing.shape",
+                              {IN(packing.axis_min), IN(packing.axis_max), IN(packing.exponent_min),
+                               IN(packing.exponent_max)});
   s.number("side", "m", IN(packing.side), kRadius, "mean length of a side", "Roul 5.1");
   s.only("packing.shape", {"irregular"});
   s.word("floor", IN(packing.floor), {"smooth", "rough"},

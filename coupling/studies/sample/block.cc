@@ -87,44 +87,83 @@ Angles angles_of(const BlockSetup& setup, const std::vector<StrengthPath>& paths
   return {friction_behind(friction, std::max(0.0, dilation)), dilation};
 }
 
-// Law by law the material of a realization; throws BadParameter where there is none.
+// Law by law the material of a realization; `lacking`: what it needs and the grains do not tell.
 BlockMaterial material_of(const BlockSetup& setup, const std::string& law, const SpaceModuli& m,
-                          const std::vector<StrengthPath>& paths, std::size_t r, bool& bent) {
+                          const std::vector<StrengthPath>& paths, std::size_t r, bool& bent,
+                          std::string& lacking) {
   BlockMaterial out;
   out.constants.E = m.young;
   out.constants.nu = m.poisson;
   out.plastic = law == kMohrCoulomb;
+  if (!std::isfinite(m.young) || !std::isfinite(m.poisson)) {
+    lacking = "small strains give no moduli";
+    return out;
+  }
   if (!out.plastic) return out;
   const Angles angles = angles_of(setup, paths, r);
+  const bool friction = std::isfinite(angles.friction);
+  if (!friction || !std::isfinite(angles.dilation)) {
+    lacking = fmt::format("the grains show no {} angle {}", friction ? "dilation" : "friction",
+                          setup.angles == "peak" ? "at a peak: too few states bear load"
+                                                 : "in the last quarter of the strain: it has too "
+                                                   "few states, or one that bears no load");
+    return out;
+  }
   out.constants.friction_deg = angles.friction;
   out.constants.dilation_deg = std::clamp(angles.dilation, 0.0, angles.friction);
   bent = bent || out.constants.dilation_deg != angles.dilation;
   return out;
 }
 
-// Fills the columns of one law; false with a remark when it cannot be solved.
+// Fills the columns of one law; nan in realizations whose block cannot be solved. False with a
+// remark when it is so in all of them.
 bool add_law(const BlockSetup& setup, const StateTable& table, const dem::SamplePlan& plan,
              const ProbedState& moduli, const std::vector<StrengthPath>& paths,
              const std::string& law, BlockComparison& out) {
   bool bent = false;
-  try {
-    for (Index r = 0; r < table.realizations(); ++r) {
-      const auto number = static_cast<std::size_t>(r);
-      const std::vector<BlockState> states =
-          continuum::load_block(material_of(setup, law, moduli.moduli[number], paths, number, bent),
-                                first_stress(table, r), path_of(table, plan, r), setup.cells);
-      for (BlockQuantity& quantity : out.quantities) {
-        MatrixXd& values = quantity.laws[law];
-        values.resize(table.states(), table.realizations());
-        for (Index k = 0; k < table.states(); ++k) {
-          values(k, r) = value_of(quantity.name, states[static_cast<std::size_t>(k)]);
-        }
+  std::string why;
+  Index missing = 0;
+  for (BlockQuantity& quantity : out.quantities) {
+    quantity.laws[law] = MatrixXd::Constant(table.states(), table.realizations(), kNan);
+  }
+  for (Index r = 0; r < table.realizations(); ++r) {
+    const auto number = static_cast<std::size_t>(r);
+    std::string lacking;
+    const BlockMaterial material =
+        material_of(setup, law, moduli.moduli[number], paths, number, bent, lacking);
+    std::vector<BlockState> states;
+    if (lacking.empty()) {
+      try {
+        states = continuum::load_block(material, first_stress(table, r), path_of(table, plan, r),
+                                       setup.cells);
+      } catch (const continuum::BadParameter& e) {
+        // What the grains ask of a law it may be unable to give: that is a finding, not a failure.
+        lacking = e.what();
+      } catch (const continuum::ComputationFailed& e) {
+        lacking = e.what();
       }
     }
-  } catch (const std::exception& e) {
-    // What the grains ask of a law it may be unable to give: that is a finding, not a failure.
+    if (states.empty()) {
+      ++missing;
+      if (why.empty()) why = lacking;
+      continue;
+    }
+    for (BlockQuantity& quantity : out.quantities) {
+      for (Index k = 0; k < table.states(); ++k) {
+        quantity.laws[law](k, r) = value_of(quantity.name, states[static_cast<std::size_t>(k)]);
+      }
+    }
+  }
+  if (missing > 0) {
+    out.remarks.push_back(
+        fmt::format("The block of law {} is left out{}: {}.", law,
+                    table.realizations() == 1
+                        ? ""
+                        : fmt::format(" in {} of {} realizations", missing, table.realizations()),
+                    why));
+  }
+  if (missing == table.realizations()) {
     for (BlockQuantity& quantity : out.quantities) quantity.laws.erase(law);
-    out.remarks.push_back(fmt::format("The block of law {} is left out: {}.", law, e.what()));
     return false;
   }
   if (bent) {

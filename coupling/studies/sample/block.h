@@ -36,7 +36,8 @@ void check_block(const BlockSetup& setup, const dem::SamplePlan& plan);
 struct BlockQuantity {
   std::string name, unit;  ///< "q", "Pa"
   Eigen::MatrixXd grains;
-  std::map<std::string, Eigen::MatrixXd> laws;  ///< by law; those that could be solved
+  /// By law; nan in realizations whose block could not be solved, without laws that never could.
+  std::map<std::string, Eigen::MatrixXd> laws;
 };
 
 struct BlockComparison {

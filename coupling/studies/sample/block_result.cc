@@ -19,9 +19,18 @@ constexpr double kHasLeft = 0.1;
 // A block whose volume the path prescribes shows no difference of it beyond rounding.
 constexpr double kNoDifference = 1e-9;
 
+// Of the realizations that have a value.
 Spread spread_in(const Eigen::MatrixXd& values, Index state) {
-  const VectorXd row = values.row(state).transpose();
-  return spread_of({row.data(), row.data() + row.size()});
+  std::vector<double> known;
+  for (const double v : values.row(state)) {
+    if (std::isfinite(v)) known.push_back(v);
+  }
+  return spread_of(known);
+}
+
+std::string spread_told(const Spread& s) {
+  return std::isnan(s.standard_error) ? fmt::format("{:.4g}", s.mean)
+                                      : fmt::format("{:.4g} ± {:.1g}", s.mean, s.standard_error);
 }
 
 std::string block_number(double value) {
@@ -68,16 +77,13 @@ Table stages_table(const BlockComparison& c) {
     table.header.push_back(q.name + unit + ", grains");
     for (const std::string& law : c.laws) table.header.push_back(law + " − grains");
   }
-  const auto told = [](const Spread& s) {
-    return std::isnan(s.standard_error) ? fmt::format("{:.4g}", s.mean)
-                                        : fmt::format("{:.4g} ± {:.1g}", s.mean, s.standard_error);
-  };
   for (Index k = 0; k < c.strain.size(); ++k) {
     auto& row = table.rows.emplace_back();
     row.push_back(fmt::format("{:.4g}", c.strain[k]));
     for (const BlockQuantity& q : c.quantities) {
-      row.push_back(told(spread_in(q.grains, k)));
-      for (const std::string& law : c.laws) row.push_back(told(stage_of(q, law, k).difference));
+      row.push_back(spread_told(spread_in(q.grains, k)));
+      for (const std::string& law : c.laws)
+        row.push_back(spread_told(stage_of(q, law, k).difference));
     }
   }
   return table;
@@ -127,6 +133,7 @@ std::map<std::string, std::vector<double>> block_figures(const BlockComparison& 
       out[fmt::format("block.{}.{}", law, key)].push_back(value);
     };
     for (Index r = 0; r < driving.grains.cols(); ++r) {
+      if (!driving.laws.at(law).col(r).allFinite()) continue;
       const VectorXd grains = driving.grains.col(r).head(n);
       const VectorXd off = driving.laws.at(law).col(r).head(n) - grains;
       put("rel_l2", off.norm() / grains.norm());
@@ -141,6 +148,34 @@ std::map<std::string, std::vector<double>> block_figures(const BlockComparison& 
   }
   return out;
 }
+
+namespace {
+
+// Where each law leaves the grains, from the same figures as summary.json.
+Table leaving_table(const BlockComparison& c) {
+  Table table;
+  table.title = "Where the continuum leaves the grains";
+  table.caption = fmt::format(
+      "Mean over realizations and its standard error. A law has left where its driving stress is "
+      "off by {:.0f} % of the grains' largest; the strain of that is of the samples that it "
+      "leaves.",
+      100 * kHasLeft);
+  table.header = {""};
+  for (const std::string& law : c.laws) table.header.push_back(law);
+  const auto figures = block_figures(c);
+  for (const SummaryKey& key : block_summary_keys()) {
+    const std::string name = key.pattern.substr(key.pattern.rfind('.') + 1);
+    auto& row = table.rows.emplace_back();
+    row.push_back(key.meaning);
+    for (const std::string& law : c.laws) {
+      const auto found = figures.find(fmt::format("block.{}.{}", law, name));
+      row.push_back(found == figures.end() ? "–" : spread_told(spread_of(found->second)));
+    }
+  }
+  return table;
+}
+
+}  // namespace
 
 std::vector<Section> block_sections(const BlockComparison& c) {
   std::vector<Section> out;
@@ -162,6 +197,7 @@ std::vector<Section> block_sections(const BlockComparison& c) {
       "strength; it starts from their stress and goes their way. Bands: one standard error over "
       "realizations.";
   out.emplace_back(std::move(picture));
+  out.emplace_back(leaving_table(c));
   out.emplace_back(stages_table(c));
   return out;
 }

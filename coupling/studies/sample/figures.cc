@@ -44,6 +44,10 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.shear_over_pressure", "-",
        "simple shear: shear stress at the end of the loading over p of the first state"},
       {"sample.end_stress_ratio", "-", "uniaxial: q/p at the end of the loading"},
+      {"sample.end_axial_stress_ratio", "-",
+       "uniaxial in three dimensions: q/p there with q the axial pressure less the mean lateral "
+       "one "
+       "(Wellmann 32), as axial_q_over_p of states.csv"},
       {"sample.stiffening", "-",
        "uniaxial: rise of the axial stress in the second half of the strain over that in the first "
        "half; 1 of a straight line"},

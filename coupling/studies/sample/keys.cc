@@ -2,8 +2,8 @@
 #include "coupling/studies/sample/keys.h"
 
 #include "coupling/case/declare.h"
+#include "coupling/run/superellipsoid_keys.h"
 #include "dem/packing/loose.h"
-#include "dem/shapes/superellipsoid.h"
 #include "dem/study/sample_grains.h"
 #include "dem/study/sample_setup.h"
 
@@ -48,24 +48,11 @@ void grains(SectionKeys& s) {
   s.number("corners_max", "-", IN(corners_max), {3, 64},
            "most corners; the number is drawn between both");
   s.only("sample.shape", {"rand1", "regular"});
-  constexpr const char* kWellmann = "Wellmann 25, 26";
-  const auto superellipsoid = [&] { s.only("sample.shape", {"superellipsoid"}); };
-  s.number("axis_min", "-", IN(axis_min), {0.05, 20},
-           "least semi-axis of a superellipsoid over the radius", kWellmann);
-  superellipsoid();
-  s.number("axis_max", "-", IN(axis_max), {0.05, 20},
-           "largest one; each of the three is uniform between both", kWellmann);
-  superellipsoid();
+  declare_superellipsoid_keys(s, "sample.shape",
+                              {IN(axis_min), IN(axis_max), IN(exponent_min), IN(exponent_max)});
   s.word("axes_times", IN(axes_times), {"one", "sizes"},
          "the semi-axes are drawn as they are, or times a size drawn as sample.sizes says");
-  superellipsoid();
-  s.number("exponent_min", "-", IN(exponent_min), {dem::kLeastExponent, dem::kMostExponent},
-           "least exponent: 1 is an ellipsoid, below it faces are flat", kWellmann);
-  superellipsoid();
-  s.number("exponent_max", "-", IN(exponent_max), {dem::kLeastExponent, dem::kMostExponent},
-           "largest one: above 1 there are edges; both of a grain are uniform between these",
-           kWellmann);
-  superellipsoid();
+  s.only("sample.shape", {"superellipsoid"});
 }
 
 void place(SectionKeys& s) {

@@ -46,6 +46,15 @@ const std::vector<ModulusColumn>& modulus_columns() {
 }
 
 void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncrements& all) {
+  out.lacking.push_back(probes.lacking);
+  if (!probes.lacking.empty()) {
+    out.moduli.emplace_back();
+    for (auto of : {&ProbedState::gained, &ProbedState::lost, &ProbedState::sliding,
+                    &ProbedState::odd, &ProbedState::asymmetry}) {
+      (out.*of).push_back(kNan);
+    }
+    return;
+  }
   double gained = 0, lost = 0, sliding = 0, sum = 0, difference = 0;
   Matrix3d stiffness = Matrix3d::Zero();
   for (const dem::Probe& probe : probes.probes) {
@@ -75,6 +84,10 @@ void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncr
                           (stiffness.trace() / 3));
 }
 
+std::size_t known_of(const ProbedState& state) {
+  return static_cast<std::size_t>(std::count(state.lacking.begin(), state.lacking.end(), ""));
+}
+
 }  // namespace
 
 std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files) {
@@ -87,11 +100,13 @@ std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files) {
       const Realization one = read_realization(file);
       const dem::StateProbes probes =
           dem::probes_of(one.snapshots.front().second.attributes, state);
-      if (probes.probes.empty()) break;
-      add_realization(probes, probed, increments.emplace_back());
+      if (probes.probes.empty() && probes.lacking.empty()) break;
+      SpaceIncrements own;
+      add_realization(probes, probed, own);
+      if (probes.lacking.empty()) increments.push_back(std::move(own));
     }
-    if (increments.size() != files.size()) continue;
-    probed.symmetry = space_symmetry(increments, {});
+    if (probed.moduli.size() != files.size()) continue;
+    if (!increments.empty()) probed.symmetry = space_symmetry(increments, {});
     out.push_back(std::move(probed));
   }
   return out;
@@ -102,9 +117,11 @@ std::map<std::string, std::vector<double>> moduli_figures(const std::vector<Prob
   for (const ProbedState& state : states) {
     for (const ModulusColumn& column : modulus_columns()) {
       std::vector<double> values;
-      for (std::size_t r = 0; r < state.moduli.size(); ++r) values.push_back(column.of(state, r));
-      const bool known =
-          std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+      for (std::size_t r = 0; r < state.moduli.size(); ++r) {
+        if (state.lacking[r].empty()) values.push_back(column.of(state, r));
+      }
+      const bool known = !values.empty() && std::all_of(values.begin(), values.end(),
+                                                        [](double v) { return std::isfinite(v); });
       if (known) out[fmt::format("moduli.{}.{}", state.state, column.key)] = values;
     }
   }
@@ -113,6 +130,7 @@ std::map<std::string, std::vector<double>> moduli_figures(const std::vector<Prob
 
 void add_symmetry(const std::vector<ProbedState>& states, Summary& summary) {
   for (const ProbedState& state : states) {
+    if (known_of(state) == 0) continue;
     const std::string begin = "moduli." + state.state + ".";
     summary[begin + "symmetry"] = state.symmetry.symmetry();
     const auto put = [&](const char* key, double value) {
@@ -125,7 +143,16 @@ void add_symmetry(const std::vector<ProbedState>& states, Summary& summary) {
 
 std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
                                      const Summary& summary) {
-  if (states.empty()) return {};
+  std::vector<Section> out;
+  for (const ProbedState& state : states) {
+    const auto first = std::find_if(state.lacking.begin(), state.lacking.end(),
+                                    [](const std::string& why) { return !why.empty(); });
+    if (first == state.lacking.end()) continue;
+    out.emplace_back(Text{"", fmt::format("The {} state could not be probed in {} of {} "
+                                          "realizations: {}.",
+                                          state.state, state.lacking.size() - known_of(state),
+                                          state.lacking.size(), *first)});
+  }
   Table table;
   table.title = "Elastic moduli from small strains";
   table.caption =
@@ -144,7 +171,8 @@ std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
     }
     if (any) table.rows.push_back(std::move(row));
   }
-  return {table};
+  if (!table.rows.empty()) out.emplace_back(std::move(table));
+  return out;
 }
 
 std::vector<SummaryKey> moduli_summary_keys() {

@@ -11,9 +11,10 @@
 
 namespace grainfield::coupling {
 
-/// One state of all realizations.
+/// One state of all realizations; nan where a realization could not be probed.
 struct ProbedState {
   std::string state;                 ///< "prepared" | "first"
+  std::vector<std::string> lacking;  ///< by realization, why it could not be; "": it was
   std::vector<SpaceModuli> moduli;   ///< by realization
   std::vector<double> gained, lost;  ///< largest share of the contacts in any probe, likewise
   std::vector<double> sliding;
@@ -34,7 +35,7 @@ std::map<std::string, std::vector<double>> moduli_figures(const std::vector<Prob
 /// Of all realizations together: the chances and the word of the symmetry.
 void add_symmetry(const std::vector<ProbedState>& states, Summary& summary);
 
-/// A table with a column for each state; none without states.
+/// What could not be probed and why; a table with a column for each state, where any was.
 std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
                                      const Summary& summary);
 

@@ -57,6 +57,7 @@ std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
     const VectorXd inside = -column(axial);
     if (plan.deformation == "uniaxial") {
       put("end_stress_ratio", column("q_over_p")[end]);
+      if (plan.dim == 3) put("end_axial_stress_ratio", column("axial_q_over_p")[end]);
       if (end >= 2) {
         put("stiffening", slope(strain, inside, end / 2, end) / slope(strain, inside, 0, end / 2));
       }

@@ -16,6 +16,7 @@ namespace grainfield::coupling {
 ///   sample.shear_over_pressure   shear stress at the end of the loading over p at the start
 /// of uniaxial deformation
 ///   sample.end_stress_ratio      q/p at the end of the loading
+///   sample.end_axial_stress_ratio  the same with the source's q, in three dimensions
 ///   sample.stiffening            rise of the axial stress in the second half of the strain over
 ///                                that in the first half: 1 of a straight line
 ///   sample.stiffening_late       the same of the last quarter over the second one

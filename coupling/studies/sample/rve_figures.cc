@@ -69,6 +69,16 @@ double mean_of(const std::vector<double>& values) {
 
 double boundary_zz(const RveValue& v) { return v.boundary(2, 2); }
 
+// q/p of the mean over the RVEs as the source has it (Wellmann 29, 32, 33): s1 along z, s2 = s3 the
+// mean of x and y.
+double axial_stress_ratio(const std::vector<RveValue>& values) {
+  const auto mean = [&](double (*of)(const RveValue&)) { return mean_over(values, of).mean; };
+  const double axial = mean(boundary_zz), lateral = mean([](const RveValue&v) {
+                                            return 0.5 * (v.boundary(0, 0) + v.boundary(1, 1));
+                                          });
+  return 3 * (axial - lateral) / (axial + 2 * lateral);
+}
+
 // Largest |boundary - inside| over |inside| of the RVEs in a state.
 double closure(const std::vector<RveValue>& values) {
   double worst = 0;
@@ -98,6 +108,7 @@ void add_of_radius(const RveTable& table, std::size_t r, const std::string& defo
     put("closure", closure(states.front()));
     const double zz = table.stresses[k][loading](2, 2);
     put("stress_ratio", mean_over(end, boundary_zz).mean / zz);
+    if (deformation != "simple_shear") put("axial_stress_ratio", axial_stress_ratio(end));
     put("grain_stress_ratio",
         mean_over(end, [](const RveValue& v) { return v.grains(2, 2); }).mean / zz);
     put("field_ratio", mean_over(end, [](const RveValue& v) { return v.field_zz; }).mean / zz);

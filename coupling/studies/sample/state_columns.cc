@@ -24,6 +24,12 @@ double attribute(const dem::Snapshot& s, const char* name, bool may_lack = false
                   at == s.attributes.end() ? "without" : "that cannot tell", name));
 }
 
+// The last axis' pressure less the mean of the others' (Wellmann 32 with s2 = s3 their mean).
+double axial_deviator(const StateFacts& f) {
+  const Eigen::Matrix3d& s = f.now.contact_stress;
+  return 0.5 * (s(0, 0) + s(1, 1)) - s(2, 2);
+}
+
 // The mobilised angle of friction: sin phi = (s1 - s3)/(s1 + s3), compression positive.
 double friction_angle_deg(const StateFacts& f) {
   const double most = -f.stress.values[f.dim - 1], least = -f.stress.values[0];
@@ -72,6 +78,8 @@ std::vector<StateColumn> all_columns() {
       {"p", "N/m", "Pa", "mean stress, compression positive: -trace/dim", [](F f) { return f.pressure(); }},
       {"q", "N/m", "Pa", "deviator: 2D largest - smallest principal stress, 3D sqrt(3/2 s:s)", [](F f) { return f.stress.deviator(); }},
       {"q_over_p", "1", "1", "q/p; in 2D twice the sine of the mobilised friction angle", [](F f) { return f.stress.deviator() / f.pressure(); }},
+      {"axial_q", "Pa", "Pa", "deviator as the source has it for compressions: s1 - s3 with s1 along z and s3 the mean of x and y, compression positive (Wellmann 32)", axial_deviator, true},
+      {"axial_q_over_p", "1", "1", "the same over p (Wellmann 33), below q/p by the shear stresses and by what x and y differ", [](F f) { return axial_deviator(f) / f.pressure(); }, true},
       {"friction_angle_deg", "deg", "deg", "mobilised: sin = (s1 - s3)/(s1 + s3)", friction_angle_deg},
       {"p_motion", "N/m", "Pa", "mean stress of the grains' motion, sum m u u / V, beside p", [](F f) { return -(f.now.stress - f.now.contact_stress).trace() / f.dim; }},
       {"solid_fraction", "1", "1", "volume of the grains over that of the sample", [](F f) { return f.now.solid_fraction; }},

@@ -133,6 +133,7 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.secant_strain",
                                              "sample.volumetric_strain",
                                              "sample.end_stress_ratio",
+                                             "sample.end_axial_stress_ratio",
                                              "sample.stiffening",
                                              "sample.stiffening_late",
                                              "sample.pressure_ratio",
