@@ -392,11 +392,34 @@ TEST(Compare, DistinguishableMeansBeyondStudentsT) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     const Verdict v = compared(scene(4, 0.85, 0.2, seed)).verdict;
     // 3.1824: two-sided 95 % of Student's t with 3 degrees of freedom.
-    EXPECT_EQ(v.distinguishable, v.position - 0.5 > 3.1824463 * v.position_error) << seed;
+    const double spread = 3.1824463 * v.position_error;
+    EXPECT_EQ(v.distinguishable, v.position - 0.5 > spread && spread < 1) << seed;
     ++(v.distinguishable ? yes : no);
   }
   EXPECT_GT(yes, 0);
   EXPECT_GT(no, 0);
+}
+
+// Two models that hardly differ, far below the grains: nearer than the spread neither is named, and
+// a position beyond both is called what it is.
+TEST(Compare, CurvesThatHardlyDifferAreNotTold) {
+  Scene s = scene(4, 1.1, 0.2);
+  s.models = {{"flamant", "half plane", "half plane", {bell(s.profiles[0].x, 0, 1, 0.9)}},
+              {"layer", "layer", "finite layer", {bell(s.profiles[0].x, 0, 1, 0.92)}}};
+  const Verdict near = compared(s).verdict;
+  EXPECT_GT(near.position, 3);
+  EXPECT_GT(near.position - 0.5, 3.1824463 * near.position_error)
+      << "beyond the middle all the same";
+  EXPECT_FALSE(near.distinguishable);
+  EXPECT_THAT(near.sentence, testing::AllOf(HasSubstr("not distinguishable"),
+                                            HasSubstr("(beyond both: the two differ less")));
+  // With errors far below their distance they are told, but the number is still no share.
+  Scene sharp = scene(4, 1.1, 0.001);
+  sharp.models = s.models;
+  const Verdict told = compared(sharp).verdict;
+  EXPECT_TRUE(told.distinguishable);
+  EXPECT_THAT(told.sentence, HasSubstr("(beyond both"));
+  EXPECT_THAT(compared(scene(8, 0.92, 0.05)).verdict.sentence, Not(HasSubstr("beyond both")));
 }
 
 TEST(Compare, OneRealizationRanksByRelativeDifference) {
