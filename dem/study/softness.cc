@@ -31,8 +31,9 @@ void check_stiff_enough(const MaterialSetup& m, const Burden& b) {
   const double found = hertz ? m.young : m.normal_stiffness, least = hertz ? young : spring;
   if (found >= least) return;
   throw std::invalid_argument(fmt::format(
-      "material.{}: found {:g} {}, allowed: at least {:.2g} for grains of {:g} m that meet at "
-      "{:.2g} m/s and lie {:.2g} m high (softer ones sink through the floor; stiffer ones need "
+      "material.{}: found {:g} {}, allowed: at least {:.2g} for grains with a radius of "
+      "{:g} m that meet at {:.2g} m/s and lie {:.2g} m high (softer ones sink through the floor; "
+      "stiffer ones need "
       "shorter steps, as its square root)",
       hertz ? "young" : "normal_stiffness", found, hertz ? "Pa" : "N/m", least, b.radius, b.speed,
       b.height));

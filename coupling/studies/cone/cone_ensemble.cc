@@ -33,7 +33,7 @@ constexpr double kSpacingOnBase = 1.0 / 3;
 constexpr double kCovered = 0.5;
 // Heights inside a cone, over its own, where the balance of forces is looked at.
 constexpr double kBalanceLow = -0.8, kBalanceHigh = -0.6;
-// A kernel that reaches farther, over the height, and a larger share of grains lost are warned of.
+// An averaging that is wider, over the height, and a larger share of grains lost are warned of.
 constexpr double kWideKernel = 0.25, kManyLost = 0.05;
 
 // Of those sectors that have a slope; nan where half of them have none.
@@ -264,13 +264,13 @@ Profile ConeEnsemble::profile(const Ensemble& ensemble, const std::string& name,
 
 std::vector<std::string> ConeEnsemble::warnings() const {
   std::vector<std::string> out;
-  const double reach = kernel_->range() / height_;
-  if (reach > kWideKernel) {
+  const double width = methods_.front().options.width / height_;
+  if (width > kWideKernel) {
     out.push_back(fmt::format(
-        "The averaging kernel reaches {:.2g} of the cones' height, so what it shows of the apex "
+        "The averaging is {:.2g} of the cones' height wide, so what it shows of the apex "
         "and the dip is smeared; lower average.width_diameters or average.rve_diameters, or pour "
         "more grains.",
-        reach));
+        width));
   }
   const auto lost = figures_.find("cone.grains_lost"), kept = figures_.find("dem.grains");
   const std::string& source = value_.get<dem::ConeSetup>().plan.source;

@@ -30,7 +30,7 @@ using Eigen::Index;
 
 // Places on a ring of the base are this share of the kernel's width apart.
 constexpr double kRingSpacing = 1.0 / 3;
-// A kernel that reaches farther, over the depth, is warned of.
+// An averaging that is wider, over the depth, is warned of.
 constexpr double kWideKernel = 0.25;
 
 // One averaging method over the ensemble.
@@ -122,13 +122,13 @@ class SpaceLoadAnalysis {
     out.page = [page](const StudyResult& result, const Realization* first) {
       return space_load_page(result, first, page);
     };
-    const double reach = kernel_->range() / layer_.depth;
-    if (reach > kWideKernel) {
+    const double width = methods_.front().options.width / layer_.depth;
+    if (width > kWideKernel) {
       out.warnings.push_back(fmt::format(
-          "The averaging kernel reaches {:.2g} of the layers' depth, so profiles of grains and "
+          "The averaging is {:.2g} of the layers' depth wide, so profiles of grains and "
           "models alike are smeared; lower average.width_diameters or average.rve_diameters, or "
           "deepen the layer.",
-          reach));
+          width));
     }
     out.overview = {{"peaks", "response.peaks", ""},
                     {"peak / (F/h²)", "response.peak_over_F_per_h", ""},
