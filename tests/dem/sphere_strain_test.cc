@@ -68,6 +68,52 @@ TEST(SphereStrain, ACubicLatticeHasTheStiffnessOfItsContacts) {
   EXPECT_NEAR(change(0, 1), change(1, 0), 1e-3 * std::fabs(change(0, 1)));
 }
 
+// Disordered spheres pressed together in a cell: slow damped dynamics of the cell's flow come to
+// the same stress.
+TEST(SphereStrain, SlowDampedDynamicsComeToTheSameStress) {
+  EngineSettings e = settings_of(LinearLaw{1e4, 5e3, 200, 100}, 0.5);
+  e.gravity_z = 0;
+  e.time_step = 1e-5;
+  constexpr int kSide = 4;
+  const double cell = 2.02 * kRadius;
+  e.cell.periodic = {true, true, true};
+  e.cell.edges = Vec3::Constant(kSide * cell).asDiagonal();
+  const auto loose = make_engine(e);
+  Random random(11);
+  for (int k = 0; k < kSide * kSide * kSide; ++k) {
+    const auto at = [&](int n) { return cell * (n + 0.5 + 0.1 * random.uniform(-1, 1)); };
+    loose->add(sphere({at(k % kSide), at(k / kSide % kSide), at(k / kSide / kSide)},
+                      kRadius * random.uniform(0.95, 1.05)));
+  }
+  // Pressed to a solid fraction above that of random packings.
+  constexpr long kPress = 20000;
+  loose->set_background_damping(40);
+  loose->set_velocity_gradient(-0.09 / (kPress * e.time_step) * Eigen::Matrix3d::Identity());
+  loose->step(kPress);
+  loose->set_velocity_gradient(Eigen::Matrix3d::Zero());
+  come_to_rest(*loose, 1e-9);
+  e.cell = loose->snapshot().cell;
+  const Snapshot rest = relax(loose->snapshot(), e, {0, 0, 0}, {}, {}).state;
+  const Eigen::Matrix3d before = cell_stress(rest).contacts;
+  ASSERT_LT(before.trace(), 0);
+  constexpr double kSmall = 1e-5;
+  for (const auto& [a, b] : {std::pair(0, 0), std::pair(2, 2), std::pair(0, 1)}) {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    gradient(a, b) = gradient(b, a) = kSmall;
+    const Eigen::Matrix3d newton =
+        cell_stress(strain(rest, e, gradient, {}).state).contacts - before;
+    const auto slow = make_engine(e, rest);
+    constexpr long kSteps = 2000;
+    slow->set_background_damping(40);
+    slow->set_velocity_gradient(gradient / (kSteps * e.time_step));
+    slow->step(kSteps);
+    slow->set_velocity_gradient(Eigen::Matrix3d::Zero());
+    come_to_rest(*slow, 1e-9);
+    const Eigen::Matrix3d damped = cell_stress(slow->snapshot()).contacts - before;
+    EXPECT_LT((newton - damped).norm(), 0.02 * damped.norm()) << a << b;
+  }
+}
+
 struct Layer {
   EngineSettings settings = settings_of(HertzLaw{5e6, 0.3, 0.3}, 0.5);
   Snapshot rest;
