@@ -258,6 +258,22 @@ TEST(ConeCase, MistakesAreNamed) {
   says({"average.depths=[0.5]"}, "average.depths");
 }
 
+// On a plate that is too small the foot is cut, and the models' cone is another body than the dome.
+TEST(ConeCase, ACutFootIsWarnedOf) {
+  const Folder folder;
+  const Output run = program("run " + folder.write("c.toml", kCone) + " -o " + (folder / "out") +
+                             " --set cone.floor_radius=0.025 --set ensemble.realizations=1 --set "
+                             "output.report=false");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary summary = read_summary(folder / "out/summary.json");
+  const std::string warnings = std::get<std::string>(summary.at("warnings"));
+  EXPECT_THAT(warnings, HasSubstr("of the grains left the floor, so the cones' foot is cut off: "
+                                  "raise cone.floor_radius"));
+  EXPECT_THAT(warnings, HasSubstr("times as high as the grains' rounded heap"));
+  EXPECT_GT(number(summary, "cone.model_over_height"), 1.1);
+  EXPECT_THAT(run.err, HasSubstr("warning: The models' cone"));
+}
+
 TEST(ConeCase, CheckTellsThatFiniteElementsAreNotCounted) {
   const Folder folder;
   const std::string file = folder.write("c.toml", kCone);
