@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "dem/heap/reach.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -26,12 +27,12 @@ inline double top_of(const dem::Grain& grain) {
 inline double bottom_of(const dem::Grain& grain) {
   return grain.position.y() - reach_along(grain, 0, -1);
 }
-/// The same in space, where grains are spheres and up is z.
+/// The same in space, where up is z.
 inline double top_of(const dem::Grain& grain, int dim) {
-  return dim == 2 ? top_of(grain) : grain.position.z() + grain.radius;
+  return dim == 2 ? top_of(grain) : dem::top_in_space(grain);
 }
 inline double bottom_of(const dem::Grain& grain, int dim) {
-  return dim == 2 ? bottom_of(grain) : grain.position.z() - grain.radius;
+  return dim == 2 ? bottom_of(grain) : dem::bottom_in_space(grain);
 }
 /// The axis along which height is measured: y in the plane, z in space.
 inline int up_axis(int dim) { return dim - 1; }

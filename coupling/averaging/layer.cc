@@ -66,8 +66,11 @@ LayerFrame box_frame(const dem::Snapshot& snapshot, const dem::Grain* loaded) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;
-    low = low.cwiseMin((grain.position.array() - grain.radius).matrix());
-    high = high.cwiseMax((grain.position.array() + grain.radius).matrix());
+    for (int a = 0; a < 3; ++a) {
+      const dem::Vec3 along = dem::Vec3::Unit(a);
+      low[a] = std::min(low[a], grain.position[a] - dem::reach_along(grain, -along));
+      high[a] = std::max(high[a], grain.position[a] + dem::reach_along(grain, along));
+    }
   }
   for (const dem::Wall& wall : snapshot.walls)
     for (int a = 0; a < 3; ++a) {

@@ -121,6 +121,16 @@ std::string outlook_text(const Case& value) {
     out += fmt::format("  about {:.2g} GB of memory for every realization at a time\n",
                        1e-9 * o.bytes);
   }
+  std::vector<std::string> solved;
+  for (const ModelChoice& model : value.models) {
+    if (model.name.starts_with("fe_")) solved.push_back(model.label);
+  }
+  if (!solved.empty()) {
+    out += fmt::format(
+        "  besides, finite elements ({}), not counted here: seconds to minutes each, more with "
+        "finer meshes\n",
+        fmt::join(solved, ", "));
+  }
   if (o.time == 0 || o.time_step == 0) return out;
   const double steps = o.time / o.time_step, seconds = grain_steps(o) / kRate;
   LongestPart part;

@@ -26,6 +26,9 @@ constexpr int least_for_chi2 = 4;
 constexpr double rounding = 1e-9;
 // A model that misses by more than half of the signal describes nothing, even when others do worse.
 constexpr double most_rel_l2 = 0.5;
+// A position so far outside of [0, 1] says little: the grains' part along the line that neither
+// model has is as large as half the distance of the two.
+constexpr double most_beyond = 0.5;
 
 struct Projection {
   double position = kNan, error = kNan;
@@ -59,11 +62,21 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
   return result;
 }
 
-// Beyond the middle between A and B by more than the spread (Student's t, 95 %, two-sided).
+// Beyond the middle between A and B by more than the spread (Student's t, 95 %, two-sided), which
+// is itself less than their distance: nearer than the spread the two curves are one.
 bool beyond_spread(const Projection& p, int realizations) {
   if (realizations < 2 || !std::isfinite(p.error)) return false;
   const boost::math::students_t t(realizations - 1);
-  return p.position - 0.5 > quantile(t, (1 + confidence) / 2) * p.error;
+  const double spread = quantile(t, (1 + confidence) / 2) * p.error;
+  return p.position - 0.5 > spread && spread < 1;
+}
+
+// Says so where the grains are farther from both than the two from each other: then the number is
+// no share of a way between them.
+std::string beyond_both(const Projection& p) {
+  if (p.position >= -most_beyond && p.position <= 1 + most_beyond) return "";
+  return " (beyond both: the two differ less from each other than the grains from either, so this "
+         "says only on which side the grains are)";
 }
 
 // Whether the realizations differ at all (those of a perfect lattice do not).
@@ -195,28 +208,31 @@ Verdict judge(const Comparison& c) {
   if (v.distinguishable) {
     v.sentence = fmt::format(
         "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) they stand "
-        "at {:.2f} +- {:.2f}{}.",
+        "at {:.2f} +- {:.2f}{}{}.",
         none ? "They are nearer to the" : "The grains support the", best.family,
         none ? " than to" : ", not", loser.family, describe(best, by_chi2),
-        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, runner_up);
+        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, beyond_both(p),
+        runner_up);
   } else if (std::isfinite(p.error)) {
     v.sentence = fmt::format(
         "{} and {} are not distinguishable within the spread of {} realizations: nearest is {}, "
-        "against {}; on the line from {} (0) to {} (1) the grains stand at {:.2f} +- {:.2f}{}.",
+        "against {}; on the line from {} (0) to {} (1) the grains stand at {:.2f} +- {:.2f}{}{}.",
         best.family, loser.family, c.realizations, describe(best, by_chi2),
-        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, runner_up);
+        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, beyond_both(p),
+        runner_up);
     v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
   } else {
     v.sentence = fmt::format(
         "{}: the grains are nearest to {}, against {}; on the line from {} (0) to {} (1) they "
         "stand "
-        "at {:.2f}.",
+        "at {:.2f}{}.",
         c.realizations < 2 ? "One realization, spread unknown"
         : spread ? fmt::format("Mean of {} realizations without their single values, spread of the "
                                "position unknown",
                                c.realizations)
                  : fmt::format("All {} realizations are equal, spread unknown", c.realizations),
-        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position);
+        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position,
+        beyond_both(p));
   }
   add_misfit(best, found, v.sentence);
   return v;

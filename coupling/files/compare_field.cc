@@ -264,13 +264,15 @@ CompareOutcome compare_field(const CompareRequest& request) {
   const bool heap = scene.scene == Scene::heap;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const FieldLine& line = lines[l];
-    sets.push_back({line.points, line.base ? Smoothing::marginal : Smoothing::kernel,
-                    line.kernel.get(), heap});
+    Eigen::MatrixXd points = line.points;
+    points.rightCols<1>().array() -= scene.apex;
+    sets.push_back(
+        {points, line.base ? Smoothing::marginal : Smoothing::kernel, line.kernel.get(), heap});
     facts.depth = std::min(facts.depth, line.profile.depth);
     profiles.push_back(line.profile);
     if (line.base) main = l;
   }
-  if (heap) facts.depth = facts.height;
+  if (heap) facts.depth = facts.height += scene.apex;
   if (map.nx > 0) sets.push_back({map.points, Smoothing::none, nullptr, heap});
 
   Summary summary;

@@ -153,6 +153,10 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
     out.unit = field_number(field, "rho_g_h", where);
     out.facts.height = out.facts.depth = field_number(field, "h", where);
     out.facts.force = std::nan("");
+    // A rounded cone's flanks meet above its highest point.
+    if (field.attributes.count("apex_height") > 0) {
+      out.apex = field_number(field, "apex_height", where) - out.facts.height;
+    }
     out.facts.numbers = {{"rho_g", out.unit / out.facts.height},
                          {"phi_deg", (left + right) / 2},
                          {"left_deg", left},

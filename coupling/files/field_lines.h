@@ -36,6 +36,7 @@ struct SceneField {
   Field field;
   RunFacts facts;   ///< what it knows for models; force nan without a load
   double unit = 1;  ///< N/m
+  double apex = 0;  ///< m, of the models' cone above the field's origin
   std::shared_ptr<const Kernel> kernel;
   std::string seen;    ///< "coarse_graining, lucy, 0.009 m"
   bool rings = false;  ///< averages over rings

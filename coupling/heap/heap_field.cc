@@ -13,7 +13,7 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr const char* kMetres = "floor y = -h";
+constexpr const char *kMetres = "floor y = -h", *kMetresInSpace = "floor z = -h";
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -58,8 +58,10 @@ std::vector<double> numbers(const Field& field, const std::string& name, std::si
   return out;
 }
 
-std::vector<double> slopes(const Field& field, const std::string& name, std::size_t count,
+// Of a side; of a cone, which has none, its own.
+std::vector<double> slopes(const Field& field, std::string name, std::size_t count,
                            const std::string& where) {
+  if (field.attributes.count(name) == 0) name = "repose_deg";
   if (field.attributes.count(name) == 0) return std::vector<double>(count, std::nan(""));
   return numbers(field, name, count, where);
 }
@@ -108,7 +110,8 @@ HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std
                              frame));
   }
   HeapFieldFacts out;
-  out.in_metres = frame.find(kMetres) != std::string::npos;
+  out.in_metres =
+      frame.find(kMetres) != std::string::npos || frame.find(kMetresInSpace) != std::string::npos;
   out.height = numbers(field, field.attributes.count("heap.h") > 0 ? "heap.h" : "h", count, where);
   out.pressure = numbers(field, "rho_g_h", count, where);
   out.left_deg = slopes(field, "left_deg", count, where);

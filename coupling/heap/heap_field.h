@@ -17,7 +17,7 @@ namespace grainfield::coupling {
 struct HeapFieldFacts {
   std::vector<double> height;               ///< h, m
   std::vector<double> pressure;             ///< rho g h, N/m: what to divide values by
-  std::vector<double> left_deg, right_deg;  ///< slopes; nan: not known
+  std::vector<double> left_deg, right_deg;  ///< slopes, of cones repose_deg both; nan: not known
   bool in_metres = false;                   ///< points in m; else over h
 
   double mean_height() const;

@@ -9,9 +9,9 @@ namespace grainfield::coupling {
 void declare_grain_files_keys(SectionKeys s) {
   s.word("files", IN(files), {},
          "finished piles, one a realization, in this order: snapshots.h5 of earlier runs of study "
-         "pile or pile-fields; only the changes of gravity that they do not hold are computed. "
-         "[material] must be that of the piles; [shape], [source] and [floor] are not used. []: "
-         "the piles are poured");
+         "pile or pile-fields, or of cone; only the changes of gravity that they do not hold are "
+         "computed. [material], and of cones cone.source, shape and floor, must be that of the "
+         "piles; [shape], [source] and [floor] are not used. []: the piles are poured");
   s.or_none();
 }
 

@@ -281,6 +281,7 @@ StudyResult analyse(const SweepCase& member, const Workplace& place, int threads
   const auto start = Clock::now();
   StudyResult out = study.analyse(member.value, realization_files(member, place), threads);
   if (study.has_grains()) out.summary["time.analysis_s"] = seconds_since(start);
+  add_warnings(out);
   return out;
 }
 
@@ -322,7 +323,10 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
         const std::string& suffix = members[m].suffix;
         const std::string folder = place.staging(suffix.empty() ? "" : suffix + "/");
         times(m, results[m].summary);
-        warn(suffix.empty() ? "" : suffix + "/", write_study(folder, results[m]));
+        const std::string inner = suffix.empty() ? "" : suffix + "/";
+        const std::string of = suffix.empty() ? "" : suffix + ": ";
+        for (const std::string& line : results[m].warnings) warn(of, line);
+        warn(inner, write_study(folder, results[m]));
       }
       if (!value.sweep.key.empty()) {
         warn("", write_sweep(place.staging(), value, members, results));

@@ -18,7 +18,7 @@ struct RunOptions {
   long stop_after_steps = 0;       ///< for tests: see EnsembleOptions
   std::function<void(const EnsembleProgress&)> progress;
   std::function<void(const std::string&)> note;  ///< one line about what begins now
-  std::function<void(const std::string&)> warn;  ///< one line about what the outputs lack
+  std::function<void(const std::string&)> warn;  ///< one line about what results or outputs lack
 };
 
 /// Runs a case and leaves its outputs in the folder: they are written into FOLDER/.partial and

@@ -72,9 +72,13 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
   Realization first;
   if (!result.realizations.empty()) first = read_realization(result.realizations.front());
   const auto page = result.page ? result.page : plain_page;
-  return write_report(folder + "/report.html",
-                      page(result, result.realizations.empty() ? nullptr : &first))
-      .complaint();
+  Report report = page(result, result.realizations.empty() ? nullptr : &first);
+  if (!result.warnings.empty()) {
+    const auto at = report.sections.begin() + (report.sections.empty() ? 0 : 1);
+    report.sections.insert(
+        at, Text{"To mind", fmt::format("{}", fmt::join(result.warnings, "\n\n")), false});
+  }
+  return write_report(folder + "/report.html", report).complaint();
 }
 
 }  // namespace
@@ -181,6 +185,11 @@ void add_figures(Summary& summary, const std::map<std::string, std::vector<doubl
     summary[key + ".most"] = *std::max_element(values.begin(), values.end());
     summary[key + ".standard_error"] = spread.standard_error;
   }
+}
+
+void add_warnings(StudyResult& result) {
+  if (result.warnings.empty()) return;
+  result.summary["warnings"] = fmt::format("{}", fmt::join(result.warnings, " "));
 }
 
 std::string write_study(const std::string& folder, const StudyResult& result) {

@@ -42,6 +42,7 @@ struct StudyResult {
   std::vector<std::pair<std::string, std::string>> texts;  ///< further files: name, content
   Field base_unloaded, map;                                ///< for the report; may be empty
   std::vector<ModelMap> model_maps;                        ///< on map's points
+  std::vector<std::string> warnings;      ///< what to mind, a line each: see add_warnings
   std::vector<std::string> realizations;  ///< files of the grains, in order; may be empty
   /// Builds report.html from this result and its first realization (null without grains). Empty:
   /// a page with the sentence and the figures.
@@ -78,6 +79,9 @@ StudyResult begin_result(const Case& value, const std::vector<std::string>& real
 void add_identity(Summary& summary, const Case& value);
 /// Keys that follow from the comparison, and the models' figures.
 void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main);
+
+/// Puts the warnings into the summary; they stand in the report too, and the run tells them.
+void add_warnings(StudyResult& result);
 
 /// Means of the realizations' figures and, of two or more, KEY.least, .most, .standard_error.
 void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures);

@@ -86,6 +86,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"case.command", "text", "what was run, without folder and threads (they change no number)"},
       {"case.study", "text", "kind of study"},
       {"case.hash", "text", "FNV-1a hash of the written-out case (case.toml)"},
+      {"warnings", "text",
+       "what to mind of these results, a sentence each; not there where there is nothing"},
       {"version", "text",
        "of grainfield, with the commit it was built from (+: files were changed)"},
       {"ensemble.realizations", "-", "independent packings"},

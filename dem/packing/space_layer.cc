@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/heap/reach.h"
 #include "dem/heap/superellipsoid_family.h"
 #include "dem/packing/loose.h"
 
@@ -355,7 +356,7 @@ double space_surface(const Snapshot& snapshot, const PackingSetup& p) {
       at[a] = std::clamp(static_cast<int>(share * columns[a]), 0, columns[a] - 1);
     }
     double& here = top[static_cast<std::size_t>(at[1]) * columns[0] + at[0]];
-    here = std::max(here, g.position.z() + g.radius);
+    here = std::max(here, top_in_space(g));
   }
   double sum = 0;
   for (const double t : top) sum += t;

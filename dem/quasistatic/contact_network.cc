@@ -1,6 +1,7 @@
 #include "dem/quasistatic/contact_network.h"
 
 #include <limits>
+#include <stdexcept>
 
 #include "dem/quasistatic/plane_network.h"
 #include "dem/quasistatic/sphere_network.h"
@@ -11,6 +12,10 @@ std::unique_ptr<ContactNetwork> make_contact_network(const Snapshot& start,
                                                      const Materials& materials) {
   if (start.dim == 2) return std::make_unique<PlaneNetwork>(start, materials);
   return std::make_unique<SphereNetwork>(start, materials);
+}
+
+void ContactNetwork::strain(const Eigen::Matrix3d& /*gradient*/) {
+  throw std::logic_error("a contact network in the plane is not strained");
 }
 
 double ContactNetwork::mean_resultant(const Vector& r) const {

@@ -59,6 +59,13 @@ class ContactNetwork {
   virtual void keep() = 0;
   virtual void take_back() = 0;
 
+  /// From the committed state to the next one everything moves by gradient * x before z is added:
+  /// free and fixed grains and the edges of the cell, which contacts between grains feel. Planes
+  /// stay. Throws std::logic_error in the plane.
+  virtual void strain(const Eigen::Matrix3d& gradient);
+  /// Whether a strain waits for its commit.
+  virtual bool strains() const { return false; }
+
   struct Balance {
     double mean_contact_force = 0, mean_unbalanced_force = 0;
     double mean_unbalanced_moment = 0;  ///< over the radii, N

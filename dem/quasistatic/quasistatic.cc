@@ -41,6 +41,8 @@ constexpr double kCulprit = 0.03;
 // A step of the flow is solved to this share of its first residual.
 constexpr double kFlowTolerance = 1e-2;
 constexpr int kFlowIterations = 25, kMostFlowSteps = 300;
+// A strain beyond this is not small: contact normals turn.
+constexpr double kMostStrain = 0.01;
 // After the last load step: solves again with the scale of the new state.
 constexpr int kMostFinish = 6;
 
@@ -143,11 +145,13 @@ class Relaxation {
  public:
   Relaxation(const Snapshot& start, const Materials& materials, const Vec3& gravity,
              const AppliedForce& force, const std::vector<std::int64_t>& beside,
-             const QuasistaticSettings& settings)
+             const QuasistaticSettings& settings,
+             const Eigen::Matrix3d& gradient = Eigen::Matrix3d::Zero())
       : start_(start),
         settings_(settings),
         network_(make_contact_network(start, materials)),
         gravity_(gravity),
+        gradient_(gradient),
         before_{loaded_in(start, start.loaded_grain, start.also_loaded), start.applied_force},
         after_{loaded_in(start, force.id, beside), Vec3(force.fx, force.fy, force.fz)},
         beside_(beside) {
@@ -169,6 +173,7 @@ class Relaxation {
       step = std::min(step, 1 - share);
       const double next = step > 1 - share - 1e-12 ? 1 : share + step;
       network_->keep();
+      if (!gradient_.isZero(0)) network_->strain((next - share) * gradient_);
       set_load(next);
       if (settle(step > kFlowBelow)) {
         share = next;
@@ -213,7 +218,7 @@ class Relaxation {
       const bool free = drag_.maxCoeff() == 0;
       if (!network_->residual(zero, r)) return false;
       const double now = r.cwiseAbs().maxCoeff();
-      if (now <= tolerance() || (k > 0 && enough(r))) return true;
+      if (!network_->strains() && (now <= tolerance() || (k > 0 && enough(r)))) return true;
       const double wanted = free ? tolerance() : std::max(tolerance(), kFlowTolerance * now);
       const int limit = free ? settings_.max_iterations : kFlowIterations;
       Eigen::VectorXd z = zero;
@@ -312,6 +317,7 @@ class Relaxation {
   const QuasistaticSettings& settings_;
   std::unique_ptr<ContactNetwork> network_;
   Vec3 gravity_;
+  Eigen::Matrix3d gradient_;  // of the strain
   ContactNetwork::Load before_, after_;
   std::vector<std::int64_t> beside_;
   SparseProblem problem_;
@@ -357,6 +363,34 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
     }
   }
   return Relaxation(start, materials, gravity, force, beside, settings).run();
+}
+
+QuasistaticResult strain(const Snapshot& start, const Materials& materials,
+                         const Eigen::Matrix3d& gradient, const QuasistaticSettings& settings) {
+  check_settings(settings);
+  check_start(start);
+  if (start.dim != 3) {
+    throw std::invalid_argument("quasi-static strain: found a packing in the plane, allowed: 3D");
+  }
+  if (!gradient.allFinite() || !(gradient.norm() < kMostStrain)) {
+    throw std::invalid_argument(
+        fmt::format("quasi-static strain: found a gradient of size {:g}, allowed: below {:g}",
+                    gradient.norm(), kMostStrain));
+  }
+  for (const Contact& c : start.contacts) {
+    if (c.j >= 0 || start.grains[static_cast<std::size_t>(c.i)].fixed) continue;
+    throw std::invalid_argument(fmt::format(
+        "quasi-static strain: found that the free grain {} touches wall {}, allowed: free grains "
+        "between fixed ones and in cells that repeat",
+        start.grains[static_cast<std::size_t>(c.i)].id, start.walls[-1 - c.j].name));
+  }
+  AppliedForce force;
+  force.id = start.loaded_grain;
+  force.fx = start.applied_force.x();
+  force.fy = start.applied_force.y();
+  force.fz = start.applied_force.z();
+  return Relaxation(start, materials, start.gravity, force, start.also_loaded, settings, gradient)
+      .run();
 }
 
 }  // namespace grainfield::dem

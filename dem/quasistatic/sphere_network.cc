@@ -134,8 +134,10 @@ void SphereNetwork::set_load(const Vec3& gravity, const std::vector<Load>& loads
 
 Vec3 SphereNetwork::displacement(int grain, const Vector& z) const {
   const Sphere& s = spheres_[grain];
-  if (s.unknown < 0) return committed_[grain];
-  return committed_[grain] + s.radius * z.segment<3>(s.unknown);
+  Vec3 out = committed_[grain];
+  if (strains()) out += gradient_ * (origin_[grain] + committed_[grain]);
+  if (s.unknown >= 0) out += s.radius * z.segment<3>(s.unknown);
+  return out;
 }
 
 Vec3 SphereNetwork::turn(int grain, const Vector& z) const {
@@ -173,6 +175,7 @@ SphereMotion<double> SphereNetwork::motion(const Pair& pair, const Vector& z) co
   if (pair.j >= 0) {
     m.shift -= moved(pair.j);
     m.turn_j = turn(pair.j, z);
+    if (strains()) m.shift -= gradient_ * bodies(pair).across;
   }
   return m;
 }
@@ -294,6 +297,10 @@ void SphereNetwork::commit(const Vector& z) {
     committed_[k] = displacement(grain, z);
     turned_[k] = (quaternion_of(turn(grain, z)) * turned_[k]).normalized();
   }
+  if (!strains()) return;
+  cell_.edges += gradient_ * cell_.edges;
+  cell_.low += gradient_ * cell_.low;
+  gradient_.setZero();
 }
 
 void SphereNetwork::take_back() {
@@ -301,6 +308,8 @@ void SphereNetwork::take_back() {
   committed_ = kept_.committed;
   turned_ = kept_.turned;
   searched_ = kept_.searched;
+  cell_ = kept_.cell;
+  gradient_.setZero();
 }
 
 void SphereNetwork::ensure_candidates(const Vector& z) {
@@ -397,12 +406,13 @@ void SphereNetwork::add_contact_forces(double& sum, int& contacts) const {
 
 Snapshot SphereNetwork::snapshot(const Snapshot& like) {
   Snapshot s = like;
+  s.cell = cell_;
   for (std::size_t k = 0; k < spheres_.size(); ++k) {
     Grain& g = s.grains[k];
     g.velocity = g.angular_velocity = Vec3(0, 0, 0);
     g.spin = 0;
-    if (g.fixed) continue;
     g.position = origin_[k] + committed_[k];
+    if (g.fixed) continue;
     const RotationOf<3>& q = turned_[k];
     g.orientation = {q.w(), q.x(), q.y(), q.z()};
   }

@@ -23,9 +23,11 @@ class SphereNetwork final : public ContactNetwork {
   void tangent(const Vector& z, const Vector& r, const Vector& drag, Matrix& matrix) override;
   Vector drag_unit() const override;
   void commit(const Vector& z) override;
-  void keep() override { kept_ = {pairs_, committed_, turned_, searched_}; }
+  void keep() override { kept_ = {pairs_, committed_, turned_, searched_, cell_}; }
   void take_back() override;
   Snapshot snapshot(const Snapshot& like) override;
+  void strain(const Eigen::Matrix3d& gradient) override { gradient_ = gradient; }
+  bool strains() const override { return !gradient_.isZero(0); }
 
  private:
   struct Pair {
@@ -74,7 +76,10 @@ class SphereNetwork final : public ContactNetwork {
     std::vector<Vec3> committed;
     std::vector<RotationOf<3>> turned;
     std::vector<Vec3> searched;
+    Cell<3> cell;
   } kept_;
+  /// What the next commit strains everything by: grains, those that are fixed too, and the cell.
+  Eigen::Matrix3d gradient_ = Eigen::Matrix3d::Zero();
   double skin_ = 0;
   std::vector<Block> blocks_;
 };

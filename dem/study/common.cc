@@ -21,6 +21,15 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         "material.gravity: found {:g}, allowed: above 0 (grains need weight to come to rest)",
         m.gravity));
   }
+  const auto require_spring = [](const char* kind, double friction, double stiffness) {
+    if (!(friction > 0) || stiffness > 0) return;
+    throw std::invalid_argument(fmt::format(
+        "material.{0}_stiffness: found {1:g}, allowed with material.{0}_friction = {2:g}: above 0 "
+        "(without a spring nothing resists {0} at rest)",
+        kind, stiffness, friction));
+  };
+  require_spring("rolling", m.rolling_friction, m.rolling_stiffness);
+  require_spring("twisting", m.twisting_friction, m.twisting_stiffness);
   EngineSettings e;
   e.shape = shape;
   e.law = law_of(m);
@@ -130,6 +139,26 @@ void check_background_damping(const RestSetup& rest, double time_step) {
       "rest.background_damping: found {:g}, allowed: at most {:g} 1/s, one over the time step of "
       "{:.3g} s",
       rest.background_damping, round_down(1 / time_step), time_step));
+}
+
+Progress progress_of(const Engine& engine, const Diagnostics& state) {
+  Progress p;
+  p.simulated_time = engine.time();
+  p.steps = engine.steps();
+  p.grains = engine.grains();
+  p.awake = state.awake;
+  p.kinetic_energy = state.kinetic_energy;
+  p.unbalanced_force_ratio = state.unbalanced_force_ratio;
+  return p;
+}
+
+Snapshot named_snapshot(const Engine& engine, const std::string& state, std::uint64_t seed,
+                        const std::map<std::string, std::string>& attributes) {
+  Snapshot s = engine.snapshot();
+  s.attributes["state"] = state;
+  s.attributes["seed"] = fmt::format("{}", seed);
+  for (const auto& [name, text] : attributes) s.attributes[name] = text;
+  return s;
 }
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {

@@ -1,6 +1,7 @@
 // What every study of grains does alike: engine settings and their time step, the criterion of
 // rest, and checkpoints.
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -50,6 +51,14 @@ void check_background_damping(const RestSetup& rest, double time_step);
 /// Throws std::invalid_argument naming the key when its time, s, takes more steps than anyone waits
 /// for (kMostSteps, dem/study/outlook.h).
 void check_countable(const char* key, double time, double time_step);
+
+struct Progress;
+/// What the engine tells of it, `state` being what it measures now; phase and fraction are the
+/// run's.
+Progress progress_of(const Engine& engine, const Diagnostics& state);
+/// The engine's grains as they are, with the attributes "state", "seed" and these.
+Snapshot named_snapshot(const Engine& engine, const std::string& state, std::uint64_t seed,
+                        const std::map<std::string, std::string>& attributes);
 
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
 /// How far a rest has come, in [0, 1]: on the logarithms of the unbalanced force ratio and of

@@ -245,12 +245,10 @@ void ConeRun::rest() {
     phases_.restart();
   } else if (at_rest(d, setup_.rest)) {
     at_rest_ = d;
-    pile_ = engine_->snapshot();
-    pile_->attributes["state"] = "pile";
-    pile_->attributes["seed"] = fmt::format("{}", seed_);
-    pile_->attributes["source"] = setup_.plan.source;
-    pile_->attributes["shape"] = setup_.plan.shape;
-    pile_->attributes["floor"] = setup_.plan.floor;
+    pile_ = named_snapshot(*engine_, "pile", seed_,
+                           {{"source", setup_.plan.source},
+                            {"shape", setup_.plan.shape},
+                            {"floor", setup_.plan.floor}});
     phases_.enter(ConePhase::done);
   } else if (in_phase() > setup_.rest.max_time) {
     fail_to_rest(d, setup_.rest, "after the pour", smaller_step(setup_.motion));
@@ -288,13 +286,9 @@ void ConeRun::take_away(bool keep_cylinder) {
 
 Progress ConeRun::progress() const {
   const Diagnostics d = engine_->measure();
-  Progress p;
-  p.steps = steps_before_ + engine_->steps();
+  Progress p = progress_of(*engine_, d);
+  p.steps += steps_before_;
   p.simulated_time = static_cast<double>(p.steps) * settings_.time_step;
-  p.grains = engine_->grains();
-  p.awake = d.awake;
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   p.phase = phases_.info().name;
   double share = 1;
   if (phases_.now() == ConePhase::pour) {

@@ -7,14 +7,20 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/heap/reach.h"
 #include "dem/study/common.h"
 #include "dem/study/sample_grains.h"
+#include "dem/study/softness.h"
 
 namespace grainfield::dem {
 namespace {
 
 // Solid fraction of grains poured into a cylinder at least.
 constexpr double kLoosest = 0.5;
+// Solid fraction and slope of the heap that is expected.
+constexpr double kHeapFraction = 0.6, kHeapSlope = 0.7;
+// Radii above a heap from which nobody needs to pour.
+constexpr double kHighFall = 40;
 // Cells of the surface along a side, at most.
 constexpr double kMostCells = 1000;
 // A grain or a wall passes less than this share of the least radius in a step.
@@ -82,6 +88,19 @@ std::vector<const Grain*> lying_grains(const Snapshot& s) {
   return out;
 }
 
+// Height of the cone of all grains; of the cylinder that they fill.
+double expected_height(const ConePlan& p) {
+  if (p.source == "cylinder") return filled_height(p);
+  const double volume = mean_volume(as_sample(p)) / kHeapFraction;
+  return std::cbrt(3 * kHeapSlope * kHeapSlope * volume / std::numbers::pi);
+}
+
+// Of a grain that falls onto the heap, m/s.
+double meeting_speed(const ConeSetup& s) {
+  const double fall = s.plan.drop + kColumn * sample_radii(as_sample(s.plan)).most;
+  return std::sqrt(s.plan.speed * s.plan.speed + 2 * s.material.gravity * fall);
+}
+
 void check_order(const char* less, double least, const char* more, double most) {
   if (least <= most) return;
   refuse(less, fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
@@ -91,11 +110,9 @@ void check_order(const char* less, double least, const char* more, double most) 
 
 void check_cone(const ConeSetup& s) {
   const ConePlan& p = s.plan;
-  if (s.material.rolling_friction > 0 && !(s.material.rolling_stiffness > 0)) {
+  if (s.motion.integrator != "verlet") {
     throw std::invalid_argument(fmt::format(
-        "material.rolling_stiffness: found {:g}, allowed with material.rolling_friction "
-        "= {:g}: above 0 (without a spring nothing resists rolling at rest)",
-        s.material.rolling_stiffness, s.material.rolling_friction));
+        "motion.integrator: found {}, allowed with study = \"cone\": verlet", s.motion.integrator));
   }
   if (s.motion.energy_balance) {
     throw std::invalid_argument(
@@ -112,6 +129,10 @@ void check_cone(const ConeSetup& s) {
     check_order("axis_min", p.axis_min, "axis_max", p.axis_max);
     check_order("exponent_min", p.exponent_min, "exponent_max", p.exponent_max);
   }
+  // Of grains that start higher or faster than any need to, the speed itself is to blame.
+  const double height = expected_height(p), fall = height + kHighFall * p.radius;
+  const double usual = std::sqrt(2 * s.material.gravity * fall);
+  check_stiff_enough(s.material, {p.radius, height, std::min(usual, meeting_speed(s))});
   const double most = sample_radii(as_sample(p)).most;
   const auto at_least = [&](const char* key, double found, double least, const char* why) {
     if (found >= least) return;
@@ -170,8 +191,7 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
   };
   if (p.source == "cylinder") check_speed("lift_speed", p.lift_speed, p.lift_speed);
   check_speed("speed", p.speed, p.speed);
-  const double fall = p.drop + kColumn * sample_radii(as_sample(p)).most;
-  check_speed("drop", p.drop, std::sqrt(p.speed * p.speed + 2 * s.material.gravity * fall));
+  check_speed("drop", p.drop, meeting_speed(s));
   if (p.source == "cylinder") {
     check_countable("cone.lift_speed", filled_height(p) / p.lift_speed, out.time_step);
   }
@@ -241,7 +261,7 @@ NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, do
 
 double resting_height(const Snapshot& s) {
   double top = 0;
-  for (const Grain* g : lying_grains(s)) top = std::max(top, g->position.z() + g->radius);
+  for (const Grain* g : lying_grains(s)) top = std::max(top, top_in_space(*g));
   return top;
 }
 
@@ -249,7 +269,7 @@ double top_within(const Snapshot& s, double radius) {
   double top = 0;
   for (const Grain& g : s.grains) {
     if (!g.fixed && g.position.head<2>().norm() < radius) {
-      top = std::max(top, g.position.z() + g.radius);
+      top = std::max(top, top_in_space(g));
     }
   }
   return top;
@@ -263,7 +283,7 @@ LocalTops::LocalTops(const Snapshot& s, double half, double cell)
   for (const Grain* g : lying_grains(s)) {
     double& top = top_[static_cast<std::size_t>(cell_of(g->position.y()) * count_ +
                                                 cell_of(g->position.x()))];
-    top = std::max(top, g->position.z() + g->radius);
+    top = std::max(top, top_in_space(*g));
   }
 }
 

@@ -85,14 +85,9 @@ void LatticePileRun::decide() {
 
 Progress LatticePileRun::progress() const {
   const Diagnostics d = engine_->measure();
-  Progress p;
+  Progress p = progress_of(*engine_, d);
   p.phase = phases_.info().name;
   p.fraction = phases_.fraction(rest_progress(d, setup_.rest));
-  p.simulated_time = engine_->time();
-  p.steps = engine_->steps();
-  p.grains = p.awake = engine_->grains();
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   return p;
 }
 

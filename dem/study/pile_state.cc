@@ -19,13 +19,8 @@ Snapshot PileRun::named(Snapshot s, const std::string& state) const {
 Progress PileRun::progress() const {
   const Engine& at_work = changes_->engine() != nullptr ? *changes_->engine() : *engine_;
   const Diagnostics d = at_work.measure();
-  Progress p;
-  p.simulated_time = at_work.time();
-  p.steps = at_work.steps();
+  Progress p = progress_of(at_work, d);
   p.grains = engine_->grains();
-  p.awake = d.awake;
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   p.phase = phases_.info().name;
   switch (phases_.now()) {
     case PilePhase::pour:

@@ -223,23 +223,13 @@ std::int64_t PointLoadRun::choose_loaded_grain(const Snapshot& s) const {
 }
 
 Snapshot PointLoadRun::take_snapshot(const char* state) const {
-  Snapshot s = engine_->snapshot();
-  s.attributes["state"] = state;
-  s.attributes["seed"] = fmt::format("{}", seed_);
-  s.attributes["packing"] = setup_.packing.kind;
-  s.attributes["floor"] = setup_.packing.floor;
-  return s;
+  return named_snapshot(*engine_, state, seed_,
+                        {{"packing", setup_.packing.kind}, {"floor", setup_.packing.floor}});
 }
 
 Progress PointLoadRun::progress() const {
   const Diagnostics d = engine_->measure();
-  Progress p;
-  p.simulated_time = engine_->time();
-  p.steps = engine_->steps();
-  p.grains = engine_->grains();
-  p.awake = d.awake;
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
+  Progress p = progress_of(*engine_, d);
   const double in_phase = static_cast<double>(phases_.steps()) * engine_->time_step();
   p.phase = phases_.info().name;
   switch (phases_.now()) {

@@ -1,5 +1,6 @@
 // A layer of spheres settles, comes to rest, and one of its top grains is loaded:
-//   settle (spheres placed at random) -> rest -> snapshot "unloaded" -> load -> hold -> "loaded".
+//   settle (spheres placed at random) -> rest -> snapshot "unloaded" -> (probe) -> load -> hold ->
+//   "loaded".
 #include "dem/study/point_load_space.h"
 
 #include <fmt/format.h>
@@ -15,8 +16,10 @@
 #include "dem/snapshot/images.h"
 #include "dem/study/fingerprint.h"
 #include "dem/study/layer_figures.h"
+#include "dem/study/layer_probe.h"
 #include "dem/study/load_by_newton.h"
 #include "dem/study/phases.h"
+#include "dem/study/softness.h"
 
 namespace grainfield::dem {
 namespace {
@@ -27,17 +30,16 @@ constexpr long kCheckEvery = 200;
 // nothing rises by more than a hundredth of a radius any more.
 constexpr double kSettledShare = 0.01;
 
-enum class Phase : int { settle, rest, load, hold, done };
+enum class Phase : int { settle, rest, probe, load, hold, done };
 
 // In the order of Phase.
-std::vector<PhaseInfo> phases_of(const PackingSetup& packing) {
-  const double settled = packing.kind == "random" ? 0.2 : 0, rested = 0.5 + 0.2 * settled;
-  const double loaded = rested + 0.4 * (1 - rested);
-  return {{"settle", false, 0, settled},
-          {"rest", true, settled, rested},
-          {"load", true, rested, loaded},
-          {"hold", true, loaded, 1},
-          {"done", true, 1, 1}};
+std::vector<PhaseInfo> phases_of(const PointLoadSetup& s) {
+  const double settled = s.packing.kind == "random" ? 0.2 : 0, rested = 0.5 + 0.2 * settled;
+  const double probed = s.load.probe_strain > 0 ? rested + 0.4 * (1 - rested) : rested;
+  const double loaded = probed + 0.4 * (1 - probed);
+  return {{"settle", false, 0, settled},   {"rest", true, settled, rested},
+          {"probe", true, rested, probed}, {"load", true, probed, loaded},
+          {"hold", true, loaded, 1},       {"done", true, 1, 1}};
 }
 
 class SpaceLoadRun final : public ArchivedRun {
@@ -56,6 +58,8 @@ class SpaceLoadRun final : public ArchivedRun {
   void decide();
   bool by_newton() const { return setup_.load.method == "newton"; }
   void solve();
+  void probe();
+  void begin_load();
   bool has_settled() const;
   void decide_rest();
   double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
@@ -75,11 +79,12 @@ class SpaceLoadRun final : public ArchivedRun {
   std::unique_ptr<Engine> engine_;
   Phases<Phase> phases_;
   std::optional<Snapshot> unloaded_, loaded_;
+  int probed_ = 0;   // probes that are done
   Reached reached_;  // by Newton's method
 };
 
 SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), phases_(phases_of(setup.packing)) {
+    : setup_(setup), seed_(seed), phases_(phases_of(setup)) {
   check_packing(setup.packing);
   const bool angular = is_angular(setup.packing);
   if (!angular) settings_ = space_load_settings(setup, threads);
@@ -117,6 +122,7 @@ void SpaceLoadRun::enter(Phase phase) {
 
 void SpaceLoadRun::advance(long steps) {
   while (steps > 0 && !done()) {
+    if (phases_.now() == Phase::probe) return probe();
     if (phases_.now() == Phase::load && by_newton()) return solve();
     steps -= phases_.step(*engine_, steps, kCheckEvery);
     if (phases_.is_due(kCheckEvery)) decide();
@@ -147,6 +153,7 @@ void SpaceLoadRun::decide() {
     case Phase::load:
       if (in_phase() >= setup_.load.ramp_time) enter(Phase::hold);
       return;
+    case Phase::probe:
     case Phase::done:
       return;
   }
@@ -168,6 +175,32 @@ void SpaceLoadRun::decide_rest() {
     return;
   }
   unloaded_ = take_snapshot("unloaded");
+  if (setup_.load.probe_strain > 0) {
+    enter(Phase::probe);
+  } else {
+    begin_load();
+  }
+}
+
+// One more probe, or the load. Told to stop it leaves the run as it was.
+void SpaceLoadRun::probe() {
+  if (probed_ == LayerProber::count()) return begin_load();
+  const LayerProber prober(*unloaded_, settings_, space_surface(*unloaded_, setup_.packing),
+                           setup_.load.probe_strain);
+  const auto outcome = prober.probe(probed_, watch_of("probe"));
+  if (!outcome) return;
+  StateProbes all = probes_of(unloaded_->attributes, kProbedLayer);
+  all.stress = prober.stress_before();
+  const std::string direction = LayerProber::direction(probed_);
+  const auto known = std::find_if(all.probes.begin(), all.probes.end(),
+                                  [&](const Probe& p) { return p.direction == direction; });
+  Probe& one = known == all.probes.end() ? all.probes.emplace_back(Probe{direction, {}}) : *known;
+  one.outcomes[static_cast<std::size_t>(probed_ % 2)] = *outcome;
+  put_probes(all, unloaded_->attributes);
+  ++probed_;
+}
+
+void SpaceLoadRun::begin_load() {
   enter(Phase::load);
   if (by_newton()) return;
   SharedForce load = load_on(*unloaded_);
@@ -242,23 +275,13 @@ std::int64_t SpaceLoadRun::choose_loaded_grain(const Snapshot& s) const {
 }
 
 Snapshot SpaceLoadRun::take_snapshot(const char* state) const {
-  Snapshot s = engine_->snapshot();
-  s.attributes["state"] = state;
-  s.attributes["seed"] = fmt::format("{}", seed_);
-  s.attributes["packing"] = setup_.packing.kind;
-  s.attributes["floor"] = setup_.packing.floor;
-  return s;
+  return named_snapshot(*engine_, state, seed_,
+                        {{"packing", setup_.packing.kind}, {"floor", setup_.packing.floor}});
 }
 
 Progress SpaceLoadRun::progress() const {
   const Diagnostics d = engine_->measure();
-  Progress p;
-  p.simulated_time = engine_->time();
-  p.steps = engine_->steps();
-  p.grains = engine_->grains();
-  p.awake = d.awake;
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
+  Progress p = progress_of(*engine_, d);
   p.phase = phases_.info().name;
   double share = 1;
   switch (phases_.now()) {
@@ -273,6 +296,9 @@ Progress SpaceLoadRun::progress() const {
     case Phase::load:
       share = in_phase() / std::max(setup_.load.ramp_time, 1e-300);
       break;
+    case Phase::probe:
+      share = static_cast<double>(probed_) / LayerProber::count();
+      break;
     case Phase::done:
       break;
   }
@@ -286,11 +312,13 @@ std::string SpaceLoadRun::fingerprint() const {
 
 void SpaceLoadRun::visit(Archive& archive) {
   phases_.visit(archive);
+  archive(probed_);
+  archive.require(probed_ >= 0 && probed_ <= LayerProber::count());
   archive(reached_);
   archive.engine(engine_, [this] { return empty_engine(); });
   archive.snapshot(unloaded_, "unloaded");
   archive.snapshot(loaded_, "loaded");
-  archive.require((phases_.now() < Phase::load || unloaded_) && (!done() || loaded_));
+  archive.require((phases_.now() < Phase::probe || unloaded_) && (!done() || loaded_));
 }
 
 RunResult SpaceLoadRun::result() const {
@@ -325,8 +353,25 @@ EngineSettings space_load_settings(const PointLoadSetup& s, int threads,
         "\"damped\" "
         "(the quasi-static solver knows spheres)");
   }
+  if (s.load.probe_strain > 0) {
+    const char* found = angular                         ? "packing.shape = \"superellipsoid\""
+                        : s.packing.sides != "periodic" ? "packing.sides = \"walls\""
+                                                        : nullptr;
+    if (found != nullptr) {
+      throw std::invalid_argument(fmt::format(
+          "load.probe_strain: found {:g} with {}, allowed: 0 (the quasi-static solver strains "
+          "spheres in cells that repeat)",
+          s.load.probe_strain, found));
+    }
+    check_method("load.probe_strain", "newton", s.material, s.motion, 3);
+  }
   if (angular) check_superellipsoid_material(s.material);
   check_method("load.method", s.load.method, s.material, s.motion, 3);
+  const bool falls = s.packing.kind == "random";
+  const double depth = falls ? s.packing.depth : 2 * s.packing.rows * s.packing.radius;
+  const double fall = falls ? std::max(0.0, loose_height(s.packing) - depth) : 0;
+  check_stiff_enough(
+      s.material, {mean_sphere_radius(s.packing), depth, std::sqrt(2 * s.material.gravity * fall)});
   const double least = smallest_radius(s.packing);
   GrainExtremes extremes;
   extremes.least_radius = least;

@@ -404,7 +404,7 @@ double SampleRun::unloading_level() const {
 
 Progress SampleRun::progress() const {
   const Diagnostics d = engine_->measure();
-  Progress p;
+  Progress p = progress_of(*engine_, d);
   p.phase = phases_.info().name;
   double share = 1;
   switch (phases_.now()) {
@@ -437,12 +437,6 @@ Progress SampleRun::progress() const {
       break;
   }
   p.fraction = done() ? 1 : phases_.fraction(share);
-  p.simulated_time = engine_->time();
-  p.steps = engine_->steps();
-  p.grains = engine_->grains();
-  p.awake = d.awake;
-  p.kinetic_energy = d.kinetic_energy;
-  p.unbalanced_force_ratio = d.unbalanced_force_ratio;
   return p;
 }
 

@@ -35,10 +35,11 @@ struct LoadSetup {
   double weights = 0.1;     ///< 3D: force over a grain's mean weight; 0: load.force
   double position_y = 0.5;  ///< 3D: likewise along y
   double radius = 0;        ///< m; 3D: grains of the surface so near to that one share the force
+  double probe_strain = 0;  ///< 3D: of each probe before the load (layer_probe.h); 0: none
 
   auto members() const {
     return std::tie(force, method, unbalanced_force_ratio, ramp_time, position, weights, position_y,
-                    radius);
+                    radius, probe_strain);
   }
 };
 

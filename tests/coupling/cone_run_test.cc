@@ -24,6 +24,7 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Output;
 using testing::program;
 
@@ -165,8 +166,65 @@ TEST_F(ConeRun, IsAnalysedAnewFromItsFile) {
                           "compare.cone_osl.rel_l2", "dem.grains"}) {
     EXPECT_EQ(number(anew, key), of(key)) << key;
   }
-  EXPECT_EQ(anew.count("cone.source"), 0U);
+  EXPECT_EQ(std::get<std::string>(anew.at("cone.source")), "point") << "as the file says";
   EXPECT_EQ(anew.count("dem.steps"), 0U);
+}
+
+// What the file holds is not what the case says.
+TEST_F(ConeRun, FilesOfOtherConesAreNamed) {
+  const std::string base =
+      "check " + *folder_ / "c.toml" + " --set 'grains.files=[\"" + out("snapshots.h5") + "\"]'";
+  EXPECT_EQ(program(base).code, 0);
+  const std::vector<std::pair<std::string, std::string>> other{
+      {"cone.source=rain", "cone.source: found \"rain\", the cone"},
+      {"cone.floor=smooth", "cone.floor: found \"smooth\", the cone"},
+      {"material.density=2600", "material.density: found 2600, the cone"},
+      {"material.friction=0.4", "material.friction: found 0.4, the cone"},
+      {"material.gravity=1.6", "material.gravity: found 1.6, the cone"},
+      {"material.young=6e5", "material.young: found 600000, the forces in the cone"},
+      {"material.law=linear", "material.law: found \"linear\", the cone"}};
+  for (const auto& [set, what] : other) {
+    const Output found = program(base + " --set " + set);
+    EXPECT_EQ(found.code, 2) << set;
+    EXPECT_THAT(found.err, HasSubstr(what));
+  }
+}
+
+// Of what is there, and of nothing that is not.
+TEST_F(ConeRun, WarnsOfWhatToMind) {
+  const std::string again = *folder_ / "wide";
+  const Output run =
+      program("run " + *folder_ / "c.toml" + " -o " + again + " --set 'grains.files=[\"" +
+              out("snapshots.h5") + "\"]' --set average.width_diameters=3");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("warning: The averaging is"));
+  const Summary wide = read_summary(again + "/summary.json");
+  EXPECT_THAT(std::get<std::string>(wide.at("warnings")), HasSubstr("The averaging is"));
+  EXPECT_THAT(testing::read_text(again + "/report.html"), HasSubstr("The averaging is"));
+  const std::string warnings =
+      summary_.contains("warnings") ? std::get<std::string>(summary_.at("warnings")) : "";
+  EXPECT_EQ(warnings.find("The averaging is") != std::string::npos,
+            of("average.width") > 0.25 * of("cone.height"));
+  // The models' cone beside the rounded heap.
+  EXPECT_NEAR(of("cone.model_over_height"), of("cone.apex_height") / of("cone.height"), 0.02);
+  EXPECT_EQ(warnings.find("times as high as the grains' rounded heap") != std::string::npos,
+            of("cone.model_over_height") > 1.1);
+  EXPECT_GT(of("cone.model_over_weight"), 0.3);
+  const double lost = of("cone.grains_lost");
+  EXPECT_EQ(warnings.find("of the grains left the floor") != std::string::npos,
+            lost > 0.05 * (lost + of("dem.grains")));
+}
+
+// The field tells a model its slope and where its apex is: as far away as in the run.
+TEST_F(ConeRun, FieldsAreComparedWithTheirOwnSlope) {
+  const std::string folder = *folder_ / "compared";
+  const Output run =
+      program("compare " + out("fields.h5") + " --field base_rings --model cone_osl -o " + folder);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary compared = read_summary(folder + "/summary.json");
+  const double here = number(compared, "compare.cone_osl.rel_l2");
+  EXPECT_NEAR(here, of("compare.cone_osl.base.rel_l2"), 0.02 * here);
+  EXPECT_NEAR(number(compared, "heap.rho_g_h"), of("cone.rho_g_h"), 1e-6 * of("cone.rho_g_h"));
 }
 
 TEST_F(ConeRun, EveryFigureIsDeclared) {
@@ -191,8 +249,37 @@ TEST(ConeCase, MistakesAreNamed) {
   says({"cone.shape=superellipsoid"}, "material.law: found \"hertz\", allowed for superellipsoids");
   says({"heap.centre=0.3"}, "heap.centre: found 0.3, allowed: up to heap.shoulder_from = 0.2");
   says({"compare.models=[\"osl\"]"}, "compare.models");
+  says({"compare.models=[\"cone_osl\", \"boussinesq\"]"},
+       "compare.models: found \"boussinesq\", which is no model of a heap under its weight, "
+       "allowed: ");
+  says({"material.young=70"}, "material.young: found 70 Pa, allowed: at least");
+  says({"material.rolling_stiffness=0"}, "material.rolling_stiffness: found 0, allowed with");
   says({"motion.energy_balance=true"}, "motion.energy_balance: found true");
   says({"average.depths=[0.5]"}, "average.depths");
+}
+
+// On a plate that is too small the foot is cut, and the models' cone is another body than the dome.
+TEST(ConeCase, ACutFootIsWarnedOf) {
+  const Folder folder;
+  const Output run = program("run " + folder.write("c.toml", kCone) + " -o " + (folder / "out") +
+                             " --set cone.floor_radius=0.025 --set ensemble.realizations=1 --set "
+                             "output.report=false");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary summary = read_summary(folder / "out/summary.json");
+  const std::string warnings = std::get<std::string>(summary.at("warnings"));
+  EXPECT_THAT(warnings, HasSubstr("of the grains left the floor, so the cones' foot is cut off: "
+                                  "raise cone.floor_radius"));
+  EXPECT_THAT(warnings, HasSubstr("times as high as the grains' rounded heap"));
+  EXPECT_GT(number(summary, "cone.model_over_height"), 1.1);
+  EXPECT_THAT(run.err, HasSubstr("warning: The models' cone"));
+}
+
+TEST(ConeCase, CheckTellsThatFiniteElementsAreNotCounted) {
+  const Folder folder;
+  const std::string file = folder.write("c.toml", kCone);
+  EXPECT_THAT(program("check " + file).out, Not(HasSubstr("finite elements")));
+  EXPECT_THAT(program("check " + file + " --set 'compare.models=[\"fe_cone\"]'").out,
+              HasSubstr("besides, finite elements (fe_cone), not counted here"));
 }
 
 // A cone of points of support with a known pressure p = rho g h (1 - s)(1 + 2 s), s = r/foot.

@@ -48,10 +48,19 @@ TEST(RollingCase, WhatDoesNotHoldIsRefused) {
   expect_refused(kLayer, std::string(kRolling) + " --set load.method=newton",
                  "load.method: found \"newton\" with material.rolling_friction = 0.2, allowed: "
                  "\"damped\"");
-  expect_refused(kLayer,
-                 " --set material.rolling_friction=0.2 --set material.rolling_stiffness=0 --set "
-                 "material.rolling_damping=0",
-                 "material.rolling_friction: found 0.2 without rolling_stiffness");
+  expect_refused(
+      kLayer,
+      " --set material.rolling_friction=0.2 --set material.rolling_stiffness=0 --set "
+      "material.rolling_damping=0",
+      "material.rolling_stiffness: found 0, allowed with material.rolling_friction = 0.2: "
+      "above 0");
+  // A dashpot alone holds nothing at rest.
+  expect_refused(
+      kLayer,
+      " --set material.rolling_friction=0.2 --set material.rolling_stiffness=0 --set "
+      "material.rolling_damping=0.01",
+      "material.rolling_stiffness: found 0, allowed with material.rolling_friction = 0.2: "
+      "above 0");
   EXPECT_EQ(check(pile, std::string(kRolling) + " --set shape.kind=disk").code, 0);
   expect_refused(pile, std::string(kRolling),
                  "material.rolling_friction: found above 0, allowed for polygons: 0");

@@ -33,7 +33,8 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "heap", "import", "models", "output", "report", "run",
         "statistics", "structure"}},
       // Each study by itself, and what it takes from others of its kind.
-      {"studies/point_load", {"averaging", "case", "compare", "models", "output", "report", "run"}},
+      {"studies/point_load",
+       {"averaging", "case", "compare", "elastic_constants", "models", "output", "report", "run"}},
       {"studies/point_load_verdict", {"case", "fit", "models", "run", "studies/point_load"}},
       {"studies/pile",
        {"averaging", "case", "compare", "heap", "models", "output", "report", "run", "statistics"}},

@@ -1,9 +1,11 @@
 // Layers of spheres under a point load through the real program: figures, fields, threads, kills,
 // mistakes; and what of the analysis can be told by itself.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "check_scene.h"
@@ -49,6 +51,7 @@ background_damping = 60
 [load]
 weights = 1
 ramp_time = 0.02
+probe_strain = 1e-6
 [ensemble]
 realizations = 2
 [average]
@@ -120,6 +123,48 @@ TEST(SpaceLoadRun, LeavesFiguresFieldsAndAReport) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string("out/grains_") + name + ".vtu")))
         << name;
   }
+}
+
+// The layers' own moduli, measured before the load, are a model beside the case's: their means are
+// its constants, and nothing of it is fitted.
+TEST(SpaceLoadRun, MeasuredModuliPredictTheResponse) {
+  const Summary summary = read_summary(results() / "out/summary.json");
+  continuum::Settings settings{{"F", fmt::format("{:.17g}", number(summary, "load.force"))},
+                               {"h", fmt::format("{:.17g}", number(summary, "layer.depth"))},
+                               {"base", "rough"}};
+  for (const auto& [key, parameter] : std::map<std::string, std::string>{
+           {"e_h", "E_h"}, {"e_v", "E_v"}, {"nu_h", "nu_h"}, {"nu_v", "nu_v"}, {"g_v", "G_v"}}) {
+    const double mean = number(summary, "predicted." + key);
+    EXPECT_GT(mean, 0) << key;
+    EXPECT_GT(number(summary, "predicted." + key + ".standard_error"), 0) << key;
+    settings[parameter] = fmt::format("{:.6g}", mean);
+  }
+  // Softer than the grains' material by their overlaps, and not by orders of magnitude more.
+  EXPECT_LT(number(summary, "predicted.e_v"), 0.5 * 1e7);
+  EXPECT_GT(number(summary, "predicted.e_v"), 1e-3 * 1e7);
+  EXPECT_LT(number(summary, "predicted.odd_share"), 0.3);
+  EXPECT_LT(number(summary, "predicted.residual"), 0.5);
+  for (const char* model : {"predicted", "predicted_smooth"}) {
+    EXPECT_GT(number(summary, std::string("compare.") + model + ".rel_l2"), 0) << model;
+  }
+  // Its field in the cut is the closed form at the settings that the summary tells.
+  const Field field = read_field(results() / "out/fields.h5", "model_predicted");
+  const auto model = continuum::make_model("transverse_layer", settings);
+  const Eigen::VectorXd expected = model->stress(field.points).col(2);
+  const Eigen::VectorXd& found = field.find("sigma_zz")->value;
+  double most = 0;
+  for (Eigen::Index k = 0; k < found.size(); ++k) {
+    if (std::isfinite(expected[k]) && std::isfinite(found[k])) {
+      EXPECT_NEAR(found[k], expected[k], 1e-6 * std::fabs(expected[k]) + 1e-9);
+      most = std::max(most, -found[k]);
+    }
+  }
+  EXPECT_GT(most, 0);
+  EXPECT_GT(number(summary, "predicted.peak_over_F_per_h2"), 0.2);
+  EXPECT_LT(number(summary, "predicted.peak_over_F_per_h2"), 1.2);
+  EXPECT_GT(number(summary, "predicted.peak_over_F_per_h2.standard_error"), 0);
+  EXPECT_THAT(testing::read_text(results() / "out/report.html"),
+              HasSubstr("Moduli by uniform strain of the layers"));
 }
 
 // The vertical force of the response is F through every horizontal cut below the load, and the
@@ -230,6 +275,14 @@ TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
   EXPECT_THAT(program("check " + disk).err,
               HasSubstr("load.radius: found 0.02: the models beside"));
   EXPECT_THAT(complaint(with("\"boussinesq\", ", "\"flamant\", ")), HasSubstr("compare.models"));
+  EXPECT_THAT(
+      complaint(with("[packing]\n", "[packing]\nsides = \"walls\"\n")),
+      HasSubstr("load.probe_strain: found 1e-06 with packing.sides = \"walls\", allowed: 0"));
+  EXPECT_THAT(complaint(with("\"rough\", ", "\"predicted\", ") +
+                        "[model.predicted]\nname = \"boussinesq\"\n"),
+              HasSubstr("compare.models: found \"predicted\" with load.probe_strain"));
+  EXPECT_THAT(complaint(with("young = 1e7", "young = 70")),
+              HasSubstr("material.young: found 70 Pa, allowed: at least"));
   EXPECT_THAT(complaint(with("width = 0.08", "width = 0.02")),
               HasSubstr("packing.width: found 0.02"));
   EXPECT_THAT(complaint("study = \"point-load\"\n[load]\nweights = 2\n"),

@@ -4,7 +4,7 @@ namespace grainfield::coupling {
 
 std::vector<SummaryKey> cone_figures() {
   return {
-      {"cone.source", "text", "point | rain | cylinder"},
+      {"cone.source", "text", "point | rain | cylinder; of grains.files what they say"},
       {"cone.grains_lost", "-", "grains that left the floor"},
       {"cone.pour_time", "s", "simulated time of pouring"},
       {"cone.awake_mean", "-", "grains awake, mean over the pouring"},
@@ -13,6 +13,9 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.apex_height", "m",
        "height of the cone that the flank's line spans, which is the models': above cone.height "
        "where the apex is round"},
+      {"cone.model_over_height", "-", "cone.apex_height over cone.height"},
+      {"cone.model_over_weight", "-",
+       "weight of that cone, of the grains' density and volume fraction, over that of the grains"},
       {"cone.repose_deg", "deg",
        "slope of the flank: line through the surface between 15 % and 85 % of the height"},
       {"cone.sector_repose_deviation_deg", "deg",
@@ -28,7 +31,8 @@ std::vector<SummaryKey> cone_figures() {
        "contacts with a cone's base within heap.centre of the foot's radius; with fewer than five "
        "its dip is nan"},
       {"dip.sector_error", "rho g h",
-       "standard error of shoulder - centre over the eight sectors of a cone"},
+       "standard error of shoulder - centre over the eight sectors of a cone: what one cone alone "
+       "tells; dip.standard_error is over the cones"},
       {"base.largest_shear", "rho g h",
        "largest radial shear stress sigma_rz on the base, ensemble mean, smeared; above 0 the "
        "grains "

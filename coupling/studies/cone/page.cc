@@ -30,6 +30,31 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
   report.sections.emplace_back(std::move(drawn));
 }
 
+// The difference of ring and disk with its two errors, and what they are of.
+void add_cone_dip(Report& report, const StudyResult& result) {
+  Table table;
+  table.title = "Pressure under the apex and around it";
+  table.caption =
+      "From the forces on the floor themselves. The difference, ring less disk, has two errors. "
+      "Over the cones: how the difference varies from one cone to the next, over the root of their "
+      "number; the chance of a dip is from this one. Over the sectors: how it varies among eight "
+      "sectors of one cone, over the root of eight, mean of the cones; it is what one cone alone "
+      "can tell, and no error of the ensemble. Where it is about the error over the cones times "
+      "the "
+      "root of their number, cones differ no more than sectors of one.";
+  table.header = {"", "rho g h"};
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (!value.empty()) table.rows.push_back({name, value});
+  };
+  add("disk under the apex, mean over the cones", shown_with_error(result.summary, "dip.centre"));
+  add("ring around it, mean over the cones", shown_with_error(result.summary, "dip.shoulder"));
+  add("ring less disk", shown_with_error(result.summary, "dip.difference"));
+  add("its error over the cones", shown_with_error(result.summary, "dip.standard_error"));
+  add("its error over the sectors of one cone",
+      shown_with_error(result.summary, "dip.sector_error"));
+  report.sections.emplace_back(std::move(table));
+}
+
 void add_cone_maps(Report& report, const Comparison& c, const ConePage& page) {
   const Eigen::VectorXd on_base = -page.base.find("sigma_zz")->value;
   Eigen::MatrixXd square(page.base.points.rows(), 2);
@@ -51,7 +76,8 @@ void add_cone_maps(Report& report, const Comparison& c, const ConePage& page) {
   Picture inside = maps("Inside, by radius and height", "radius / h", "z / h", kPressure, all);
   inside.caption =
       "Mean over the angle and the realizations; apex at 0, floor at -1. One colour scale for all; "
-      "it ends at the 99 % quantile.";
+      "it ends at the 99 % quantile. The grains are seen through the kernel of the averaging, the "
+      "models as they are.";
   report.sections.emplace_back(std::move(inside));
 }
 
@@ -69,6 +95,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
     report.sections.emplace_back(slice("The cone, cut in the middle", (*first)["pile"]));
   }
   add_cone_maps(report, c, page);
+  add_cone_dip(report, result);
   if (!c.models.empty()) add_radial_tables(report, c, "ρgh");
   add_rows(report, "Figures",
            figure_rows(result.summary, {"dem.grains",
@@ -76,6 +103,8 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
                                         "cone.grains_lost",
                                         "cone.height",
                                         "cone.apex_height",
+                                        "cone.model_over_height",
+                                        "cone.model_over_weight",
                                         "cone.foot",
                                         "cone.repose_deg",
                                         "cone.sector_repose_deviation_deg",

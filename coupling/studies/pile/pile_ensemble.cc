@@ -8,6 +8,7 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/heap/axis_stress.h"
+#include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
 
@@ -18,21 +19,6 @@ namespace {
 constexpr double kReach = 1.08;
 // Mean diameters: narrower kernels see single contacts.
 constexpr double kLeastWidth = 0.25;
-
-// The columns that are kept, stresses in units of `pressure`, on scaled points.
-Field scaled(const Field& field, const Eigen::MatrixXd& points, int nx, int ny, double pressure) {
-  Field out;
-  out.points = points;
-  out.nx = nx;
-  out.ny = ny;
-  for (const Column& column : field.columns) {
-    const bool stress = column.name.compare(0, 6, "sigma_") == 0;
-    if (!stress && column.name != "volume_fraction") continue;
-    out.add(column.name, "1").value =
-        stress ? Eigen::VectorXd(column.value / pressure) : column.value;
-  }
-  return out;
-}
 
 // Scaled points well inside a heap, where the balance of forces is looked at.
 Eigen::MatrixXd inner_points(const PileFrame& frame) {
@@ -111,7 +97,7 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   const double unit = frame.pressure();
   for (PileAverages& a : methods_) {
     const auto on = [&](const Eigen::MatrixXd& points, int nx, int ny) {
-      return scaled(average(pile, frame.to_packing(points), a.options), points, nx, ny, unit);
+      return scaled_field(average(pile, frame.to_packing(points), a.options), points, unit, nx, ny);
     };
     a.base.add(on(line(0), 0, 0));
     for (std::size_t k = 0; k < a.cuts.size(); ++k) {
@@ -137,7 +123,7 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
     a.balance_largest = std::max(a.balance_largest, balance.largest);
   }
   const Eigen::VectorXd x = frame.height * x_.array() + frame.apex_x;
-  base_.add(scaled(base_profile(pile, x, *kernel_), line(0), 0, 0, unit));
+  base_.add(scaled_field(base_profile(pile, x, *kernel_), line(0), unit));
   windows_.push_back(base_windows(pile, frame, value_.get<HeapSetup>()));
 
   for (const auto& [key, figure] : realization.figures) figures_[key].push_back(figure);

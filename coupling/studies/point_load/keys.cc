@@ -122,6 +122,11 @@ void declare_load_keys(SectionKeys s) {
       "the grains that are seen from above within this distance of that one share the force in "
       "equal parts; 0: it alone");
   s.space();
+  s.number("probe_strain", "-", IN(load.probe_strain), Range{1e-9, 1e-4}.with_zero(),
+           "size of small uniform strains of the layer before it is loaded, in six directions, "
+           "forth and back, by the quasi-static solver: its moduli predict the response (model "
+           "predicted); 1e-6 is good; 0: none");
+  s.space();
 }
 
 }  // namespace grainfield::coupling

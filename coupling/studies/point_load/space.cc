@@ -18,6 +18,7 @@
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/radial_page.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space_page.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/setup.h"
@@ -29,6 +30,8 @@ using Eigen::Index;
 
 // Places on a ring of the base are this share of the kernel's width apart.
 constexpr double kRingSpacing = 1.0 / 3;
+// An averaging that is wider, over the depth, is warned of.
+constexpr double kWideKernel = 0.25;
 
 // One averaging method over the ensemble.
 struct SpaceAverages {
@@ -88,7 +91,8 @@ class SpaceLoadAnalysis {
         layer_(mean_layer(files)),
         half_(setup_.half_width > 0 ? std::min(setup_.half_width, layer_.half_width)
                                     : layer_.half_width),
-        radii_(half_, setup_.points) {
+        radii_(half_, setup_.points),
+        predicted_(predicted_response(files)) {
     columns_ = static_cast<int>(setup_.map_columns);
     rows_ = static_cast<int>(setup_.map_rows);
     cut_ = box_points({-half_, 0, -layer_.depth}, {half_, 0, 0}, columns_, 1, rows_);
@@ -118,6 +122,14 @@ class SpaceLoadAnalysis {
     out.page = [page](const StudyResult& result, const Realization* first) {
       return space_load_page(result, first, page);
     };
+    const double width = methods_.front().options.width / layer_.depth;
+    if (width > kWideKernel) {
+      out.warnings.push_back(fmt::format(
+          "The averaging is {:.2g} of the layers' depth wide, so profiles of grains and "
+          "models alike are smeared; lower average.width_diameters or average.rve_diameters, or "
+          "deepen the layer.",
+          width));
+    }
     out.overview = {{"peaks", "response.peaks", ""},
                     {"peak / (F/h²)", "response.peak_over_F_per_h", ""},
                     {"width (m)", "response.width", ""},
@@ -277,7 +289,9 @@ class SpaceLoadAnalysis {
     const RunFacts facts{force_, layer_.depth, 3, least_share * layer_.depth, "", {}};
     std::vector<ModelProfiles> models;
     double seconds = 0;
-    for (const auto& choice : value_.models) {
+    std::vector<ModelChoice> choices = value_.models;
+    choices.insert(choices.end(), predicted_.models.begin(), predicted_.models.end());
+    for (const auto& choice : choices) {
       const Evaluation e = evaluate_model(choice, facts, sets);
       seconds += e.seconds;
       ModelProfiles m;
@@ -297,6 +311,7 @@ class SpaceLoadAnalysis {
       add_model(out.summary, choice, e.figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
+    predicted_.add_peak(facts, *kernel_, out.summary);
     out.comparison = compare(profiles(), std::move(models), force_, layer_.depth);
     out.comparison.dim = 3;
     out.comparison.scale.stress = "F/h^2";
@@ -332,6 +347,8 @@ class SpaceLoadAnalysis {
 
   void add_own_figures(Summary& summary) const {
     add_figures(summary, figures_);
+    add_figures(summary, predicted_.figures);
+    if (!predicted_.refusal.empty()) summary["predicted.refusal"] = predicted_.refusal;
     summary["layer.depth"] = layer_.depth;
     summary["layer.F_over_h2"] = force_ / (layer_.depth * layer_.depth);
     summary["layer.mean_diameter"] = layer_.diameter;
@@ -350,6 +367,7 @@ class SpaceLoadAnalysis {
   MeanLayer layer_;
   double half_;
   Radii radii_;
+  PredictedResponse predicted_;
   Eigen::MatrixXd cut_, square_;
   int columns_ = 0, rows_ = 0;
   std::vector<SpaceAverages> methods_;

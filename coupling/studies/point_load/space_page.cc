@@ -4,6 +4,7 @@
 
 #include "coupling/run/radial_page.h"
 #include "coupling/studies/point_load/page.h"
+#include "coupling/studies/point_load/predicted.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -33,7 +34,7 @@ const SpaceLoadPage::Model& nearest_of(const SpaceLoadPage& page, const Comparis
 // Grains, the nearest model and their difference on a grid of columns a and b of its points.
 Picture side_views(const std::string& title, const Field& grains, const std::string& vertical,
                    int rows, int column, const std::string& label, const Eigen::VectorXd* model,
-                   const Comparison& c) {
+                   const Comparison& c, const std::string& seen) {
   Eigen::MatrixXd points(grains.points.rows(), 2);
   points << grains.points.col(0), grains.points.col(column);
   points /= c.depth;
@@ -47,7 +48,8 @@ Picture side_views(const std::string& title, const Field& grains, const std::str
   Picture picture = maps(title, "x / h", vertical, "-σ_{zz}  (F/h²)", all);
   picture.caption =
       "One colour scale for all; it ends at the 99 % quantile. Points without enough grains around "
-      "them are left white.";
+      "them are left white. " +
+      seen;
   return picture;
 }
 
@@ -55,9 +57,15 @@ void add_maps(Report& report, const SpaceLoadPage& page, const Comparison& c) {
   const SpaceLoadPage::Model* model = page.models.empty() ? nullptr : &nearest_of(page, c);
   const std::string label = model ? model->label : "";
   report.sections.emplace_back(side_views("Pressure on the base", page.base, "y / h", page.base.ny,
-                                          1, label, model ? &model->base : nullptr, c));
+                                          1, label, model ? &model->base : nullptr, c,
+                                          model ? "The model is smoothed as the grains are." : ""));
   report.sections.emplace_back(side_views("Vertical cut through the load", page.cut, "z / h",
-                                          page.cut.nz, 2, label, model ? &model->cut : nullptr, c));
+                                          page.cut.nz, 2, label, model ? &model->cut : nullptr, c,
+                                          model
+                                              ? "The grains are seen through the kernel of the "
+                                                "averaging, the model as it is: within a kernel of "
+                                                "the load it is steeper."
+                                              : ""));
 }
 
 void add_before(Report& report, const SpaceLoadPage& page) {
@@ -86,6 +94,9 @@ Report space_load_page(const StudyResult& result, const Realization* first,
   }
   add_before(report, page);
   add_radial_tables(report, c, "F/h²");
+  for (Section& section : predicted_sections(result.summary)) {
+    report.sections.push_back(std::move(section));
+  }
   ReportRows figures = figure_rows(result.summary, {"dem.grains",
                                                     "dem.contacts",
                                                     "dem.volume_fraction",

@@ -20,6 +20,7 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/keys.h"
 #include "coupling/studies/point_load/page.h"
+#include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space.h"
 #include "dem/study/setup.h"
 
@@ -286,6 +287,17 @@ void check_point_load(const Case& value) {
                     "= 0 (spheres are loaded with so many weights of a grain otherwise)",
                     load.force, load.weights));
   }
+  for (const ModelChoice& model : value.models) {
+    const auto& taken = predicted_labels();
+    if (load.probe_strain == 0 ||
+        std::find(taken.begin(), taken.end(), model.label) == taken.end()) {
+      continue;
+    }
+    throw std::invalid_argument(fmt::format(
+        "compare.models: found \"{}\" with load.probe_strain = {:g}, allowed: another name (it is "
+        "that of the model with the measured moduli)",
+        model.label, load.probe_strain));
+  }
 }
 
 Study point_load_study() {
@@ -303,7 +315,7 @@ Study point_load_study() {
     const auto& average = value.get<AverageSetup>();
     return averaged_values(average, average.depths.size() + 1);
   };
-  out.figures = {point_load_figures};
+  out.figures = {point_load_figures, predicted_figures};
   out.fills = {"F", "h", "dim", "depth"};
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_point_load_run(value.get<dem::PointLoadSetup>(),

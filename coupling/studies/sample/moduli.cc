@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/elastic_constants/probed.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/study_result.h"
 #include "dem/study/probe_record.h"
 
 namespace grainfield::coupling {
 namespace {
-
-using Eigen::Matrix3d;
 
 struct ModulusColumn {
   const char *key, *unit, *meaning;
@@ -55,33 +54,14 @@ void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncr
     }
     return;
   }
-  double gained = 0, lost = 0, sliding = 0, sum = 0, difference = 0;
-  Matrix3d stiffness = Matrix3d::Zero();
-  for (const dem::Probe& probe : probes.probes) {
-    const auto of = [&](std::size_t way) {
-      const dem::ProbeOutcome& o = probe.outcomes[way];
-      gained = std::max(gained, o.gained);
-      lost = std::max(lost, o.lost);
-      sliding = std::max(sliding, o.sliding);
-      return increment_of(o.gradient, probes.stress, o.stress);
-    };
-    const SpaceIncrement forth = of(0), back = of(1);
-    sum += (forth.stress + back.stress).squaredNorm();
-    difference += (forth.stress - back.stress).squaredNorm();
-    // Central: what both ways share (a rest that is not quite one) drops out.
-    all.push_back({0.5 * (forth.stress - back.stress), 0.5 * (forth.strain - back.strain)});
-    if (probe.direction[0] == probe.direction[1]) {
-      const int a = probe.direction[0] - 'x';
-      stiffness.col(a) = all.back().stress.diagonal() / all.back().strain(a, a);
-    }
-  }
-  out.moduli.push_back(space_moduli(all));
-  out.gained.push_back(gained);
-  out.lost.push_back(lost);
-  out.sliding.push_back(sliding);
-  out.odd.push_back(std::sqrt(sum / difference));
-  out.asymmetry.push_back((stiffness - stiffness.transpose()).cwiseAbs().maxCoeff() /
-                          (stiffness.trace() / 3));
+  ProbedPacking one = probed_packing(probes);
+  all = std::move(one.increments);
+  out.moduli.push_back(one.moduli);
+  out.gained.push_back(one.gained);
+  out.lost.push_back(one.lost);
+  out.sliding.push_back(one.sliding);
+  out.odd.push_back(one.odd);
+  out.asymmetry.push_back(one.asymmetry);
 }
 
 std::size_t known_of(const ProbedState& state) {
