@@ -272,8 +272,13 @@ CompareOutcome compare_field(const CompareRequest& request) {
     profiles.push_back(line.profile);
     if (line.base) main = l;
   }
+  const double spanned = heap && facts.height > 0 ? 1 + scene.apex / facts.height : 1;
   if (heap) facts.depth = facts.height += scene.apex;
-  if (map.nx > 0) sets.push_back({map.points, Smoothing::none, nullptr, heap});
+  if (map.nx > 0) {
+    Eigen::MatrixXd points = map.points;
+    points.rightCols<1>().array() -= scene.apex;
+    sets.push_back({points, Smoothing::none, nullptr, heap});
+  }
 
   Summary summary;
   std::vector<ModelProfiles> models;
@@ -291,7 +296,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     models.push_back(std::move(m));
     if (map.nx > 0) model_maps.push_back({model_label(choice), e.stresses.back().col(1)});
     summary["model." + choice.label + ".name"] = choice.name;
-    for (const auto& [key, figure] : e.figures) {
+    for (const auto& [key, figure] : over_grains_height(e.figures, spanned)) {
       summary["model." + choice.label + "." + key] = figure;
     }
   }

@@ -129,6 +129,15 @@ std::string model_label(const ModelChoice& choice) {
   return items.empty() ? name : fmt::format("{} ({})", name, fmt::join(items, ", "));
 }
 
+std::map<std::string, double> over_grains_height(std::map<std::string, double> figures,
+                                                 double spanned) {
+  for (const char* name : {"base_centre", "base_largest"}) {
+    const auto at = figures.find(name);
+    if (at != figures.end()) at->second *= spanned;
+  }
+  return figures;
+}
+
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets) {
   const auto start = std::chrono::steady_clock::now();

@@ -55,6 +55,11 @@ struct Evaluation {
 
 /// Stresses of one model on all point sets, with a single call of the model. Throws
 /// continuum::BadParameter and continuum::ComputationFailed.
+/// Figures of a heap's model that are over rho g h of its own height, over that of the grains,
+/// which is 1/spanned of it.
+std::map<std::string, double> over_grains_height(std::map<std::string, double> figures,
+                                                 double spanned);
+
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets);
 

@@ -183,6 +183,9 @@ void write_packings(const std::string& file, const std::vector<std::string>& gro
     out.write_with([&](const std::string& beside) { std::filesystem::copy_file(file, beside); });
   }
   for (std::size_t k = 0; k < packings.size(); ++k) {
+    if (groups[k].empty())
+      throw std::invalid_argument(fmt::format(
+          "{}: the group after \":\" is empty; name one, or leave the colon out", file));
     const std::string group = groups[k].front() == '/' ? groups[k] : "/" + groups[k];
     if (std::find(there.begin(), there.end(), group) != there.end())
       throw std::invalid_argument(

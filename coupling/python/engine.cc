@@ -349,9 +349,8 @@ void add_engine(py::module_& module) {
       .def("walls", walls)
       .def("snapshot",
            [](const Engine& self) {
-             const dem::Engine& engine = self.state();
-             const py::gil_scoped_release released;
-             return Packing{std::make_shared<const Snapshot>(engine.snapshot())};
+             // No other thread may step it meanwhile: the lock of Python stays.
+             return Packing{std::make_shared<const Snapshot>(self.state().snapshot())};
            })
       .def("image", [](const Engine& self) { return py::bytes(self.state().image()); })
       .def_property_readonly("dim", &Engine::dim)

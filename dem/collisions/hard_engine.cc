@@ -79,8 +79,13 @@ bool HardEngine<D>::settle() {
   const auto most = static_cast<std::int32_t>(n);
   const auto walls = static_cast<std::int32_t>(scene_.walls.size());
   for (std::size_t k = 0; k < n; ++k) {
-    if (hot_[k].cell < 0 || hot_[k].cell >= cells_.count() || plans_[k].partner >= most ||
-        plans_[k].what >= walls || cold_[k].floor >= walls) {
+    const Plan& plan = plans_[k];
+    const bool alone =
+        plan.what >= face_code(D - 1, 1) || plan.what == kStopsSliding || plan.what == kSettles;
+    if (hot_[k].cell < 0 || hot_[k].cell >= cells_.count() || plan.partner >= most ||
+        (plan.meets < kNever && plan.partner < 0) || plan.what >= walls || !alone ||
+        cold_[k].floor >= walls || hot_[k].motion < Motion::free ||
+        hot_[k].motion > Motion::fixed) {
       return false;
     }
   }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "dem/engine/engine_of.h"
+#include "dem/motion/leaping.h"
 #include "dem/snapshot/images.h"
 #include "dem/space/moving_cell.h"
 
@@ -53,9 +54,9 @@ void check_rolling(const EngineSettings& settings) {
   }
   if (alpha > 0 && !leaps(settings.integrator)) {
     throw std::invalid_argument(fmt::format(
-        "motion.local_damping: found {} with motion.integrator \"{}\", allowed: verlet (a force "
-        "that leaps with the velocity's sign has no derivatives to predict)",
-        alpha, settings.integrator.name()));
+        "motion.local_damping: found {} with motion.integrator \"{}\", allowed: {} (a force that "
+        "leaps with the velocity's sign has no derivatives to predict)",
+        alpha, settings.integrator.name(), fmt::join(integrators_that_leap(), " | ")));
   }
 }
 
@@ -128,8 +129,8 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings) {
   check_rolling(settings);
   if (settings.energy_balance && !leaps(settings.integrator)) {
     throw std::invalid_argument(
-        fmt::format("energy_balance: found motion.integrator \"{}\", allowed: verlet",
-                    settings.integrator.name()));
+        fmt::format("energy_balance: found motion.integrator \"{}\", allowed: {}",
+                    settings.integrator.name(), fmt::join(integrators_that_leap(), " | ")));
   }
   return settings.shape.visit(
       [&](auto kind) { return engine_of<typename decltype(kind)::Store>(settings); });

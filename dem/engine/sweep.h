@@ -181,6 +181,7 @@ class Sweep {
     const auto& contacts = world_.contacts;
     const auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
+    if (first == last) return;
     const auto& rule = world_.acting.rule(0, 0);
     const SphereNumbers numbers = rule.law.sphere_numbers(rule.friction, dt);
     const auto& r = rule.rolling;

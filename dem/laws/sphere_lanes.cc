@@ -227,7 +227,7 @@ template <int W, SphereLawKind kind, bool rolls>
 }
 
 /// To the memories and sums.
-template <int W, bool rolls>
+template <int W, SphereLawKind kind, bool rolls>
 [[gnu::always_inline]] inline void give(const SphereBatch& batch, int at, const Passed& c) {
   const int left = batch.count - at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
@@ -245,7 +245,11 @@ template <int W, bool rolls>
   }
   each_row<W>({spring.x, spring.y, spring.z, loaded<W>(c.remembered + at)},
               [&](int k, const Lanes<4>& row) {
-                if (k < left) store<4>(row, c.memory[at + k]);
+                if (k >= left) return;
+                double* const memory = c.memory[at + k];
+                if constexpr (kind == SphereLawKind::hertz) return store<4>(row, memory);
+                store<2>(__builtin_shufflevector(row, row, 0, 1), memory);
+                memory[2] = row[2];
               });
   // A grain is the second of its pairs in earlier rows, then the first of those in its own: so all
   // second ones before the first ones keep the order of every sum.
@@ -267,7 +271,7 @@ template <int W, SphereLawKind kind, bool rolls>
   Passed passed;
   for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
   for (int at = 0; at < batch.count; at += W) press<W, kind, rolls>(law, rolling, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W, rolls>(batch, at, passed);
+  for (int at = 0; at < batch.count; at += W) give<W, kind, rolls>(batch, at, passed);
 }
 template <int W, SphereLawKind kind>
 void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,

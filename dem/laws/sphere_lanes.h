@@ -31,7 +31,7 @@ struct RollingNumbers {
 
 /// What the kernel expects of the engine's rows. Numbers of a Body<3> and of a ForceSum<3>; a pair
 /// of which the first bytes are the law's memory (HertzMemory<3> four numbers, SpringMemory<3>
-/// three, of which the next eight bytes are carried along unread) and then the second grain's
+/// three; eight bytes more are read) and then the second grain's
 /// index, an int; what will be read is asked for so many pairs ahead.
 inline constexpr int kSphereBody = 12, kSphereSum = 8, kPairsAhead = 16;
 constexpr int second_in_pair(SphereLawKind kind) { return kind == SphereLawKind::hertz ? 32 : 24; }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/motion/leaping.h"
 #include "dem/quasistatic/sphere_law.h"
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/replace_file.h"
@@ -29,7 +30,9 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
         kind, stiffness, friction));
   };
   require_spring("rolling", m.rolling_friction, m.rolling_stiffness);
-  require_spring("twisting", m.twisting_friction, m.twisting_stiffness);
+  if (shape.visit([](auto kind) { return kind.dim; }) == 3) {
+    require_spring("twisting", m.twisting_friction, m.twisting_stiffness);
+  }
   EngineSettings e;
   e.shape = shape;
   e.law = law_of(m);
@@ -49,8 +52,8 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
   if (e.energy_balance && !leaps(e.integrator)) {
     throw std::invalid_argument(
         fmt::format("motion.energy_balance: found true with motion.integrator = \"{}\", allowed "
-                    "with verlet",
-                    motion.integrator));
+                    "with {}",
+                    motion.integrator, fmt::join(integrators_that_leap(), " | ")));
   }
   if (extremes.steepest_edge > 0 && e.rolling.on()) refuse_rolling_polygons();
   check_materials(e);
@@ -232,11 +235,14 @@ std::string smaller_step(const MotionSetup& m) {
   return fmt::format(", or lower motion.time_step_fraction, now {:g}", m.time_step_fraction);
 }
 
+// Goes up with what a checkpoint of any study holds, and with the order it stands in.
+const std::string kLayout = "layout 2; ";
+
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
                       const ImageWriter& state, const NamedSnapshots& snapshots) {
   write_in_place_of(file, [&](const std::string& beside) {
     ImageWriter w;
-    w.put(fingerprint);
+    w.put(kLayout + fingerprint);
     w.put(state.bytes());
     hdf5::Handle handle = hdf5::open_for_adding(beside);
     hdf5::write_bytes(handle, "checkpoint", w.bytes());
@@ -254,9 +260,10 @@ std::string read_checkpoint(const std::string& file, const std::string& fingerpr
   ImageReader r(bytes);
   std::string of, state;
   r.get(of);
-  if (of != fingerprint) {
+  if (of != kLayout + fingerprint) {
     throw OtherSetup(
-        fmt::format("{}: the checkpoint is of another case or seed; start without --resume", file));
+        fmt::format("{}: the checkpoint is of another {}; start without --resume", file,
+                    of.starts_with(kLayout) ? "case or seed" : "version of the program"));
   }
   r.get(state);
   r.finish();

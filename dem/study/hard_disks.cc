@@ -361,6 +361,18 @@ void check_hard_disks(const HardDisksSetup& s) {
         "gas.restitution: found 1 with gas.kind \"cooling\", allowed: below 1");
   }
   s.in_space() ? check_fractions<3>(s) : check_fractions<2>(s);
+  if (s.kind == "cooling") {
+    // A collision takes (1 - e^2)/(2 D) of the two grains' energy.
+    const double each = 2 * (s.in_space() ? 3 : 2) * std::log(1 / std::sqrt(s.cool_to)) /
+                        (1 - s.restitution * s.restitution);
+    const double all = 0.5 * s.grains * static_cast<double>(s.fractions.size()) * each;
+    if (all > kMostSteps) {
+      throw std::invalid_argument(fmt::format(
+          "gas.restitution: found {:.12g}, about {:.3g} collisions until gas.cool_to = {:g}, "
+          "allowed: at most {:.3g}; a smaller one, or fewer grains",
+          s.restitution, all, s.cool_to, kMostSteps));
+    }
+  }
   const double gases = 0.5 * s.grains * static_cast<double>(s.fractions.size());
   for (const auto& [key, each] : {std::pair("gas.equilibration", s.equilibration),
                                   std::pair("gas.collisions", s.collisions)}) {

@@ -45,6 +45,15 @@ Eigen::Matrix3d imposed_gradient(const std::string& direction, double strain) {
   return out;
 }
 
+[[noreturn]] void refuse_thin_layer(double height) {
+  throw ComputationFailed(fmt::format(
+      "load.probe_strain: the layer is {:.3g} m deep, too thin to be strained: contacts of the "
+      "held "
+      "grains at its floor and surface reach into its middle half; set load.probe_strain = 0, or "
+      "packing.depth to five grains or more",
+      height));
+}
+
 }  // namespace
 
 LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, double height,
@@ -68,11 +77,14 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
     g.fixed = g.fixed || g.position.z() < diameter || g.position.z() > height - diameter;
   }
   // Between two that are held nothing is left to find out.
-  std::erase_if(held_.contacts, [this](const Contact& c) {
+  std::erase_if(held_.contacts, [this, height](const Contact& c) {
     const auto held = [this](std::int64_t k) {
       return held_.grains[static_cast<std::size_t>(k)].fixed;
     };
-    return held(c.i) && (c.j < 0 || held(c.j));
+    if (!held(c.i) || (c.j >= 0 && !held(c.j))) return false;
+    const double z = layer_.grains[static_cast<std::size_t>(c.i)].position.z();
+    if (share_within(z, far_end(layer_, c).z(), low_, high_) > 0) refuse_thin_layer(height);
+    return true;
   });
   before_ = stress_of(layer, Eigen::Matrix3d::Zero());
 }

@@ -68,12 +68,7 @@ std::vector<ModelProfiles> models_of(const ConeEnsemble& cones, StudyResult& out
     field.nz = cones.rows();
     field.attributes["apex_z"] = fmt::format("{}", h * (cones.spanned() - 1));
     out.fields.emplace_back("model_" + choice.label, std::move(field));
-    // Over the model's own height and rho g h there, over those of the grains here.
-    std::map<std::string, double> figures = e.figures;
-    for (const char* name : {"base_centre", "base_largest", "base_largest_at"}) {
-      if (figures.count(name) > 0) figures[name] *= cones.spanned();
-    }
-    add_model(out.summary, choice, figures, e.seconds);
+    add_model(out.summary, choice, over_grains_height(e.figures, cones.spanned()), e.seconds);
   }
   out.summary["time.continuum_s"] = seconds;
   return all;

@@ -106,7 +106,11 @@ void PredictedResponse::add_peak(const RunFacts& facts, const Kernel& kernel,
   const int n = static_cast<int>(figures.begin()->second.size());
   if (n < 2) return;
   Eigen::ArrayXd without(n);
-  for (int r = 0; r < n; ++r) without[r] = peak(model_of(figures, "predicted", "rough", r));
+  try {
+    for (int r = 0; r < n; ++r) without[r] = peak(model_of(figures, "predicted", "rough", r));
+  } catch (const continuum::BadParameter&) {
+    return;  // without one layer the moduli are no material: the error is unknown
+  }
   summary[key + ".standard_error"] =
       std::sqrt((without - without.mean()).square().sum() * (n - 1) / n);
 }
