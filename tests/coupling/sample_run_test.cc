@@ -402,8 +402,9 @@ TEST(SampleRun, Mistakes) {
         "material.law=energy"},
        "material.rolling_friction: found above 0, allowed for polygons: 0");
   says(kSpheres, {"material.twisting_stiffness=0"}, "twisting_friction");
-  const Overrides superellipsoids{"sample.shape=superellipsoid", "sample.start_fraction=0.1",
-                                  "material.law=hertz_elliptic"};
+  const Overrides superellipsoids{"sample.shape=superellipsoid",  "sample.start_fraction=0.1",
+                                  "material.law=hertz_elliptic",  "material.rolling_friction=0",
+                                  "material.twisting_friction=0", "sample.grains=90"};
   const auto with = [&](const char* set) {
     Overrides all = superellipsoids;
     all.insert(all.begin(), set);

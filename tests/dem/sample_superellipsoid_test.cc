@@ -113,6 +113,45 @@ TEST(SampleOfSuperellipsoids, RestsAtItsPressureInACellAndBetweenWalls) {
   }
 }
 
+// Dropped grains between servos on all sides, which must feel the grains alone, not what the walls
+// had felt in the drop.
+TEST(SampleOfSuperellipsoids, RestsAtItsPressureAfterADrop) {
+  SampleSetup setup = setup_of("penalty", "walls");
+  setup.plan.filling = "dropped";
+  setup.plan.drop_gravity = 5;
+  setup.plan.drop_damping = 1;
+  setup.rest.max_time = 60;
+  const auto run = make_sample_run(setup, 3, 1);
+  while (!run->done()) run->advance(100000);
+  const RunResult result = run->result();
+  const SampleState first = sample_state(result.snapshots[0].second);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(first.moved_pressure[a], 20, 0.1) << a;
+  EXPECT_GT(result.figures.at("sample.gap_spheres"), 0);
+}
+
+// Dense superellipsoids of little friction answer a servo on three edges by more than the spheres
+// that it is made for: with their stiffness alone it swings for ever.
+TEST(SampleOfSuperellipsoids, OfLittleFrictionRestInACell) {
+  SampleSetup setup = setup_of("hertz_elliptic", "periodic");
+  setup.plan.radius = 1e-3;
+  setup.plan.pressure = 1e4;
+  setup.plan.compression_rate = 30;
+  setup.plan.strain_rate = 30;
+  setup.material.density = 2500;
+  setup.material.young = 3e7;
+  setup.material.poisson = 0.22;
+  setup.material.damping = 0.3;
+  setup.material.friction = 0.05;
+  setup.rest.background_damping = 500;
+  setup.rest.unbalanced_force_ratio = 1e-2;
+  setup.rest.max_time = 0.05;
+  const auto run = make_sample_run(setup, 3, 1);
+  while (!run->done()) run->advance(100000);
+  const SampleState first = sample_state(run->result().snapshots[0].second);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(-first.stress(a, a), 1e4, 50) << a;
+  EXPECT_GT(first.solid_fraction, 0.66);
+}
+
 TEST(SampleOfSuperellipsoids, WhatDoesNotFitIsRefused) {
   const auto refusal = [](const auto& change) {
     SampleSetup s = setup_of("penalty", "periodic");
