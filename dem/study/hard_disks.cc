@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "dem/collisions/gas.h"
 #include "dem/collisions/hard_engine.h"
@@ -360,14 +359,6 @@ void check_hard_disks(const HardDisksSetup& s) {
   if (s.kind == "cooling" && s.restitution == 1) {
     throw std::invalid_argument(
         "gas.restitution: found 1 with gas.kind \"cooling\", allowed: below 1");
-  }
-  std::set<std::string> names;
-  for (const double f : s.fractions) {
-    if (names.insert(name_of_fraction(f)).second) continue;
-    throw std::invalid_argument(fmt::format(
-        "gas.fractions: found {}, which the first six digits do not tell from another, allowed: "
-        "each once",
-        f));
   }
   s.in_space() ? check_fractions<3>(s) : check_fractions<2>(s);
   const double gases = 0.5 * s.grains * static_cast<double>(s.fractions.size());
