@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dem/space/elementary.h"
 #include "dem/space/space3.h"
 
 namespace grainfield::dem {
@@ -36,7 +37,8 @@ class Cells {
     double volume = 1;
     for (int a = 0; a < D; ++a) volume *= box.size[a];
     const double most = kCellsPerGrain * static_cast<double>(std::max<std::size_t>(grains, 1));
-    const double wide = std::max(width * (1 + kSpare), std::pow(volume / most, 1.0 / D));
+    const double even = D == 2 ? std::sqrt(volume / most) : cube_root(volume / most);
+    const double wide = std::max(width * (1 + kSpare), even);
     int count = 1;
     for (int a = 0; a < D; ++a) {
       const int least = box.periodic[a] ? 3 : 1;

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/space/elementary.h"
 #include "dem/space/space.h"
 
 namespace grainfield::dem {
@@ -108,10 +109,9 @@ double meet_time(const Vector& r, const Vector& v_first, const Vector& v_second,
   const std::array<double, 5> square{room > 0 ? room : 0, 2 * rate, bend, v.dot(a),
                                      0.25 * a.squaredNorm()};
   // No root is larger (Fujiwara 1916).
-  double most = 0;
-  for (int k = 0; k < 4; ++k) {
-    most = std::max(most, 2 * std::pow(std::fabs(square[k] / square[4]), 1.0 / (4 - k)));
-  }
+  const auto share = [&](int k) { return std::fabs(square[k] / square[4]); };
+  const double most = 2 * std::max({std::sqrt(std::sqrt(share(0))), cube_root(share(1)),
+                                    std::sqrt(share(2)), share(3)});
   std::array<double, 5> roots{};
   const std::array<double, 4> slope{square[1], 2 * square[2], 3 * square[3], 4 * square[4]};
   const int found = roots_of(square, 1.001 * most, roots);

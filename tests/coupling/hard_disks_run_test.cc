@@ -176,6 +176,8 @@ TEST(HardDisksCheck, RefusesWhatRunWould) {
   EXPECT_THAT(
       refusal("grains = 8\nfractions = [0.7]\n"),
       HasSubstr("x.toml:4: gas.grains: found 8, at a fraction of 0.7 in a box of 0.00599 m"));
+  EXPECT_THAT(refusal("fractions = [0.3, 0.30000001]\n"),
+              HasSubstr("x.toml:4: gas.fractions: found 0.30000001 beside 0.3"));
   EXPECT_THAT(refusal("collisions = 1e8\n"),
               HasSubstr("x.toml:4: gas.collisions: found 1e+08, 1.5e+12 collisions in all"));
   EXPECT_THAT(refusal("restituton = 0.5\n"), HasSubstr("nearest: gas.restitution"));
