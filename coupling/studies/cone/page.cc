@@ -44,7 +44,7 @@ void add_cone_dip(Report& report, const StudyResult& result) {
       "root of their number, cones differ no more than sectors of one.";
   table.header = {"", "rho g h"};
   const auto add = [&](const std::string& name, const std::string& value) {
-    if (!value.empty()) table.rows.push_back({name, value});
+    if (!value.empty() && value != "-") table.rows.push_back({name, value});
   };
   add("disk under the apex, mean over the cones", shown_with_error(result.summary, "dip.centre"));
   add("ring around it, mean over the cones", shown_with_error(result.summary, "dip.shoulder"));

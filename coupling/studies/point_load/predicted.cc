@@ -28,10 +28,11 @@ const std::vector<PredictedColumn>& predicted_columns() {
       {"nu_v", "-", "strain of the level over that along z when z is loaded", "nu_v",
        [](P p) { return p.moduli.nu_vh; }},
       {"g_v", "Pa", "shear modulus of planes along z", "G_v", [](P p) { return p.moduli.g_vh; }},
-      {"e_v_over_e_h", "-", "their ratio", nullptr,
+      {"e_v_over_e_h", "-", "Young's modulus along z over that in the level", nullptr,
        [](P p) { return p.moduli.e_v / p.moduli.e_h; }},
-      {"residual", "-", "root of the squared stress that the fit of five constants leaves over all",
-       nullptr, [](P p) { return p.moduli.residual_transverse; }},
+      {"residual", "-",
+       "root of the squared stress that the fit of five constants leaves over all of it", nullptr,
+       [](P p) { return p.moduli.residual_transverse; }},
       {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back",
        nullptr, [](P p) { return p.odd; }},
       {"contacts_changed", "-",
@@ -123,11 +124,16 @@ std::vector<Section> predicted_sections(const Summary& summary) {
       "means over the layers with their standard errors. The models \"predicted\" (rough base) and "
       "\"predicted_smooth\" have these numbers; nothing in them is fitted.";
   table.header = {"", "layers"};
-  for (const SummaryKey& key : predicted_figures()) {
-    const std::string value = shown_with_error(summary, key.pattern);
-    if (value.empty()) continue;
-    table.rows.push_back({key.meaning + (key.unit == "Pa" ? " (Pa)" : ""), value});
+  const auto add = [&](const std::string& key, const std::string& meaning) {
+    const std::string value = shown_with_error(summary, "predicted." + key);
+    if (!value.empty()) table.rows.push_back({meaning, value});
+  };
+  for (const PredictedColumn& column : predicted_columns()) {
+    add(column.key,
+        std::string(column.meaning) + (column.unit == std::string("Pa") ? " (Pa)" : ""));
   }
+  add("peak_over_F_per_h2",
+      "largest pressure on the base by the model (F/h²), its jackknife error");
   const auto refusal = summary.find("predicted.refusal");
   if (table.rows.empty()) return {};
   if (refusal != summary.end()) table.caption += " They are refused: see predicted.refusal.";
