@@ -18,8 +18,6 @@ VectorOf<D> momentum_of(const std::vector<Body<D>>& grains) {
   return sum;
 }
 
-// -- gas
-
 // Measured over this many collisions a grain, after half as many.
 template <int D>
 double compressibility(int side, double fraction, int collisions) {
