@@ -53,6 +53,19 @@ std::vector<Body<D>> bodies_of(const HardEngine<D>& engine) {
   return out;
 }
 
+/// Least distance of two grains over that at which they touch.
+template <int D>
+double nearest(const HardBox<D>& box, const std::vector<Body<D>>& grains) {
+  double out = kNever;
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double way = nearest_way(box, grains[i].position, grains[j].position).norm();
+      out = std::min(out, way / (grains[i].radius + grains[j].radius));
+    }
+  }
+  return out;
+}
+
 /// (1 + fraction^2/8)/(1 - fraction)^2.
 inline double henderson(double fraction) {
   return (1 + fraction * fraction / 8) / ((1 - fraction) * (1 - fraction));
