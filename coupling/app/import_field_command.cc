@@ -59,6 +59,7 @@ void add_import_field(CLI::App& app, Action& action) {
             column.value.array().isFinite().count(), column.error.array().isFinite().count(),
             column.unit);
       }
+      for (const std::string& doubt : measured_doubts(field)) note("warning: {}: {}", name, doubt);
       return 0;
     };
   });

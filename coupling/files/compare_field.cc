@@ -71,6 +71,11 @@ std::vector<std::string> chosen(const CompareRequest& request) {
       others.push_back(name);
     }
   }
+  // Where a run has rings, averaged over the angle, its verdict goes by them and not by lines.
+  const auto in_rings = [](const std::string& name) { return name.find("rings") != name.npos; };
+  if (std::any_of(lines.begin(), lines.end(), in_rings)) {
+    std::erase_if(lines, [&](const std::string& name) { return !in_rings(name); });
+  }
   // A file of a run holds lines at its depths; one of `average` a map and the base.
   if (lines.empty() || (lines.size() == 1 && lines.front() == "base_response")) {
     lines.insert(lines.begin(), maps.begin(), maps.end());

@@ -19,6 +19,12 @@
 namespace grainfield::coupling {
 namespace {
 
+// What is plausible of measured heaps: places up to so many feet from the axis, and so many of the
+// base's pressures carrying such a share of the weight.
+constexpr double kBeyondFoot = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr std::size_t kEnoughToCarry = 5;
+
 constexpr double kSamePlace = 1e-9;   // of h
 constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
 constexpr double kSteepest = 80;      // degrees
@@ -228,9 +234,10 @@ Field measured_field(const MeasuredRequest& request) {
     const auto [name, sign] = component_of(row, row.text(component), request.dim);
     Value one{sign * value.of(row), kNan, row.line};
     if (!row.empty(error.column)) one.error = error.of(row);
-    if (one.error < 0)
+    if (one.error <= 0)
       row.refuse(
-          fmt::format("column error: found {}, allowed: 0 and above", row.text(error.column)));
+          fmt::format("column error: found {}, allowed: above 0, or empty where it is unknown",
+                      row.text(error.column)));
     Place& place = found[{round(at), round(beside), round(x.of(row))}];
     if (place.values.empty()) place.at = {x.of(row), beside, at};
     const auto [there, fresh] = place.values.emplace(name, one);
@@ -280,6 +287,52 @@ Field measured_field(const MeasuredRequest& request) {
   about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
   about["left_deg"] = fmt::format("{}", request.left_deg);
   about["right_deg"] = fmt::format("{}", request.right_deg);
+  return out;
+}
+
+std::vector<std::string> measured_doubts(const Field& field) {
+  const Column* pressure = field.find("sigma_yy");
+  if (field.points.cols() != 2 || field.attributes.count("left_deg") == 0 || pressure == nullptr) {
+    return {};
+  }
+  const auto number = [&](const char* key) { return std::stod(field.attributes.at(key)); };
+  const double h = number("h"), most = number("rho_g_h");
+  const double left = h / std::tan(number("left_deg") * kDegree);
+  const double right = h / std::tan(number("right_deg") * kDegree);
+  std::vector<std::string> out;
+  const auto x = field.points.col(0).array();
+  const Eigen::Index outside = (x < -kBeyondFoot * left || x > kBeyondFoot * right).count();
+  if (outside > 0) {
+    out.push_back(
+        fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and "
+                    "{:.3g} m: is the unit of x right?",
+                    outside, x.size(), -left, right));
+  }
+  std::vector<std::pair<double, double>> base;  // x and pressure
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const bool low = std::fabs(field.points(k, 1) + h) < 1e-6 * h;
+    if (low && std::isfinite(pressure->value[k])) base.emplace_back(x[k], -pressure->value[k]);
+  }
+  const auto pulls = std::count_if(base.begin(), base.end(), [](auto p) { return p.second < 0; });
+  if (2 * pulls > static_cast<long>(base.size())) {
+    out.push_back(
+        fmt::format("{} of {} pressures are negative: a pressure is positive where the "
+                    "heap presses; turn their signs",
+                    pulls, base.size()));
+  }
+  if (base.size() < kEnoughToCarry || outside > 0) return out;
+  std::sort(base.begin(), base.end());
+  double carried = 0;
+  for (std::size_t k = 1; k < base.size(); ++k) {
+    carried += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
+  }
+  const double weight = 0.5 * most * (left + right), share = carried / weight;
+  if (share < kLeastCarried || share > kMostCarried) {
+    out.push_back(
+        fmt::format("the pressures on the base carry {:.3g} of the heap's weight: are the "
+                    "units, --height, --slope and --rho-g right?",
+                    share));
+  }
   return out;
 }
 

@@ -32,6 +32,10 @@ struct MeasuredRequest {
 /// range.
 Field measured_field(const MeasuredRequest& request);
 
+/// What is hardly so, a sentence each, of a heap in the plane: places outside it, pressures that
+/// pull, and a base that does not carry the heap's weight.
+std::vector<std::string> measured_doubts(const Field& field);
+
 /// "base" where all of its points are there, else "measured".
 std::string name_of_measured(const Field& field);
 

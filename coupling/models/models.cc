@@ -121,12 +121,17 @@ void require_models(const std::vector<ModelChoice>& choices, int dim) {
   }
 }
 
+// Constants that the label of a model with a name of its own tells.
+constexpr std::size_t kMostTold = 3;
+
 std::string model_label(const ModelChoice& choice) {
   std::vector<std::string> items;
   for (const auto& [name, value] : choice.settings) items.push_back(name + "=" + value);
   const std::string name =
       choice.label == choice.name ? choice.name : choice.label + "=" + choice.name;
-  return items.empty() ? name : fmt::format("{} ({})", name, fmt::join(items, ", "));
+  // A name of its own stands for many constants, which legends and titles have no room for.
+  const bool told = choice.label != choice.name && items.size() > kMostTold;
+  return items.empty() || told ? name : fmt::format("{} ({})", name, fmt::join(items, ", "));
 }
 
 std::map<std::string, double> over_grains_height(std::map<std::string, double> figures,

@@ -135,6 +135,27 @@ TEST(ImportField, TakesConesInSpace) {
             0);
 }
 
+TEST(ImportField, WarnsOfWhatIsHardlySo) {
+  const Folder folder;
+  const auto told = [&](const std::string& head, double sign, const std::string& options) {
+    std::string text = head + ",component,value (kPa),error (kPa)\n";
+    for (int k = -6; k <= 6; ++k)
+      text += fmt::format("{},pressure,{},0.02\n", 20 * k, sign * (1.0 - 0.14 * std::abs(k)));
+    const Output out =
+        program("import-field " + folder.write("m.csv", text) + options + " -o " + (folder / "f"));
+    EXPECT_EQ(out.code, 0) << out.err;
+    return out.err;
+  };
+  EXPECT_EQ(told("x (mm)", 1, heap_options()), "");
+  EXPECT_THAT(told("x (m)", 1, heap_options()),
+              HasSubstr("warning: base: 12 of 13 places lie outside the heap, whose feet are at "
+                        "-0.139 and 0.139 m: is the unit of x right?"));
+  EXPECT_THAT(told("x (mm)", -1, heap_options()),
+              HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 150"),
+              HasSubstr("of the heap's weight: are the units"));
+}
+
 TEST(ImportField, SaysWhatIsWrongInOneLine) {
   const Folder folder;
   const auto refused = [&](const std::string& text, const std::string& options,
@@ -158,7 +179,7 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
           "m.csv:2: component: found \"presure\", allowed: "
           "pressure, shear, sigma_xx, sigma_yy, sigma_xy");
   refused(head + "1,pressure,2,-0.1\n", good,
-          "m.csv:2: column error: found -0.1, allowed: 0 and above");
+          "m.csv:2: column error: found -0.1, allowed: above 0, or empty where it is unknown");
   refused(head + "1,pressure,two,0.1\n", good,
           "m.csv:2: column value (kPa) (value): found \"two\", expected a finite number");
   refused(head + "1,pressure,2,0.1\n1,pressure,3,0.1\n", good,

@@ -309,10 +309,13 @@ class Field:
             raise ValueError("the points are no grid")
         return self[name].reshape(self.shape[::-1])
 
-    def plot(self, column: str = "sigma_yy", ax: Any = None) -> Any:
-        """Draws a grid as a map, lines as profiles with bands of one error; returns the axes."""
+    def plot(self, column: str | None = None, ax: Any = None) -> Any:
+        """Draws a grid as a map, lines as profiles with bands of one error; returns the axes.
+        By default the vertical stress: sigma_yy in the plane, sigma_zz in space."""
         from ._plots import plot_field
 
+        if column is None:
+            column = "sigma_yy" if self.points.shape[1] == 2 else "sigma_zz"
         return plot_field(self, column, ax)
 
 

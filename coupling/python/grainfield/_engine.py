@@ -103,7 +103,9 @@ class Engine:
 
     def step(self, n: int = 1) -> None:
         """Makes n steps. Calls of any length end in the same bits."""
-        self._core.step(n)
+        if isinstance(n, bool) or n != int(n) or n < 0:
+            raise ValueError(f"n: found {n}, allowed: a whole number, 0 or more")
+        self._core.step(int(n))
 
     def apply(
         self,

@@ -100,6 +100,9 @@ def _band(ax: Any, x: np.ndarray, mean: np.ndarray, error: np.ndarray | None, ro
 
 
 def plot_profiles(profiles: Table, ax: Any, profile: str | None) -> Any:
+    if "profile" not in profiles:
+        raise ValueError("these profiles are no grains beside models; their columns, to plot by hand: "
+                         + ", ".join(profiles))
     names = list(dict.fromkeys(profiles["profile"].tolist()))
     if profile is None:
         profile = names[0]

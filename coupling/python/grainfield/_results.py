@@ -61,7 +61,9 @@ class _Profiles:
         from ._plots import plot_profiles
 
         if self.profiles is None:
-            raise ValueError("there are no profiles to draw")
+            members = getattr(self, "members", None)
+            where = "; those of its members: .members[...].plot()" if members else ""
+            raise ValueError("there are no profiles to draw" + where)
         return plot_profiles(self.profiles, ax, profile)
 
 

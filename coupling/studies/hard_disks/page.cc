@@ -186,8 +186,8 @@ std::string gas_csv(const GasResults& results) {
   std::string out;
   if (results.setup.kind == "pressure") {
     out =
-        "fraction,compressibility,standard_error,theory,virial_series,collision_rate_over_enskog,"
-        "standard_error\n";
+        "fraction,compressibility,compressibility_error,theory,virial_series,"
+        "collision_rate_over_enskog,collision_rate_error\n";
     for (const GasState& s : results.states) {
       out += fmt::format("{},{:.9g},{:.3g},{:.9g},{:.9g},{:.9g},{:.3g}\n", s.fraction,
                          s.compressibility.mean, s.compressibility.error, s.theory, s.series,
@@ -196,8 +196,8 @@ std::string gas_csv(const GasResults& results) {
     return out;
   }
   out =
-      "fraction,time_over_haff,collisions_per_grain,temperature,standard_error,haff,"
-      "spin_temperature,standard_error\n";
+      "fraction,time_over_haff,collisions_per_grain,temperature,temperature_error,haff,"
+      "spin_temperature,spin_temperature_error\n";
   for (const GasState& s : results.states) {
     for (std::size_t k = 0; k < s.time.size(); ++k) {
       out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.3g},{},{:.9g},{:.3g}\n", s.fraction, s.time[k],
