@@ -28,6 +28,7 @@ const std::vector<Room>& rooms() {
        {"space", "image", "shapes", "laws", "neighbours", "contacts", "sleep", "motion", "walls",
         "snapshot"}},
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
+      {"implicit", {"space", "neighbours", "newton", "quasistatic"}},
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
