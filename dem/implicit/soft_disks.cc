@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "dem/computation_failed.h"
+#include "dem/image/image.h"
 #include "dem/implicit/soft_checks.h"
 #include "dem/neighbours/hierarchical_grid.h"
 #include "dem/newton/newton.h"
@@ -73,6 +74,8 @@ class SoftDisks::Work {
   SoftEnergy energy() const;
   std::vector<SoftTouch> touches() const;
   SoftRest rest() const;
+  std::string image() const;
+  void restore(const std::string& image);
 
  private:
   int count() const { return static_cast<int>(bodies_.size()); }
@@ -136,6 +139,7 @@ class SoftDisks::Work {
   bool try_step(double dt);
   void predict(Vector& z) const;
   void list(double margin);
+  void lay_out();
   bool listed_for(const Vector& z) const;
   double largest_force(const Vector& z) const;
   NewtonReport solve(Vector& z);
@@ -278,6 +282,15 @@ void SoftDisks::Work::list(double margin) {
     }
   }
   candidates_ = std::move(found);
+  lay_out();
+}
+
+// The matrix of these candidates.
+void SoftDisks::Work::lay_out() {
+  std::vector<std::pair<int, int>> pairs;
+  for (const Candidate& c : candidates_) {
+    if (c.j >= 0) pairs.emplace_back(c.i, c.j);
+  }
   lay_out_blocks(count(), 3, pairs, matrix_);
   analysed_ = false;
   for (Candidate& c : candidates_) {
@@ -545,6 +558,69 @@ SoftRest SoftDisks::Work::rest() const {
   return out;
 }
 
+std::string SoftDisks::Work::image() const {
+  ImageWriter out;
+  out.put(bodies_);
+  out.put(angles_);
+  out.put(listed_);
+  for (const double value : {margin_, losses_.normal, losses_.tangential, losses_.well,
+                             losses_.background, tally_.least_step}) {
+    out.put(value);
+  }
+  for (const long value : {tally_.steps, tally_.solves, tally_.iterations, tally_.halved,
+                           static_cast<long>(tally_.most_iterations)}) {
+    out.put(static_cast<std::int64_t>(value));
+  }
+  out.put(static_cast<std::uint64_t>(candidates_.size()));
+  for (const Candidate& c : candidates_) {
+    out.put(c.i);
+    out.put(c.j);
+    out.put(c.memory.spring);
+    out.put(c.memory.rest);
+    out.put(c.memory.whole);
+    out.put(c.touched);
+  }
+  return out.bytes();
+}
+
+void SoftDisks::Work::restore(const std::string& image) {
+  ImageReader in(image);
+  const std::size_t n = bodies_.size();
+  in.get(bodies_);
+  in.get(angles_);
+  in.get(listed_);
+  in.require(bodies_.size() == n && angles_.size() == n &&
+             (listed_.empty() || listed_.size() == n));
+  for (double* value : {&margin_, &losses_.normal, &losses_.tangential, &losses_.well,
+                        &losses_.background, &tally_.least_step}) {
+    in.get(*value);
+  }
+  std::int64_t counts[5];
+  for (std::int64_t& value : counts) in.get(value);
+  tally_.steps = counts[0];
+  tally_.solves = counts[1];
+  tally_.iterations = counts[2];
+  tally_.halved = counts[3];
+  tally_.most_iterations = static_cast<int>(counts[4]);
+  std::uint64_t found = 0;
+  in.get(found);
+  in.require(found <= image.size());
+  candidates_.assign(found, Candidate());
+  for (Candidate& c : candidates_) {
+    in.get(c.i);
+    in.get(c.j);
+    in.get(c.memory.spring);
+    in.get(c.memory.rest);
+    in.get(c.memory.whole);
+    in.get(c.touched);
+    in.require(c.i >= 0 && c.i < count() && c.j < count() &&
+               c.j >= -static_cast<int>(scene_.walls.size()));
+  }
+  in.finish();
+  time_ = static_cast<double>(tally_.steps) * settings_.time_step;
+  lay_out();
+}
+
 SoftDisks::SoftDisks(const SoftScene& scene, const std::vector<Body<2>>& disks,
                      const ImplicitSettings& settings)
     : work_(std::make_unique<Work>(scene, disks, settings)) {}
@@ -561,5 +637,7 @@ const SoftLosses& SoftDisks::losses() const { return work_->losses(); }
 const ImplicitTally& SoftDisks::tally() const { return work_->tally(); }
 std::vector<SoftTouch> SoftDisks::touches() const { return work_->touches(); }
 SoftRest SoftDisks::rest() const { return work_->rest(); }
+std::string SoftDisks::image() const { return work_->image(); }
+void SoftDisks::restore(const std::string& image) { work_->restore(image); }
 
 }  // namespace grainfield::dem

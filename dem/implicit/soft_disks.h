@@ -18,6 +18,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dem/implicit/soft_contact.h"
@@ -115,6 +116,11 @@ class SoftDisks {
   std::vector<SoftTouch> touches() const;
   /// Of the disks of finite mass.
   SoftRest rest() const;
+
+  /// The whole state, in bits, and back into one made of the same scene, settings and number of
+  /// disks: it goes on to the same bits. Throws std::invalid_argument when the image does not fit.
+  std::string image() const;
+  void restore(const std::string& image);
 
  private:
   class Work;

@@ -262,6 +262,16 @@ TEST(Implicit, SameBitsAgain) {
   one.step(300);
   for (int k = 0; k < 300; ++k) other.step(1);
   EXPECT_EQ(bits_of(one), bits_of(other));
+
+  // Stopped and resumed.
+  SoftDisks half(scene, start, steps_of(0.03)), rest(scene, start, steps_of(0.03));
+  half.step(143);
+  rest.restore(half.image());
+  rest.step(157);
+  EXPECT_EQ(rest.image(), one.image());
+  SoftDisks less(scene, {start[0]}, steps_of(0.03));
+  EXPECT_THROW(less.restore(half.image()), std::invalid_argument);
+  EXPECT_THROW(rest.restore(half.image() + "x"), std::invalid_argument);
 }
 
 // Relaxation changes the way of Newton's method, not where it ends.
