@@ -245,6 +245,24 @@ TEST(Implicit, WellHoldsADisk) {
   EXPECT_NEAR(x(gliding), 0.03 * 500 * dt, 1e-12);
 }
 
+// A disk of infinite mass goes on as it does; a light one that it hits leaves twice as fast.
+TEST(Implicit, FixedDisksGoOnAtTheirVelocity) {
+  SoftScene scene;
+  scene.grains.stiffness = 1e3;
+  Body<2> heavy = soft_disk(0, 0);
+  heavy.inverse_mass = heavy.inverse_inertia = 0;
+  heavy.velocity = {0.5, 0};
+  heavy.spin = 0.1;
+  SoftDisks disks(scene, {heavy, soft_disk(1.2, 0)}, steps_of(0.02));
+  disks.step(200);
+  EXPECT_EQ(disks.touches().size(), 0U);
+  EXPECT_NEAR(disks.bodies()[0].position.x(), 2, 1e-12);
+  EXPECT_NEAR(disks.angles()[0], 0.4, 1e-12);
+  EXPECT_EQ(disks.bodies()[0].velocity.x(), 0.5);
+  // The work of the heavy one is its way in each step: the energy is kept in its frame.
+  EXPECT_NEAR(disks.bodies()[1].velocity.x(), 1, 1e-9);
+}
+
 std::string bits_of(const SoftDisks& disks) {
   std::string out;
   for (const Body<2>& b : disks.bodies()) {

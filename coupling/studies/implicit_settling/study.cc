@@ -55,6 +55,13 @@ class SettlingAnalysis {
     }
     out.comparison.verdict.sentence = sentence(out.summary);
     out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+    const double halved = std::get<double>(out.summary.at("settling.halved"));
+    if (halved > 0) {
+      out.warnings.push_back(
+          fmt::format("{:g} time steps or parts of them were halved: Newton's method did not "
+                      "converge, or a disk moved too far (settling.step)",
+                      halved));
+    }
     out.texts.emplace_back("profiles.csv", base_csv());
     out.texts.emplace_back("history.csv", history_csv());
     out.overview = {{"at rest", "settling.at_rest", ""},
