@@ -14,6 +14,7 @@
   STUDY(sample) \
   STUDY(pair) \
   STUDY(hard_disks) \
+  STUDY(implicit_settling) \
   STUDY(elastic_layer) \
   STUDY(elastic_half_space) \
   STUDY(osl_wedge) \

@@ -51,6 +51,7 @@ const std::vector<Room>& rooms() {
         "statistics", "strain", "structure"}},
       {"studies/pair", {"case", "output", "report", "run"}},
       {"studies/hard_disks", {"case", "output", "report", "run"}},
+      {"studies/implicit_settling", {"case", "output", "report", "run", "studies/lattice_pile"}},
       {"studies/solvers", {"averaging", "case", "models", "run", "studies/point_load"}},
       {"studies/wedge",
        {"averaging", "case", "heap", "models", "output", "report", "run", "studies/point_load"}},

@@ -28,10 +28,11 @@ const std::vector<Room>& rooms() {
        {"space", "image", "shapes", "laws", "neighbours", "contacts", "sleep", "motion", "walls",
         "snapshot"}},
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
+      {"implicit", {"space", "image", "neighbours", "newton", "quasistatic"}},
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"collisions", "engine", "image", "laws", "motion", "heap", "packing", "quasistatic",
+       {"collisions", "engine", "image", "implicit", "laws", "motion", "heap", "packing", "quasistatic",
         "random", "shapes", "snapshot", "space", "walls"}},
   };
   return kRooms;

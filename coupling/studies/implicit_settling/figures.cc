@@ -1,0 +1,28 @@
+#include "coupling/studies/implicit_settling/keys.h"
+
+namespace grainfield::coupling {
+
+std::vector<SummaryKey> settling_figures() {
+  return {
+      {"settling.at_rest", "-", "1: the pile is at rest; 0: it still moves after max_time"},
+      {"settling.time", "-", "simulated, in sqrt(d/g)"},
+      {"settling.normal_max_error", "-",
+       "largest difference of a base disk's N from the closed form (Liffman 42) over the largest "
+       "N"},
+      {"settling.horizontal_max_error", "-", "the same of H (Liffman 44)"},
+      {"settling.row_contacts", "-", "contacts between neighbours of a row at the end"},
+      {"settling.iterations", "-", "of Newton's method, mean of all solves"},
+      {"settling.most_iterations", "-", "of one solve"},
+      {"settling.halved", "-", "steps or parts of steps that were halved"},
+      {"settling.balance_error", "m g d",
+       "largest change of kinetic, potential and elastic energy with all losses"},
+      {"settling.lost_normal", "m g d", "energy that dashpots along the normal took"},
+      {"settling.lost_tangential", "m g d", "energy that friction took"},
+      {"settling.lost_well", "m g d", "energy that the wells took"},
+      {"settling.spread", "d", "by how much the outermost base disks have parted"},
+      {"settling.spread_speed", "sqrt(g d)",
+       "how fast they part in the last tenth of the records; 0 at rest"},
+  };
+}
+
+}  // namespace grainfield::coupling
