@@ -21,7 +21,7 @@ namespace {
 
 // What is plausible of measured heaps: places up to so many feet from the axis, and so many of the
 // base's pressures carrying such a share of the weight.
-constexpr double kBeyondFoot = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
+constexpr double kOutside = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr std::size_t kEnoughToCarry = 5;
 
@@ -301,7 +301,7 @@ std::vector<std::string> measured_doubts(const Field& field) {
   const double right = h / std::tan(number("right_deg") * kDegree);
   std::vector<std::string> out;
   const auto x = field.points.col(0).array();
-  const Eigen::Index outside = (x < -kBeyondFoot * left || x > kBeyondFoot * right).count();
+  const Eigen::Index outside = (x < -kOutside * left || x > kOutside * right).count();
   if (outside > 0) {
     out.push_back(
         fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and "
