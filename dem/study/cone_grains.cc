@@ -111,8 +111,9 @@ void check_order(const char* less, double least, const char* more, double most) 
 void check_cone(const ConeSetup& s) {
   const ConePlan& p = s.plan;
   if (s.motion.integrator != "verlet") {
-    throw std::invalid_argument(fmt::format(
-        "motion.integrator: found {}, allowed with study = \"cone\": verlet", s.motion.integrator));
+    throw std::invalid_argument(
+        fmt::format("motion.integrator: found \"{}\", allowed with study = \"cone\": verlet",
+                    s.motion.integrator));
   }
   if (s.motion.energy_balance) {
     throw std::invalid_argument(

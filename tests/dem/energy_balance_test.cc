@@ -345,7 +345,7 @@ TEST(EnergyBalance, IsRefusedWhereItWouldNotHold) {
     return std::string("accepted");
   };
   EXPECT_EQ(refusal([](EngineSettings& s) { s.integrator = IntegratorKind::gear; }),
-            "energy_balance: found motion.integrator \"gear\", allowed: verlet");
+            "energy_balance: found motion.integrator \"gear\", allowed: verlet | runge_kutta");
   EXPECT_EQ(refusal([](EngineSettings& s) { s.sleep.on = true; }), "accepted");
 }
 
