@@ -68,7 +68,6 @@ TEST(Implicit, KeepsTheEnergyOfAGas) {
   EXPECT_GT(elastic, 0.1 * start.size() * 0.1);  // they do collide
   EXPECT_EQ(disks.tally().halved, 0);
   EXPECT_GT(disks.tally().iterations, disks.tally().solves / 4);
-  RecordProperty("drift", std::to_string(most / before));
   std::printf("gas: drift %.2e of the energy, %.2f iterations a step, at most %d\n",
               most / std::fabs(before),
               static_cast<double>(disks.tally().iterations) / disks.tally().solves,

@@ -135,9 +135,11 @@ class SettlingAnalysis {
     }
     return fmt::format(
         "After {:.3g} sqrt(d/g) the pile still moves: its base has spread by {:.3g} diameters and "
-        "goes on at {:.3g} sqrt(g d). {:.2g} iterations a solve.",
+        "goes on at {:.3g} sqrt(g d); the mean resultant is {:.2g} of the mean contact force. "
+        "{:.2g} "
+        "iterations a solve.",
         at("settling.time"), at("settling.spread"), at("settling.spread_speed"),
-        at("settling.iterations"));
+        at("dem.unbalanced_force_ratio"), at("settling.iterations"));
   }
 
   std::string base_csv() const {
@@ -176,6 +178,7 @@ class SettlingAnalysis {
       Frame frame;
       frame.title = normal ? "N" : "H";
       frame.series.push_back({"grains", x_, normal ? normal_ : horizontal_, {}, true});
+      frame.series.back().points = true;
       frame.series.push_back(
           {"closed form", x_, normal ? hard_normal_ : hard_horizontal_, {}, false});
       base.frames.push_back(std::move(frame));
@@ -187,8 +190,7 @@ class SettlingAnalysis {
       for (const auto& [name, label] : lines) {
         Frame frame;
         frame.title = label;
-        Series series{"grains", time, columns_.at(name), {}, true};
-        frame.series.push_back(std::move(series));
+        frame.series.push_back({"grains", time, columns_.at(name), {}, true});
         out.frames.push_back(std::move(frame));
       }
       return out;

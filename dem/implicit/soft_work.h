@@ -1,0 +1,134 @@
+// The inside of SoftDisks: the state, the list of pairs, and a step.
+#pragma once
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseLU>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "dem/implicit/soft_disks.h"
+#include "dem/neighbours/hierarchical_grid.h"
+#include "dem/newton/newton.h"
+
+namespace grainfield::dem {
+
+/// A pair, or a disk and a wall, that may touch in this step.
+struct SoftCandidate {
+  int i = 0, j = 0;  ///< j = -1 - w: wall w
+  SoftMemory memory;
+  bool touched = false;         ///< at the end of the last step
+  std::array<int, 4> places{};  ///< of the blocks (i, i), (i, j), (j, i), (j, j) in the matrix
+};
+
+class SoftDisks::Work {
+ public:
+  Work(const SoftScene& scene, const std::vector<Body<2>>& disks, const ImplicitSettings& settings);
+
+  void step(long steps);
+
+  double time() const { return time_; }
+  const std::vector<Body<2>>& bodies() const { return bodies_; }
+  const std::vector<double>& angles() const { return angles_; }
+  const SoftLosses& losses() const { return losses_; }
+  const ImplicitTally& tally() const { return tally_; }
+  SoftEnergy energy() const;
+  std::vector<SoftTouch> touches() const;
+  SoftRest rest() const;
+  std::string image() const;
+  void restore(const std::string& image);
+
+ private:
+  using Vector = Eigen::VectorXd;
+  using Vec = Eigen::Vector2d;
+
+  static Vec plain(const VectorOf<2>& v) { return {v.x(), v.y()}; }
+  int count() const { return static_cast<int>(bodies_.size()); }
+  const SoftLaw& law_of(const SoftCandidate& c) const {
+    return c.j < 0 ? scene_.walls[static_cast<std::size_t>(-1 - c.j)].law : scene_.grains;
+  }
+  /// Share of the distance of the centres that belongs to each disk.
+  double share_i(const SoftCandidate& c) const {
+    return c.j < 0 ? 1 : bodies_[c.i].radius / (bodies_[c.i].radius + bodies_[c.j].radius);
+  }
+
+  /// Height above a wall and place along it.
+  double height(const SoftCandidate& c) const {
+    const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
+    return plain(w.normal).dot(plain(bodies_[c.i].position - w.point));
+  }
+  double place(const SoftCandidate& c) const {
+    const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
+    const Vec x = plain(bodies_[c.i].position - w.point);
+    return w.normal.y() * x.x() - w.normal.x() * x.y();
+  }
+  double overlap(const SoftCandidate& c) const {
+    if (c.j < 0) return bodies_[c.i].radius - height(c);
+    return bodies_[c.i].radius + bodies_[c.j].radius -
+           plain(bodies_[c.j].position - bodies_[c.i].position).norm();
+  }
+  /// Pull of a wall's well now, N.
+  double well_now(const SoftCandidate& c) const {
+    const SoftLaw& law = law_of(c);
+    const double s = overlap(c);
+    if (c.j >= 0 || !c.memory.whole || !(law.static_friction > 0) || !(s > 0)) return 0;
+    const double most = law.static_friction * law.stiffness * s;
+    return -std::clamp(most / law.well * (place(c) - c.memory.rest), -most, most);
+  }
+
+  template <class T>
+  bool force_of(const SoftCandidate& c, const SoftMotion<T>& m, SoftForce<T>& out) const {
+    const SoftLaw& law = law_of(c);
+    if (c.j < 0) {
+      const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
+      return soft_wall(law, dt_, Vec(-plain(w.normal)), height(c), place(c), bodies_[c.i].radius,
+                       c.memory, m, out);
+    }
+    const Vec way = plain(bodies_[c.j].position - bodies_[c.i].position);
+    return soft_pair(law, dt_, way, bodies_[c.i].radius + bodies_[c.j].radius, c.memory, m, out);
+  }
+  /// From the unknowns (u/R, a) of all disks.
+  SoftMotion<double> motion_of(const SoftCandidate& c, const Vector& z) const {
+    const double share = share_i(c);
+    SoftMotion<double> m;
+    m.shift = bodies_[c.i].radius * z.segment<2>(3 * c.i);
+    m.turn = share * z[3 * c.i + 2];
+    if (c.j >= 0) {
+      m.shift -= bodies_[c.j].radius * z.segment<2>(3 * c.j);
+      m.turn += (1 - share) * z[3 * c.j + 2];
+    }
+    return m;
+  }
+
+  void advance(double dt, int halvings);
+  bool try_step(double dt);
+  void predict(Vector& z) const;
+  void list(double margin);
+  void lay_out();
+  bool listed_for(const Vector& z) const;
+  double largest_force(const Vector& z) const;
+  NewtonReport solve(Vector& z);
+  bool residual(const Vector& z, Vector& r) const;
+  bool factorize(const Vector& z);
+  void commit(const Vector& z);
+
+  SoftScene scene_;
+  ImplicitSettings settings_;
+  std::vector<Body<2>> bodies_;
+  std::vector<double> angles_;
+  double widest_ = 0, stiffest_ = 0;  // m, N/m
+  double time_ = 0, dt_ = 0, scale_ = 1;
+  ImplicitTally tally_;
+  SoftLosses losses_;
+  std::string why_;  // the last step failed
+
+  HierarchicalGrid<2> grid_;
+  std::vector<SoftCandidate> candidates_;
+  std::vector<VectorOf<2>> listed_;  // places when the list was made
+  double margin_ = -1;               // m
+
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> solver_;
+  bool analysed_ = false;
+};
+
+}  // namespace grainfield::dem
