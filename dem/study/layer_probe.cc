@@ -45,6 +45,8 @@ Eigen::Matrix3d imposed_gradient(const std::string& direction, double strain) {
   return out;
 }
 
+// A contact that no probe sees may reach into the slab with such a share of its branch.
+constexpr double kMostLost = 0.2;
 [[noreturn]] void refuse_thin_layer(double height) {
   throw ComputationFailed(fmt::format(
       "load.probe_strain: the layer is {:.3g} m deep, too thin to be strained: contacts of the "
@@ -83,7 +85,7 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
     };
     if (!held(c.i) || (c.j >= 0 && !held(c.j))) return false;
     const double z = layer_.grains[static_cast<std::size_t>(c.i)].position.z();
-    if (share_within(z, far_end(layer_, c).z(), low_, high_) > 0) refuse_thin_layer(height);
+    if (share_within(z, far_end(layer_, c).z(), low_, high_) > kMostLost) refuse_thin_layer(height);
     return true;
   });
   before_ = stress_of(layer, Eigen::Matrix3d::Zero());

