@@ -78,7 +78,7 @@ spheres spheres "$work/spheres.h5.csv" "hooke/history 1e5 3e4 2000 1000 0.5 1"
 spheres hertz "$work/spheres.h5_hertz.csv" "hertz/history 7.326007326007326e6 9.049773755656109e6 4e6 2e6 0.5 1"
 median() { sort -g | awk '{a[NR]=$1} END {print a[int((NR+1)/2)]}'; }
 own() { # NAME, threads, program
-  "${3:-$program}" --benchmark_filter="^$1/$2/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
+  "${3:-$program}" --benchmark_filter="(^|[<:/])$1/$2/" --benchmark_min_time=2 --benchmark_format=csv 2>/dev/null |
   awk -F, -v n="$1" 'NR==1{for(i=1;i<=NF;i++){gsub(/"/,"",$i); if($i=="grain_steps") k=i}} index($0,n){print $k/1e6}'; }
 theirs() { # in.NAME, a file for the figure
   (cd "$work" && OMP_NUM_THREADS=1 lmp -log none -screen "$work/out" -in "in.$1") || { tail -3 "$work/out" >&2; exit 1; }
