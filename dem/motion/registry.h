@@ -13,7 +13,8 @@ using AnyIntegrator = std::variant<Verlet, Gear, RungeKutta>;
 
 struct IntegratorKind : Choice<AnyIntegrator> {
   using Choice::Choice;
-  static const IntegratorKind verlet, gear, runge_kutta;  // for C++ callers; words come through named()
+  static const IntegratorKind verlet, gear,
+      runge_kutta;  // for C++ callers; words come through named()
 
   /// Throws std::invalid_argument naming motion.integrator.
   static IntegratorKind named(const std::string& word) {
