@@ -51,7 +51,8 @@ std::string bash_completion(const CLI::App& app) {
     choices += fmt::format("    {}) options=\"{}\"; words=\"{}\" ;;\n", command->get_name(),
                            option_words(*command), kind_of_words(*command));
   }
-  return fmt::format(R"(# bash completion for grainfield, written by the program from its own options
+  return fmt::format(
+      R"(# bash completion for grainfield, written by the program from its own options
 _grainfield() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} options words
   COMPREPLY=()
@@ -76,9 +77,8 @@ _grainfield() {{
 }}
 complete -o filenames -F _grainfield grainfield
 )",
-                     fmt::arg("commands", fmt::join(names, " ")),
-                     fmt::arg("own", option_words(app)), fmt::arg("choices", choices),
-                     fmt::arg("models", model_words()));
+      fmt::arg("commands", fmt::join(names, " ")), fmt::arg("own", option_words(app)),
+      fmt::arg("choices", choices), fmt::arg("models", model_words()));
 }
 
 }  // namespace grainfield::coupling

@@ -25,7 +25,8 @@ std::string plain_roff(const std::string& text) {
   return out;
 }
 
-std::string heading(const std::string& name) {
+std::string heading(std::string name) {
+  for (char& c : name) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   return fmt::format(".TH {} 1 \"\" \"grainfield {}\" \"grainfield\"\n", name, version());
 }
 
@@ -103,7 +104,7 @@ bool is_flag(const CLI::Option& option) { return option.get_items_expected_max()
 
 std::string manual_of_program(const CLI::App& app) {
   const std::vector<const CLI::App*> commands = shown_commands(app);
-  std::string out = heading("GRAINFIELD");
+  std::string out = heading("grainfield");
   out += ".SH NAME\ngrainfield \\- grains in, fields out, and a verdict on the continuum models\n";
   out += ".SH SYNOPSIS\n.B grainfield\n.I COMMAND\n[\\fIARGUMENTS\\fR]\n";
   out +=
@@ -128,15 +129,16 @@ std::string manual_of_program(const CLI::App& app) {
 
 std::string manual_of_command(const CLI::App& command) {
   const std::string name = plain_roff(command.get_name());
-  std::string out = heading("GRAINFIELD\\-" + name);
+  std::string out = heading("grainfield\\-" + name);
   out += fmt::format(".SH NAME\ngrainfield\\-{} \\- {}\n", name,
                      plain_roff(command.get_description()));
   out += fmt::format(".SH SYNOPSIS\n.B grainfield {}\n", name);
   const auto positional = positional_options(command);
   for (const CLI::Option* option : positional) {
-    const std::string word = plain_roff(option->get_name(true)) + (takes_many(*option) ? "..." : "");
-    out += option->get_required() ? fmt::format(".I {}\n", word)
-                                  : fmt::format("[\\fI{}\\fR]\n", word);
+    const std::string word =
+        plain_roff(option->get_name(true)) + (takes_many(*option) ? "..." : "");
+    out +=
+        option->get_required() ? fmt::format(".I {}\n", word) : fmt::format("[\\fI{}\\fR]\n", word);
   }
   out += "[\\fIOPTIONS\\fR]\n";
   if (!positional.empty()) {

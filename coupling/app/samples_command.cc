@@ -1,6 +1,7 @@
-// samples: the packings that come with the program, to try the other commands on.
+// samples: packings and a table that come with the program, to try the other commands on.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "coupling/app/commands.h"
@@ -15,10 +16,15 @@ namespace grainfield::coupling {
 namespace {
 
 void list_sample(const std::filesystem::path& file) {
+  if (file.extension() == ".csv") {
+    const std::string text = read_text_file(file.string());
+    say("{:<14} {} lines\n", file.filename().string(), std::count(text.begin(), text.end(), '\n'));
+    return;
+  }
   const std::vector<std::string> groups = dem::list_snapshots(file.string());
   if (groups.empty()) return;
   const dem::Snapshot first = dem::read_snapshot(file.string(), groups.front());
-  say("{:<10} {}D, {} states, {} grains in the first, {} KiB\n", file.filename().string(),
+  say("{:<14} {}D, {} states, {} grains in the first, {} KiB\n", file.filename().string(),
       first.dim, groups.size(), first.grains.size(), std::filesystem::file_size(file) / 1024);
 }
 
@@ -35,7 +41,8 @@ void copy_samples(const std::vector<std::filesystem::path>& files, const std::st
 }  // namespace
 
 void add_samples(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("samples", "the shipped packings to try the commands on");
+  auto* command =
+      app.add_subcommand("samples", "shipped packings and a measurement to try the commands on");
   auto to = std::make_shared<std::string>();
   add_output(*command, *to, "folder: copies them there");
   command->callback([=, &action] {

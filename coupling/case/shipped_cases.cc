@@ -52,6 +52,7 @@ std::vector<fs::path> shipped_cases() {
 std::vector<fs::path> shipped_samples() {
   const fs::path folder = cases_folder() / "samples";
   std::vector<fs::path> files = files_of(folder, ".h5");
+  for (const fs::path& table : files_of(folder, ".csv")) files.push_back(table);
   if (files.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: holds no sample files; set GRAINFIELD_CASES to the folder above", folder.string()));

@@ -14,7 +14,8 @@ std::filesystem::path cases_folder();
 /// holds none.
 std::vector<std::filesystem::path> shipped_cases();
 
-/// The shipped packings, sorted by name: the HDF5 files of `samples` below the folder of the cases.
+/// The shipped packings and tables, each sorted by name: the HDF5 and CSV files of `samples` below
+/// the folder of the cases.
 /// Throws std::invalid_argument naming the folder when it holds none.
 std::vector<std::filesystem::path> shipped_samples();
 
