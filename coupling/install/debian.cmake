@@ -12,6 +12,7 @@ continuum models in closed form and with finite elements, fits their
 constants, and reports which theory the grains support.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_VERBATIM_VARIABLES ON)
 # Where Debian's interpreter of any version looks.

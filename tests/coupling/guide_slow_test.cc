@@ -114,9 +114,10 @@ TEST(Guide, EveryCommandSaysWhatThePageSays) {
 }
 
 // A table for a command of experiments.md: positions over h or in mm, made up.
-std::string table(bool heap, double height, double slope, double rho_g) {
-  std::string out = heap ? "x (mm),component,value (kPa),error (kPa)\n"
-                         : "x (h),component,value (F/h),error (F/h)\n";
+std::string table(bool heap, double height, double slope, double rho_g,
+                  const std::string& unit = "kPa") {
+  std::string out =
+      fmt::format("x ({}),component,value ({}),error ({})\n", heap ? "mm" : "h", unit, unit);
   for (int k = -8; k <= 8; ++k) {
     const double share = k / 9.0;
     const double foot = height / std::tan(slope * std::numbers::pi / 180);
@@ -130,8 +131,9 @@ std::string table(bool heap, double height, double slope, double rho_g) {
 
 TEST(Experiments, EveryCommandRuns) {
   const Folder folder;
-  for (const char* name : {"geng", "serero_dense", "mueggenburg"})
-    folder.write(name + std::string(".csv"), table(false, 1, 30, 0));
+  folder.write("geng.csv", table(false, 1, 30, 0, "F/h"));
+  folder.write("serero_dense.csv", table(false, 1, 30, 0, "F/h2"));
+  folder.write("mueggenburg.csv", table(false, 1, 30, 0, "F/h2"));
   folder.write("smid_novosad.csv", table(true, 0.6, 32.6, 15000));
   folder.write("vanel_point.csv", table(true, 0.08, 30, 15000));
   folder.write("vanel_rain.csv", table(true, 0.08, 30, 15000));

@@ -6,7 +6,7 @@ set -euo pipefail
 package=$(realpath "$1")
 root=${2:-$(mktemp -d)/root}
 mirror=$(sed -nE 's/^(URIs: |deb )(http[^ ]*debian\/?)( .*)?$/\2/p' /etc/apt/sources.list \
-  /etc/apt/sources.list.d/* 2> /dev/null | grep -v security | head -n 1)
+  /etc/apt/sources.list.d/* 2> /dev/null | grep -v security | head -n 1 || true)
 if [ ! -e "$root/etc/debian_version" ]; then
   debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}"
 fi
