@@ -118,7 +118,10 @@ std::string manual_of_program(const CLI::App& app) {
   out += options_text(app) + kExitStatus;
   out += ".SH ENVIRONMENT\n" +
          item("\\fBGRAINFIELD_CASES\\fR",
-              "Folder of the shipped cases, instead of that beside the program.");
+              "Folder of the shipped cases, instead of that beside the program.") +
+         item("\\fBGRAINFIELD_PREFIX\\fR",
+              "Folder above lib/grainfield and share/grainfield, instead of the one above the "
+              "program's own: for programs that link the libraries.");
   out += ".SH SEE ALSO\n";
   for (std::size_t n = 0; n < commands.size(); ++n) {
     out += fmt::format(".BR grainfield\\-{} (1){}\n", plain_roff(commands[n]->get_name()),

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # clean_root.sh PACKAGE.deb [ROOT]: installs the package with what it depends on into a bare Debian
 # 12 made by debootstrap (as root; about 2 GB) and uses it there by name: a run, the Python module,
-# finite elements, the manual. ROOT, when it holds a Debian already, is used as it is.
+# finite elements, the manual. ROOT, when it holds a Debian already, is used as it is. LINK=1: what
+# the package suggests for it is installed too, and docs/examples/link is built and run there.
 set -euo pipefail
 package=$(realpath "$1")
 root=${2:-$(mktemp -d)/root}
@@ -26,4 +27,10 @@ inside python3 -c 'import grainfield as gf; print(gf.__version__, len(gf.read("/
 inside sh -c 'test -s /usr/share/man/man1/grainfield-fit.1.gz && test -s /usr/share/bash-completion/completions/grainfield'
 inside sh -c 'test -s /usr/lib/cmake/grainfield/grainfieldConfig.cmake && test -s /usr/include/grainfield/dem/engine/engine.h'
 inside apt-get check -q
+if [ "${LINK:-0}" = 1 ]; then
+  tools=$(inside dpkg-query -W -f '${Suggests}' grainfield | tr -d ' ' | tr ',' '\n' | grep -v paraview | tr '\n' ' ')
+  # shellcheck disable=SC2086  # a list of names
+  inside env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends make $tools
+  inside sh -c 'cp -r /usr/share/doc/grainfield/docs/examples/link /root/link && cd /root/link && cmake -B build . && cmake --build build && build/load_on_grains'
+fi
 echo "installed and used in a clean root"
