@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
 #include <system_error>
 
 namespace grainfield::continuum {
@@ -9,6 +10,7 @@ namespace grainfield::continuum {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> installed_prefixes() {
+  if (const char* given = std::getenv("GRAINFIELD_PREFIX")) return {given};
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   Dl_info here = {};

@@ -27,6 +27,8 @@ void add_reproduce(CLI::App& app, Action& action);
 void add_strain(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
+void add_samples(CLI::App& app, Action& action);
+void add_manual(CLI::App& app, Action& action);
 
 /// The option -o,--output of a command; an empty name is refused.
 CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning);

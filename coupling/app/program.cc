@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <exception>
 #include <sstream>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
+#include "coupling/app/manual.h"
 #include "coupling/app/terminal.h"
 #include "coupling/system/failure.h"
 #include "coupling/system/signals.h"
@@ -45,10 +45,13 @@ int parse_and_act(int argc, char** argv) {
   add_strain(app, action);
   add_structure(app, action);
   add_info(app, action);
+  add_samples(app, action);
+  add_manual(app, action);
   if (argc > 1 && argv[1][0] != '-') {
-    std::vector<std::string> names;
-    for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
-    if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+    const auto called = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+    if (app.get_subcommands(called).empty()) {
+      std::vector<std::string> names;
+      for (const auto* command : shown_commands(app)) names.push_back(command->get_name());
       return complain(2, fmt::format("unknown command \"{}\"; nearest: {} (grainfield --help)",
                                      argv[1], continuum::nearest(argv[1], names)));
     }

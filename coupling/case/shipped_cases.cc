@@ -15,16 +15,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<fs::path> there() {
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (fs::directory_iterator at(cases_folder(), error); !error && at != fs::directory_iterator();
+  for (fs::directory_iterator at(folder, error); !error && at != fs::directory_iterator();
        at.increment(error)) {
-    if (at->path().extension() == ".toml") files.push_back(at->path());
+    if (at->path().extension() == extension) files.push_back(at->path());
   }
   std::sort(files.begin(), files.end());
   return files;
 }
+
+std::vector<fs::path> there() { return files_of(cases_folder(), ".toml"); }
 
 }  // namespace
 
@@ -43,6 +45,17 @@ std::vector<fs::path> shipped_cases() {
   if (files.empty()) {
     throw std::invalid_argument(fmt::format(
         "{}: holds no case files; set GRAINFIELD_CASES to their folder", cases_folder().string()));
+  }
+  return files;
+}
+
+std::vector<fs::path> shipped_samples() {
+  const fs::path folder = cases_folder() / "samples";
+  std::vector<fs::path> files = files_of(folder, ".h5");
+  for (const fs::path& table : files_of(folder, ".csv")) files.push_back(table);
+  if (files.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: holds no sample files; set GRAINFIELD_CASES to the folder above", folder.string()));
   }
   return files;
 }

@@ -14,6 +14,11 @@ std::filesystem::path cases_folder();
 /// holds none.
 std::vector<std::filesystem::path> shipped_cases();
 
+/// The shipped packings and tables, each sorted by name: the HDF5 and CSV files of `samples` below
+/// the folder of the cases.
+/// Throws std::invalid_argument naming the folder when it holds none.
+std::vector<std::filesystem::path> shipped_samples();
+
 /// The case file that `name` means: the file of that name or of that name with ".toml", else the
 /// shipped case so called (with or without ".toml"). Throws std::invalid_argument for neither, with
 /// the nearest shipped name.

@@ -1,0 +1,29 @@
+// Pages of the manual and shell completion, written from the commands' own declarations.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// The commands of the program that --help lists, in that order.
+std::vector<const CLI::App*> shown_commands(const CLI::App& app);
+
+/// The options of a command (or of the program) with a dash, and those without, as declared.
+std::vector<const CLI::Option*> dashed_options(const CLI::App& command);
+std::vector<const CLI::Option*> positional_options(const CLI::App& command);
+
+/// True for an option that stands alone, such as --quick.
+bool is_flag(const CLI::Option& option);
+
+/// grainfield(1) in man's markup: what the commands are, exit status, environment.
+std::string manual_of_program(const CLI::App& app);
+
+/// grainfield-NAME(1): synopsis, arguments and options of one command.
+std::string manual_of_command(const CLI::App& command);
+
+/// A file for bash: completes commands, their options, names of shipped cases and of models, and
+/// else names of files.
+std::string bash_completion(const CLI::App& app);
+
+}  // namespace grainfield::coupling
