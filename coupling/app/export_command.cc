@@ -1,18 +1,23 @@
-// export: a packing of ours as the input of another program.
+// export: a packing or a field of ours for another program, or for the eye.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
+#include "continuum/model.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
 #include "coupling/case/case.h"
 #include "coupling/case/shipped_cases.h"
 #include "coupling/case/study.h"
+#include "coupling/export/exporters.h"
 #include "coupling/export/lammps_deck.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/field_io.h"
 #include "coupling/output/output_folder.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -20,7 +25,8 @@ namespace grainfield::coupling {
 namespace {
 
 struct ExportRequest {
-  std::string to, case_file, snapshots, group, output;
+  std::vector<std::string> files;
+  std::string to, case_file, snapshots, group, column = "sigma_yy", output;
   std::vector<std::string> sets;
   bool quick = false;
 };
@@ -62,10 +68,79 @@ void take_load(const std::string& file, const std::string& group, const dem::Sna
   }
 }
 
-int export_packing(const ExportRequest& given) {
-  if (given.to != "lammps") {
-    throw std::invalid_argument(fmt::format("--to: found \"{}\", allowed: lammps", given.to));
+// "/realization_000/loaded" as the beginning of file names.
+std::string stem_of(const std::string& group) {
+  std::string out;
+  for (const char ch : group) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(ch)) != 0 || ch == '_' || ch == '.';
+    if (plain) out += ch;
+    if (!plain && !out.empty() && out.back() != '-') out += '-';
   }
+  return out.empty() ? "packing" : out;
+}
+
+// The names in a file, or the one asked for: with --group, or behind the file's name and a colon.
+std::vector<std::string> chosen(const std::vector<std::string>& there, const std::string& wanted,
+                                const std::string& file) {
+  if (wanted.empty()) return there;
+  for (const std::string& name : there) {
+    if (name == wanted || name == "/" + wanted) return {name};
+  }
+  throw std::invalid_argument(fmt::format("{}: found no \"{}\", allowed: {}; nearest: {}", file,
+                                          wanted, fmt::join(there, ", "),
+                                          continuum::nearest(wanted, there)));
+}
+
+int export_file(const ExportRequest& given) {
+  const Exporter& exporter = find_exporter(given.to);
+  if (given.files.size() != 1) {
+    throw std::invalid_argument(
+        fmt::format("--to {}: found {} files, expected one, FILE.h5 or FILE.h5:NAME", given.to,
+                    given.files.size()));
+  }
+  std::string file = given.files.front(), wanted = given.group;
+  const std::size_t at = file.rfind(':');
+  if (at != std::string::npos && !std::filesystem::exists(file)) {
+    wanted = file.substr(at + 1);
+    file = file.substr(0, at);
+  }
+  const std::vector<std::string> packings = dem::list_snapshots(file);
+  const std::vector<std::string> fields = packings.empty() ? list_fields(file) : packings;
+  if (fields.empty()) throw std::invalid_argument(file + ": holds neither packings nor fields");
+  if (packings.empty() ? exporter.field == nullptr : exporter.packing == nullptr) {
+    throw std::invalid_argument(fmt::format("--to {}: {} holds {}, found no form for these",
+                                            given.to, file,
+                                            packings.empty() ? "fields" : "packings"));
+  }
+  const std::vector<std::string> names = chosen(fields, wanted, file);
+  OutputFolder folder(given.output, "grainfield export");
+  folder.require_other_than({file});
+  for (const std::string& name : names) {
+    const std::string title = std::filesystem::path(file).filename().string() + ", " + name;
+    const ExportTarget target{folder, stem_of(name), title, given.column};
+    if (packings.empty()) {
+      exporter.field(read_field(file, name), target);
+    } else {
+      exporter.packing(dem::read_snapshot(file, name), target);
+    }
+  }
+  folder.publish();
+  say("{} of {} as {} in {}\n",
+      names.size() == 1 ? names.front() : fmt::format("{} states", names.size()), file, given.to,
+      given.output);
+  return 0;
+}
+
+int export_deck(ExportRequest given) {
+  if (given.files.size() != 2) {
+    throw std::invalid_argument(
+        fmt::format("--to lammps: found {} file(s), expected two: the case with law, friction and "
+                    "damping, and the "
+                    "snapshots",
+                    given.files.size()));
+  }
+  given.case_file = given.files.front();
+  given.snapshots = given.files.back();
   Case value = read_case(find_case(given.case_file), given.quick, given.sets);
   const Study& study = study_of(value);
   if (study.material == nullptr || study.motion == nullptr || study.foresee == nullptr) {
@@ -97,19 +172,28 @@ int export_packing(const ExportRequest& given) {
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("export", "a packing of spheres as LAMMPS' data and input deck");
+  auto* command = app.add_subcommand(
+      "export",
+      "packings and fields for ParaView, as tables, pictures or pages; a deck for LAMMPS");
   auto given = std::make_shared<ExportRequest>();
-  command->add_option("case", given->case_file, "case file with law, friction and damping")
-      ->required();
-  command->add_option("snapshots", given->snapshots, "HDF5 file of ours")->required();
-  command->add_option("--to", given->to, "lammps")->required();
-  command->add_option("--group", given->group, "snapshot; default: the first unloaded one");
-  command->add_option("--set", given->sets, "override of the case: key.path=value")
+  command
+      ->add_option("files", given->files,
+                   "FILE.h5 (all in it) or FILE.h5:NAME; for lammps: CASE.toml FILE.h5")
+      ->required()
+      ->expected(1, 2);
+  std::string forms = "lammps: packing and input deck";
+  for (const Exporter& one : exporters()) forms += fmt::format("; {}: {}", one.name, one.meaning);
+  command->add_option("--to", given->to, forms)->required();
+  command->add_option("--group", given->group,
+                      "the one of this name; default: all, for lammps the first unloaded one");
+  command->add_option("--column", given->column, "of a field's picture");
+  command->add_option("--set", given->sets, "lammps: override of the case: key.path=value")
       ->allow_extra_args(false);
-  command->add_flag("--quick", given->quick, "with the case's quick setting");
+  command->add_flag("--quick", given->quick, "lammps: with the case's quick setting");
   add_output(*command, given->output, "folder")->required();
-  command->callback([=, &action] { action = [=] { return export_packing(*given); }; });
+  command->callback([=, &action] {
+    action = [=] { return given->to == "lammps" ? export_deck(*given) : export_file(*given); };
+  });
 }
 
 }  // namespace grainfield::coupling

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <boost/beast/core/detail/base64.hpp>
+#include <regex>
 #include <sstream>
 
 #include "coupling/output/atomic_file.h"
+#include "coupling/report/drawing.h"
 #include "coupling/report/gnuplot.h"
 
 namespace grainfield::coupling {
@@ -41,6 +43,12 @@ std::string escape(const std::string& text) {
   return out;
 }
 
+// Names of pages beside this one lead there.
+std::string linked(const std::string& text) {
+  static const std::regex page(R"(\b[a-z0-9_-]+\.html\b)");
+  return std::regex_replace(text, page, R"(<a href="$&">$&</a>)");
+}
+
 std::string base64(const std::string& bytes) {
   namespace codec = boost::beast::detail::base64;
   std::string out(codec::encoded_size(bytes.size()), '\0');
@@ -62,7 +70,7 @@ class Page {
     const auto flush = [&] {
       if (!paragraph.empty())
         out += fmt::format("<p{}>{}</p>\n", text.verdict ? " class=\"verdict\"" : "",
-                           escape(paragraph));
+                           linked(escape(paragraph)));
       paragraph.clear();
     };
     for (std::string line; std::getline(lines, line);) {
@@ -90,20 +98,11 @@ class Page {
   }
 
   std::string operator()(const Picture& picture) {
-    const std::string font = "font 'DejaVu Sans,13'";
     std::string image;
     if (!gnuplot_) {
       image = missing("gnuplot not found: install gnuplot-nox");
     } else {
-      // Bitmaps are drawn at twice the size, for sharp lines on dense screens.
-      const std::string terminal = picture.bitmap
-                                       ? fmt::format(
-                                             "pngcairo size {},{} fontscale 2 linewidth 2 "
-                                             "pointscale 2 {} background 'white'",
-                                             2 * picture.width, 2 * picture.height, font)
-                                       : fmt::format("svg size {},{} dynamic {} background 'white'",
-                                                     picture.width, picture.height, font);
-      const Drawing drawing = draw(*gnuplot_, terminal, picture.program);
+      const Drawing drawing = draw_picture(*gnuplot_, picture, picture.bitmap);
       if (drawing.bytes.empty())
         image = missing("gnuplot failed: " + drawing.error);
       else

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "coupling/case/study.h"
+#include "coupling/export/packing_page.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/vtu.h"
 #include "coupling/run/realization_file.h"
@@ -73,6 +74,18 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
   if (!result.realizations.empty()) first = read_realization(result.realizations.front());
   const auto page = result.page ? result.page : plain_page;
   Report report = page(result, result.realizations.empty() ? nullptr : &first);
+  if (!first.snapshots.empty()) {
+    const auto& [name, state] = first.snapshots.back();
+    write_text_file(folder + "/packing.html",
+                    packing_page(state, fmt::format("{}: {}", title_of(result.value), name)));
+    report.sections.emplace_back(
+        Text{"Grain by grain",
+             fmt::format(
+                 "packing.html shows the {} state of the first realization; it zooms, and tells a "
+                 "grain's numbers under the pointer.",
+                 name),
+             false});
+  }
   if (!result.warnings.empty()) {
     const auto at = report.sections.begin() + (report.sections.empty() ? 0 : 1);
     report.sections.insert(
