@@ -72,7 +72,7 @@ std::unique_ptr<Model> make_in_plugin(const Settings& settings) {
 
 std::vector<Parameter> common_parameters() {
   return {choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"}),
-          number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+          number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
           number("E", "Pa", "Young's modulus (N/m in 2D); the stress does not depend on it",
                  "elasticity", 1e7, kAboveZero, kUnbounded),
           // Beyond this displacement elements lock and the iterations grow.
@@ -253,7 +253,7 @@ ModelInfo fe_orthotropic_layer_info() {
       "elements",
       2,
       joined(
-          {{number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+          {{number("F", "N", "load at the origin, down", "Roul 5.2", 1, 0, kUnbounded),
             number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); isotropic: 1", source, 1,
                    -kUnbounded, kUnbounded),
             number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),

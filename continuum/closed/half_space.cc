@@ -47,7 +47,7 @@ ModelInfo flamant_info() {
   return {"flamant",
           "elastic half plane under a line load",
           2,
-          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded)},
+          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, 0, kUnbounded)},
           [](const Settings& s) -> std::unique_ptr<Model> {
             return std::make_unique<Flamant>(number_of(s, "F"));
           }};
@@ -58,7 +58,7 @@ ModelInfo boussinesq_info() {
       "boussinesq",
       "elastic half space under a point load",
       3,
-      {number("F", "N", "load at the origin, down", "Boussinesq 1885", 1, -kUnbounded, kUnbounded),
+      {number("F", "N", "load at the origin, down", "Boussinesq 1885", 1, 0, kUnbounded),
        number("nu", "-", "Poisson's ratio; the vertical stresses do not depend on it",
               "Boussinesq 1885", 0.3, 0, 0.5)},
       [](const Settings& s) -> std::unique_ptr<Model> {

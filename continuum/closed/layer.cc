@@ -165,7 +165,7 @@ ModelInfo layer_info() {
       "layer",
       "elastic layer on a rigid base under a line load, in space a point load",
       0,
-      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
        number("nu", "-", "Poisson's ratio; sigma_yy over a smooth base does not depend on it",
               "elasticity, plane strain", 0.3, 0, 0.5),

@@ -118,7 +118,7 @@ ModelInfo orthotropic_half_plane_info() {
   return {"orthotropic_half_plane",
           "half plane with vertical and horizontal elastic axes under a line load",
           2,
-          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, -kUnbounded, kUnbounded),
+          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, 0, kUnbounded),
            number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); below 0: two peaks; isotropic: 1",
                   source, 1, -kUnbounded, kUnbounded),
            number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),

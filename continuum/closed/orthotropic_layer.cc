@@ -212,7 +212,7 @@ ModelInfo orthotropic_layer_info() {
       "orthotropic_layer",
       "layer with vertical and horizontal elastic axes on a rigid base under a line load",
       2,
-      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
        number("r", "-", "(E_x/G - 2 nu_xy)/2, above -0.99 sqrt(t); isotropic: 1", source, 1,
               -kUnbounded, kUnbounded),

@@ -104,7 +104,7 @@ ModelInfo osl_layer_info() {
       "osl_layer",
       "layer with oriented stress linearity: the load runs down two characteristics",
       2,
-      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kUnbounded, kUnbounded),
+      {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
        number("eta", "-",
               "sigma_xx / sigma_yy without shear; characteristics dx/dy = +-sqrt(eta) "

@@ -132,7 +132,7 @@ std::array<double, 6> TransverseHalfSpace::stress(double x, double y, double z) 
 
 ModelInfo transverse_half_space_info() {
   std::vector<Parameter> parameters{
-      number("F", "N", "load at the origin, down", kSource, 1, -kUnbounded, kUnbounded)};
+      number("F", "N", "load at the origin, down", kSource, 1, 0, kUnbounded)};
   for (Parameter& p : transverse_parameters()) parameters.push_back(std::move(p));
   return {"transverse_half_space",
           "elastic half space with a vertical axis of symmetry under a point load", 3,

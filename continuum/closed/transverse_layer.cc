@@ -127,7 +127,7 @@ std::unique_ptr<Model> make(const Settings& s) {
 ModelInfo transverse_layer_info() {
   const char* source = "Elliott 1948, waves of orthotropic_layer";
   std::vector<Parameter> parameters{
-      number("F", "N", "load at the origin, down", source, 1, -kUnbounded, kUnbounded),
+      number("F", "N", "load at the origin, down", source, 1, 0, kUnbounded),
       number("h", "m", "depth of the layer", source, 1, kAboveZero, kUnbounded)};
   for (Parameter& p : transverse_parameters()) parameters.push_back(std::move(p));
   parameters.push_back(

@@ -290,7 +290,7 @@ ModelInfo fe_osl_layer_info() {
       "layer with oriented stress linearity as a field problem: finite elements or marching",
       2,
       osl::with_numerics(
-          {number("F", "N", "load at the origin, down", "Roul 5.6", 1, -kMostScale, kMostScale),
+          {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kMostScale),
            number("h", "m", "depth of the layer", "Roul 5.6", 1, kLeastScale, kMostScale),
            number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
                   "force balance", 0, 0, kMostScale),

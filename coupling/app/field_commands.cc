@@ -67,7 +67,10 @@ void add_average(CLI::App& app, Action& action) {
       "--kernel", options.kernel,
       "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
   auto* width = command->add_option(
-      "--width", options.width, "m; default one mean diameter (particle_centre, area_exact: 2.5)");
+      "--width", options.width,
+      "m; w of the kernel (lucy ends at 2 w, gaussian at 3 w, heaviside at w), of particle_centre "
+      "and area_exact the circle's radius or half the square's side; default one mean diameter "
+      "(particle_centre, area_exact: 2.5)");
   given->where.add_to(*command);
   command->add_flag("--rings", given->where.rings,
                     "3D: averages over rings about the frame's vertical axis; points are r,z");

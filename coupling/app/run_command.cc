@@ -58,6 +58,11 @@ void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
   const auto sentence = summary.find("verdict.sentence");
   if (sentence != summary.end()) say("{}\n", std::get<std::string>(sentence->second));
+  // Of a sweep, each member's.
+  const std::string of = "verdict.sentence.";
+  for (auto at = summary.lower_bound(of); at != summary.end() && at->first.starts_with(of); ++at) {
+    say("{}: {}\n", at->first.substr(of.size()), std::get<std::string>(at->second));
+  }
   const auto differences = summary.find("sweep.sentence");
   if (differences != summary.end()) say("{}\n", std::get<std::string>(differences->second));
   const std::string overlap = deep_overlap(value, summary);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <type_traits>
 
@@ -77,9 +78,13 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
 }
 
 double number(const Key& key, const Assignment& a, const Scalar& scalar) {
+  constexpr std::int64_t most_exact = 9007199254740992;  // beyond, a double skips whole numbers
   double value = 0;
   if (const auto* i = std::get_if<std::int64_t>(&scalar)) {
     value = static_cast<double>(*i);
+    if (*i > most_exact || *i < -most_exact) {
+      reject(a, key.path(), fmt::format("found {}, allowed: {}", *i, allowed(key)));
+    }
   } else if (const auto* d = std::get_if<double>(&scalar)) {
     value = *d;
   } else {

@@ -219,6 +219,11 @@ Assignment parse_override(const std::string& text) {
   }
   try {
     const toml::table table = toml::parse("value = " + out.text);
+    if (table.size() != 1) {
+      throw std::invalid_argument(fmt::format(
+          "--set: {}: found another line behind its value, expected one key for each --set",
+          out.path));
+    }
     read_value(*table.get("value"), out);
   } catch (const toml::parse_error&) {
     out.items = {out.text};

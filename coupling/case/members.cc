@@ -1,6 +1,7 @@
 #include "coupling/case/members.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
@@ -98,7 +99,16 @@ void check_sweep(const Draft& draft) {
   const Assignment where = written(draft, "sweep.key");
   if (sweep.key.compare(0, 6, "sweep.") == 0)
     reject(where, "sweep.key", "cannot be one of [sweep]");
-  if (sweep.values.empty()) reject(where, "sweep.key", "needs sweep.values as well");
+  if (sweep.values.empty()) {
+    std::vector<std::string> names;
+    if (sweep.key == "variant") {
+      for (const Variant& variant : draft.value.variants) names.push_back(variant.name);
+    }
+    reject(where, "sweep.key",
+           names.empty()
+               ? std::string("needs sweep.values as well")
+               : fmt::format("needs sweep.values as well, of: {}", fmt::join(names, ", ")));
+  }
   check_names(draft, values);
   const bool known = find_key(sweep.key) != nullptr;
   const Members members(draft);

@@ -8,7 +8,9 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/ensemble.h"
@@ -282,7 +284,22 @@ std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& t
     if (groups.empty()) throw std::invalid_argument(text + ": holds no snapshot");
     for (const auto& group : groups) out.push_back({text, group, {}});
   }
+  require_each_once(out);
   return out;
+}
+
+void require_each_once(const std::vector<SnapshotName>& names) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const SnapshotName& name : names) {
+    const std::string group = name.group.substr(name.group.starts_with('/') ? 1 : 0);
+    std::error_code error;
+    const std::string file = std::filesystem::weakly_canonical(name.file, error).string();
+    if (!seen.insert({error ? name.file : file, group}).second) {
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: named twice, allowed: every packing once (a copy is no realization of its own)",
+          name.file, name.group));
+    }
+  }
 }
 
 void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen) {

@@ -14,6 +14,7 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
+#include "coupling/models/subject.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/output/tables.h"
@@ -293,6 +294,9 @@ CompareOutcome compare_field(const CompareRequest& request) {
   const bool flanks_apart = takes_flanks_apart(names);
   for (const auto& choice : request.models) {
     require_known(choice, facts, request.file);
+    if (scene.scene != Scene::layer) {
+      require_subject({choice}, heap ? Subject::heap : Subject::load, facts.dim, "model");
+    }
     const Evaluation e = evaluate_model(choice, facts_for(choice, facts, flanks_apart), sets);
     ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
     for (std::size_t l = 0; l < lines.size(); ++l) {

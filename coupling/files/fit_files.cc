@@ -124,6 +124,7 @@ Chosen choose(const std::vector<std::string>& inputs) {
       out.heaps.push_back({input.file, input.name, {}});
     }
   }
+  require_each_once(out.heaps);
   return out;
 }
 

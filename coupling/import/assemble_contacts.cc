@@ -14,6 +14,7 @@ namespace {
 
 using dem::Vec3;
 
+constexpr double kMostForce = 1e100;  // N: squares and sums of many stay finite
 // A contact point farther than this many radii from a grain's centre lies across a periodic
 // boundary: contacts of stiff grains lie within one radius, of very soft ones slightly beyond.
 constexpr double kDistant = 2;
@@ -96,6 +97,10 @@ void Assembly::add_contacts(const ForeignTable& table) {
     }
     const double sign = format_.force_sign * (options_.flip_forces ? -1 : 1);
     c.force = sign * (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
+    const double largest = c.force.cwiseAbs().maxCoeff();
+    if (!(largest <= kMostForce))
+      row.refuse(
+          fmt::format("found a force of {:.3g} N, allowed: up to {:g} N", largest, kMostForce));
     if (s.dim == 2 && c.force.z() != 0)
       row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                              c.force.z()));

@@ -18,6 +18,7 @@ namespace grainfield::coupling {
 namespace {
 
 // A contact point farther than this many radii from its wall's plane is on another wall.
+constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
 constexpr double kOffWall = 2;
 
 // The tables of one time step; of a format without steps all of them.
@@ -223,6 +224,24 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
   return out;
 }
 
+namespace {
+
+// Counts a contact of two disks or spheres, whose normal is along the line of centres.
+void look_at_normal(const dem::Snapshot& s, const dem::Contact& c, PackingCheck& check) {
+  const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
+  const dem::Grain& j = s.grains[static_cast<std::size_t>(c.j)];
+  const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
+  if (!round(i) || !round(j)) return;
+  ++check.round_pairs;
+  const dem::Vec3 branch = dem::second_place(s, c) - i.position;
+  if (c.normal.dot(branch) >= kOddNormal * c.normal.norm() * branch.norm()) return;
+  if (check.odd_normals++ > 0) return;
+  check.odd_i = i.id;
+  check.odd_j = j.id;
+}
+
+}  // namespace
+
 PackingCheck check_packing(const dem::Snapshot& s) {
   PackingCheck check;
   std::vector<dem::Vec3> resultant(s.grains.size(), dem::Vec3::Zero());
@@ -243,6 +262,7 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     Eigen::Matrix3d& sum = c.j >= 0 ? check.pairs : check.walls;
     add(sum, c.i, c.point - s.grains[static_cast<std::size_t>(c.i)].position, c.force);
     if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
+    if (c.j >= 0) look_at_normal(s, c, check);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
     if (c.j < 0) {

@@ -104,6 +104,9 @@ struct PackingCheck {
   double support_ratio = std::numeric_limits<double>::quiet_NaN();
   int wall_contacts = 0;      ///< contacts with walls
   int off_wall_contacts = 0;  ///< of them, those whose point is over two radii off the wall's plane
+  int round_pairs = 0;        ///< contacts between round grains
+  int odd_normals = 0;  ///< of them, those whose normal is over 60 degrees off the line of centres
+  std::int64_t odd_i = 0, odd_j = 0;  ///< ids of the first such two
 };
 PackingCheck check_packing(const dem::Snapshot& snapshot);
 

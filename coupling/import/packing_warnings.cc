@@ -51,6 +51,19 @@ std::string off_walls(const PackingCheck& check) {
       check.off_wall_contacts, check.wall_contacts);
 }
 
+std::string odd_normals(const PackingCheck& check) {
+  if (check.odd_normals == 0) return "";
+  return fmt::format(
+      "{} of {} contacts between round grains have a normal more than 60 degrees off the line of "
+      "centres (the first: {} and {}); it points from i to j",
+      check.odd_normals, check.round_pairs, check.odd_i, check.odd_j);
+}
+
+// One of each kind; empty: none.
+std::vector<std::string> warning_texts(const PackingCheck& check) {
+  return {unbalanced(check), unsupported(check), off_walls(check), odd_normals(check)};
+}
+
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
@@ -84,7 +97,7 @@ std::string tension_in(const PackingCheck& check) {
 
 std::vector<std::string> warnings_of(const PackingCheck& check) {
   std::vector<std::string> out;
-  for (std::string text : {unbalanced(check), unsupported(check), off_walls(check)}) {
+  for (std::string& text : warning_texts(check)) {
     if (!text.empty()) out.push_back(std::move(text));
   }
   return out;
@@ -119,7 +132,7 @@ void PackingWarnings::add(std::size_t kind, const std::string& packing, const st
 
 void PackingWarnings::add(const std::string& packing, const PackingCheck& check) {
   std::size_t kind = 0;
-  for (const std::string& text : {unbalanced(check), unsupported(check), off_walls(check)}) {
+  for (const std::string& text : warning_texts(check)) {
     add(kind++, packing, text);
   }
 }

@@ -19,6 +19,7 @@
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "reliability_process.h"
+#include "run_scene.h"
 #include "sample_bits_scene.h"
 
 namespace grainfield::coupling {
@@ -28,6 +29,7 @@ using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -72,15 +74,6 @@ shoulder_to = 0.6
 [compare]
 models = ["cone_osl", "cone_bcc"]
 )";
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
-    ADD_FAILURE() << "no number " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
-}
 
 // One run for all tests of its results.
 class ConeRun : public ::testing::Test {

@@ -6,7 +6,7 @@
 #include "check_scene.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
-#include "program.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -14,34 +14,15 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
+using testing::run_of;
+using testing::says;
 
 std::string gas_case(const std::string& gas, int realizations = 2) {
   return "title = \"a gas\"\nstudy = \"hard-disks\"\n[gas]\n" + gas +
          "[ensemble]\nrealizations = " + std::to_string(realizations) + "\n";
-}
-
-Summary run_of(const Folder& folder, const std::string& text, const std::string& options = "",
-               const std::string& out = "out") {
-  const std::string file = folder.write("x.toml", text);
-  const Output output = program("run " + file + " -o " + (folder / out) + " " + options);
-  EXPECT_EQ(output.code, 0) << output.err;
-  return output.code == 0 ? read_summary(folder / (out + "/summary.json")) : Summary();
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end()) {
-    ADD_FAILURE() << "no " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
-}
-
-// Whether a file, perhaps a long one, holds a text.
-bool says(const std::string& file, const std::string& text) {
-  return testing::read_text(file).find(text) != std::string::npos;
 }
 
 // Two realizations of 900 disks and 100 collisions a grain: Z scatters by 0.3 %.
@@ -73,7 +54,8 @@ TEST(HardDisksRun, PressureIsHendersons) {
     EXPECT_TRUE(says(folder / "out/report.html", text)) << text;
   }
   const std::string table = testing::read_text(folder / "out/profiles.csv");
-  EXPECT_THAT(table, HasSubstr("fraction,compressibility,compressibility_error,theory,virial_series"));
+  EXPECT_THAT(table,
+              HasSubstr("fraction,compressibility,compressibility_error,theory,virial_series"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
   for (const char* name : {"snapshots.h5", "grains_fraction_0.2.vtu", "grains_fraction_0.5.vtu"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;

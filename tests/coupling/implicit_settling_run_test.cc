@@ -6,7 +6,7 @@
 #include "check_scene.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
-#include "program.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -14,29 +14,14 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
+using testing::run_of;
 
 std::string pile_case(const std::string& settling, const std::string& lattice = "") {
   return "title = \"a pile\"\nstudy = \"implicit-settling\"\n[settling]\n" + settling +
          "[lattice]\nbase_grains = 8\ngap = 0\n" + lattice + "[ensemble]\nrealizations = 1\n";
-}
-
-Summary run_of(const Folder& folder, const std::string& text, const std::string& options = "",
-               const std::string& out = "out") {
-  const std::string file = folder.write("x.toml", text);
-  const Output output = program("run " + file + " -o " + (folder / out) + " " + options);
-  EXPECT_EQ(output.code, 0) << output.err;
-  return output.code == 0 ? read_summary(folder / (out + "/summary.json")) : Summary();
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end()) {
-    ADD_FAILURE() << "no " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
 }
 
 TEST(ImplicitSettlingRun, RestsOnItsWellsAtTheClosedForm) {

@@ -7,12 +7,14 @@
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -26,18 +28,6 @@ realizations = 1
 [compare]
 models = ["liffman"]
 )" + more;
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end()) {
-    ADD_FAILURE() << "no " << key;
-    return 0;
-  }
-  if (const auto* whole = std::get_if<std::int64_t>(&at->second)) {
-    return static_cast<double>(*whole);
-  }
-  return std::get<double>(at->second);
 }
 
 TEST(LatticePileRun, EquilateralPileMeetsTheClosedForm) {

@@ -10,7 +10,7 @@
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/pair/closed_forms.h"
-#include "program.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -18,8 +18,10 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
+using testing::run_of;
 
 std::string pair_case(const std::string& pair, const std::string& material,
                       const std::string& more = "") {
@@ -30,23 +32,6 @@ std::string pair_case(const std::string& pair, const std::string& material,
 
 const std::string kLinear =
     "law = \"linear\"\nnormal_stiffness = 1e7\nnormal_damping = 2000\ntangential_damping = 0\n";
-
-Summary run_of(const Folder& folder, const std::string& text, const std::string& options = "",
-               const std::string& out = "out") {
-  const std::string file = folder.write("x.toml", text);
-  const Output output = program("run " + file + " -o " + (folder / out) + " " + options);
-  EXPECT_EQ(output.code, 0) << output.err;
-  return output.code == 0 ? read_summary(folder / (out + "/summary.json")) : Summary();
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end()) {
-    ADD_FAILURE() << "no " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
-}
 
 std::vector<std::vector<std::string>> rows_of(const std::string& file) {
   std::vector<std::vector<std::string>> out;

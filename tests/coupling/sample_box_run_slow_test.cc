@@ -7,6 +7,7 @@
 #include "check_scene.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "run_scene.h"
 #include "sample_bits_scene.h"
 
 namespace grainfield::coupling {
@@ -15,6 +16,7 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -69,15 +71,6 @@ Summary run(const Folder& folder, const std::string& text, const std::string& op
   Summary summary = read_summary(folder / "out/summary.json");
   EXPECT_NO_THROW(require_documented(summary));
   return summary;
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
-    ADD_FAILURE() << "no number " << key;
-    return std::nan("");
-  }
-  return std::get<double>(at->second);
 }
 
 TEST(SampleBox, BitsOfACompressionAreTheSameOnThreadsAndAfterAKill) {

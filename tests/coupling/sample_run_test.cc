@@ -13,6 +13,7 @@
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "reliability_process.h"
+#include "run_scene.h"
 #include "sample_bits_scene.h"
 
 namespace grainfield::coupling {
@@ -21,6 +22,7 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -87,15 +89,6 @@ background_damping = 200
 [ensemble]
 realizations = 1
 )";
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
-    ADD_FAILURE() << "no number " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
-}
 
 // A table with a header, by column, without its comments.
 std::map<std::string, std::vector<double>> read_table(const std::string& file) {

@@ -5,12 +5,14 @@
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "reliability_process.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -58,15 +60,6 @@ Summary run(const Folder& folder, const std::string& options, const std::string&
   Summary summary = read_summary(folder / (out + "/summary.json"));
   EXPECT_NO_THROW(require_documented(summary));
   return summary;
-}
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
-    ADD_FAILURE() << "no number " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
 }
 
 TEST(SampleRves, TellStressAndStrainOfTheirSample) {

@@ -21,6 +21,7 @@
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/snapshot.h"
 #include "reliability_process.h"
+#include "run_scene.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -28,6 +29,7 @@ namespace {
 using testing::complaint;
 using testing::Folder;
 using ::testing::HasSubstr;
+using testing::number;
 using testing::Output;
 using testing::program;
 
@@ -70,15 +72,6 @@ base = "rough"
 E_h = 1
 E_v = 2
 )";
-
-double number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end() || !std::holds_alternative<double>(at->second)) {
-    ADD_FAILURE() << "no number " << key;
-    return 0;
-  }
-  return std::get<double>(at->second);
-}
 
 // One run for all tests of its results.
 const Folder& results() {

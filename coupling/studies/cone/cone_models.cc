@@ -1,15 +1,13 @@
 #include "coupling/studies/cone/cone_models.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <map>
-#include <stdexcept>
 
 #include "continuum/model.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
+#include "coupling/models/subject.h"
 #include "coupling/run/radial_page.h"
 
 namespace grainfield::coupling {
@@ -17,12 +15,6 @@ namespace {
 
 // A models' cone that is higher over the heap is warned of.
 constexpr double kHigherCone = 1.1;
-
-// It knows the weight of what it is made of.
-bool is_of_heaps(const continuum::ModelInfo& info) {
-  return std::any_of(info.parameters.begin(), info.parameters.end(),
-                     [](const continuum::Parameter& p) { return p.name == "rho_g"; });
-}
 
 // From the heap's frame, whose origin is its highest point, to that of the models.
 Eigen::MatrixXd in_models_axes(const ConeEnsemble& cones, Eigen::MatrixXd points) {
@@ -77,17 +69,7 @@ std::vector<ModelProfiles> models_of(const ConeEnsemble& cones, StudyResult& out
 }  // namespace
 
 void check_cone_models(const Case& value) {
-  for (const ModelChoice& model : value.models) {
-    if (is_of_heaps(continuum::find_model(model.name))) continue;
-    std::vector<std::string> fitting;
-    for (const continuum::ModelInfo& info : continuum::registry()) {
-      if (info.dim == 3 && is_of_heaps(info)) fitting.push_back(info.name);
-    }
-    throw std::invalid_argument(
-        fmt::format("compare.models: found \"{}\", which is no model of a heap under its weight, "
-                    "allowed: {}",
-                    model.label, fmt::join(fitting, ", ")));
-  }
+  require_subject(value.models, Subject::heap, 3, "compare.models");
 }
 
 void compare_cones(const ConeEnsemble& cones, StudyResult& out, ConePage& page) {

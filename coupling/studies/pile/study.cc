@@ -9,6 +9,7 @@
 #include "coupling/heap/setup.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
+#include "coupling/models/subject.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/summary_keys.h"
@@ -384,7 +385,10 @@ Study pile_study() {
   out.sections.push_back(kChangeKeys);
   out.sections.push_back(kAverageKeys);
   out.sections.push_back(kHeapKeys);
-  out.check = [](const Case& value) { check_heap_windows(value.get<HeapSetup>()); };
+  out.check = [](const Case& value) {
+    check_heap_windows(value.get<HeapSetup>());
+    require_subject(value.models, Subject::heap, 2, "compare.models");
+  };
   out.averaged = [](const Case& value) {
     return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);
   };

@@ -14,6 +14,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
+#include "coupling/models/subject.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
@@ -287,6 +288,7 @@ void check_point_load(const Case& value) {
                     "= 0 (spheres are loaded with so many weights of a grain otherwise)",
                     load.force, load.weights));
   }
+  require_subject(value.models, Subject::load, p.dim, "compare.models");
   for (const ModelChoice& model : value.models) {
     const auto& taken = predicted_labels();
     if (load.probe_strain == 0 ||
