@@ -92,6 +92,13 @@ TEST(Guide, EveryCommandSaysWhatThePageSays) {
   EXPECT_NEAR(figure(measured, "fit.osl.mu"), -0.31, 3 * figure(measured, "fit.osl.mu.error"));
   EXPECT_EQ(std::get<std::string>(measured.at("fit.osl.supported")), "yes");
   EXPECT_EQ(std::get<std::string>(measured.at("fit.bcc.supported")), "no");
+  const std::string fits = testing::read_text(folder / "measured/fits.md");
+  for (const auto& [page_says, file_says] : {std::pair{"0.743 ± 0.010", "| eta | 0.743 +- 0.010 |"},
+                                             {"−0.308 ± 0.026", "| mu | -0.308 +- 0.026 |"},
+                                             {"χ²/dof 7.85", "| bcc | 0 | 7.85 |"}}) {
+    EXPECT_THAT(guide, HasSubstr(page_says));
+    EXPECT_THAT(fits, HasSubstr(file_says));
+  }
   EXPECT_NEAR(figure(read_summary(folder / "own/summary.json"), "fit.osl.eta"), 0.74, 0.05);
   // The lines of the table on the page are those of the file.
   const std::string table = testing::read_text(folder / "samples/measured.csv");
