@@ -8,11 +8,9 @@
 #include <numbers>
 #include <sstream>
 
-#include "continuum/closed/osl.h"
 #include "coupling/output/tables.h"
-#include "import_scene.h"
+#include "guide_scene.h"
 #include "program.h"
-#include "stressed_heap.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -21,25 +19,6 @@ using testing::Folder;
 using ::testing::HasSubstr;
 using testing::Output;
 using testing::program;
-
-const std::string kDocs = std::string(GRAINFIELD_CASES) + "/../docs/";
-
-void write_heaps(const Folder& folder) {
-  const auto field =
-      continuum::osl_field(28 * std::numbers::pi / 180, {0.74, -0.31}, test::lattice_rho_g());
-  for (int k = 1; k <= 2; ++k) {
-    test::StressedHeap setup;
-    setup.floor = 0.3;
-    setup.apex_x = 1.7;
-    setup.noise = 0.2;
-    setup.seed = static_cast<std::uint64_t>(k);
-    const dem::Snapshot heap =
-        test::stressed_heap(setup, [&](double x, double y) { return field.stress(x, y); });
-    folder.write("grains" + std::to_string(k) + ".csv", test::csv_grains(heap));
-    folder.write("contacts" + std::to_string(k) + ".csv", test::csv_contacts(heap));
-    folder.write("walls.csv", test::csv_walls(heap));
-  }
-}
 
 struct Page {
   std::string said;    ///< what its commands wrote to standard output
@@ -50,7 +29,7 @@ struct Page {
 /// Runs the indented commands of a page in order; its block ```toml is a file of that name.
 Page read_and_run(const Folder& folder, const std::string& page) {
   Page out;
-  std::istringstream text(testing::read_text(kDocs + page));
+  std::istringstream text(testing::read_text(test::kDocs + page));
   std::string line, block, kind;
   const std::string start = "    grainfield ";
   while (std::getline(text, line)) {
@@ -75,10 +54,10 @@ double figure(const Summary& s, const std::string& key) { return std::get<double
 
 TEST(Guide, EveryCommandSaysWhatThePageSays) {
   const Folder folder;
-  write_heaps(folder);
+  test::write_heaps(folder, 2);
   const Page page = read_and_run(folder, "guide.md");
   EXPECT_GE(page.commands, 15);
-  const std::string guide = testing::read_text(kDocs + "guide.md");
+  const std::string guide = testing::read_text(test::kDocs + "guide.md");
   for (const char* words : {"111 values of 4 piles at 3 heights, each in units of rho g h",
                             "cantelaube is supported: the next, osl, is behind by 0.097 +- 0.01 on "
                             "realizations left out"}) {
@@ -92,6 +71,13 @@ TEST(Guide, EveryCommandSaysWhatThePageSays) {
   EXPECT_NEAR(figure(measured, "fit.osl.mu"), -0.31, 3 * figure(measured, "fit.osl.mu.error"));
   EXPECT_EQ(std::get<std::string>(measured.at("fit.osl.supported")), "yes");
   EXPECT_EQ(std::get<std::string>(measured.at("fit.bcc.supported")), "no");
+  const std::string fits = testing::read_text(folder / "measured/fits.md");
+  for (const auto& [page_says, file_says] : {std::pair{"0.743 ± 0.010", "| eta | 0.743 +- 0.010 |"},
+                                             {"−0.308 ± 0.026", "| mu | -0.308 +- 0.026 |"},
+                                             {"χ²/dof 7.85", "| bcc | 0 | 7.85 |"}}) {
+    EXPECT_THAT(guide, HasSubstr(page_says));
+    EXPECT_THAT(fits, HasSubstr(file_says));
+  }
   EXPECT_NEAR(figure(read_summary(folder / "own/summary.json"), "fit.osl.eta"), 0.74, 0.05);
   // The lines of the table on the page are those of the file.
   const std::string table = testing::read_text(folder / "samples/measured.csv");

@@ -17,7 +17,7 @@ cp "$package" "$root/tmp/grainfield.deb"
 printf '#!/bin/sh\nexit 101\n' > "$root/usr/sbin/policy-rc.d"
 chmod +x "$root/usr/sbin/policy-rc.d"
 inside apt-get update -q
-inside env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends /tmp/grainfield.deb
+inside env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --reinstall --no-install-recommends /tmp/grainfield.deb
 echo "== in the clean root"
 inside grainfield --version
 inside sh -c 'cd /root && grainfield run pair-hertz --quick -o pair && test -s pair/report.html'
