@@ -20,7 +20,7 @@ inside apt-get update -q
 inside env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --reinstall --no-install-recommends /tmp/grainfield.deb
 echo "== in the clean root"
 inside grainfield --version
-inside sh -c 'cd /root && grainfield run pair-hertz --quick -o pair && test -s pair/report.html'
+inside sh -c 'cd /root && grainfield run pair-hertz --quick -o pair && grep -q "image/svg" pair/report.html && ! grep -q "class=.missing" pair/report.html'
 inside sh -c 'cd /root && grainfield samples -o samples && grainfield fit samples/heaps.h5 --model osl --model bcc -o fit'
 inside sh -c 'cd /root && printf "x,y\n0.1,-0.5\n" > p.csv && grainfield model fe_elastic_layer --set F=1 --set h=1 --points p.csv'
 inside python3 -c 'import grainfield as gf; print(gf.__version__, len(gf.read("/root/samples/heaps.h5")))'
