@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 
 #include "coupling/case/study.h"
+#include "coupling/case/units.h"
 #include "dem/shapes/registry.h"
 #include "dem/snapshot/number.h"
 
@@ -88,7 +90,11 @@ double number(const Key& key, const Assignment& a, const Scalar& scalar) {
   } else if (const auto* d = std::get_if<double>(&scalar)) {
     value = *d;
   } else {
-    wrong_type(key, a);
+    const auto* text = std::get_if<std::string>(&scalar);
+    const std::optional<double> with_unit =
+        text != nullptr ? measured(key, a, *text) : std::nullopt;
+    if (!with_unit) wrong_type(key, a);
+    value = *with_unit;
   }
   check_range(key, a, value);
   return value;

@@ -15,6 +15,7 @@
 #include "coupling/case/dimensions.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
+#include "coupling/case/units.h"
 #include "coupling/models/models.h"
 
 namespace grainfield::coupling {
@@ -254,6 +255,7 @@ void finish(Draft& draft) {
   }
   check_sections(draft);
   check_dimensions(draft);
+  check_units(draft);
   choose_models(draft);
   check_lists(draft);
   if (const Study& study = study_of(draft.value); study.check != nullptr) {
