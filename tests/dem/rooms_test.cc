@@ -29,6 +29,7 @@ const std::vector<Room>& rooms() {
         "snapshot"}},
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
       {"implicit", {"space", "image", "neighbours", "newton", "quasistatic"}},
+      {"switching", {"space", "image", "neighbours", "collisions", "implicit"}},
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
