@@ -23,8 +23,7 @@ constexpr Eigen::Index kFewestPlaces = 5;
 
 double attribute(const Field& field, const char* key, const std::string& file) {
   const auto at = field.attributes.find(key);
-  const auto number =
-      at == field.attributes.end() ? std::nullopt : dem::parse_number(at->second);
+  const auto number = at == field.attributes.end() ? std::nullopt : dem::parse_number(at->second);
   if (!number) {
     throw std::invalid_argument(fmt::format(
         "measured.field: {} has no {} of a heap; found {}, expected a field of `grainfield "
@@ -90,10 +89,11 @@ Frame frame_of(const char* title, const BaseProfile& grains, const Eigen::Vector
 }  // namespace
 
 void declare_measured_keys(SectionKeys s) {
-  s.word("field", GRAINFIELD_MEMBER(MeasuredSetup, field), {},
-         "measured base forces to stand beside the grains: a file of `grainfield import-field` of a "
-         "heap with pressures and shears; \"\": none",
-         "Liffman et al. 1992, fig. 17");
+  s.word(
+      "field", GRAINFIELD_MEMBER(MeasuredSetup, field), {},
+      "measured base forces to stand beside the grains: a file of `grainfield import-field` of a "
+      "heap with pressures and shears; \"\": none",
+      "Liffman et al. 1992, fig. 17");
   s.word("name", GRAINFIELD_MEMBER(MeasuredSetup, name), {}, "of the field in it");
 }
 
@@ -111,7 +111,8 @@ std::vector<SummaryKey> measured_figures() {
       {"measured.normal_centre", "-",
        "measured: mean normal force within 1/20 of the base of its middle over the largest"},
       {"measured.shear_slope_ratio", "-",
-       "slope of the grains' shear in the middle half of the base over that measured, each over its "
+       "slope of the grains' shear in the middle half of the base over that measured, each over "
+       "its "
        "largest shear"},
       {"measured.shear_explained", "-",
        "share of the measured shear's variance there that the line explains"},
@@ -139,10 +140,10 @@ BaseProfile measured_base(const MeasuredSetup& setup) {
   const Column* pressure = field.find(space ? "sigma_zz" : "sigma_yy");
   const Column* shear = field.find(space ? "sigma_xz" : "sigma_xy");
   if (pressure == nullptr || shear == nullptr) {
-    throw std::invalid_argument(fmt::format("measured.name: field \"{}\" of {} has no {}, needed: "
-                                            "pressures and shears of the base",
-                                            setup.name, setup.field,
-                                            pressure == nullptr ? "pressure" : "shear"));
+    throw std::invalid_argument(
+        fmt::format("measured.name: field \"{}\" of {} has no {}, needed: "
+                    "pressures and shears of the base",
+                    setup.name, setup.field, pressure == nullptr ? "pressure" : "shear"));
   }
   const double h = attribute(field, "h", setup.field);
   const auto foot = [&](const char* key) {

@@ -24,7 +24,7 @@ std::vector<SummaryKey> measured_figures();
 
 /// Forces or stresses along a base; x over its width, 0 in the middle of it.
 struct BaseProfile {
-  Eigen::VectorXd x, normal, shear;  ///< normal: down; shear: to the right, on the ground
+  Eigen::VectorXd x, normal, shear;           ///< normal: down; shear: to the right, on the ground
   Eigen::VectorXd normal_error, shear_error;  ///< standard errors; nan or empty: unknown
 
   /// The same over the largest normal and the largest shear.

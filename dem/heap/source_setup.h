@@ -27,8 +27,8 @@ struct SourceSetup {
                      ///< (asymmetric piles)
 
   auto members() const {
-    return std::tie(kind, grains, speed, height, above, interval, spread, opening, move, clearance, length,
-                    shift);
+    return std::tie(kind, grains, speed, height, above, interval, spread, opening, move, clearance,
+                    length, shift);
   }
 };
 

@@ -35,7 +35,11 @@ bool before(const SoftCandidate& a, const SoftCandidate& b) {
 
 SoftDisks::Work::Work(const SoftScene& scene, const std::vector<Body<2>>& disks,
                       const ImplicitSettings& settings)
-    : scene_(scene), settings_(settings), bodies_(disks), angles_(disks.size(), 0.0), acting_(disks.size(), 1) {
+    : scene_(scene),
+      settings_(settings),
+      bodies_(disks),
+      angles_(disks.size(), 0.0),
+      acting_(disks.size(), 1) {
   check_soft(scene, disks, settings);
   for (const Body<2>& b : bodies_) widest_ = std::max(widest_, b.radius);
   stiffest_ = scene.grains.stiffness;

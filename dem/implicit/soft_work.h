@@ -121,7 +121,7 @@ class SoftDisks::Work {
   ImplicitSettings settings_;
   std::vector<Body<2>> bodies_;
   std::vector<double> angles_;
-  std::vector<char> acting_;  // of each disk
+  std::vector<char> acting_;          // of each disk
   double widest_ = 0, stiffest_ = 0;  // m, N/m
   double time_ = 0, dt_ = 0, scale_ = 1;
   ImplicitTally tally_;

@@ -18,8 +18,8 @@ constexpr double kReach = 2, kLeastReach = 1e-3;
 
 void check_law(const char* what, const ImpactLaw& law) {
   if (!(law.restitution >= 0 && law.restitution <= 1)) {
-    throw std::invalid_argument(fmt::format("restitution {}: found {:g}, allowed: 0 to 1", what,
-                                            law.restitution));
+    throw std::invalid_argument(
+        fmt::format("restitution {}: found {:g}, allowed: 0 to 1", what, law.restitution));
   }
   if (!(law.friction >= 0 && std::isfinite(law.friction))) {
     throw std::invalid_argument(
@@ -38,8 +38,9 @@ SwitchingDisks::SwitchingDisks(const SwitchScene& scene, const std::vector<Body<
   check_law("of grains", scene.grains);
   for (const ImpactLaw& law : scene.walls) check_law("of walls", law);
   if (scene.walls.size() != scene.soft.walls.size()) {
-    throw std::invalid_argument(fmt::format("impact laws of walls: found {}, allowed: {}, one a wall",
-                                            scene.walls.size(), scene.soft.walls.size()));
+    throw std::invalid_argument(
+        fmt::format("impact laws of walls: found {}, allowed: {}, one a wall", scene.walls.size(),
+                    scene.soft.walls.size()));
   }
   moving_ = disks;
   find_accelerations();
@@ -97,8 +98,8 @@ void SwitchingDisks::find_pairs() {
   }
   const double widest = extra.empty() ? 0 : *std::max_element(extra.begin(), extra.end());
   for (const Body<2>& b : moving_) {
-    reaches.push_back({b.position, b.radius * (1 + kLeastReach) + kReach * widest,
-                       b.inverse_mass == 0});
+    reaches.push_back(
+        {b.position, b.radius * (1 + kLeastReach) + kReach * widest, b.inverse_mass == 0});
   }
   std::vector<std::pair<int, int>> found;
   grid_.build(reaches);
@@ -113,9 +114,8 @@ void SwitchingDisks::find_pairs() {
       if (gap < kLeastReach * moving_[k].radius + kReach * widest) pairs_.push_back({k, -1 - w});
     }
   }
-  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-    return a.i != b.i ? a.i < b.i : a.j < b.j;
-  });
+  std::sort(pairs_.begin(), pairs_.end(),
+            [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
 }
 
 SwitchingDisks::Meeting SwitchingDisks::meet(const Pair& p) const {
@@ -146,9 +146,9 @@ SwitchingDisks::Meeting SwitchingDisks::meet(const Pair& p) const {
 void SwitchingDisks::collide_pair(const Pair& p, const Vec& normal) {
   if (p.j < 0) {
     Body<2> plane;
-    tally_.lost += collide<2>(moving_[p.i], plane, normal,
-                              scene_.walls[static_cast<std::size_t>(-1 - p.j)])
-                       .lost;
+    tally_.lost +=
+        collide<2>(moving_[p.i], plane, normal, scene_.walls[static_cast<std::size_t>(-1 - p.j)])
+            .lost;
   } else {
     // It acts between the two, a little before they touch: arms up to there keep their angular
     // momentum.
@@ -192,11 +192,12 @@ void SwitchingDisks::look_back() {
   moving_ = disks_.bodies();
   find_accelerations();
   find_pairs();
+  const std::vector<char> before = soft_;  // in the step: these contacts acted
   std::vector<char> touches(soft_.size(), 0);
   for (const Pair& p : pairs_) {
     const double overlap = -meet(p).gap;
     if (!(overlap > 0)) continue;
-    if (!is_soft(p)) {
+    if (!before[p.i] || (p.j >= 0 && !before[p.j])) {
       const double stiffness =
           p.j < 0 ? scene_.soft.walls[static_cast<std::size_t>(-1 - p.j)].law.stiffness
                   : scene_.soft.grains.stiffness;
@@ -233,8 +234,7 @@ void SwitchingDisks::restore(const std::string& image) {
   const std::size_t n = soft_.size();
   in.get(soft_);
   in.require(soft_.size() == n);
-  for (long* value :
-       {&tally_.collisions, &tally_.to_soft, &tally_.to_hard, &tally_.pressed}) {
+  for (long* value : {&tally_.collisions, &tally_.to_soft, &tally_.to_hard, &tally_.pressed}) {
     std::int64_t count = 0;
     in.get(count);
     *value = count;

@@ -1,20 +1,22 @@
-// Disks in the plane that collide as hard ones and rest as soft ones, grain by grain (Liffman et al.
-// 1992, eq. 22).
+// Disks in the plane that collide as hard ones and rest as soft ones, grain by grain (Liffman et
+// al. 1992, eq. 22).
 //
-// A hard grain flies freely and collides by impulses (dem/collisions/impulse.h); contacts of two soft
-// grains, and of soft ones with walls, act by forces over an implicit step (dem/implicit). In a step
-// of dt:
+// A hard grain flies freely and collides by impulses (dem/collisions/impulse.h); contacts of two
+// soft grains, and of soft ones with walls, act by forces over an implicit step (dem/implicit). In
+// a step of dt:
 //
-//   1. Of every pair that is not soft on both sides and whose free flight, v dt + a dt^2/2 with a of
+//   1. Of every pair that is not soft on both sides and whose free flight, v dt + a dt^2/2 with a
+//   of
 //      gravity and the forces of now, would make it overlap: if it approaches, it collides now. So
 //      impulses come early by up to dt and no hard grain ever overlaps: a switch changes neither
 //      place nor velocity, and there is no elastic energy and no memory to make or to lose.
 //   2. With u >= 0 the speed at which such a pair parts and a > 0 the acceleration at which the
 //      resultants bring it together again, it becomes soft where dt > u/a                     (22)
 //   3. All move by the implicit step; contacts that are not soft on both sides do not act.
-//   4. A soft grain that touches nothing becomes hard. Where a soft grain was pushed into a hard one
-//      within the step, by less than what it moved, both are soft from now on; the elastic energy of
-//      that overlap is counted as `switched`.
+//   4. A soft grain that touches nothing becomes hard. Where a soft grain was pushed into a hard
+//   one
+//      within the step, by less than what it moved, both are soft from now on; the elastic energy
+//      of that overlap is counted as `switched`.
 //
 // So total energy + what was lost - switched stays the same to the solver's tolerance, and momentum
 // is exchanged with walls and gravity alone.
@@ -38,10 +40,10 @@ struct SwitchScene {
 struct SwitchTally {
   long collisions = 0;
   long to_soft = 0, to_hard = 0;  ///< grains
-  long pressed = 0;               ///< pairs that became soft because impulses found no end, or where
-                                  ///< one was pushed into the other
-  double lost = 0;                ///< by impulses, J
-  double switched = 0;            ///< elastic energy of overlaps that began with a switch, J
+  long pressed = 0;     ///< pairs that became soft because impulses found no end, or where
+                        ///< one was pushed into the other
+  double lost = 0;      ///< by impulses, J
+  double switched = 0;  ///< elastic energy of overlaps that began with a switch, J
 };
 
 class SwitchingDisks {
@@ -80,10 +82,10 @@ class SwitchingDisks {
     int i = 0, j = 0;  // j = -1 - w: wall w
   };
   struct Meeting {
-    Vec normal{0, 0};        // from i to j
+    Vec normal{0, 0};         // from i to j
     double gap = 0, end = 0;  // now, and after free flight
-    double parting = 0;      // speed
-    double closing = 0;      // acceleration towards each other
+    double parting = 0;       // speed
+    double closing = 0;       // acceleration towards each other
   };
 
   bool is_soft(const Pair& p) const { return soft_[p.i] && (p.j < 0 || soft_[p.j]); }

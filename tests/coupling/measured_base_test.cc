@@ -1,5 +1,7 @@
-// Measured base forces beside those of piles (Liffman fig. 17), and the lines of largest and smallest
-// force (figures 10 and 16).
+// Measured base forces beside those of piles (Liffman fig. 17), and the lines of largest and
+// smallest force (figures 10 and 16).
+#include "coupling/run/measured_base.h"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -8,7 +10,6 @@
 
 #include "coupling/output/tables.h"
 #include "coupling/report/force_lines.h"
-#include "coupling/run/measured_base.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
 
@@ -44,9 +45,8 @@ std::string table(double dip) {
 
 std::string field_of(const Folder& folder, double dip) {
   const std::string file = folder / fmt::format("m{:g}.h5", dip);
-  const Output out =
-      program("import-field " + folder.write("m.csv", table(dip)) +
-              " --height 0.0866 --slope 60 --rho-g 15000 --width 0.002 -o " + file);
+  const Output out = program("import-field " + folder.write("m.csv", table(dip)) +
+                             " --height 0.0866 --slope 60 --rho-g 15000 --width 0.002 -o " + file);
   EXPECT_EQ(out.code, 0) << out.err;
   return file;
 }
@@ -83,13 +83,13 @@ TEST(MeasuredBase, StandsBesideTheGrainsInUnitsOfItsOwn) {
     EXPECT_THAT(page, HasSubstr(title));
   }
   // A dip that the grains do not have.
-  const Output dip = program("run " + file + " -o " + (folder / "dip") + " --set measured.field=" +
-                             field_of(folder, 0.3));
+  const Output dip = program("run " + file + " -o " + (folder / "dip") +
+                             " --set measured.field=" + field_of(folder, 0.3));
   ASSERT_EQ(dip.code, 0) << dip.err;
   const Summary with = read_summary(folder / "dip/summary.json");
   EXPECT_NEAR(figure(with, "measured.normal_centre"), 0.7, 1e-9);
   EXPECT_NEAR(figure(with, "measured.normal_rms"), 0.1, 5e-3);  // 0.3 at one of nine places
-  EXPECT_NEAR(figure(with, "measured.normal_chi2"), 4, 0.4);  // (0.3/0.05)^2 at one of nine
+  EXPECT_NEAR(figure(with, "measured.normal_chi2"), 4, 0.4);    // (0.3/0.05)^2 at one of nine
 }
 
 TEST(MeasuredBase, StandsBesideAPouredPile) {
@@ -136,9 +136,8 @@ TEST(MeasuredBase, MistakesAreNamed) {
     return out.err;
   };
   EXPECT_THAT(refusal("[measured]\nfield = \"none.h5\"\n"), HasSubstr("measured.field: none.h5"));
-  EXPECT_THAT(
-      refusal("[measured]\nfield = \"" + field_of(folder, 0) + "\"\nname = \"floor\"\n"),
-      HasSubstr("floor"));
+  EXPECT_THAT(refusal("[measured]\nfield = \"" + field_of(folder, 0) + "\"\nname = \"floor\"\n"),
+              HasSubstr("floor"));
   const std::string few = folder / "few.h5";
   ASSERT_EQ(program("import-field " +
                     folder.write("few.csv",
@@ -147,8 +146,9 @@ TEST(MeasuredBase, MistakesAreNamed) {
                     " --height 0.08 --slope 30 --rho-g 15000 -o " + few)
                 .code,
             0);
-  EXPECT_THAT(refusal("[measured]\nfield = \"" + few + "\"\n"),
-              HasSubstr("has 1 places on the base with a pressure and a shear, allowed: 5 or more"));
+  EXPECT_THAT(
+      refusal("[measured]\nfield = \"" + few + "\"\n"),
+      HasSubstr("has 1 places on the base with a pressure and a shear, allowed: 5 or more"));
 }
 
 // Three grains in a row on two walls' worth of forces: of 3 > 2 > 1 N the first is the strongest of

@@ -33,8 +33,8 @@ const std::vector<Room>& rooms() {
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"collisions", "engine", "image", "implicit", "laws", "motion", "heap", "packing", "quasistatic",
-        "random", "shapes", "snapshot", "space", "walls"}},
+       {"collisions", "engine", "image", "implicit", "laws", "motion", "heap", "packing",
+        "quasistatic", "random", "shapes", "snapshot", "space", "switching", "walls"}},
   };
   return kRooms;
 }

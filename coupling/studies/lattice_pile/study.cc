@@ -11,8 +11,8 @@
 #include "continuum/closed/liffman.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
-#include "coupling/run/ensemble.h"
 #include "coupling/report/force_lines.h"
+#include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/measured_base.h"
 #include "coupling/run/study_result.h"
@@ -56,8 +56,8 @@ class LatticePileAnalysis {
     add_own_figures(out.summary);
     std::optional<Chart> beside;
     if (const MeasuredSetup& measured = value_.get<MeasuredSetup>(); !measured.field.empty()) {
-      beside = beside_measured(profile_of(normal(), horizontal()), measured_base(measured),
-                               out.summary);
+      beside =
+          beside_measured(profile_of(normal(), horizontal()), measured_base(measured), out.summary);
       out.sweep_charts.push_back(*beside);
     }
     add_comparison_of_models(out);
@@ -177,10 +177,9 @@ class LatticePileAnalysis {
       out += fmt::format(" {:g} contacts within rows carry force: the closed forms have none.",
                          in_rows);
     }
-    out += fmt::format(
-        " N in the middle over the largest N: {:.3g}, of the lines {:.3g}.",
-        std::get<double>(summary.at("liffman.normal_centre")),
-        std::get<double>(summary.at("liffman.line_normal_centre")));
+    out += fmt::format(" N in the middle over the largest N: {:.3g}, of the lines {:.3g}.",
+                       std::get<double>(summary.at("liffman.normal_centre")),
+                       std::get<double>(summary.at("liffman.line_normal_centre")));
     return out;
   }
 
@@ -284,19 +283,36 @@ class LatticePileAnalysis {
     in.weight = weight;
     in.width = width;
     in.spacing = spacing;
-    in.figures = figure_rows(
-        result.summary,
-        {"dem.grains", "liffman.rows", "dem.contacts", "liffman.row_contacts", "base.weight_ratio",
-         "liffman.grain_weight", "liffman.softness", "dem.max_overlap_ratio",
-         "liffman.normal_largest", "liffman.horizontal_largest", "liffman.normal_max_error",
-         "liffman.horizontal_max_error", "liffman.line_normal_max_difference",
-         "liffman.line_horizontal_max_difference", "liffman.normal_centre",
-         "liffman.line_normal_centre", "liffman.horizontal_slope", "liffman.horizontal_explained",
-         "liffman.maximum_lines_level", "liffman.minimum_lines_level", "measured.places",
-         "measured.normal_rms", "measured.shear_rms", "measured.normal_chi2",
-         "measured.shear_chi2", "measured.normal_centre", "measured.shear_slope_ratio",
-         "measured.shear_explained", "dem.unbalanced_force_ratio",
-         "dem.kinetic_to_elastic_energy"});
+    in.figures = figure_rows(result.summary, {"dem.grains",
+                                              "liffman.rows",
+                                              "dem.contacts",
+                                              "liffman.row_contacts",
+                                              "base.weight_ratio",
+                                              "liffman.grain_weight",
+                                              "liffman.softness",
+                                              "dem.max_overlap_ratio",
+                                              "liffman.normal_largest",
+                                              "liffman.horizontal_largest",
+                                              "liffman.normal_max_error",
+                                              "liffman.horizontal_max_error",
+                                              "liffman.line_normal_max_difference",
+                                              "liffman.line_horizontal_max_difference",
+                                              "liffman.normal_centre",
+                                              "liffman.line_normal_centre",
+                                              "liffman.horizontal_slope",
+                                              "liffman.horizontal_explained",
+                                              "liffman.maximum_lines_level",
+                                              "liffman.minimum_lines_level",
+                                              "measured.places",
+                                              "measured.normal_rms",
+                                              "measured.shear_rms",
+                                              "measured.normal_chi2",
+                                              "measured.shear_chi2",
+                                              "measured.normal_centre",
+                                              "measured.shear_slope_ratio",
+                                              "measured.shear_explained",
+                                              "dem.unbalanced_force_ratio",
+                                              "dem.kinetic_to_elastic_energy"});
     add_energy_rows(result.summary, in.figures);
     in.made = origin_rows(result);
     return lattice_pile_report(in);
@@ -337,8 +353,8 @@ Study lattice_pile_study() {
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::LatticePileSetup>().rest; };
   out.figures = {lattice_pile_figures, measured_figures};
   out.without = {"material.wall_friction"};
-  out.fills = {"alpha_deg", "top_alpha_deg", "bend", "phi_deg", "left_deg", "right_deg", "chi_g", "width",
-               "spacing",   "rho_g",   "h",        "dim",       "depth"};
+  out.fills = {"alpha_deg", "top_alpha_deg", "bend",  "phi_deg", "left_deg", "right_deg", "chi_g",
+               "width",     "spacing",       "rho_g", "h",       "dim",      "depth"};
   out.models_optional = true;
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_lattice_pile_run(value.get<dem::LatticePileSetup>(),
