@@ -78,6 +78,10 @@ Picture slice(const std::string& title, const dem::Snapshot& snapshot);
 /// Grains coloured by the order of their ids, which is the order of dropping.
 Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot);
 
+/// Grains with those of value 1 in colour; one value a grain.
+Picture marked_grains(const std::string& title, const dem::Snapshot& snapshot,
+                      const std::vector<char>& marked, const std::string& caption);
+
 /// Arrows from `before` to `after`, magnified (the caption says by how much). Throws
 /// std::invalid_argument when the numbers of grains differ.
 Picture displacements(const std::string& title, const dem::Snapshot& before,

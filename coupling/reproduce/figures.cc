@@ -8,6 +8,7 @@
 #include "coupling/reproduce/box_figures.h"
 #include "coupling/reproduce/dips.h"
 #include "coupling/reproduce/fit_figures.h"
+#include "coupling/reproduce/liffman_figures.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -231,6 +232,7 @@ const std::vector<SourceFigure>& source_figures() {
     std::vector<SourceFigure> out = own;
     for (SourceFigure& figure : fit_figures()) out.push_back(std::move(figure));
     for (SourceFigure& figure : box_figures()) out.push_back(std::move(figure));
+    for (SourceFigure& figure : liffman_figures()) out.push_back(std::move(figure));
     return out;
   }();
   return all;

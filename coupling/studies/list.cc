@@ -15,6 +15,7 @@
   STUDY(pair) \
   STUDY(hard_disks) \
   STUDY(implicit_settling) \
+  STUDY(hard_to_soft) \
   STUDY(elastic_layer) \
   STUDY(elastic_half_space) \
   STUDY(osl_wedge) \

@@ -11,6 +11,9 @@ struct SourceSetup {
   int grains = 6500;           ///< 3 or more; line: fewer when the pile has come to a point before
   double speed = 0.2;          ///< m/s downwards at the start, of both
   double height = 0.5;         ///< m above the floor; point: of the funnel's mouth
+  double above = 0;            ///< mean diameters; point: each grain starts this far above the
+                               ///< pile's top, as it is then, in place of `height` (Liffman fig.
+                               ///< 20); 0: from the mouth
   double interval = 0.1;       ///< s from one grain to the next; point
   double spread = 0.5;  ///< mean radii; point: grains start within +- this from the funnel's axis
   double opening = 0;   ///< m; point: width of the mouth between two immobile plates; 0: no plates,
@@ -24,8 +27,8 @@ struct SourceSetup {
                      ///< (asymmetric piles)
 
   auto members() const {
-    return std::tie(kind, grains, speed, height, interval, spread, opening, move, clearance, length,
-                    shift);
+    return std::tie(kind, grains, speed, height, above, interval, spread, opening, move, clearance,
+                    length, shift);
   }
 };
 

@@ -18,6 +18,7 @@ SoftEnergy SoftDisks::Work::energy() const {
     if (b.inverse_inertia > 0) out.kinetic += 0.5 * b.spin * b.spin / b.inverse_inertia;
   }
   for (const SoftCandidate& c : candidates_) {
+    if (!acts(c)) continue;
     const SoftLaw& law = law_of(c);
     const double s = std::max(overlap(c), 0.0);
     out.elastic += 0.5 * law.stiffness * s * s;
@@ -35,7 +36,7 @@ std::vector<SoftTouch> SoftDisks::Work::touches() const {
     t.i = c.i;
     t.j = c.j;
     t.overlap = overlap(c);
-    if (!(t.overlap > 0)) continue;
+    if (!(t.overlap > 0) || !acts(c)) continue;
     if (c.j < 0) {
       t.normal = -scene_.walls[static_cast<std::size_t>(-1 - c.j)].normal;
     } else {
@@ -79,6 +80,7 @@ std::string SoftDisks::Work::image() const {
   ImageWriter out;
   out.put(bodies_);
   out.put(angles_);
+  out.put(acting_);
   out.put(listed_);
   for (const double value : {margin_, losses_.normal, losses_.tangential, losses_.well,
                              losses_.background, tally_.least_step}) {
@@ -105,8 +107,9 @@ void SoftDisks::Work::restore(const std::string& image) {
   const std::size_t n = bodies_.size();
   in.get(bodies_);
   in.get(angles_);
+  in.get(acting_);
   in.get(listed_);
-  in.require(bodies_.size() == n && angles_.size() == n &&
+  in.require(bodies_.size() == n && angles_.size() == n && acting_.size() == n &&
              (listed_.empty() || listed_.size() == n));
   for (double* value : {&margin_, &losses_.normal, &losses_.tangential, &losses_.well,
                         &losses_.background, &tally_.least_step}) {
@@ -146,6 +149,10 @@ SoftDisks::SoftDisks(SoftDisks&&) noexcept = default;
 SoftDisks& SoftDisks::operator=(SoftDisks&&) noexcept = default;
 
 void SoftDisks::step(long steps) { work_->step(steps); }
+void SoftDisks::set_acting(const std::vector<char>& acting) { work_->set_acting(acting); }
+void SoftDisks::set_velocities(const std::vector<Body<2>>& bodies) {
+  work_->set_velocities(bodies);
+}
 double SoftDisks::time() const { return work_->time(); }
 const std::vector<Body<2>>& SoftDisks::bodies() const { return work_->bodies(); }
 const std::vector<double>& SoftDisks::angles() const { return work_->angles(); }

@@ -106,6 +106,12 @@ class SoftDisks {
   /// `most_halvings` times does not converge: when, why and what to change.
   void step(long steps);
 
+  /// Contacts act between disks of value 1, and between these and walls; all of them at the start.
+  /// Takes one value a disk; a contact that stops acting is forgotten.
+  void set_acting(const std::vector<char>& acting);
+  /// Velocities and spins become those of these bodies.
+  void set_velocities(const std::vector<Body<2>>& bodies);
+
   double time() const;
   const std::vector<Body<2>>& bodies() const;
   const std::vector<double>& angles() const;  ///< since the start, rad

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "dem/computation_failed.h"
 #include "dem/implicit/soft_checks.h"
@@ -34,7 +35,11 @@ bool before(const SoftCandidate& a, const SoftCandidate& b) {
 
 SoftDisks::Work::Work(const SoftScene& scene, const std::vector<Body<2>>& disks,
                       const ImplicitSettings& settings)
-    : scene_(scene), settings_(settings), bodies_(disks), angles_(disks.size(), 0.0) {
+    : scene_(scene),
+      settings_(settings),
+      bodies_(disks),
+      angles_(disks.size(), 0.0),
+      acting_(disks.size(), 1) {
   check_soft(scene, disks, settings);
   for (const Body<2>& b : bodies_) widest_ = std::max(widest_, b.radius);
   stiffest_ = scene.grains.stiffness;
@@ -48,6 +53,24 @@ void SoftDisks::Work::step(long steps) {
     advance(settings_.time_step, 0);
     ++tally_.steps;
     time_ = static_cast<double>(tally_.steps) * settings_.time_step;
+  }
+}
+
+void SoftDisks::Work::set_acting(const std::vector<char>& acting) {
+  if (acting.size() != bodies_.size()) throw std::invalid_argument("one value a disk");
+  acting_ = acting;
+  for (SoftCandidate& c : candidates_) {
+    if (acts(c)) continue;
+    c.memory = {};
+    c.touched = false;
+  }
+}
+
+void SoftDisks::Work::set_velocities(const std::vector<Body<2>>& bodies) {
+  if (bodies.size() != bodies_.size()) throw std::invalid_argument("one body a disk");
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    bodies_[k].velocity = bodies[k].velocity;
+    bodies_[k].spin = bodies[k].spin;
   }
 }
 
@@ -162,7 +185,7 @@ void SoftDisks::Work::list(double margin) {
       c.memory = old->memory;
       c.touched = old->touched;
     } else {
-      c.touched = overlap(c) > 0;
+      c.touched = acts(c) && overlap(c) > 0;
     }
   }
   candidates_ = std::move(found);
@@ -200,6 +223,7 @@ double SoftDisks::Work::largest_force(const Vector& z) const {
   }
   SoftForce<double> f;
   for (const SoftCandidate& c : candidates_) {
+    if (!acts(c)) continue;
     out = std::max(out, law_of(c).stiffness * overlap(c));
     if (force_of(c, motion_of(c, z), f)) out = std::max(out, f.normal);
   }

@@ -25,6 +25,8 @@ class SoftDisks::Work {
   Work(const SoftScene& scene, const std::vector<Body<2>>& disks, const ImplicitSettings& settings);
 
   void step(long steps);
+  void set_acting(const std::vector<char>& acting);
+  void set_velocities(const std::vector<Body<2>>& bodies);
 
   double time() const { return time_; }
   const std::vector<Body<2>>& bodies() const { return bodies_; }
@@ -45,6 +47,9 @@ class SoftDisks::Work {
   int count() const { return static_cast<int>(bodies_.size()); }
   const SoftLaw& law_of(const SoftCandidate& c) const {
     return c.j < 0 ? scene_.walls[static_cast<std::size_t>(-1 - c.j)].law : scene_.grains;
+  }
+  bool acts(const SoftCandidate& c) const {
+    return acting_[c.i] != 0 && (c.j < 0 || acting_[c.j] != 0);
   }
   /// Share of the distance of the centres that belongs to each disk.
   double share_i(const SoftCandidate& c) const {
@@ -77,6 +82,7 @@ class SoftDisks::Work {
 
   template <class T>
   bool force_of(const SoftCandidate& c, const SoftMotion<T>& m, SoftForce<T>& out) const {
+    if (!acts(c)) return false;
     const SoftLaw& law = law_of(c);
     if (c.j < 0) {
       const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
@@ -115,6 +121,7 @@ class SoftDisks::Work {
   ImplicitSettings settings_;
   std::vector<Body<2>> bodies_;
   std::vector<double> angles_;
+  std::vector<char> acting_;          // of each disk
   double widest_ = 0, stiffest_ = 0;  // m, N/m
   double time_ = 0, dt_ = 0, scale_ = 1;
   ImplicitTally tally_;

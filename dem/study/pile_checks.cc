@@ -129,6 +129,9 @@ void check_pile(const PileSetup& s) {
   require(s.source.clearance > 0, "source.clearance", s.source.clearance, "above 0");
   require(std::isfinite(s.source.move), "source.move", s.source.move, "a finite number");
   require(s.source.opening >= 0, "source.opening", s.source.opening, "0 (no funnel) or above");
+  require(s.source.above >= 0, "source.above", s.source.above, "0 (from source.height) or above");
+  require(s.source.opening == 0 || s.source.above == 0, "source.above", s.source.above,
+          "0 with a funnel of plates (source.opening), whose mouth does not rise");
   const double usual = SourceSetup{}.spread;
   require(s.source.opening == 0 || s.source.spread == usual, "source.spread", s.source.spread,
           fmt::format("{:g} with a funnel of plates (source.opening), between which grains start "
@@ -178,7 +181,7 @@ void check_source(const PileSetup& s, double largest_radius, double grain_area) 
                         "one has cleared it by a largest diameter of {:.3g} m; raise "
                         "source.interval or source.speed",
                         round_up(interval), diameter));
-    const double height = heap.height + 2 * diameter;
+    const double height = s.source.above > 0 ? 0 : heap.height + 2 * diameter;
     require(s.source.height >= height, "source.height", s.source.height,
             fmt::format("at least {:g} m, above the pile that {} grains make (30 degrees, volume "
                         "fraction 0.8); raise source.height or lower source.grains",
@@ -212,6 +215,17 @@ double resting_top(const Snapshot& s, double mouth) {
   double top = 0;
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     if (stands[k] && s.grains[k].position.y() < mouth) top = std::max(top, top_of(s.grains[k]));
+  }
+  return top;
+}
+
+double pile_top(const Snapshot& s) {
+  const std::vector<char> stands = standing(s);
+  double top = 0;
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Grain& g = s.grains[k];
+    const bool hops = !g.fixed && g.velocity.squaredNorm() < std::fabs(s.gravity.y()) * g.radius;
+    if (stands[k] || hops) top = std::max(top, top_of(g));
   }
   return top;
 }

@@ -26,6 +26,8 @@ void check_source(const PileSetup& setup, double largest_radius, double grain_ar
 /// Top of the grains at rest on others or on the floor, m; 0 without any. Grains in flight, above
 /// the mouth or on a funnel's plates do not count.
 double resting_top(const Snapshot& snapshot, double mouth);
+/// The same, and grains that hop: slower than a fall over a quarter of their diameter. No mouth.
+double pile_top(const Snapshot& snapshot);
 /// Throws ComputationFailed naming source.height when grains at rest come within two of the
 /// largest diameters of the mouth.
 void check_mouth(const PileSetup& setup, double resting_top, double diameter);

@@ -47,7 +47,7 @@ void PileRun::pour_point() {
 }
 
 void PileRun::release_grain() {
-  check_mouth(setup_, top_, largest_diameter_);
+  if (setup_.source.above == 0) check_mouth(setup_, top_, largest_diameter_);
   Flight f;
   f.grain = poured_;
   // Between plates anywhere, else near the axis.
@@ -57,7 +57,7 @@ void PileRun::release_grain() {
   f.x = point_->axis(poured_) + half_width * random_.uniform(-1, 1);
   const double near = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
   const double entry = funnel ? point_->start_height() : near;
-  f.step = point_->arrival_step(poured_, entry);
+  f.step = setup_.source.above > 0 ? phases_.steps() : point_->arrival_step(poured_, entry);
   // One after the other, and not before those that are to join at this very step.
   if (!in_flight_.empty()) f.step = std::max(f.step, in_flight_.back().step + 1);
   f.step = std::max(f.step, phases_.steps() + 1);
@@ -73,13 +73,18 @@ bool PileRun::join(const Flight& f) {
   const bool waits = setup_.source.opening > 0;
   point_->place(g, f.grain, waits ? point_->release_step(f.grain) : phases_.steps());
   const Snapshot now = engine_->snapshot();
+  const bool rises = setup_.source.above > 0;
+  top_ = rises ? pile_top(now) : resting_top(now, setup_.source.height);
+  if (rises) {
+    g.y = top_ + setup_.source.above * mean_diameter_ + g.radius;
+    g.vy = -setup_.source.speed;
+  }
   for (const Grain& other : now.grains) {
     if (other.fixed) continue;
     if (std::hypot(other.position.x() - g.x, other.position.y() - g.y) < other.radius + g.radius) {
       return false;
     }
   }
-  top_ = resting_top(now, setup_.source.height);
   check_walls_free(setup_, now, largest_diameter_,
                    static_cast<double>(f.grain + 1) / setup_.source.grains);
   engine_->add(g);

@@ -53,6 +53,7 @@ const std::vector<Room>& rooms() {
       {"studies/pair", {"case", "output", "report", "run"}},
       {"studies/hard_disks", {"case", "output", "report", "run"}},
       {"studies/implicit_settling", {"case", "output", "report", "run", "studies/lattice_pile"}},
+      {"studies/hard_to_soft", {"case", "output", "report", "run"}},
       {"studies/solvers", {"averaging", "case", "models", "run", "studies/point_load"}},
       {"studies/wedge",
        {"averaging", "case", "heap", "models", "output", "report", "run", "studies/point_load"}},

@@ -29,11 +29,12 @@ const std::vector<Room>& rooms() {
         "snapshot"}},
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
       {"implicit", {"space", "image", "neighbours", "newton", "quasistatic"}},
+      {"switching", {"space", "image", "neighbours", "collisions", "implicit"}},
       {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
       {"packing", {"engine", "heap", "laws", "random", "space"}},
       {"study",
-       {"collisions", "engine", "image", "implicit", "laws", "motion", "heap", "packing", "quasistatic",
-        "random", "shapes", "snapshot", "space", "walls"}},
+       {"collisions", "engine", "image", "implicit", "laws", "motion", "heap", "packing",
+        "quasistatic", "random", "shapes", "snapshot", "space", "switching", "walls"}},
   };
   return kRooms;
 }

@@ -15,6 +15,13 @@ void declare_lattice_keys(SectionKeys s) {
   s.number("slope_deg", "deg", IN(slope_deg), {1, 60},
            "of the outline: rows end under it; 60 is the equilateral pile",
            "Liffman et al. 1992, fig. 13");
+  s.number("top_slope_deg", "deg", IN(top_slope_deg), Range{1, 60}.with_zero(),
+           "of the outline above its bend, a \"tent\"; 0: no bend",
+           "Liffman et al. 1992, fig. 18, 19: 45 above 30");
+  s.number("bend", "-", IN(bend), {0, 0.499},
+           "distance of the bend from the corner along the base, over the base; farther: a shorter "
+           "top",
+           "Liffman et al. 1992, fig. 19: 0.38");
   s.number("radius", "m", IN(radius), kRadius,
            "of the disks; larger: heavier, and a longer time step");
   s.number("gap", "-", IN(gap), {0, 0.5},

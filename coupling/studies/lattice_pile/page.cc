@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "coupling/report/force_lines.h"
+
 namespace grainfield::coupling {
 
 std::vector<Frame> base_frames(const Comparison& c, double weight, double width, double spacing,
@@ -27,7 +29,12 @@ Report lattice_pile_report(const LatticePileReport& in) {
   report.title = in.title;
   report.subtitle = in.subtitle;
   report.sections.emplace_back(Text{"", c.verdict.sentence, true});
-  if (in.pile != nullptr) report.sections.emplace_back(packing("Network of forces", *in.pile));
+  if (in.pile != nullptr) {
+    report.sections.emplace_back(packing("Network of forces", *in.pile));
+    report.sections.emplace_back(
+        force_lines("Lines of maximum force", *in.pile, Extreme::strongest));
+    report.sections.emplace_back(force_lines("Lines of minimum force", *in.pile, Extreme::weakest));
+  }
   Picture base = curves("Forces of the base disks on the ground", "x / B", "force / (m g)",
                         base_frames(c, in.weight, in.width, in.spacing, ""));
   base.caption = fmt::format(
@@ -36,6 +43,7 @@ Report lattice_pile_report(const LatticePileReport& in) {
       "meet at a base disk (Liffman 40-44); the line model is its continuum (52-59).",
       in.weight, in.width);
   report.sections.emplace_back(std::move(base));
+  if (in.beside) report.sections.emplace_back(*in.beside);
   Table distances{"Distance from the grains",
                   "Relative L2: root of the sum of squared differences over that of the grains.",
                   {"model", "N: relative L2", "H: relative L2", "largest difference (m g)", "of"},

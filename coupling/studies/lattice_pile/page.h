@@ -1,5 +1,6 @@
 // The report of a lattice pile: forces of the base disks beside the closed forms.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ struct LatticePileReport {
   double weight = 0;                    ///< m g of a disk, N
   double width = 0;                     ///< base B, m
   double spacing = 0;                   ///< of the base disks, m
+  std::optional<Picture> beside;        ///< the measurement and the grains
   ReportRows figures, made;
 };
 

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "continuum/closed/liffman.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
+#include "coupling/report/force_lines.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
+#include "coupling/run/measured_base.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
@@ -37,7 +40,8 @@ class LatticePileAnalysis {
         material.density * std::numbers::pi * lattice_.radius * lattice_.radius * material.gravity;
     stiffness_ = material.law == "linear" ? material.normal_stiffness : material.young;
     alpha_ = lattice_.slope_deg * std::numbers::pi / 180;
-    heap_ = {alpha_, alpha_, base_ * spacing_, 0};
+    const double top = lattice_.top_slope_deg * std::numbers::pi / 180;
+    heap_ = {alpha_, top > 0 ? top : alpha_, base_ * spacing_, lattice_.bend * base_ * spacing_};
     points_.resize(base_, 2);
     for (int i = 0; i < base_; ++i) {
       points_.row(i) << (i - 0.5 * (base_ - 1)) * spacing_, -heap_.height();
@@ -50,13 +54,25 @@ class LatticePileAnalysis {
     StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, figures_);
     add_own_figures(out.summary);
+    std::optional<Chart> beside;
+    if (const MeasuredSetup& measured = value_.get<MeasuredSetup>(); !measured.field.empty()) {
+      beside =
+          beside_measured(profile_of(normal(), horizontal()), measured_base(measured), out.summary);
+      out.sweep_charts.push_back(*beside);
+    }
     add_comparison_of_models(out);
     out.comparison.verdict.sentence = sentence(out.summary);
     out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
     add_fields(out);
     const double weight = weight_, width = heap_.width, spacing = spacing_;
     out.page = [=](const StudyResult& result, const Realization* first) {
-      return page(result, first, weight, width, spacing);
+      return page(result, first, weight, width, spacing, beside);
+    };
+    out.sweep_sections = [first = files_.front()](const std::string& name) {
+      const Realization one = read_realization(first);
+      return std::vector<Section>{
+          force_lines(name + ": lines of maximum force", one["pile"], Extreme::strongest),
+          force_lines(name + ": lines of minimum force", one["pile"], Extreme::weakest)};
     };
     out.sweep_frames = base_frames(out.comparison, weight_, heap_.width, spacing_,
                                    fmt::format("{:g}°", lattice_.slope_deg));
@@ -90,6 +106,11 @@ class LatticePileAnalysis {
       }
       for (const auto& [key, figure] : one.figures) figures_[key].push_back(figure);
       figures_["liffman.row_contacts"].push_back(in_rows);
+      const auto level = [&](Extreme which) {
+        return horizontal_share(one["pile"], extreme_contacts(one["pile"], which));
+      };
+      figures_["liffman.maximum_lines_level"].push_back(level(Extreme::strongest));
+      figures_["liffman.minimum_lines_level"].push_back(level(Extreme::weakest));
     }
   }
 
@@ -105,6 +126,10 @@ class LatticePileAnalysis {
       line_normal_[i] = lines.normal;
       line_horizontal_[i] = lines.horizontal;
     }
+  }
+
+  BaseProfile profile_of(const Eigen::VectorXd& normal, const Eigen::VectorXd& horizontal) const {
+    return {points_.col(0) / heap_.width, normal, horizontal, {}, {}};
   }
 
   Eigen::VectorXd normal() const { return normal_.rowwise().mean(); }
@@ -127,6 +152,15 @@ class LatticePileAnalysis {
         largest(horizontal() - line_horizontal_, line_horizontal_);
     summary["liffman.normal_largest"] = normal().maxCoeff();
     summary["liffman.horizontal_largest"] = horizontal().cwiseAbs().maxCoeff();
+    const BaseProfile grains = profile_of(normal(), horizontal());
+    const BaseProfile lines = profile_of(line_normal_, line_horizontal_);
+    summary["liffman.normal_centre"] = centre_over_largest(grains);
+    summary["liffman.line_normal_centre"] = centre_over_largest(lines);
+    if (horizontal().cwiseAbs().maxCoeff() > 0) {
+      const MiddleShear shear = middle_shear(grains);
+      summary["liffman.horizontal_explained"] = shear.explained;
+      summary["liffman.horizontal_slope"] = shear.slope / middle_shear(lines).slope;
+    }
   }
 
   std::string sentence(const Summary& summary) const {
@@ -143,6 +177,9 @@ class LatticePileAnalysis {
       out += fmt::format(" {:g} contacts within rows carry force: the closed forms have none.",
                          in_rows);
     }
+    out += fmt::format(" N in the middle over the largest N: {:.3g}, of the lines {:.3g}.",
+                       std::get<double>(summary.at("liffman.normal_centre")),
+                       std::get<double>(summary.at("liffman.line_normal_centre")));
     return out;
   }
 
@@ -167,6 +204,8 @@ class LatticePileAnalysis {
                    {"phi_deg", lattice_.slope_deg},
                    {"left_deg", lattice_.slope_deg},
                    {"right_deg", lattice_.slope_deg},
+                   {"top_alpha_deg", lattice_.top_slope_deg},
+                   {"bend", lattice_.bend},
                    {"chi_g", weight_ / spacing_},
                    {"width", heap_.width},
                    {"spacing", spacing_},
@@ -229,26 +268,51 @@ class LatticePileAnalysis {
   }
 
   static Report page(const StudyResult& result, const Realization* first, double weight,
-                     double width, double spacing) {
+                     double width, double spacing, const std::optional<Chart>& beside) {
     LatticePileReport in;
     in.title = title_of(result.value);
-    in.subtitle = fmt::format("slope {:g}°, {} base disks, {} law",
-                              result.value.get<dem::LatticePileSetup>().lattice.slope_deg,
-                              result.value.get<dem::LatticePileSetup>().lattice.base_grains,
-                              result.value.get<dem::LatticePileSetup>().material.law);
+    const dem::LatticePileSetup& setup = result.value.get<dem::LatticePileSetup>();
+    const std::string top = setup.lattice.top_slope_deg > 0
+                                ? fmt::format(", {:g}° above the bend", setup.lattice.top_slope_deg)
+                                : "";
+    in.subtitle = fmt::format("slope {:g}°{}, {} base disks, {} law", setup.lattice.slope_deg, top,
+                              setup.lattice.base_grains, setup.material.law);
+    if (beside) in.beside = beside->picture();
     in.pile = first != nullptr ? first->find("pile") : nullptr;
     in.comparison = result.comparison;
     in.weight = weight;
     in.width = width;
     in.spacing = spacing;
-    in.figures = figure_rows(
-        result.summary,
-        {"dem.grains", "liffman.rows", "dem.contacts", "liffman.row_contacts", "base.weight_ratio",
-         "liffman.grain_weight", "liffman.softness", "dem.max_overlap_ratio",
-         "liffman.normal_largest", "liffman.horizontal_largest", "liffman.normal_max_error",
-         "liffman.horizontal_max_error", "liffman.line_normal_max_difference",
-         "liffman.line_horizontal_max_difference", "dem.unbalanced_force_ratio",
-         "dem.kinetic_to_elastic_energy"});
+    in.figures = figure_rows(result.summary, {"dem.grains",
+                                              "liffman.rows",
+                                              "dem.contacts",
+                                              "liffman.row_contacts",
+                                              "base.weight_ratio",
+                                              "liffman.grain_weight",
+                                              "liffman.softness",
+                                              "dem.max_overlap_ratio",
+                                              "liffman.normal_largest",
+                                              "liffman.horizontal_largest",
+                                              "liffman.normal_max_error",
+                                              "liffman.horizontal_max_error",
+                                              "liffman.line_normal_max_difference",
+                                              "liffman.line_horizontal_max_difference",
+                                              "liffman.normal_centre",
+                                              "liffman.line_normal_centre",
+                                              "liffman.horizontal_slope",
+                                              "liffman.horizontal_explained",
+                                              "liffman.maximum_lines_level",
+                                              "liffman.minimum_lines_level",
+                                              "measured.places",
+                                              "measured.normal_rms",
+                                              "measured.shear_rms",
+                                              "measured.normal_chi2",
+                                              "measured.shear_chi2",
+                                              "measured.normal_centre",
+                                              "measured.shear_slope_ratio",
+                                              "measured.shear_explained",
+                                              "dem.unbalanced_force_ratio",
+                                              "dem.kinetic_to_elastic_energy"});
     add_energy_rows(result.summary, in.figures);
     in.made = origin_rows(result);
     return lattice_pile_report(in);
@@ -281,20 +345,24 @@ Study lattice_pile_study() {
   Study out;
   out.name = "lattice-pile";
   out.meaning = "disks on a triangular lattice against Liffman's closed forms of the base forces";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kLatticeKeys};
+  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kLatticeKeys, kMeasuredKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::LatticePileSetup>().material;
   };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::LatticePileSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::LatticePileSetup>().rest; };
-  out.figures = {lattice_pile_figures};
+  out.figures = {lattice_pile_figures, measured_figures};
   out.without = {"material.wall_friction"};
-  out.fills = {"alpha_deg", "phi_deg", "left_deg", "right_deg", "chi_g", "width",
-               "spacing",   "rho_g",   "h",        "dim",       "depth"};
+  out.fills = {"alpha_deg", "top_alpha_deg", "bend",  "phi_deg", "left_deg", "right_deg", "chi_g",
+               "width",     "spacing",       "rho_g", "h",       "dim",      "depth"};
   out.models_optional = true;
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return dem::make_lattice_pile_run(value.get<dem::LatticePileSetup>(),
                                       realization_seed(value, number), threads);
+  };
+  out.check = [](const Case& value) {
+    const MeasuredSetup& measured = value.get<MeasuredSetup>();
+    if (!measured.field.empty()) measured_base(measured);
   };
   out.foresee = [](const Case& value, std::int64_t) {
     return dem::foresee_lattice_pile(value.get<dem::LatticePileSetup>());

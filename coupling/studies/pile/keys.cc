@@ -57,6 +57,12 @@ void declare_source_keys(SectionKeys s) {
   s.number("height", "m", IN(source.height), kLength,
            "of the funnel's mouth above the floor; higher: faster grains at the top", kRoul);
   s.only("source.kind", {"point"});
+  s.only("source.above", {"0.0"});
+  s.number("above", "-", IN(source.above), Range{0.1, 1000}.with_zero(),
+           "each grain starts this many mean diameters above the pile's top as it is then; 0: from "
+           "source.height",
+           "Liffman et al. 1992, fig. 20: 2");
+  s.only("source.kind", {"point"});
   s.number("speed", "m/s", IN(source.speed), {0, 1e4}, "downwards, at the start", kRoul);
   s.number("interval", "s", IN(source.interval), kTime,
            "from one grain to the next; longer: each grain comes to rest before the next, "

@@ -157,6 +157,7 @@ Report pile_report(const PileReport& in) {
     report.sections.emplace_back(packing("Network of forces", *in.pile));
   }
   add_base(report, in);
+  if (in.beside) report.sections.emplace_back(*in.beside);
   add_cuts(report, in);
   add_maps(report, in);
   if (in.pile != nullptr) {

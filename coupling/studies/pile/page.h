@@ -1,5 +1,6 @@
 // The report of a pile.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ struct PileReport {
   Field map;             ///< scaled to comparison's h and rho g h, heap's frame; may be empty
   std::string averaged;  ///< how, for captions: "coarse graining, lucy kernel, w = 0.0055 m"
   Table changes;         ///< what each changed gravity did; without rows: left out
+  std::optional<Picture> beside;  ///< measured base forces and the grains'
   ReportRows figures, made;
 };
 

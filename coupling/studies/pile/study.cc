@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "coupling/heap/setup.h"
 #include "coupling/models/model_record.h"
@@ -12,6 +13,7 @@
 #include "coupling/models/subject.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/finished_runs.h"
+#include "coupling/run/measured_base.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/keys.h"
@@ -38,9 +40,14 @@ class PileAnalysis {
     add_own_figures(out.summary);
     const Dip dip = judge_dip(piles_.windows());
     add_dip(out, dip);
+    std::optional<Chart> beside;
+    if (const MeasuredSetup& measured = value_.get<MeasuredSetup>(); !measured.field.empty()) {
+      beside = beside_measured(base_profile(), measured_base(measured), out.summary);
+      out.sweep_charts.push_back(*beside);
+    }
     const std::string averaged = describe(piles_.methods().front().options);
-    out.page = [averaged](const StudyResult& result, const Realization* first) {
-      return page(result, first, averaged);
+    out.page = [averaged, beside](const StudyResult& result, const Realization* first) {
+      return page(result, first, averaged, beside);
     };
     out.overview = {{"dip ratio", "dip.ratio", ""},
                     {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
@@ -55,6 +62,22 @@ class PileAnalysis {
   }
 
  private:
+  // N/m, over the base between the mean feet.
+  BaseProfile base_profile() const {
+    const Field base = piles_.base().mean();
+    const double left = piles_.mean(&PileFrame::half_left);
+    const double right = piles_.mean(&PileFrame::half_right);
+    const double unit = piles_.pressure();
+    const Column *down = base.find("sigma_yy"), *along = base.find("sigma_xy");
+    BaseProfile out;
+    out.x = (piles_.height() * piles_.x().array() - 0.5 * (right - left)) / (left + right);
+    out.normal = -unit * down->value;
+    out.shear = unit * along->value;
+    out.normal_error = unit * down->error;
+    out.shear_error = unit * along->error;
+    return out;
+  }
+
   // Values of a scaled field in N/m on points in m, in the heap's frame.
   Field in_metres(const Ensemble& ensemble, const AverageOptions* options) const {
     Field field = ensemble.mean();
@@ -306,8 +329,9 @@ class PileAnalysis {
   }
 
   static Report page(const StudyResult& result, const Realization* first,
-                     const std::string& averaged) {
+                     const std::string& averaged, const std::optional<Chart>& beside) {
     PileReport in;
+    if (beside) in.beside = beside->picture();
     in.title = title_of(result.value);
     // What stands, which is not what the case says where piles are taken from files.
     double grains = result.value.get<dem::PileSetup>().source.grains;
@@ -351,6 +375,14 @@ class PileAnalysis {
                                               "dip.difference",
                                               "dip.standard_error",
                                               "dip.p_value",
+                                              "measured.places",
+                                              "measured.normal_rms",
+                                              "measured.shear_rms",
+                                              "measured.normal_chi2",
+                                              "measured.shear_chi2",
+                                              "measured.normal_centre",
+                                              "measured.shear_slope_ratio",
+                                              "measured.shear_explained",
                                               "source.interval",
                                               "dem.time_step",
                                               "time.dem_cpu_s",
@@ -385,9 +417,13 @@ Study pile_study() {
   out.sections.push_back(kChangeKeys);
   out.sections.push_back(kAverageKeys);
   out.sections.push_back(kHeapKeys);
+  out.sections.push_back(kMeasuredKeys);
+  out.figures.push_back(measured_figures);
   out.check = [](const Case& value) {
     check_heap_windows(value.get<HeapSetup>());
     require_subject(value.models, Subject::heap, 2, "compare.models");
+    const MeasuredSetup& measured = value.get<MeasuredSetup>();
+    if (!measured.field.empty()) measured_base(measured);
   };
   out.averaged = [](const Case& value) {
     return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);

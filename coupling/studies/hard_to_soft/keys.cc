@@ -1,0 +1,47 @@
+// Keys of hard disks that turn soft: [switch].
+#include "coupling/studies/hard_to_soft/keys.h"
+
+#include "coupling/case/declare.h"
+#include "dem/study/hard_to_soft.h"
+
+#define IN(MEMBER) GRAINFIELD_MEMBER(dem::HardToSoftSetup, MEMBER)
+
+namespace grainfield::coupling {
+
+void declare_switch_keys(SectionKeys s) {
+  s.number("columns", "-", IN(columns), {1, 1000}, "disks side by side at the start; a wider box");
+  s.number("rows", "-", IN(rows), {1, 10000}, "disks one above the other at the start");
+  s.number("radius", "m", IN(radius), kRadius, "mean radius");
+  s.number("polydispersity", "-", IN(polydispersity), {0, 0.5},
+           "radii uniform in (1 -+ this) times the radius; 0: the heap may crystallize");
+  s.number("clearance", "-", IN(clearance), {0.01, 100},
+           "between the rows and below the lowest, in diameters; more: a longer fall");
+  s.number("density", "kg/m2", IN(density), {1e-3, 1e6}, "of the disks, areal");
+  s.number("gravity", "m/s2", IN(gravity), kAcceleration, "downwards");
+  s.number("restitution", "-", IN(restitution), {0, 1},
+           "speed of parting over that of approach, of impulses between hard grains; less: soft "
+           "sooner",
+           "Liffman et al. 1992, eq. 4");
+  s.number("impact_friction", "-", IN(impact_friction), {0, 10}, "of these impulses",
+           "Liffman et al. 1992, eq. 7");
+  s.number("softness", "-", IN(softness), {1e-9, 1e-2},
+           "m g/(K d), how far a disk sinks into the ground by its own weight, in diameters; it "
+           "sets K",
+           "Liffman et al. 1992, eq. 46");
+  s.number("damping", "-", IN(damping), {0, 1e3}, "K_D/sqrt(m K) of soft contacts",
+           "Liffman et al. 1992, eq. 25");
+  s.number("coulomb", "-", IN(coulomb), {0, 10}, "friction coefficient of soft contacts");
+  s.number("tangential_ratio", "-", IN(tangential_ratio), {1e-3, 1e3}, "k_t/K of its spring");
+  s.number("step", "-", IN(step), {1e-2, 100},
+           "time step over (1/10) pi sqrt(m/K); longer: grains turn soft sooner, as a grain does "
+           "that would be back within a step",
+           "Liffman et al. 1992, eq. 22");
+  s.number("rest", "-", IN(rest), kRatioOfForces,
+           "mean resultant over mean contact force at which the run ends");
+  s.number("max_time", "-", IN(max_time), {1e-3, 1e6}, "in sqrt(d/g); ends the run as well");
+  s.number("records", "-", IN(records), {2, 100000}, "points of the curves over max_time");
+}
+
+}  // namespace grainfield::coupling
+
+#undef IN

@@ -1,0 +1,71 @@
+// Hard disks that turn soft through the real program: at rest, pictures, the same bits, refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "check_scene.h"
+#include "coupling/output/tables.h"
+#include "coupling/run/summary_keys.h"
+#include "program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+constexpr const char* kRain = R"(title = "rain"
+study = "hard-to-soft"
+[switch]
+columns = 5
+rows = 4
+[ensemble]
+realizations = 2
+)";
+
+double number(const Summary& summary, const std::string& key) {
+  const auto at = summary.find(key);
+  if (at == summary.end()) {
+    ADD_FAILURE() << "no " << key;
+    return 0;
+  }
+  return std::get<double>(at->second);
+}
+
+TEST(HardToSoftRun, RestsSoftAndClosesItsBalance) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", kRain);
+  const Output out = program("run " + file + " -o " + (folder / "out"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary s = read_summary(folder / "out/summary.json");
+  EXPECT_NO_THROW(require_documented(s));
+  EXPECT_EQ(number(s, "dem.grains"), 20);
+  EXPECT_EQ(number(s, "switch.at_rest"), 1);
+  EXPECT_GT(number(s, "switch.soft_share"), 0.85);
+  EXPECT_NEAR(number(s, "base.weight_ratio"), 1, 0.03);
+  EXPECT_GT(number(s, "switch.collisions"), 20);
+  EXPECT_GT(number(s, "switch.lost_impulses"), number(s, "switch.switched"));
+  EXPECT_LT(number(s, "switch.balance_error"), 1e-7);
+  EXPECT_THAT(testing::read_text(folder / "out/history.csv"), HasSubstr("time,soft,kinetic"));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("Soft grains, t = "));
+  EXPECT_THAT(page, HasSubstr("Network of forces"));
+  // The same figures on two threads.
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "two") + " --threads 2").code, 0);
+  const Summary two = read_summary(folder / "two/summary.json");
+  for (const char* key : {"switch.time", "switch.lost_impulses", "switch.lost_soft"}) {
+    EXPECT_EQ(number(s, key), number(two, key)) << key;
+  }
+}
+
+TEST(HardToSoftRun, MistakesAreNamed) {
+  const Folder folder;
+  const Output out = program("check " + folder.write("x.toml", std::string(kRain)) +
+                             " --set switch.restitution=1.5");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("switch.restitution: found 1.5, allowed: 0 to 1"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
