@@ -85,8 +85,8 @@ std::vector<SourceFigure> liffman_figures() {
   return {
       told("fig. 8", "N below 45 layers at m g/(K d) = 1e-4, without any tangential force", kSoft,
            "0 (within 1 %)", {"within 1 %"}, "liffman.normal_max_error.slope_60", exact_word),
-      told("fig. 9", "H below 45 layers, likewise", kSoft, "0 (within 1 %)", {"within 1 %"},
-           "liffman.horizontal_max_error.slope_60", exact_word),
+      told("fig. 9", "H below 45 layers at m g/(K d) = 1e-4, likewise", kSoft, "0 (within 1 %)",
+           {"within 1 %"}, "liffman.horizontal_max_error.slope_60", exact_word),
       told("fig. 10", "horizontal lines of minimum force, equilateral pile", kHard, "none",
            {"none"}, "liffman.minimum_lines_level.slope_deg_60", level_lines),
       convergence(),

@@ -205,7 +205,20 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "sample.pressure_ratio.hertz_025",
                                    "sample.pressure_ratio.hertz_05",
                                    "sample.shear_over_pressure.hertz_025",
-                                   "sample.shear_over_pressure.hertz_05"};
+                                   "sample.shear_over_pressure.hertz_05",
+                                   "liffman.normal_max_error.slope_60",
+                                   "liffman.horizontal_max_error.slope_60",
+                                   "liffman.minimum_lines_level.slope_deg_60",
+                                   "liffman.line_horizontal_max_difference.slope_30",
+                                   "liffman.line_horizontal_max_difference.large_30",
+                                   "liffman.maximum_lines_level.slope_30",
+                                   "liffman.minimum_lines_level.slope_30",
+                                   "liffman.horizontal_explained.slope_32_6",
+                                   "liffman.normal_centre.slope_32_6",
+                                   "liffman.line_normal_centre.tent",
+                                   "liffman.normal_centre.tent",
+                                   "dip.difference.equal",
+                                   "dip.standard_error.equal"};
   std::set<std::string> all = keys;
   for (const char* model :
        {"cantelaube", "cantelaube_minus", "cantelaube_plus", "osl", "cantelaube_asymmetric_zero"}) {
@@ -213,10 +226,12 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
     all.insert(std::string("fit.") + model + ".chi2_chance");
     all.insert(std::string("fit.") + model + ".rel_l2");
   }
-  std::string text = "{\"dip.verdict\": \"dip\", \"fit.cantelaube.branch\": \"zero\"";
+  std::string text =
+      "{\"dip.verdict\": \"dip\", \"dip.verdict.equal\": \"dip\", \"fit.cantelaube.branch\": "
+      "\"zero\"";
   for (const std::string& key : all) {
     std::string own = key;  // of a sweep's member
-    for (const char* member : {".slope_deg_", ".hertz_", ".penalty_"}) {
+    for (const char* member : {".slope_", ".large_", ".tent", ".equal", ".hertz_", ".penalty_"}) {
       own = own.substr(0, own.find(member));
     }
     EXPECT_NE(find_summary_key(own), nullptr) << key;
