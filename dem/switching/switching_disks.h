@@ -5,18 +5,16 @@
 // soft grains, and of soft ones with walls, act by forces over an implicit step (dem/implicit). In
 // a step of dt:
 //
-//   1. Of every pair that is not soft on both sides and whose free flight, v dt + a dt^2/2 with a
-//   of
-//      gravity and the forces of now, would make it overlap: if it approaches, it collides now. So
-//      impulses come early by up to dt and no hard grain ever overlaps: a switch changes neither
+//   1. Pairs that are not both soft: free flight v dt + a dt^2/2, with a of gravity and the forces
+//      of now, tells whether they would overlap; those that would, and approach, collide now. So
+//      impulses come early by up to dt, and no hard grain ever overlaps: a switch changes neither
 //      place nor velocity, and there is no elastic energy and no memory to make or to lose.
 //   2. With u >= 0 the speed at which such a pair parts and a > 0 the acceleration at which the
 //      resultants bring it together again, it becomes soft where dt > u/a                     (22)
 //   3. All move by the implicit step; contacts that are not soft on both sides do not act.
 //   4. A soft grain that touches nothing becomes hard. Where a soft grain was pushed into a hard
-//   one
-//      within the step, by less than what it moved, both are soft from now on; the elastic energy
-//      of that overlap is counted as `switched`.
+//      one within the step, by less than what it moved, both are soft from now on; the elastic
+//      energy of that overlap is counted as `switched`.
 //
 // So total energy + what was lost - switched stays the same to the solver's tolerance, and momentum
 // is exchanged with walls and gravity alone.
