@@ -1,0 +1,82 @@
+#include "tests/fuzz/target.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "coupling/system/failure.h"
+
+namespace grainfield::fuzz {
+namespace {
+
+std::vector<Target>& list() {
+  static std::vector<Target> all;
+  return all;
+}
+
+// What std:: says by itself, such as "stod", is one word.
+bool tells_nothing(const std::string& text) { return text.find(' ') == std::string::npos; }
+
+}  // namespace
+
+const std::vector<Target>& targets() { return list(); }
+
+const Target& find_target(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Target& target : list()) {
+    if (target.name == name) return target;
+    names.push_back(target.name);
+  }
+  throw std::invalid_argument(
+      fmt::format("target: found \"{}\", allowed: {}", name, fmt::join(names, ", ")));
+}
+
+Registration::Registration(const char* name, void (*run)(std::string_view bytes)) {
+  const auto later = [&](const Target& other) { return other.name > name; };
+  list().insert(std::find_if(list().begin(), list().end(), later), {name, run});
+}
+
+void attempt(const std::function<void()>& read) {
+  coupling::Failure failure;
+  try {
+    read();
+    return;
+  } catch (...) {
+    failure = coupling::failure_of(std::current_exception());
+  }
+  if (failure.code != 2 && failure.code != 3) {
+    throw std::logic_error(fmt::format("exit code {}: {}", failure.code, failure.text));
+  }
+  if (tells_nothing(failure.text)) {
+    throw std::logic_error(fmt::format("a message that tells nothing: \"{}\"", failure.text));
+  }
+}
+
+InputFile::InputFile(std::string_view bytes) : descriptor_(memfd_create("input", MFD_CLOEXEC)) {
+  std::size_t written = 0;
+  while (descriptor_ >= 0 && written < bytes.size()) {
+    const ssize_t n = write(descriptor_, bytes.data() + written, bytes.size() - written);
+    if (n <= 0) break;
+    written += static_cast<std::size_t>(n);
+  }
+  if (descriptor_ < 0 || written < bytes.size()) throw std::runtime_error("no file in memory");
+  path_ = fmt::format("/proc/self/fd/{}", descriptor_);
+}
+
+InputFile::~InputFile() { close(descriptor_); }
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    out.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+}  // namespace grainfield::fuzz
