@@ -1,12 +1,17 @@
 #include "tests/fuzz/import.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <list>
+#include <stdexcept>
 
 #include "coupling/app/cell_text.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/number.h"
+#include "dem/snapshot/table_file.h"
 #include "tests/fuzz/target.h"
 
 namespace grainfield::fuzz {
@@ -32,10 +37,41 @@ void choose(const std::string& line, coupling::ImportOptions& options) {
   if (name == "near") options.leave_out_distant = true;
 }
 
+template <class Row>
+void require_finite(const std::vector<dem::Column<Row>>& columns, const std::vector<Row>& rows) {
+  for (const dem::Column<Row>& column : columns) {
+    if (column.may_be_nan) continue;
+    std::visit(
+        [&](auto member) {
+          using Value = decltype(dem::table::value_type(member));
+          if constexpr (dem::table::is_real<Value>) {
+            for (const Row& row : rows)
+              for (int k = 0; k < dem::table::width_of<Value>(); ++k)
+                if (!std::isfinite(dem::table::element(row.*member, k)))
+                  throw std::invalid_argument(fmt::format("{} is not finite", column.name));
+          }
+        },
+        column.member);
+  }
+}
+
+// That what is written can be read again.
+void check(const coupling::ImportedSnapshot& imported) {
+  const dem::Snapshot& s = imported.snapshot;
+  try {
+    require_finite(dem::grain_columns(s.dim), s.grains);
+    require_finite(dem::contact_columns(), s.contacts);
+    require_finite(dem::wall_columns(), s.walls);
+    dem::check_snapshot(s, imported.group);
+  } catch (const std::invalid_argument& e) {
+    throw std::logic_error(fmt::format("what is imported cannot be read again: {}", e.what()));
+  }
+}
+
 // What the command does with a packing before and after it writes it.
 void look_at(const coupling::ImportedSnapshot& imported) {
   const dem::Snapshot& s = imported.snapshot;
-  dem::check_snapshot(s, imported.group);
+  check(imported);
   coupling::cell_text(s.cell);
   coupling::strange_units(s);
   const coupling::PackingCheck check = coupling::check_packing(s);

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 
 #include "coupling/system/failure.h"
@@ -56,18 +57,20 @@ void attempt(const std::function<void()>& read) {
   }
 }
 
-InputFile::InputFile(std::string_view bytes) : descriptor_(memfd_create("input", MFD_CLOEXEC)) {
+InputFile::InputFile(std::string_view bytes)
+    : path_((std::filesystem::temp_directory_path() / "input_XXXXXX").string()) {
+  const int descriptor = mkstemp(path_.data());
   std::size_t written = 0;
-  while (descriptor_ >= 0 && written < bytes.size()) {
-    const ssize_t n = write(descriptor_, bytes.data() + written, bytes.size() - written);
+  while (descriptor >= 0 && written < bytes.size()) {
+    const ssize_t n = write(descriptor, bytes.data() + written, bytes.size() - written);
     if (n <= 0) break;
     written += static_cast<std::size_t>(n);
   }
-  if (descriptor_ < 0 || written < bytes.size()) throw std::runtime_error("no file in memory");
-  path_ = fmt::format("/proc/self/fd/{}", descriptor_);
+  if (descriptor >= 0) close(descriptor);
+  if (descriptor < 0 || written < bytes.size()) throw std::runtime_error("no temporary file");
 }
 
-InputFile::~InputFile() { close(descriptor_); }
+InputFile::~InputFile() { unlink(path_.c_str()); }
 
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> out;

@@ -31,7 +31,7 @@ struct Registration {
 /// for a message that tells nothing.
 void attempt(const std::function<void()>& read);
 
-/// The bytes as a file without a name that goes with this object.
+/// The bytes as a file in the folder for temporary ones; it goes with this object.
 class InputFile {
  public:
   explicit InputFile(std::string_view bytes);
@@ -41,7 +41,6 @@ class InputFile {
   const std::string& path() const { return path_; }
 
  private:
-  int descriptor_;
   std::string path_;
 };
 

@@ -7,7 +7,7 @@ namespace grainfield::fuzz {
 namespace {
 
 void fuzz_set(std::string_view bytes) {
-  static const InputFile file("study = \"point_load\"\n");
+  static const InputFile file("study = \"point-load\"\n");
   attempt(
       [&] { coupling::outlook_text(coupling::read_case(file.path(), false, lines_of(bytes))); });
 }
