@@ -17,6 +17,12 @@
 #include "tests/fuzz/target.h"
 #include "tests/paths.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// The library keeps a little of every file that it gives up.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+#endif
+
 namespace grainfield::fuzz {
 namespace {
 
