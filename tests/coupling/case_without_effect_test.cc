@@ -154,7 +154,7 @@ TEST(IdleKeys, AreNamedWithLineAndRemedy) {
   const std::string text = "study = \"pile\"\n[source]\nkind = \"line\"\nheight = 0.4\n";
   EXPECT_THAT(read(text).without_effect,
               ElementsAre(HasSubstr("x.toml:4: source.height: has no effect, only with "
-                                    "source.kind = point (now \"line\")")));
+                                    "source.kind = point, source.above = 0.0 (now \"line\")")));
   EXPECT_THAT(read(text, {"source.kind=point"}).without_effect, IsEmpty());
   // Of a list one of the values is enough; a key of a key without effect has none either.
   EXPECT_THAT(read(testing::tiny_case(), {"average.kernel=gaussian"}).without_effect, IsEmpty());
@@ -244,7 +244,7 @@ TEST(IdleKeys, ASweptOneIsWarnedOf) {
   const std::string sweep = "[sweep]\nkey = \"source.height\"\nvalues = [\"0.5\", \"0.4\"]\n";
   EXPECT_THAT(read(pile + "kind = \"line\"\n" + sweep).without_effect,
               ElementsAre(HasSubstr("x.toml:5: sweep.key: source.height has no effect, only with "
-                                    "source.kind = point (now \"line\")")));
+                                    "source.kind = point, source.above = 0.0 (now \"line\")")));
   EXPECT_THAT(read(pile + "kind = \"point\"\n" + sweep).without_effect, IsEmpty());
 }
 

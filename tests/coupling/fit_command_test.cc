@@ -149,14 +149,23 @@ TEST(FitCommand, CopiesOfAHeapAreNoRealizations) {
   EXPECT_THAT(copied.err, HasSubstr("copy.h5:/1/pile is a copy of " + heap +
                                     ":/1/pile: copies are no independent realizations"));
   EXPECT_THAT(copied.out, HasSubstr(" of 2 piles at 3 heights"));
-  const Output thrice = program("fit " + heap + ":/1/pile " + heap + ":/1/pile " + heap +
-                                ":/1/pile" + models + (folder / "thrice"));
+  // The same packing named again is refused, by fit and by average.
+  const std::string again = heap + ":/1/pile " + heap + ":/2/pile " + heap + ":/1/pile";
+  const std::string refusal = heap + ":/1/pile: named twice";
+  expect_refusal(program("fit " + again + models + (folder / "again")), refusal);
+  expect_refusal(program("average " + again + " --frame heap -o " + (folder / "again.h5")),
+                 refusal);
+
+  testing::fs::copy_file(heap, folder / "second.h5");
+  const std::string copies =
+      heap + ":/1/pile " + (folder / "copy.h5") + ":/1/pile " + (folder / "second.h5") + ":/1/pile";
+  const Output thrice = program("fit " + copies + models + (folder / "thrice"));
   ASSERT_EQ(thrice.code, 0) << thrice.err;
   EXPECT_THAT(thrice.err, HasSubstr("(likewise 1 other)"));
   EXPECT_THAT(thrice.out,
               HasSubstr("Not distinguishable: osl, hydrostatic; the nearest misses by"));
 
-  ASSERT_EQ(program("average " + heap + ":/1/pile " + heap + ":/2/pile " + heap +
+  ASSERT_EQ(program("average " + heap + ":/1/pile " + heap + ":/2/pile " + (folder / "copy.h5") +
                     ":/1/pile --frame heap --width 0.02 --grid 61x31 -o " + (folder / "f.h5"))
                 .code,
             0);

@@ -61,24 +61,6 @@ TEST(Fit, IntervalsCoverTheTruthOfTwoSlopes) {
                   20);  // a trial takes more than a second
 }
 
-// Noise as grains have it: components of a point are tied, its size grows with the depth and is
-// another for every component, and it leans to one side.
-void fill_as_grains(FitData& data, const Eigen::VectorXd& truth, int realizations, double share,
-                    dem::Random& random) {
-  FitData gauss = data;
-  fill(gauss, Eigen::VectorXd::Zero(data.values()), realizations, share, 0.03, random);
-  const int per = data.values() / 3;
-  data.samples.resize(data.values(), realizations);
-  for (int k = 0; k < data.values(); ++k) {
-    const double size = (0.4 + 0.4 * (k / per)) * (0.3 - data.points(k, 1) / kHeight);
-    for (int r = 0; r < realizations; ++r) {
-      const double z =
-          (0.8 * gauss.samples(k, r) + 0.6 * gauss.samples(k % per, r)) / (share * kRhoG * kHeight);
-      data.samples(k, r) = truth[k] + share * kRhoG * kHeight * size * (z + 0.15 * (z * z - 1));
-    }
-  }
-}
-
 // The short form of `grainfield fit --coverage`: the truth is half-way between two models, so that
 // none holds; intervals of few hold the constants of the rest, and hardly any verdict names another
 // model than the rest do.

@@ -66,6 +66,24 @@ inline void fill(FitData& data, const Eigen::VectorXd& truth, int realizations, 
   }
 }
 
+// Noise as grains have it: components of a point are tied, its size grows with the depth and is
+// another for every component, and it leans to one side.
+inline void fill_as_grains(FitData& data, const Eigen::VectorXd& truth, int realizations,
+                           double share, dem::Random& random, double length = 0.03) {
+  FitData gauss = data;
+  fill(gauss, Eigen::VectorXd::Zero(data.values()), realizations, share, length, random);
+  const int per = data.values() / 3;
+  data.samples.resize(data.values(), realizations);
+  for (int k = 0; k < data.values(); ++k) {
+    const double size = (0.4 + 0.4 * (k / per)) * (0.3 - data.points(k, 1) / kHeight);
+    for (int r = 0; r < realizations; ++r) {
+      const double z =
+          (0.8 * gauss.samples(k, r) + 0.6 * gauss.samples(k % per, r)) / (share * kRhoG * kHeight);
+      data.samples(k, r) = truth[k] + share * kRhoG * kHeight * size * (z + 0.15 * (z * z - 1));
+    }
+  }
+}
+
 inline Eigen::VectorXd vector(std::initializer_list<double> v) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(v.size()));
   std::copy(v.begin(), v.end(), out.data());
