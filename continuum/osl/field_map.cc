@@ -120,7 +120,7 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
   map.y0 = rows[0].values[1];
   map.dx = (rows[nx - 1].values[0] - map.x0) / static_cast<double>(nx - 1);
   map.dy = (rows.back().values[1] - map.y0) / static_cast<double>(ny - 1);
-  if (!(map.dx > 0 && map.dy > 0))
+  if (!(map.dx > 0 && map.dy > 0 && std::isfinite(map.dx) && std::isfinite(map.dy)))
     refuse(file, rows[1].line, "x and y of the nodes must ascend, x fastest");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double x = map.x0 + static_cast<double>(k % nx) * map.dx,

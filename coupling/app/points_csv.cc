@@ -13,7 +13,9 @@
 
 // The optimizer warns of the package's deliberate cutting of long file names in its own messages.
 #pragma GCC diagnostic push
+#ifndef __clang__  // which has no such warning
 #pragma GCC diagnostic ignored "-Wstringop-truncation"
+#endif
 #include <libfccp/csv.h>
 #pragma GCC diagnostic pop
 

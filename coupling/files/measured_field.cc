@@ -70,7 +70,15 @@ struct Measure {
   ForeignColumn column;
   double factor = 1;
   explicit operator bool() const { return bool(column); }
-  double of(const ForeignRow& row) const { return factor * row.number(column); }
+  double of(const ForeignRow& row) const {
+    const double value = factor * row.number(column);
+    if (!std::isfinite(value))
+      row.refuse(
+          fmt::format("column {}: found {}, which becomes {} in SI units, allowed: finite "
+                      "numbers",
+                      column.name, row.text(column), value));
+    return value;
+  }
 };
 
 class Reader {

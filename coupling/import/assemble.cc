@@ -8,9 +8,11 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "coupling/import/outline_text.h"
 #include "dem/shapes/polygon.h"
+#include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -158,7 +160,8 @@ void Assembly::add_walls(const ForeignTable& table) {
     wall.friction = row.empty(friction) ? options_.friction : row.number(friction);
     wall.material = row.text(material);
     const double length = wall.normal.norm();
-    if (!(length > 0)) row.refuse(fmt::format("wall {}: its normal has length 0", wall.name));
+    if (!(length > 0 && std::isfinite(length)))
+      row.refuse(fmt::format("wall {}: its normal has length {:g}", wall.name, length));
     // A normal that is a unit vector up to rounding keeps its bits.
     if (std::abs(length - 1) > 1e-12) wall.normal /= length;
     out_.snapshot.walls.push_back(wall);
@@ -201,6 +204,7 @@ void Assembly::settle_cell() {
     if (!s.cell.periodic[static_cast<std::size_t>(a)]) s.cell.edges.col(a).setZero();
   if (s.dim == 2) s.cell.low.z() = 0;
   if (!s.cell.is_periodic()) s.cell = {};
+  dem::check_snapshot(s, *rows_.front().source.file);  // holds the cell and walls so far
 }
 
 // Outline to the body frame, then volume, mass and inertia that the file does not give.
@@ -238,6 +242,28 @@ void Assembly::complete(GrainRow& row) const {
   }
 }
 
+// Into the cell; all that was computed must be numbers that can be read again.
+void Assembly::place(GrainRow& row) const {
+  dem::Grain& g = row.grain;
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(fmt::format("{}: grain {}: {}", row.source.where(), g.id, what));
+  };
+  try {
+    g.position = dem::wrapped(out_.snapshot.cell, g.position);
+  } catch (const std::invalid_argument& e) {
+    refuse(e.what());
+  }
+  for (const auto& [name, value] : {std::pair{"x", g.position.x()},
+                                    {"y", g.position.y()},
+                                    {"z", g.position.z()},
+                                    {"radius", g.radius},
+                                    {"volume", g.volume},
+                                    {"mass", g.mass},
+                                    {"inertia", g.inertia}})
+    if (!std::isfinite(value))
+      refuse(fmt::format("its {} becomes {}, allowed: a finite number", name, value));
+}
+
 void Assembly::settle() {
   dem::Snapshot& s = out_.snapshot;
   if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
@@ -254,7 +280,7 @@ void Assembly::settle() {
   for (GrainRow& row : rows_) {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
-    row.grain.position = dem::wrapped(s.cell, row.grain.position);
+    place(row);
     middle += row.grain.position / static_cast<double>(rows_.size());
     s.grains.push_back(std::move(row.grain));
   }

@@ -50,6 +50,7 @@ class Assembly {
   void settle_dimension();
   void settle_cell();
   void complete(GrainRow& row) const;
+  void place(GrainRow& row) const;
   std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
   std::int64_t wall_of(std::string_view text) const;  ///< -1 - w; 0: unknown
   /// nan where the file tells no spring.

@@ -135,6 +135,14 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   const auto at = [&](std::int64_t k) -> const dem::Grain& {
     return s.grains[static_cast<std::size_t>(k)];
   };
+  const auto nearest = [&](const Vec3& branch) {
+    try {
+      return dem::nearest_image(s.cell, branch);
+    } catch (const std::invalid_argument& e) {
+      refuse(e.what());
+      throw;
+    }
+  };
   if (c.i == c.j) refuse(fmt::format("grain {} in contact with itself", at(c.i).id));
   if (c.j >= 0 && c.i > c.j) {
     std::swap(c.i, c.j);
@@ -143,8 +151,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
     c.spring_vector = -c.spring_vector;
   }
   // The file's point is near some image of the grain.
-  if (has_point)
-    c.point += dem::shift_to(s.cell, dem::nearest_image(s.cell, c.point - at(c.i).position));
+  if (has_point) c.point += dem::shift_to(s.cell, nearest(c.point - at(c.i).position));
   const dem::Grain& a = at(c.i);
   if (c.j < 0) {
     const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
@@ -162,7 +169,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
           a.id, a.radius, wall.name, arm));
   } else {
     const dem::Grain& b = at(c.j);
-    c.image = dem::nearest_image(s.cell, b.position - a.position);
+    c.image = nearest(b.position - a.position);
     const Vec3 second = dem::second_place(s, c), branch = second - a.position;
     const double d = branch.norm();
     const bool polygons = !a.outline.empty() || !b.outline.empty();
@@ -188,11 +195,15 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
     }
   }
   const double length = c.normal.norm();
-  if (!(length > 0)) refuse("the contact's normal has length 0");
+  if (!(length > 0 && std::isfinite(length)))
+    refuse(fmt::format("the contact's normal has length {:g}", length));
   if (std::abs(length - 1) > 1e-12) c.normal /= length;
   c.normal_force = -c.force.dot(c.normal);
   c.tangential_force = s.dim == 2 ? c.force.y() * c.normal.x() - c.force.x() * c.normal.y()
                                   : (c.force + c.normal_force * c.normal).norm();
+  if (!c.point.allFinite() || !c.normal.allFinite() || !std::isfinite(c.normal_force) ||
+      !std::isfinite(c.tangential_force))
+    refuse("its point, normal or force becomes no finite number");
   // False where the coefficient is unknown (nan).
   if (tell_sliding)
     c.sliding = std::abs(c.tangential_force) >= (1 - kSliding) * c.friction * c.normal_force;

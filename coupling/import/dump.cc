@@ -15,7 +15,10 @@ namespace {
 
 class DumpScan {
  public:
-  explicit DumpScan(const std::string& file) : lines_(file) { table_.file = file; }
+  explicit DumpScan(const std::string& file) : lines_(file) {
+    table_.file = file;
+    table_.columns = std::make_shared<const std::vector<std::string>>();
+  }
 
   std::vector<ForeignTable> tables() {
     std::string_view line;
@@ -165,6 +168,8 @@ class DumpScan {
                          name.substr(0, 60)));
     std::vector<std::string_view> words;
     split(name, ' ', words);
+    if (words.empty())
+      refuse("found \"ITEM:\" without a name, expected ATOMS or ENTRIES behind it");
     const std::vector<std::string> columns(words.begin() + 1, words.end());
     if (!columns_ || *columns_ != columns)
       columns_ = std::make_shared<const std::vector<std::string>>(columns);

@@ -124,7 +124,6 @@ WallChoice parse_wall(const std::string& text) {
 }
 
 PeriodicAxis parse_periodic(const std::string& text) {
-  PeriodicAxis out;
   const std::size_t colon = text.find(':');
   if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z' &&
       colon != std::string::npos) {

@@ -10,7 +10,8 @@
 
 namespace grainfield::coupling {
 
-Lines::Lines(const std::string& file) : file_(file), buffer_(longest) {
+Lines::Lines(const std::string& file)
+    : file_(file), buffer_(std::make_unique_for_overwrite<char[]>(longest)) {
   require_regular_file(file, "a text file");
   errno = 0;
   in_.open(file, std::ios::binary);
@@ -22,18 +23,18 @@ Lines::Lines(const std::string& file) : file_(file), buffer_(longest) {
 }
 
 bool Lines::next(std::string_view& line) {
-  in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  in_.getline(buffer_.get(), static_cast<std::streamsize>(longest));
   std::streamsize count = in_.gcount();
   if (in_.bad()) throw std::runtime_error(file_ + ": cannot be read on");
   if (count == 0 && in_.eof()) return false;
   ++line_;
   if (in_.fail())
     throw std::invalid_argument(fmt::format(
-        "{}: the line is longer than {} bytes; is this a text file?", where(), buffer_.size() - 1));
+        "{}: the line is longer than {} bytes; is this a text file?", where(), longest - 1));
   unfinished_ = in_.eof();
   if (!unfinished_) --count;  // the end of line, counted but not stored
   if (count > 0 && buffer_[static_cast<std::size_t>(count) - 1] == '\r') --count;
-  line = std::string_view(buffer_.data(), static_cast<std::size_t>(count));
+  line = std::string_view(buffer_.get(), static_cast<std::size_t>(count));
   return true;
 }
 

@@ -1,6 +1,7 @@
 // Text files line by line through one fixed buffer, whatever the file's size.
 #pragma once
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,7 @@ class Lines {
  private:
   std::string file_;
   std::ifstream in_;
-  std::vector<char> buffer_;
+  std::unique_ptr<char[]> buffer_;  // of `longest` bytes
   long long line_ = 0;
   bool unfinished_ = false;
 };

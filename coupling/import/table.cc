@@ -73,7 +73,9 @@ std::vector<std::string> expanded(const std::string& list) {
       first = dem::parse_number(part.substr(open + 1, dots - open - 1));
       last = dem::parse_number(part.substr(dots + 2, part.size() - dots - 3));
     }
-    if (!first || !last || *first < 0 || *last < *first || *last > 1000) {
+    // False for nan too.
+    const bool good = first && last && 0 <= *first && *first <= *last && *last <= 1000;
+    if (!good) {
       out.emplace_back(part);
       continue;
     }

@@ -43,8 +43,9 @@ void check(const NamedFields& fields) {
   for (const auto& [name, field] : fields) {
     check_name(name);
     const auto n = field.points.rows();
-    if ((field.nx || field.ny || field.nz) &&
-        static_cast<Eigen::Index>(field.nx) * field.ny * std::max(field.nz, 1) != n)
+    // As numbers that do not overflow: three integers of a file may.
+    const double places = static_cast<double>(field.nx) * field.ny * std::max(field.nz, 1);
+    if ((field.nx || field.ny || field.nz) && places != static_cast<double>(n))
       throw std::invalid_argument(
           fmt::format("field \"{}\": a grid of {} x {}{} with {} points", name, field.nx, field.ny,
                       field.nz > 0 ? fmt::format(" x {}", field.nz) : "", n));

@@ -23,6 +23,15 @@ constexpr std::array<int, 4> kStopping{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 // What the child says at its end.
 constexpr char kTrue = 't', kFalse = 'f';
 
+// Whether the address sanitizer is there, as GCC and clang say it: it needs terabytes of addresses.
+#ifdef __SANITIZE_ADDRESS__
+#define GRAINFIELD_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define GRAINFIELD_ADDRESS_SANITIZER
+#endif
+#endif
+
 // Address space in use, bytes; 0: not known.
 double memory_in_use() {
   std::FILE* in = std::fopen("/proc/self/statm", "r");
@@ -67,7 +76,7 @@ void lower(decltype(RLIMIT_CPU) what, double to) {
   lower(RLIMIT_CPU, std::ceil(limits.seconds));
   const double clock = limits.clock > 0 ? limits.clock : kWallShare * limits.seconds;
   alarm(static_cast<unsigned>(std::min(std::ceil(clock), 1e6)));
-#ifndef __SANITIZE_ADDRESS__
+#ifndef GRAINFIELD_ADDRESS_SANITIZER
   if (in_use > 0) lower(RLIMIT_AS, in_use + limits.memory);
 #else
   static_cast<void>(in_use);

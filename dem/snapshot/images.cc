@@ -1,9 +1,12 @@
 #include "dem/snapshot/images.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace grainfield::dem {
 namespace {
@@ -18,6 +21,13 @@ Vec3 along_edges(const Cell<3>& cell, const Vec3& v) {
   for (int a = 0; a < 3; ++a)
     if (!cell.periodic[static_cast<std::size_t>(a)]) square(a, a) = 1;
   return square.ldlt().solve(edges.transpose() * v);
+}
+
+// As images are counted.
+int whole(double turns) {
+  if (std::fabs(turns) <= kMostImages) return static_cast<int>(turns);
+  throw std::invalid_argument(fmt::format(
+      "a place {:g} edges of the periodic cell away, allowed: up to {}", turns, kMostImages));
 }
 
 }  // namespace
@@ -36,7 +46,7 @@ std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch) {
   const Vec3 turns = along_edges(cell, branch);
   std::array<int, 3> reach{0, 0, 0};
   for (std::size_t a = 0; a < 3; ++a) {
-    middle[a] = -static_cast<int>(std::lround(turns[static_cast<Eigen::Index>(a)]));
+    middle[a] = -whole(std::round(turns[static_cast<Eigen::Index>(a)]));
     reach[a] = cell.periodic[a] ? 1 : 0;
   }
   // In a tilted cell a neighbour of the rounded one may be nearer.
@@ -93,7 +103,7 @@ Vec3 wrapped(const Cell<3>& cell, const Vec3& place) {
   const Vec3 turns = along_edges(cell, place - cell.low);
   std::array<int, 3> image{0, 0, 0};
   for (std::size_t a = 0; a < 3; ++a)
-    image[a] = -static_cast<int>(std::floor(turns[static_cast<Eigen::Index>(a)]));
+    image[a] = -whole(std::floor(turns[static_cast<Eigen::Index>(a)]));
   if (image == std::array<int, 3>{0, 0, 0}) return place;
   return place + shift_to(cell, image);
 }

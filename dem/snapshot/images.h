@@ -6,6 +6,10 @@
 
 namespace grainfield::dem {
 
+/// What lies more edges of the cell away is refused: nearest_image, wrapped and displacement throw
+/// std::invalid_argument saying how many.
+inline constexpr int kMostImages = 1'000'000;
+
 /// From a place to its image, m; axes that are not periodic count nothing.
 Vec3 shift_to(const Cell<3>& cell, const std::array<int, 3>& image);
 /// The image n for which `branch` + edges n is shortest; of several the first.

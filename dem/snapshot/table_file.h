@@ -190,7 +190,7 @@ std::vector<Row> read_table(hid_t group, const std::vector<Column<Row>>& columns
             const auto values = hdf5::read_integers(group, column.name, width, at);
             fit(values.size());
             for (std::size_t k = 0; k < values.size(); ++k) {
-              if (std::is_same_v<Number, int> && std::abs(values[k]) > 1'000'000)
+              if (std::is_same_v<Number, int> && (values[k] < -1'000'000 || values[k] > 1'000'000))
                 refuse(column, k / width, values[k], "at most 1000000");
               auto& number = table::element(rows[k / width].*member, static_cast<int>(k % width));
               if constexpr (std::is_same_v<Number, bool>)

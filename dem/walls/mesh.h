@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/space/space3.h"
 #include "dem/walls/surface.h"
 
 namespace grainfield::dem {
