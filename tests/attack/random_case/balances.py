@@ -74,7 +74,9 @@ class Run:
 
     def check_state(self, realization, name, p):
         for column, values in p.columns.items():
-            if not np.isfinite(values).all():
+            # Springs of pairs are not told (docs/file-formats.md).
+            told = not (self.study == "pair" and "spring" in column)
+            if told and not np.isfinite(values).all():
                 self.complain("nan", f"{p.name}: {column}")
         goal = self.goal(name)
         if self.study in ("point-load", "pile", "cone", "lattice-pile", "sample", "pair"):
@@ -275,16 +277,16 @@ class Run:
         s = self.summary
         if "energy.balance_error" not in s:
             return
-        e = {k.split(".", 1)[1]: v for k, v in s.items() if k.startswith("energy.")}
+        e = {k.split(".", 1)[1]: v for k, v in s.items() if k.startswith("energy.") and k.count(".") == 1}
         there = e["kinetic"] + e["elastic"] + sum(v for k, v in e.items() if k.startswith("lost_"))
         works = e["brought"] + sum(v for k, v in e.items() if k.startswith("work_"))
-        size = sum(abs(v) for k, v in e.items() if k != "balance_error")
+        size = sum(abs(v) for k, v in e.items()
+                   if k.startswith("work_") and k != "work_of_law" or k == "brought")
         if size == 0:
             return
         error = (there - works) / size
-        if not self.many and not near(error, e["balance_error"], 1e-3, 1e-12):
-            if not near(error * 2, e["balance_error"], 1e-3, 1e-12):
-                self.complain("energy", f"balance_error {e['balance_error']:.4g}, of the columns {error:.4g}")
+        if not self.many and not near(error, e["balance_error"], 1e-3, 1e-9):
+            self.complain("energy", f"balance_error {e['balance_error']:.4g}, of the columns {error:.4g}")
         if abs(error) > 0.02:
             self.complain("energy", f"energy is missing: {error:.4g} of what went through")
         for name in ("lost_in_dashpots", "lost_to_friction", "lost_to_rolling", "lost_to_damping",

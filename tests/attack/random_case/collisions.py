@@ -26,10 +26,11 @@ def check_gas(run):
             start = p.mass.sum() * v["gas.speed"]
             if momentum > 1e-9 * start:
                 complain("momentum", f"{p.name}: {momentum:.4g} kg m/s of {scale:.4g}")
-            # The speed is that of each component at the start.
+            # The speed is the root of the sum of squares of each component at the start
             energy = 0.5 * (p.mass[:, None] * p.velocity**2).sum()
             turning = 0.5 * (p.moments[:, -1] * (p.spin**2).sum(axis=1)).sum()
-            first = 0.5 * p.dim * p.mass.sum() * v["gas.speed"]**2
+            # over N - 1, for the gas as a whole is at rest.
+            first = 0.5 * p.dim * p.mass.sum() * (1 - 1 / p.size) * v["gas.speed"]**2
             if not cooling and abs(energy + turning - first) > 1e-9 * first:
                 complain("energy", f"{p.name}: {energy + turning:.9g} J, at the start {first:.9g}")
             if cooling and energy + turning > first * (1 + 1e-9):

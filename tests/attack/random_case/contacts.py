@@ -24,6 +24,10 @@ class Bodies:
         self.material = {k.split(".")[1]: v for k, v in values.items() if k.startswith("material.")}
         self.law = Law(self.material)
         p = packing
+        other = values.get("sample.prepared_with") == "other_friction"
+        first = packing.name.endswith("/state_000")
+        self.prepared = values["sample.prepared_friction"] if other and first else 0.0
+        self.changed = other and first
         self.integrator = p.attributes.get("run_integrator", "")
         self.step = float(p.attributes.get("run_time_step", 0))
         self.leaps = self.integrator in LEAPS
@@ -137,10 +141,14 @@ class Bodies:
             if p.normal_force[k] < 0:
                 self.complain("tension", f"{what}: normal force {p.normal_force[k]:.6g}")
             limit = p.friction[k] * p.normal_force[k]
-            if friction > limit * (1 + 1e-9) + 1e-13 * size:
+            # Of superellipsoids the normal is found anew for the snapshot, to about 1e-8.
+            loose = 1e-9 if p.axes is None else 1e-6
+            # A first state's forces are of the preparation, its friction is what comes then.
+            before = self.prepared * p.normal_force[k] if j >= 0 else 0.0
+            if friction > max(limit, before) * (1 + loose) + (1e-13 if p.axes is None else 1e-6) * size:
                 self.complain("friction", f"{what}: {friction:.9g} above {limit:.9g}")
             if limit > 0 and p.sliding[k] != (friction >= limit * (1 - 1e-6)):
-                if abs(friction / limit - 1 + 1e-6) > 1e-8:
+                if abs(friction / limit - 1 + 1e-6) > (1e-8 if p.axes is None else 1e-6):
                     self.complain("sliding", f"{what}: {friction / limit:.9g} of the limit, sliding {p.sliding[k]}")
             self.check_law(k, what, rest, limit, along, friction)
 
@@ -177,6 +185,7 @@ class Bodies:
         heavy, light = self.masses(i, j)
         elastic, across, along_c, kt, _ = self.law.terms(o, heavy, light, self.radii(i, j))
         if math.isnan(elastic):
+            # No dashpot along it.
             if self.law.name == "hertz_elliptic" and friction < limit * (1 - 1e-6):
                 if np.linalg.norm(along - p.spring[k]) > 1e-9 * limit:
                     self.complain("law of friction", f"{what}: force and spring differ")
@@ -194,7 +203,9 @@ class Bodies:
             allowed += across * np.linalg.norm(v) + 1e-4 * elastic
         if abs(p.normal_force[k] - expected) > allowed:
             self.complain("law", f"{what}: normal force {p.normal_force[k]:.9g}, by the law {expected:.9g} (elastic {elastic:.9g}, allowed {allowed:.2g})")
-        if friction < limit * (1 - 1e-6):
+        # Where the spring alone is at the limit it has been cut, and the dashpot acts beside it.
+        cut = np.linalg.norm(p.spring[k]) >= limit * (1 - 1e-9)
+        if friction < limit * (1 - 1e-6) and not cut and not self.changed:
             slip = v - approach * n
             expected_t = p.spring[k] - along_c * slip
             off = np.linalg.norm(along - expected_t)
@@ -236,12 +247,10 @@ class Bodies:
         p = self.p
         if not self.leaps:
             return False
-        point = p.position[i] + 0.5 * (p.position[j] + shift - p.position[i]) if j >= 0 else p.position[i]
-        if j >= 0:
-            n = p.position[j] + shift - p.position[i]
-            n = n / np.linalg.norm(n)
-        else:
-            n = -p.wall_normal[-1 - j]
+        way = p.position[j] + shift - p.position[i] if j >= 0 else -p.wall_normal[-1 - j]
+        n = way / np.linalg.norm(way) if o.normal is None else o.normal
+        point = p.position[i] + (n * o.arm_i if o.point is None and math.isfinite(o.arm_i) else
+                                 0.5 * way if o.point is None else o.point)
         v, slack = self.motion(i, j, point, shift)
         heavy, light = self.masses(i, j)
         elastic, across, *_ = self.law.terms(o, heavy, light, self.radii(i, j))
@@ -286,7 +295,10 @@ class Bodies:
                                      if p.axes[g].min() > 0 else p.radius[g])
                 return total
 
-            o = overlaps.Overlap(depth=overlaps.least_thickness(thickness, way[None] / np.linalg.norm(way)))
+            depth, normal = overlaps.least_thickness(thickness, way[None] / np.linalg.norm(way))
+            point = (overlaps.surface_point(p.axes[i], p.exponents[i], p.turn[i], normal)
+                     if p.axes[i].min() > 0 else p.radius[i] * normal)
+            o = overlaps.Overlap(depth=depth, normal=normal, point=point)
         deep = o.depth if not math.isnan(o.depth) else (o.area / o.chord if o.chord > 0 else 0)
         tiny = (1e-5 if p.axes is not None else 1e-8) * min(p.radius[i], p.radius[j])
         if math.isnan(o.depth):  # polygons: their arms are not known; by the centres' distance

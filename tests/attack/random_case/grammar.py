@@ -6,6 +6,7 @@ declaration now and then: its words, its range about its default. A new key join
 """
 import math
 import random
+import tomllib
 from dataclasses import dataclass
 
 # Neither physics nor cheap: who runs it, files, analysis without grains.
@@ -180,8 +181,8 @@ def motion(d, balance=True):
     but = ["gear"] if d.dim == SPACE else []
     if d.shape != "superellipsoid":
         but.append("runge_kutta")
-    # Gear's step is a sixth of the others': seldom.
-    if d.chance(0.8):
+    # Gear's step is a sixth of the others', of polygons less: seldom.
+    if d.shape == "polygon" or d.chance(0.85):
         but.append("gear")
     integrator = d.word("motion.integrator", but=but)
     if integrator != "gear":
@@ -194,9 +195,10 @@ def motion(d, balance=True):
 
 def rest(d, s):
     swing = math.sqrt(s.gravity / s.radius)
+    damping = rounded(swing * d.log(0.3, 3))
     d.set(rest__unbalanced_force_ratio=d.log(1e-7, 1e-3),
           rest__kinetic_to_elastic_energy=d.log(1e-12, 1e-5),
-          rest__background_damping=rounded(swing * d.log(0.3, 3)), rest__max_time=8.0)
+          rest__background_damping=damping, rest__max_time=rounded(60 / damping + 100 / swing))
 
 
 def superellipsoid(d, section):
@@ -270,7 +272,7 @@ def point_load(d):
 
 
 def pile(d):
-    s = scale(d)
+    s = scale(d, 5e-5)
     r = s.radius
     shape = d.word("shape.kind")
     d.shape = "round" if shape == "disk" else "polygon"
@@ -301,8 +303,6 @@ def pile(d):
         d.values = {p: v for p, v in d.values.items() if "rolling_" not in p}
     d.set(change__ramp_time=rounded(20 * fall))
     motion(d, balance=not newton)
-    if d.shape == "polygon" and d.value("motion.integrator") == "gear":
-        d.set(motion__integrator="verlet")
     rest(d, s)
     if d.chance(0.25):
         d.set(sleep__on=False)
@@ -319,15 +319,20 @@ def cone(d):
     # Walls of superellipsoids are planes.
     source = d.word("cone.source", but=("cylinder",) if d.shape == "superellipsoid" else ())
     fall = math.sqrt(2 * r / s.gravity)
-    d.set(cone__grains=d.int(50, 70), cone__radius=r, cone__polydispersity=d.uni(0, 0.3),
-          cone__mouth=rounded(r * d.uni(3, 5)), cone__rate=rounded(d.uni(1, 4) / fall),
-          cone__drop=rounded(r * d.uni(3, 8)), cone__speed=d.uni(0.05, 0.4),
+    d.set(cone__grains=d.int(50, 80), cone__radius=r, cone__polydispersity=d.uni(0, 0.3),
+          cone__mouth=rounded(r * d.uni(4, 5)), cone__rate=rounded(d.uni(1, 4) / fall),
+          cone__drop=rounded(r * d.uni(2.7, 4)), cone__speed=d.uni(0.05, 0.4),
           cone__lift_speed=rounded(r / fall * d.uni(0.05, 0.3)),
-          cone__floor_radius=rounded(r * (d.uni(20, 22) if source == "rain" else d.uni(20, 24))))
+          cone__floor_radius=rounded(r * (22 if source == "rain" else d.uni(24, 30))))
     d.word("cone.floor")
+    if d.chance(0.6):
+        d.set(cone__floor="rough")
     material(d, s)
-    if d.shape == "superellipsoid":
-        d.values = {p: v for p, v in d.values.items() if "twisting_" not in p}
+    # Else they all leave the floor.
+    d.set(material__friction=d.uni(0.3, 1), material__floor_friction=d.uni(0.3, 1))
+    if d.shape == "round" and d.chance(0.7):
+        rolling(d, s)
+        d.set(material__rolling_friction=d.uni(0.2, 0.5))
     motion(d, balance=False)
     d.set(motion__integrator="verlet")
     rest(d, s)
@@ -410,10 +415,10 @@ def sample(d):
         d.set(rve__along=2, rve__radii=[2.0, 3.0])
     material(d, s, gravity=False)
     motion(d)
-    d.set(rest__background_damping=rounded(swing * d.log(0.005, 0.1)),
+    d.set(rest__background_damping=rounded(swing * d.log(0.01, 0.1)),
           rest__unbalanced_force_ratio=d.log(1e-6, 1e-2),
           rest__kinetic_to_elastic_energy=d.log(1e-9, 1e-4),
-          rest__max_time=rounded(3e4 / swing))
+          rest__max_time=rounded(6e3 / swing))
 
 
 def pair(d):
@@ -516,6 +521,19 @@ def draw_case(keys, seed, number, attempt):
     for path in d.without_effect():
         del d.values[path]
     return d.values
+
+
+def from_toml(file):
+    """path -> value, of a file that as_toml wrote."""
+    with open(file, "rb") as text:
+        tables = tomllib.load(text)
+    out = {}
+    for name, value in tables.items():
+        if isinstance(value, dict):
+            out.update({f"{name}.{key}": item for key, item in value.items()})
+        else:
+            out[name] = value
+    return out
 
 
 def text_of(value):

@@ -12,6 +12,8 @@ class Overlap:
     chord: float = math.nan
     arm_i: float = math.nan  # of the contact point; of a plane infinite
     arm_j: float = math.inf
+    normal: np.ndarray = None  # from i to j; None: along the centres, or the plane's
+    point: np.ndarray = None  # a place within it, from the first centre
     length: float = math.nan  # Roul's l
     swallowed: bool = False  # nearly: chord and normal go over to something else there
 
@@ -29,7 +31,9 @@ def segment(radius, depth):
 
 
 def reduced(a, b):
-    return a if math.isinf(b) else a * b / (a + b)
+    if math.isinf(a) or math.isinf(b):
+        return min(a, b)
+    return a * b / (a + b)
 
 
 def round_pair(ri, rj, distance):
@@ -38,14 +42,14 @@ def round_pair(ri, rj, distance):
         depth = ri - distance
         area, chord = segment(ri, depth)
         arm = ri - depth
-        return Overlap(depth, area, chord, arm, math.inf, arm)
+        return Overlap(depth, area, chord, arm, length=arm)
     depth = ri + rj - distance
     sag_i = depth * (2 * rj - depth) / (2 * distance)
     sag_j = depth - sag_i
     area_i, chord = segment(ri, sag_i)
     area_j, _ = segment(rj, sag_j)
     ai, aj = ri - sag_i, rj - sag_j
-    return Overlap(depth, area_i + area_j, chord, ai, aj, reduced(ai, aj))
+    return Overlap(depth, area_i + area_j, chord, ai, aj, length=reduced(ai, aj))
 
 
 def clipped(corners, point, outward):
@@ -103,6 +107,10 @@ def pieces_inside(a, b):
     return total
 
 
+def inside(point, corners):
+    return all((point - c) @ o <= 0 for c, o in zip(corners, outward_lines(corners)))
+
+
 def polygon_pair(a, b, arm_i, arm_j):
     """Outlines in place; arms: of the contact point, from the centroids."""
     region = common_region(a, b)
@@ -110,7 +118,13 @@ def polygon_pair(a, b, arm_i, arm_j):
     along = pieces_inside(a, b)
     chord = float(np.hypot(*along))
     smaller = min(area_of(a), area_of(b))
-    return Overlap(math.nan, area, chord, arm_i, arm_j, reduced(arm_i, arm_j),
+    normal = point = None
+    if chord > 0:
+        normal = np.array([along[1], -along[0], 0]) / chord
+        point = np.append(region.mean(axis=0), 0)
+        if normal @ point < 0 and not inside(np.zeros(2), b):
+            normal = -normal
+    return Overlap(math.nan, area, chord, arm_i, arm_j, normal, point, reduced(arm_i, arm_j),
                    swallowed=chord**2 < 0.0201 * area or area > 0.979 * smaller)
 
 
@@ -124,7 +138,8 @@ def polygon_on_plane(corners, point, normal, arm):
         places = along @ np.array([-normal[1], normal[0]])
         chord = float(places.max() - places.min())
     depth = float(-((corners - point) @ normal).min())
-    return Overlap(depth, area, chord, arm, math.inf, arm,
+    point = np.append(region.mean(axis=0), 0) if len(region) else None
+    return Overlap(depth, area, chord, arm, point=point, length=arm,
                    swallowed=area > 0.979 * area_of(corners) or chord**2 < 0.0201 * area)
 
 
@@ -141,6 +156,14 @@ def support(axes, exponents, turn, normals):
     return most * ((flat / most)**q + (n[..., 2] / most)**q)**(1 / q)
 
 
+def surface_point(axes, exponents, turn, normal):
+    """Where a superellipsoid has this outward normal, from its centre: the support's gradient."""
+    step = 1e-5 * np.eye(3)
+    forth = support(axes, exponents, turn, normal + step)
+    back = support(axes, exponents, turn, normal - step)
+    return (forth - back) / 2e-5
+
+
 def sphere_of_directions(count=600):
     k = np.arange(count) + 0.5
     z, turn = 1 - 2 * k / count, math.pi * (1 + 5**0.5) * k
@@ -152,7 +175,8 @@ DIRECTIONS = sphere_of_directions()
 
 
 def least_thickness(thickness, start=None):
-    """Least of a function of the normals (rows), by finer and finer looks about the best."""
+    """Least of a function of the normals (rows) and its normal, by finer and finer looks about the
+    best."""
     normals = DIRECTIONS if start is None else np.vstack([DIRECTIONS, start])
     values = thickness(normals)
     best, spread = normals[values.argmin()], 0.1
@@ -166,4 +190,4 @@ def least_thickness(thickness, start=None):
             least, best = values.min(), around[values.argmin()]
         else:
             spread *= 0.55
-    return least
+    return least, best

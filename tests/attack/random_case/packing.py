@@ -77,7 +77,7 @@ class Packing:
         loaded = int(a["loaded_grain"])
         if loaded >= 0:
             force = np.array([a[f"applied_force_{c}"] for c in "xyz"])
-            also = [int(k) for k in np.atleast_1d(a.get("also_loaded", []))]
+            also = [int(k) for k in self.attributes.get("also_loaded", "").split()]
             self.load[[loaded] + also] = force
 
     @property
