@@ -287,6 +287,7 @@ class Relaxation {
     if (!balanced(b)) fail(1, std::max(b.ratio, b.moment_ratio));
     QuasistaticResult out;
     out.state = network_->snapshot(start_);
+    set_wall_forces(out.state);
     out.state.gravity = gravity_;
     const bool loaded = !after_.grains.empty();
     out.state.loaded_grain = loaded ? start_.grains[after_.grains.front()].id : -1;

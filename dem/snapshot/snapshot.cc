@@ -292,22 +292,12 @@ void read_walls(hid_t group, const TableSource& source, Snapshot& s) {
              });
 }
 
-// What the contacts tell of the walls' forces.
-void add_wall_forces(Snapshot& s) {
-  for (const Contact& c : s.contacts) {
-    if (c.j >= 0 || -1 - c.j >= static_cast<std::int64_t>(s.walls.size())) continue;
-    Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
-    wall.force -= c.force;
-    wall.torque -= (c.point - wall.point).cross(c.force);
-  }
-}
-
 void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
   s.contacts = read_table<Contact>(
       group, contact_columns(), source, "contacts",
       [](const Contact&, std::size_t row) { return fmt::format("contact {}", row); });
   if (source.format > 1) return;
-  add_wall_forces(s);
+  set_wall_forces(s);
   if (s.dim == 2) return;
   // Their directions were not told.
   for (Contact& c : s.contacts)
@@ -315,6 +305,20 @@ void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
 }
 
 }  // namespace
+
+void set_wall_forces(Snapshot& s) {
+  for (Wall& wall : s.walls) wall.force = wall.torque = Vec3(0, 0, 0);
+  for (const Contact& c : s.contacts) {
+    const auto grains = static_cast<std::int64_t>(s.grains.size());
+    if (c.j >= 0 || -1 - c.j >= static_cast<std::int64_t>(s.walls.size())) continue;
+    if (c.i < 0 || c.i >= grains) continue;  // refused later
+    Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+    wall.force -= c.force;
+    wall.torque -= (c.point - wall.point).cross(c.force);
+    const double radius = s.grains[static_cast<std::size_t>(c.i)].radius;
+    wall.torque -= radius * c.normal.cross(c.rolling_spring) + c.twisting_spring * c.normal;
+  }
+}
 
 bool is_loaded(const Snapshot& s, std::int64_t id) {
   return id == s.loaded_grain || std::binary_search(s.also_loaded.begin(), s.also_loaded.end(), id);

@@ -198,7 +198,7 @@ def rest(d, s):
     damping = rounded(swing * d.log(0.3, 3))
     d.set(rest__unbalanced_force_ratio=d.log(1e-7, 1e-3),
           rest__kinetic_to_elastic_energy=d.log(1e-12, 1e-5),
-          rest__background_damping=damping, rest__max_time=rounded(60 / damping + 100 / swing))
+          rest__background_damping=damping, rest__max_time=rounded(40 / damping + 60 / swing))
 
 
 def superellipsoid(d, section):
@@ -336,7 +336,7 @@ def cone(d):
     motion(d, balance=False)
     d.set(motion__integrator="verlet")
     rest(d, s)
-    if d.chance(0.25):
+    if d.shape == "round" and d.chance(0.25):
         d.set(sleep__on=False)
     d.set(average__points=11, average__map_columns=7, average__map_rows=5)
 
