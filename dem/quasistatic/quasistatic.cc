@@ -14,6 +14,7 @@
 #include "dem/quasistatic/contact_network.h"
 #include "dem/quasistatic/sparse_newton.h"
 #include "dem/snapshot/contact_changes.h"
+#include "dem/snapshot/wall_forces.h"
 
 namespace grainfield::dem {
 namespace {

@@ -18,6 +18,7 @@
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
+#include "dem/snapshot/wall_forces.h"
 
 namespace grainfield::dem {
 
@@ -305,20 +306,6 @@ void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
 }
 
 }  // namespace
-
-void set_wall_forces(Snapshot& s) {
-  for (Wall& wall : s.walls) wall.force = wall.torque = Vec3(0, 0, 0);
-  for (const Contact& c : s.contacts) {
-    const auto grains = static_cast<std::int64_t>(s.grains.size());
-    if (c.j >= 0 || -1 - c.j >= static_cast<std::int64_t>(s.walls.size())) continue;
-    if (c.i < 0 || c.i >= grains) continue;  // refused later
-    Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
-    wall.force -= c.force;
-    wall.torque -= (c.point - wall.point).cross(c.force);
-    const double radius = s.grains[static_cast<std::size_t>(c.i)].radius;
-    wall.torque -= radius * c.normal.cross(c.rolling_spring) + c.twisting_spring * c.normal;
-  }
-}
 
 bool is_loaded(const Snapshot& s, std::int64_t id) {
   return id == s.loaded_grain || std::binary_search(s.also_loaded.begin(), s.also_loaded.end(), id);

@@ -100,9 +100,6 @@ struct Snapshot {
 
 /// Whether the grain of this id carries the applied force.
 bool is_loaded(const Snapshot& snapshot, std::int64_t id);
-/// Force and torque of every wall become what the contacts tell, of rolling and twisting by their
-/// springs.
-void set_wall_forces(Snapshot& snapshot);
 /// The applied force of all grains that carry it, N.
 Vec3 total_applied_force(const Snapshot& snapshot);
 

@@ -174,6 +174,11 @@ class Bodies:
                 away = np.linalg.norm(np.cross(n, way)) / np.linalg.norm(way)
                 if away > 1e-7:
                     self.complain("contact normal", f"{what}: {away:.3g} off the line of centres")
+            if o is not None:
+                # Middle of the lens' edge, or of the chord on the plane.
+                off = np.linalg.norm(p.point[k] - p.position[i] - o.arm_i * n)
+                if off > 1e-7 * p.radius[i] + 4 * self.grain:
+                    self.complain("contact point", f"{what}: {off:.3g} m from where the two meet")
         if not (self.leaps or rest):
             return
         if o is None:

@@ -10,7 +10,7 @@ import time
 
 import h5py
 
-from . import balances, collisions
+from . import balances, collisions, damage
 from .declared import declared_keys, documented_figures
 from .grammar import as_toml, draw_case, from_toml
 from .packing import Packing
@@ -77,7 +77,8 @@ MAY_BE_MISSING = re.compile(
 
 
 class Attack:
-    def __init__(self, program, seed, room, limit):
+    def __init__(self, program, seed, room, limit, hurt):
+        self.damage = hurt  # whether to try the checks themselves
         self.program, self.seed, self.room, self.limit = program, seed, room, limit
         self.keys = declared_keys(program)
         self.figures = documented_figures(program)
@@ -89,7 +90,7 @@ class Attack:
         os.makedirs(folder)
         case = os.path.join(folder, "case.toml")
         out = {"number": number, "study": "", "outcome": "refused", "refused": [], "failures": [],
-               "reason": "", "seconds": 0.0, "repeats": [], "case": case, "notes": []}
+               "reason": "", "seconds": 0.0, "repeats": [], "case": case, "seen": {}}
         if isinstance(self.seed, str):  # a case file that was kept
             values = from_toml(self.seed)
             out["study"] = values["study"]
@@ -150,6 +151,8 @@ class Attack:
                 complain("undocumented", f"{name} of summary.json")
         run = balances.Run(complete(values, self.keys), folder, read_groups(folder), summary, complain)
         run.check()
+        if self.damage and not out["failures"]:
+            out["seen"] = damage.seen(run.values, folder, run.groups, out["number"])
         if values["study"] == "hard-disks":
             collisions.check_gas(run)
         if values["study"] == "pair":
