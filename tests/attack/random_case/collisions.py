@@ -144,3 +144,45 @@ def check_momenta(v, states, complain):
         # Verlet keeps it where both see one contact point; the resistance against rolling too.
         if np.linalg.norm(angular - first[1]) > 1e-6 * turn:
             complain("angular momentum", f"{p.name}: changes by {np.linalg.norm(angular - first[1]) / turn:.3g}")
+
+
+# ----------------------------------------------------------------------- soft disks of implicit motion
+
+def check_soft(run):
+    """Normal forces are K times the overlap, K by the softness of a mean disk; friction within its
+    limit; hard grains share nothing."""
+    v, complain = run.values, run.complain
+    settles = run.study == "implicit-settling"
+    part = "settling" if settles else "switch"
+    r = v["lattice.radius" if settles else "switch.radius"]
+    weight = v[f"{part}.density"] * math.pi * r**2 * v[f"{part}.gravity"]
+    stiffness = weight / (v[f"{part}.softness"] * 2 * r)
+    for states in run.groups.values():
+        for p in states.values():
+            soft = p.attributes.get("run_switch:soft_grains")
+            soft = np.array(soft.split(), int) if soft else np.ones(p.size, int)
+            for k in range(len(p.i)):
+                i, j = p.i[k], p.j[k]
+                what = f"{p.name} contact {i} {j}"
+                if j >= 0:
+                    depth = p.radius[i] + p.radius[j] - np.linalg.norm(p.position[j] - p.position[i])
+                else:
+                    w = p.wall_of(k)
+                    depth = p.radius[i] - (p.position[i] - p.wall_point[w]) @ p.wall_normal[w]
+                rounding = stiffness * 4e-16 * np.abs(p.position).max() * 4
+                if abs(p.normal_force[k] - stiffness * depth) > 1e-9 * stiffness * depth + rounding:
+                    complain("law", f"{what}: normal force {p.normal_force[k]:.9g}, by the law {stiffness * depth:.9g}")
+                if not soft[i] or (j >= 0 and not soft[j]):
+                    complain("unlisted contact", f"{what}: a force on a hard grain")
+                # The snapshot has the elastic force, a step's limit its mean with the dashpot.
+                rests = run.goal(p.name.rsplit("/", 1)[1]) is not None
+                held = not settles or v["settling.friction"] == "coulomb"
+                if rests and held and abs(p.tangential_force[k]) > p.friction[k] * p.normal_force[k] * (1 + 10 * v[f"{part}.rest"]) + v[f"{part}.rest"] * weight:
+                    complain("friction", f"{what}: {p.tangential_force[k]:.9g} above {p.friction[k] * p.normal_force[k]:.9g}")
+            hard = np.flatnonzero(soft == 0)
+            for a in range(len(hard)):
+                for b in range(a + 1, len(hard)):
+                    i, j = hard[a], hard[b]
+                    deep = p.radius[i] + p.radius[j] - np.linalg.norm(p.position[j] - p.position[i])
+                    if deep > 1e-9 * r:
+                        complain("overlap", f"{p.name}: hard grains {i} and {j}: {deep:.4g} m deep")

@@ -73,6 +73,7 @@ MAY_BE_MISSING = re.compile(
     r"|pile\.(apex_x|half_base_\w+|volume_fraction_\w+|repose_error_\w+)|dip\.\w+|axis\.stress_ratio"
     r"|base\.(centre_pressure|largest_\w+)|relaxation\.(force_change|level_error_\w+)"
     r"|(strength|sample\.(critical|peak|strain_at|lateral|residual|plastic|unloading|loop|stiffening))\w*(\.\w+)?"
+    r"|liffman\.horizontal_\w+"
     r"|moduli\.\w+\.\w+|rve\..*|pair\.(restitution_tangential|closed_form\.\w+)(\.\w+)?")
 
 
@@ -155,6 +156,8 @@ class Attack:
             out["seen"] = damage.seen(run.values, folder, run.groups, out["number"])
         if values["study"] == "hard-disks":
             collisions.check_gas(run)
+        if values["study"] in ("implicit-settling", "hard-to-soft"):
+            collisions.check_soft(run)
         if values["study"] == "pair":
             collisions.check_pair(run)
 
