@@ -278,6 +278,8 @@ class Run:
         if "energy.balance_error" not in s:
             return
         e = {k.split(".", 1)[1]: v for k, v in s.items() if k.startswith("energy.") and k.count(".") == 1}
+        if any(isinstance(v, str) for v in e.values()):
+            return  # not a number: told already
         there = e["kinetic"] + e["elastic"] + sum(v for k, v in e.items() if k.startswith("lost_"))
         works = e["brought"] + sum(v for k, v in e.items() if k.startswith("work_"))
         size = sum(abs(v) for k, v in e.items()
