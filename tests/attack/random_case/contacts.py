@@ -181,6 +181,8 @@ class Bodies:
                     self.complain("contact point", f"{what}: {off:.3g} m from where the two meet")
         if not (self.leaps or rest):
             return
+        if depth < 20 * self.grain:
+            return  # a lattice's grains touch to rounding: no digit of the depth is known
         if o is None:
             if math.isnan(depth) or self.law.name not in ("linear", "penalty"):
                 return
@@ -323,6 +325,8 @@ class Bodies:
             if o is None:
                 depth = self.depth_along(k)
                 o = overlaps.Overlap(depth=depth)
+            if o.depth <= 0:
+                continue
             _, _, _, kt, stored = self.law.terms(o, *self.masses(i, j), self.radii(i, j))
             total += stored
             spring = p.spring[k] @ p.spring[k]

@@ -392,8 +392,8 @@ def sample(d):
         share **= 1 / d.dim
     stiffness = s.stiffness if d.dim == PLANE else s.stiffness / (2 * s.radius)
     d.set(sample__pressure=rounded(stiffness * d.log(1e-4, 1e-2)),
-          sample__solid_fraction=rounded(dense * d.uni(0.8, 1.08)),
-          sample__compression_strain=rounded(max(0.0, 1 - share * d.uni(1.0, 1.1))))
+          sample__solid_fraction=rounded(dense * d.uni(1.0, 1.1)),
+          sample__compression_strain=rounded(min(max(0.0, 1 - share * d.uni(0.96, 1.02)), 0.9)))
     # A grain passes its radius in many steps.
     swing = math.sqrt(s.stiffness / s.mass)
     d.set(sample__compression_rate=rounded(swing * d.log(3e-4, 3e-3)),
@@ -418,7 +418,7 @@ def sample(d):
     d.set(rest__background_damping=rounded(swing * d.log(0.01, 0.1)),
           rest__unbalanced_force_ratio=d.log(1e-6, 1e-2),
           rest__kinetic_to_elastic_energy=d.log(1e-9, 1e-4),
-          rest__max_time=rounded(6e3 / swing))
+          rest__max_time=rounded(1.5e4 / swing))
 
 
 def pair(d):
