@@ -66,15 +66,15 @@ def numbers_of(summary):
 # What there is not of a single realization, and of heaps and layers as small as these: errors and
 # chances, slopes, averages inside, widths of a response (docs/file-formats.md, summary.json).
 MAY_BE_MISSING = re.compile(
-    r"compare\..*|verdict\.position.*|.*(error|p_value|_p)|.*\.(least|most|standard_error)"
+    r"(?!energy\.|\w+\.balance_error)(compare\..*|verdict\.position.*|.*(error|p_value|_p)|.*\.(least|most|standard_error)"
     r"|average\..*\.(balance_rms|balance_largest|fluctuation)|response\.(rms_)?width"
     r"|(dem\.repose_angle_(left|right)|repose\.\w+|cone\.(sector_)?repose\w*)_deg"
     r"|repose\.\w+|dem\.volume_fraction|(heap|cone)\.volume_fraction|density\.\w+"
     r"|pile\.(apex_x|half_base_\w+|volume_fraction_\w+|repose_error_\w+)|dip\.\w+|axis\.stress_ratio"
     r"|base\.(centre_pressure|largest_\w+)|relaxation\.(force_change|level_error_\w+)"
-    r"|(strength|sample\.(critical|peak|strain_at|lateral|residual|plastic|unloading|loop|stiffening))\w*(\.\w+)?"
+    r"|(strength|sample\.(secant|critical|peak|strain_at|lateral|residual|plastic|unloading|loop|stiffening))\w*(\.\w+)?"
     r"|liffman\.horizontal_\w+"
-    r"|moduli\.\w+\.\w+|rve\..*|pair\.(restitution_tangential|closed_form\.\w+)(\.\w+)?")
+    r"|moduli\.\w+\.\w+|rve\..*|pair\.(restitution_tangential|closed_form\.\w+)(\.\w+)?)")
 
 
 class Attack:
