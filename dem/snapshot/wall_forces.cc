@@ -1,5 +1,6 @@
 #include "dem/snapshot/wall_forces.h"
 
+#include <Eigen/Geometry>
 #include <cstdint>
 
 namespace grainfield::dem {

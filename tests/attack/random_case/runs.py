@@ -147,7 +147,8 @@ class Attack:
         for name, value in summary.items():
             if value in ("nan", "inf", "-inf"):
                 floats = name.startswith("dem.unbalanced_") and summary.get("dem.contacts") == 0
-                if not MAY_BE_MISSING.fullmatch(name) and not floats:
+                refused = name.startswith("predicted.") and summary.get("predicted.refusal")
+                if not (MAY_BE_MISSING.fullmatch(name) or floats or refused):
                     complain("nan", f"{name} is {value}")
             elif not any(pattern.fullmatch(name) for pattern, _ in self.figures):
                 complain("undocumented", f"{name} of summary.json")
