@@ -27,7 +27,9 @@ void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles
                       p.name, p.x.size(), p.mean.size(), p.error.size(), p.samples.rows()));
     if (!(p.mean.array().isFinite().any()))
       throw std::invalid_argument(
-          fmt::format("profile \"{}\" has no value: no point has enough grains around it", p.name));
+          fmt::format("profile \"{}\" has no value: no point has enough grains around it; take a "
+                      "wider and deeper packing, or a lower average.width_diameters",
+                      p.name));
   }
   for (const ModelProfiles& m : models) {
     if (m.values.size() != profiles.size())
@@ -117,6 +119,13 @@ Measures measure(const Profile& p, const Eigen::VectorXd& model, int realization
   return m;
 }
 
+// Without one where there are too few values for it.
+ProfileShape shape_of(const Eigen::VectorXd& x, const Eigen::VectorXd& value,
+                      const Eigen::VectorXd& error) {
+  if (value.array().isFinite().count() >= 3) return profile_shape(x, value, error);
+  return {kNan, kNan, kNan, kNan, 0, kNan};
+}
+
 // Everything but models and profiles.
 Comparison described(const std::vector<Profile>& profiles, double load, double depth,
                      int realizations) {
@@ -127,7 +136,7 @@ Comparison described(const std::vector<Profile>& profiles, double load, double d
                        ? realizations
                        : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
   for (const Profile& p : profiles) {
-    c.shapes.push_back(profile_shape(p.x, p.mean, p.error));
+    c.shapes.push_back(shape_of(p.x, p.mean, p.error));
     c.shape_errors.push_back(shape_errors(p.x, p.samples));
   }
   return c;
@@ -174,9 +183,7 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
         result.overall.largest_at = m.largest_at;
         result.overall.largest_in = m.largest_in;
       }
-      const bool drawable = (model.values[k].array().isFinite()).count() >= 3;
-      result.shapes.push_back(drawable ? profile_shape(profiles[k].x, model.values[k], {})
-                                       : ProfileShape{kNan, kNan, kNan, kNan, 0, kNan});
+      result.shapes.push_back(shape_of(profiles[k].x, model.values[k], {}));
     }
     result.overall.rel_l2 = std::sqrt(totals.difference / totals.simulation);
     result.overall.dof = totals.dof;

@@ -151,9 +151,9 @@ struct HertzLaw {
   requires(D == 3) double stiffening(const OverlapIn<D>& o, const HertzMemory<D>& before) const {
     if (!(before.contact_radius > 0)) return 0;
     const double a = std::sqrt(o.radius * o.depth), share = a / before.contact_radius;
-    const double scale = displacement || share < 1 ? share : 1;
-    return spring_energy(before.spring, 8 * effective_shear() * before.contact_radius) *
-           (scale * scale / share - 1);
+    const double kept =
+        displacement || share < 1 ? share : 1 / share;  // scale^2/share: share may be 0
+    return spring_energy(before.spring, 8 * effective_shear() * before.contact_radius) * (kept - 1);
   }
 };
 

@@ -135,9 +135,8 @@ struct HertzEllipticLaw {
     if (!(before.contact_radius > 0)) return 0;
     const EllipticContact ellipse = this->ellipse(o);
     const double share = ellipse.axis * std::sqrt(o.depth) / before.contact_radius;
-    const double scale = displacement || share < 1 ? share : 1;
-    return spring_energy_of(before.spring, o, ellipse, before.contact_radius) *
-           (scale * scale / share - 1);
+    const double kept = displacement || share < 1 ? share : 1 / share;
+    return spring_energy_of(before.spring, o, ellipse, before.contact_radius) * (kept - 1);
   }
 
  private:

@@ -14,6 +14,7 @@
 #include "dem/quasistatic/contact_network.h"
 #include "dem/quasistatic/sparse_newton.h"
 #include "dem/snapshot/contact_changes.h"
+#include "dem/snapshot/wall_forces.h"
 
 namespace grainfield::dem {
 namespace {
@@ -287,6 +288,7 @@ class Relaxation {
     if (!balanced(b)) fail(1, std::max(b.ratio, b.moment_ratio));
     QuasistaticResult out;
     out.state = network_->snapshot(start_);
+    set_wall_forces(out.state);
     out.state.gravity = gravity_;
     const bool loaded = !after_.grains.empty();
     out.state.loaded_grain = loaded ? start_.grains[after_.grains.front()].id : -1;

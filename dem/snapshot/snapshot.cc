@@ -18,6 +18,7 @@
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
+#include "dem/snapshot/wall_forces.h"
 
 namespace grainfield::dem {
 
@@ -292,22 +293,12 @@ void read_walls(hid_t group, const TableSource& source, Snapshot& s) {
              });
 }
 
-// What the contacts tell of the walls' forces.
-void add_wall_forces(Snapshot& s) {
-  for (const Contact& c : s.contacts) {
-    if (c.j >= 0 || -1 - c.j >= static_cast<std::int64_t>(s.walls.size())) continue;
-    Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
-    wall.force -= c.force;
-    wall.torque -= (c.point - wall.point).cross(c.force);
-  }
-}
-
 void read_contacts(hid_t group, const TableSource& source, Snapshot& s) {
   s.contacts = read_table<Contact>(
       group, contact_columns(), source, "contacts",
       [](const Contact&, std::size_t row) { return fmt::format("contact {}", row); });
   if (source.format > 1) return;
-  add_wall_forces(s);
+  set_wall_forces(s);
   if (s.dim == 2) return;
   // Their directions were not told.
   for (Contact& c : s.contacts)

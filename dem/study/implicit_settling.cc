@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dem/implicit/soft_disks.h"
+#include "dem/laws/contact.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/archive.h"
 #include "dem/study/fingerprint.h"
@@ -204,6 +205,11 @@ class ImplicitSettlingRun final : public ArchivedRun {
       c.point = out.grains[t.i].position + arm * c.normal;
       c.normal_force = t.repulsion;
       c.tangential_force = c.spring = t.tangential;
+      // What they hold at most at rest: the ground's wells beside Coulomb's friction.
+      c.friction = setup_.friction == "coulomb" ? setup_.coulomb : 0;
+      if (t.j < 0) c.friction += setup_.static_friction;
+      c.sliding = c.friction > 0 &&
+                  std::fabs(t.tangential) >= c.friction * t.repulsion * (1 - kSlidingMargin);
       c.force = Vec3(-t.repulsion * t.normal.x() - t.tangential * t.normal.y(),
                      -t.repulsion * t.normal.y() + t.tangential * t.normal.x(), 0);
       if (t.j < 0) floor.force -= c.force;

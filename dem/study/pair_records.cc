@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "dem/laws/contact.h"
+
 namespace grainfield::dem {
 namespace {
 
@@ -40,6 +42,8 @@ Snapshot snapshot_of(const PairRecord& r, Snapshot out, double friction) {
   c.normal_force = f.normal_force;
   c.tangential_force = f.tangential_force;
   c.friction = friction;
+  c.sliding = friction > 0 &&
+              std::fabs(f.tangential_force) >= friction * f.normal_force * (1 - kSlidingMargin);
   c.spring = std::numeric_limits<double>::quiet_NaN();  // not told
   c.spring_vector.setConstant(c.spring);
   out.contacts.push_back(c);

@@ -283,6 +283,17 @@ TEST(Compare, Refuses) {
             "profile \"depth 0.1 m\" has no value: no point has enough grains around it");
 }
 
+// A layer so small that one point alone has enough grains around it.
+TEST(Compare, AProfileOfTooFewValuesHasNoShape) {
+  Scene s = scene(1, 0.9, 0.01);
+  for (Eigen::Index k = 0; k < s.profiles[0].mean.size(); ++k) {
+    if (k != 60) s.profiles[0].mean[k] = std::nan("");
+  }
+  const Comparison c = compare(s.profiles, s.models, 1, 1, 1);
+  EXPECT_TRUE(std::isnan(c.shapes[0].peak));
+  EXPECT_TRUE(std::isfinite(c.results[0].overall.rel_l2));
+}
+
 TEST(Compare, Families) {
   EXPECT_EQ(family_of("flamant"), "half plane");
   EXPECT_EQ(family_of("fe_elastic_layer"), "finite layer");

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "check_scene.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "dem/snapshot/snapshot.h"
 #include "run_scene.h"
 
 namespace grainfield::coupling {
@@ -58,6 +61,19 @@ TEST(ImplicitSettlingRun, CreepsWithoutWells) {
   EXPECT_NEAR(number(s, "settling.time"), 6, 0.1);
   EXPECT_THAT(std::get<std::string>(s.at("verdict.sentence")),
               HasSubstr("the pile still moves: its base has spread by"));
+}
+
+// The snapshot tells what a contact can hold; a force beyond it would be a mistake to its reader.
+TEST(ImplicitSettlingRun, ContactsTellTheirFriction) {
+  const Folder folder;
+  run_of(folder, pile_case("friction = \"coulomb\"\ncoulomb = 0.8\nstatic_friction = 0.5\n"));
+  const dem::Snapshot pile =
+      dem::read_snapshot(folder / "out/snapshots.h5", "/realization_000/pile");
+  ASSERT_FALSE(pile.contacts.empty());
+  for (const dem::Contact& c : pile.contacts) {
+    EXPECT_DOUBLE_EQ(c.friction, c.j < 0 ? 1.3 : 0.8);
+    EXPECT_LE(std::fabs(c.tangential_force), c.friction * c.normal_force * (1 + 1e-6));
+  }
 }
 
 TEST(ImplicitSettlingRun, SameBitsAfterStops) {

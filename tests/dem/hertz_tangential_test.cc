@@ -69,6 +69,22 @@ class Path {
   double work_ = 0, stored_ = 0;
 };
 
+// Spheres on a lattice touch at a depth that rounds to 0: what the spring held is gone, and a
+// number.
+TEST(HertzStiffening, OfADepthOfZeroIsWhatTheSpringHeld) {
+  for (const bool displacement : {false, true}) {
+    const HertzLaw law = law_of(displacement);
+    HertzMemory<3> before;
+    before.contact_radius = std::sqrt(0.5 * kRadius * 1e-6);
+    before.spring = Vector3d(0.1, 0, 0);
+    const double held = law.energy(overlap_of(1e-6), before).tangential;
+    EXPECT_GT(held, 0);
+    EXPECT_DOUBLE_EQ(law.stiffening(overlap_of(0), before), -held);
+    before.spring.setZero();
+    EXPECT_EQ(law.stiffening(overlap_of(0), before), 0);
+  }
+}
+
 TEST(Mindlin, StiffnessOfEqualSpheres) {
   for (const bool displacement : {false, true}) {
     for (const double depth : {1e-6, 1e-5, 1e-4}) {

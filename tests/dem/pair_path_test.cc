@@ -63,6 +63,14 @@ TEST_P(Sliding, IsCoulombsForceTimesTheWay) {
   EXPECT_NEAR(force, limit, 1e-6 * limit);
   EXPECT_NEAR(r.figures.at("pair.work"), limit * (4 * way - 5 * give) + 0.5 * limit * give,
               1e-3 * limit * way);
+  int sliding = 0;
+  for (const auto& [name, snapshot] : r.snapshots) {
+    for (const Contact& c : snapshot.contacts) {
+      EXPECT_EQ(c.sliding, std::fabs(c.tangential_force) >= 0.999999 * limit) << name;
+      sliding += c.sliding ? 1 : 0;
+    }
+  }
+  EXPECT_GT(sliding, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Sliding,

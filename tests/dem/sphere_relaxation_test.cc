@@ -37,6 +37,7 @@ TEST(SphereRelaxation, TwoSpheresUnderWeightOverlapAsTheLawsSay) {
     EXPECT_EQ(out.contacts_gained, 2);
     ASSERT_EQ(out.state.contacts.size(), 2u);
     EXPECT_NEAR(out.state.contacts[0].force.z(), 2 * m * kG, 1e-8 * m * kG);
+    EXPECT_NEAR(out.state.walls[0].force.z(), -2 * m * kG, 1e-8 * m * kG);
   }
 }
 
@@ -57,6 +58,11 @@ TEST(SphereRelaxation, ASphereOnASlopeIsHeldByRollingResistance) {
   EXPECT_NEAR(c.spring_vector.x(), -pull, 1e-7 * pull);
   EXPECT_NEAR(c.rolling_spring.norm() * kRadius, pull * kRadius, 1e-3 * pull * kRadius);
   EXPECT_FALSE(c.sliding);
+  // About the place where it touches: of the resistance alone.
+  EXPECT_NEAR(out.state.walls[0].force.x(), pull, 1e-7 * pull);
+  const Vec3 arm = c.point - out.state.walls[0].point;
+  const Vec3 rolling = out.state.walls[0].torque - arm.cross(out.state.walls[0].force);
+  EXPECT_NEAR(rolling.norm(), pull * kRadius, 1e-3 * pull * kRadius);
   // Steeper than both: no equilibrium.
   const double steep = 0.3;
   EXPECT_THROW(

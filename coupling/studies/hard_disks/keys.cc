@@ -18,7 +18,8 @@ void declare_gas_keys(SectionKeys s) {
   s.number("density", "kg/m2 (3D: kg/m3)", IN(density), {1e-3, 1e6},
            "of the grains, in 2D areal; no figure depends on it");
   s.number("speed", "m/s", IN(speed), {1e-9, 1e4},
-           "root mean square of each component of the velocities at the start");
+           "of each component of the velocities at the start the root of the sum of squares over "
+           "N - 1: their mean is 0");
   s.number("fractions", "-", IN(fractions), {1e-4, 0.9},
            "of the periodic box that grains fill, one gas after the other; beyond 0.69 (disks) or "
            "0.49 (spheres) they crystallize, and the equations of state do not hold");
