@@ -280,7 +280,8 @@ TEST(Compare, Refuses) {
   broken = s;
   broken.profiles[0].mean.setConstant(NAN);
   EXPECT_EQ(refusal([&] { compared(broken); }),
-            "profile \"depth 0.1 m\" has no value: no point has enough grains around it");
+            "profile \"depth 0.1 m\" has no value: no point has enough grains around it; take a "
+            "wider and deeper packing, or a lower average.width_diameters");
 }
 
 // A layer so small that one point alone has enough grains around it.

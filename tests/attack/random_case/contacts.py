@@ -208,6 +208,8 @@ class Bodies:
             allowed += 1e-5 * elastic  # areas of deep lenses, differences of nearly equal sums
         if not self.leaps:
             allowed += across * np.linalg.norm(v) + 1e-4 * elastic
+        if j < 0:  # a servo has given its wall the velocity of the step to come
+            allowed += across * np.linalg.norm(p.wall_velocity[p.wall_of(k)])
         if abs(p.normal_force[k] - expected) > allowed:
             self.complain("law", f"{what}: normal force {p.normal_force[k]:.9g}, by the law {expected:.9g} (elastic {elastic:.9g}, allowed {allowed:.2g})")
         # Where the spring alone is at the limit it has been cut, and the dashpot acts beside it.

@@ -67,7 +67,7 @@ def numbers_of(summary):
 # chances, slopes, averages inside, widths of a response (docs/file-formats.md, summary.json).
 MAY_BE_MISSING = re.compile(
     r"(?!energy\.|\w+\.balance_error)(compare\..*|verdict\.position.*|.*(error|p_value|_p)|.*\.(least|most|standard_error)"
-    r"|average\..*\.(balance_rms|balance_largest|fluctuation)|response\.(rms_)?width"
+    r"|average\..*\.(balance_rms|balance_largest|fluctuation)|response\.((rms_)?width|.*peak.*|integral)"
     r"|(dem\.repose_angle_(left|right)|repose\.\w+|cone\.(sector_)?repose\w*)_deg"
     r"|repose\.\w+|dem\.volume_fraction|(heap|cone)\.volume_fraction|density\.\w+"
     r"|pile\.(apex_x|half_base_\w+|volume_fraction_\w+|repose_error_\w+)|dip\.\w+|axis\.stress_ratio"
