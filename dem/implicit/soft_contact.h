@@ -20,6 +20,13 @@
 // (29) as printed lacks the sign of the slip, (30) takes half the difference of the two places, and
 // (36) lacks a sign: T turns both disks, W none.
 //
+// BDF2 (soft_disks.h) takes forces at the end of the step instead, with rates c', q' there:
+//
+//   f = K s_1      N = max(f + K_D c', 0)
+//   viscous   T = -clamp(K_slip q', mu_roll N)
+//   coulomb   S_1 as above, T = clamp(S_1 - K_slip q', mu N)
+//   well      W = -clamp(mu_static N (x_1 - x_rest)/a, mu_static N)
+//
 // The text is one for numbers and for numbers with their derivatives (Eigen's AutoDiffScalar): the
 // tangent is the exact derivative, with its branches.
 #pragma once
@@ -80,6 +87,15 @@ struct SoftMotion {
   T turn;                        ///< rad
 };
 
+/// How forces are taken over a step.
+struct SoftStep {
+  double dt = 0;                ///< s
+  bool end = false;             ///< at its end, with velocities (shift - drift) rate, as BDF2 does
+  double rate = 0;              ///< 1/s
+  Eigen::Vector2d drift{0, 0};  ///< of SoftMotion::shift, m
+  double turn_drift = 0;        ///< of SoftMotion::turn, rad
+};
+
 template <class T>
 struct SoftForce {
   using V = Eigen::Matrix<T, 2, 1>;
@@ -93,12 +109,81 @@ struct SoftForce {
 
 namespace soft_contact {
 
-/// Of overlaps s_0, s_1 along `n`, not of unit length, with the centres `lever` apart along n.
-/// False: they do not touch.
+/// Where two meet: the normal, not of unit length in the middle of the step, and the distance of
+/// the centres along it.
 template <class T>
-bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Eigen::Matrix<T, 2, 1>& n,
-         const T& lever, const SoftMemory& memory, double place, const SoftMotion<T>& m,
+struct Place {
+  Eigen::Matrix<T, 2, 1> n;
+  T lever;
+};
+
+template <class T>
+T along_of(const Place<T>& at, const Eigen::Matrix<T, 2, 1>& shift) {
+  return T(at.n.x() * shift.y() - at.n.y() * shift.x());
+}
+
+template <class T>
+void put(const Place<T>& at, const T& elastic, const T& normal, const T& tangential, const T& well,
          SoftForce<T>& out) {
+  const T across = T(tangential + well);
+  out.force.x() = T(-(normal * at.n.x()) - across * at.n.y());
+  out.force.y() = T(-(normal * at.n.y()) + across * at.n.x());
+  out.moment = T(at.lever * tangential);
+  out.elastic = value_of(elastic);
+  out.normal = value_of(normal);
+  out.tangential = value_of(tangential);
+  out.well = value_of(well);
+}
+
+/// Forces at the end of the step, where the normal is that of `last`; ways along `middle`. False:
+/// they do not touch then.
+template <class T>
+bool act_at_end(const SoftLaw& law, const SoftStep& step, const T& s1, const Place<T>& middle,
+                const Place<T>& last, const SoftMemory& memory, double place,
+                const SoftMotion<T>& m, SoftForce<T>& out) {
+  const double end = value_of(s1);
+  if (!(end > 0)) return false;
+  Eigen::Matrix<T, 2, 1> velocity;
+  velocity.x() = T((m.shift.x() - step.drift.x()) * step.rate);
+  velocity.y() = T((m.shift.y() - step.drift.y()) * step.rate);
+  const T closing = T(last.n.x() * velocity.x() + last.n.y() * velocity.y());
+  const T slip =
+      T(along_of(last, velocity) + last.lever * ((m.turn - step.turn_drift) * step.rate));
+  const T along = along_of(middle, m.shift), way = T(along + middle.lever * m.turn);
+  const T elastic = T(law.stiffness * s1);
+  T normal = T(elastic + law.damping * closing);
+  if (!(value_of(normal) > 0)) normal = T(0);
+  T tangential(0), well(0);
+  double spring = 0;
+  if (law.has_tangential()) {
+    const T viscous = T(law.slip_damping * slip);
+    if (law.friction == SoftFriction::viscous) {
+      tangential = T(-clamped(viscous, T(law.rolling_friction * normal)));
+    } else {
+      const T limit = T(law.coulomb * normal);
+      const T after = clamped(T(memory.spring - law.tangential_stiffness * way), limit);
+      tangential = clamped(T(after - viscous), limit);
+      spring = value_of(after);
+    }
+  }
+  if (memory.whole && law.static_friction > 0) {
+    const T hold = T((law.static_friction / law.well) * normal);
+    well = T(-clamped(T(hold * (along + (place - memory.rest))), T(law.static_friction * normal)));
+  }
+  put(last, elastic, normal, tangential, well, out);
+  out.overlap_end = end;
+  out.closing = value_of(T(middle.n.x() * m.shift.x() + middle.n.y() * m.shift.y()));
+  out.slip = value_of(way);
+  out.along = value_of(along);
+  out.spring = spring;
+  return true;
+}
+
+/// Of overlaps s_0, s_1 where the two meet in the middle of the step. False: they do not touch.
+template <class T>
+bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Place<T>& at,
+         const SoftMemory& memory, double place, const SoftMotion<T>& m, SoftForce<T>& out) {
+  const Eigen::Matrix<T, 2, 1>& n = at.n;
   const double end = value_of(s1);
   if (!(s0 > 0) && !(end > 0)) return false;
   T elastic, share(1);
@@ -112,7 +197,7 @@ bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Eigen::Mat
     elastic = T(0.5 * law.stiffness * s0 * share);
   }
   const T closing = n.x() * m.shift.x() + n.y() * m.shift.y();
-  const T slip = n.x() * m.shift.y() - n.y() * m.shift.x() + lever * m.turn;
+  const T slip = n.x() * m.shift.y() - n.y() * m.shift.x() + at.lever * m.turn;
   T normal = T(elastic + (law.damping / dt) * (share * closing));
   if (!(value_of(normal) > 0)) normal = T(0);
 
@@ -129,21 +214,14 @@ bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Eigen::Mat
       if (end > 0) spring = value_of(after);
     }
   }
-  T along = T(n.x() * m.shift.y() - n.y() * m.shift.x());
+  const T along = along_of(at, m.shift);
   if (memory.whole && law.static_friction > 0) {
     const T hold = T((law.static_friction / law.well) * normal);
     well = T(
         -clamped(T(hold * (0.5 * along + (place - memory.rest))), T(law.static_friction * normal)));
   }
-  const T across = T(tangential + well);
-  out.force.x() = T(-(normal * n.x()) - across * n.y());
-  out.force.y() = T(-(normal * n.y()) + across * n.x());
-  out.moment = T(lever * tangential);
+  put(at, elastic, normal, tangential, well, out);
   out.overlap_end = end;
-  out.elastic = value_of(elastic);
-  out.normal = value_of(normal);
-  out.tangential = value_of(tangential);
-  out.well = value_of(well);
   out.closing = value_of(closing);
   out.slip = value_of(slip);
   out.along = value_of(along);
@@ -156,7 +234,7 @@ bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Eigen::Mat
 /// Disks whose centres are `way` apart (from i to j) at the start of the step, `reach` the sum of
 /// their radii. False: they touch at neither end of the step.
 template <class T>
-bool soft_pair(const SoftLaw& law, double dt, const Eigen::Vector2d& way, double reach,
+bool soft_pair(const SoftLaw& law, const SoftStep& step, const Eigen::Vector2d& way, double reach,
                const SoftMemory& memory, const SoftMotion<T>& m, SoftForce<T>& out) {
   using std::sqrt;
   const T x = T(way.x() - m.shift.x()), y = T(way.y() - m.shift.y());
@@ -167,27 +245,39 @@ bool soft_pair(const SoftLaw& law, double dt, const Eigen::Vector2d& way, double
     return false;
   }
   const T distance = T(sqrt(square)), both = T(distance + start);
-  Eigen::Matrix<T, 2, 1> n;
-  n.x() = T((x + way.x()) / both);
-  n.y() = T((y + way.y()) / both);
-  const T lever = T(0.5 * (n.x() * (x + way.x()) + n.y() * (y + way.y())));
-  return soft_contact::act(law, dt, reach - start, T(reach - distance), n, lever, memory, 0.0, m,
-                           out);
+  soft_contact::Place<T> middle;
+  middle.n.x() = T((x + way.x()) / both);
+  middle.n.y() = T((y + way.y()) / both);
+  middle.lever = T(0.5 * (middle.n.x() * (x + way.x()) + middle.n.y() * (y + way.y())));
+  const T s1 = T(reach - distance);
+  if (!step.end) {
+    return soft_contact::act(law, step.dt, reach - start, s1, middle, memory, 0.0, m, out);
+  }
+  soft_contact::Place<T> last;
+  last.n.x() = T(x / distance);
+  last.n.y() = T(y / distance);
+  last.lever = distance;
+  return soft_contact::act_at_end(law, step, s1, middle, last, memory, 0.0, m, out);
 }
 
 /// A disk whose centre is `height` above a wall and `place` along t = (-n_y, n_x), n from the disk
 /// into the wall, at the start of the step. False likewise.
 template <class T>
-bool soft_wall(const SoftLaw& law, double dt, const Eigen::Vector2d& into, double height,
+bool soft_wall(const SoftLaw& law, const SoftStep& step, const Eigen::Vector2d& into, double height,
                double place, double radius, const SoftMemory& memory, const SoftMotion<T>& m,
                SoftForce<T>& out) {
-  Eigen::Matrix<T, 2, 1> n;
-  n.x() = T(into.x());
-  n.y() = T(into.y());
+  soft_contact::Place<T> middle;
+  middle.n.x() = T(into.x());
+  middle.n.y() = T(into.y());
   const T closing = T(into.x() * m.shift.x() + into.y() * m.shift.y());
   const T s1 = T(closing + (radius - height));
-  const T lever = T(height - 0.5 * closing);
-  return soft_contact::act(law, dt, radius - height, s1, n, lever, memory, place, m, out);
+  middle.lever = T(height - 0.5 * closing);
+  if (!step.end) {
+    return soft_contact::act(law, step.dt, radius - height, s1, middle, memory, place, m, out);
+  }
+  soft_contact::Place<T> last = middle;
+  last.lever = T(height - closing);
+  return soft_contact::act_at_end(law, step, s1, middle, last, memory, place, m, out);
 }
 
 }  // namespace grainfield::dem

@@ -82,8 +82,10 @@ std::string SoftDisks::Work::image() const {
   out.put(angles_);
   out.put(acting_);
   out.put(listed_);
-  for (const double value : {margin_, losses_.normal, losses_.tangential, losses_.well,
-                             losses_.background, tally_.least_step}) {
+  out.put(pending_);
+  out.put(last_);
+  for (const double value : {time_, last_dt_, margin_, losses_.normal, losses_.tangential,
+                             losses_.well, losses_.background, losses_.scheme, tally_.least_step}) {
     out.put(value);
   }
   for (const long value : {tally_.steps, tally_.solves, tally_.iterations, tally_.halved,
@@ -111,8 +113,14 @@ void SoftDisks::Work::restore(const std::string& image) {
   in.get(listed_);
   in.require(bodies_.size() == n && angles_.size() == n && acting_.size() == n &&
              (listed_.empty() || listed_.size() == n));
-  for (double* value : {&margin_, &losses_.normal, &losses_.tangential, &losses_.well,
-                        &losses_.background, &tally_.least_step}) {
+  in.get(pending_);
+  in.get(last_);
+  in.require(last_.size() == (takes_end() ? n : 0));
+  in.require(std::all_of(pending_.begin(), pending_.end(), [&](int halvings) {
+    return halvings >= 0 && halvings <= settings_.most_halvings;
+  }));
+  for (double* value : {&time_, &last_dt_, &margin_, &losses_.normal, &losses_.tangential,
+                        &losses_.well, &losses_.background, &losses_.scheme, &tally_.least_step}) {
     in.get(*value);
   }
   std::int64_t counts[5];
@@ -137,7 +145,6 @@ void SoftDisks::Work::restore(const std::string& image) {
                c.j >= -static_cast<int>(scene_.walls.size()));
   }
   in.finish();
-  time_ = static_cast<double>(tally_.steps) * settings_.time_step;
   lay_out();
 }
 
@@ -149,6 +156,7 @@ SoftDisks::SoftDisks(SoftDisks&&) noexcept = default;
 SoftDisks& SoftDisks::operator=(SoftDisks&&) noexcept = default;
 
 void SoftDisks::step(long steps) { work_->step(steps); }
+bool SoftDisks::try_part() { return work_->try_part(); }
 void SoftDisks::set_acting(const std::vector<char>& acting) { work_->set_acting(acting); }
 void SoftDisks::set_velocities(const std::vector<Body<2>>& bodies) {
   work_->set_velocities(bodies);

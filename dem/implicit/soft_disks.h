@@ -40,7 +40,14 @@ struct SoftScene {
   double background_damping = 0;              ///< b, 1/s: acceleration -= b v
 };
 
+enum class ImplicitScheme {
+  conserving,  ///< the equations above
+  bdf2,        ///< the two last steps and forces at the end of this one: what swings faster than a
+               ///< step can follow dies out; of second order, begun by the implicit Euler step
+};
+
 struct ImplicitSettings {
+  ImplicitScheme scheme = ImplicitScheme::conserving;
   double time_step = 1e-3;  ///< s
   /// Share of Newton's step that is tried first. Liffman: 0.5 to 0.9; below 1 convergence is linear
   /// with 1 - relaxation.
@@ -67,7 +74,8 @@ struct SoftLosses {
   double well = 0;        ///< what walls' wells took, less what they gave back: they hold by N, so
                           ///< that they have no potential
   double background = 0;
-  double total() const { return normal + tangential + well + background; }
+  double scheme = 0;  ///< BDF2's own: what is missing besides the others
+  double total() const { return normal + tangential + well + background + scheme; }
 };
 
 struct SoftEnergy {
@@ -105,6 +113,10 @@ class SoftDisks {
   /// The same bits whenever it is repeated. Throws ComputationFailed where a step halved
   /// `most_halvings` times does not converge: when, why and what to change.
   void step(long steps);
+  /// Solves the next part of a step: the whole of it, unless that did not converge before. Returns
+  /// whether a step has ended with it; a part that does not converge is halved for the next call.
+  /// Throws as step(), which is as many calls as end its steps.
+  bool try_part();
 
   /// Contacts act between disks of value 1, and between these and walls; all of them at the start.
   /// Takes one value a disk; a contact that stops acting is forgotten.

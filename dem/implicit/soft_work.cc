@@ -41,6 +41,7 @@ SoftDisks::Work::Work(const SoftScene& scene, const std::vector<Body<2>>& disks,
       angles_(disks.size(), 0.0),
       acting_(disks.size(), 1) {
   check_soft(scene, disks, settings);
+  if (takes_end()) last_.resize(disks.size());
   for (const Body<2>& b : bodies_) widest_ = std::max(widest_, b.radius);
   stiffest_ = scene.grains.stiffness;
   for (const SoftWall& w : scene.walls) stiffest_ = std::max(stiffest_, w.law.stiffness);
@@ -49,11 +50,31 @@ SoftDisks::Work::Work(const SoftScene& scene, const std::vector<Body<2>>& disks,
 
 void SoftDisks::Work::step(long steps) {
   for (long k = 0; k < steps; ++k) {
-    time_ = static_cast<double>(tally_.steps) * settings_.time_step;
-    advance(settings_.time_step, 0);
-    ++tally_.steps;
-    time_ = static_cast<double>(tally_.steps) * settings_.time_step;
+    while (!try_part()) {
+    }
   }
+}
+
+bool SoftDisks::Work::try_part() {
+  if (pending_.empty()) pending_ = {0};
+  const int halvings = pending_.back();
+  const double dt = std::ldexp(settings_.time_step, -halvings);
+  if (try_step(dt)) {
+    pending_.pop_back();
+  } else if (halvings >= settings_.most_halvings) {
+    throw ComputationFailed(
+        fmt::format("implicit motion: no step at t = {:.6g} s, not even of {:.3g} s, {} halvings "
+                    "of time_step = {:g} s: {}; take a smaller time_step or more max_iterations",
+                    time_, dt, halvings, settings_.time_step, why_));
+  } else {
+    ++tally_.halved;
+    pending_.back() = halvings + 1;
+    pending_.push_back(halvings + 1);
+  }
+  if (!pending_.empty()) return false;
+  ++tally_.steps;
+  time_ = static_cast<double>(tally_.steps) * settings_.time_step;
+  return true;
 }
 
 void SoftDisks::Work::set_acting(const std::vector<char>& acting) {
@@ -72,23 +93,14 @@ void SoftDisks::Work::set_velocities(const std::vector<Body<2>>& bodies) {
     bodies_[k].velocity = bodies[k].velocity;
     bodies_[k].spin = bodies[k].spin;
   }
-}
-
-void SoftDisks::Work::advance(double dt, int halvings) {
-  if (try_step(dt)) return;
-  if (halvings >= settings_.most_halvings) {
-    throw ComputationFailed(
-        fmt::format("implicit motion: no step at t = {:.6g} s, not even of {:.3g} s, {} halvings "
-                    "of time_step = {:g} s: {}; take a smaller time_step or more max_iterations",
-                    time_, dt, halvings, settings_.time_step, why_));
-  }
-  ++tally_.halved;
-  advance(0.5 * dt, halvings + 1);
-  advance(0.5 * dt, halvings + 1);
+  last_dt_ = 0;
 }
 
 bool SoftDisks::Work::try_step(double dt) {
   dt_ = dt;
+  const double ratio = last_dt_ > 0 ? dt / last_dt_ : 0;
+  gamma_ = ratio * ratio / (1 + 2 * ratio);
+  beta_ = (1 + ratio) / (1 + 2 * ratio);
   Vector z(3 * count());
   predict(z);
   if (margin_ < 0 || !listed_for(z)) {
@@ -130,6 +142,7 @@ void SoftDisks::Work::predict(Vector& z) const {
     held[c.i] = true;
     if (c.j >= 0) held[c.j] = true;
   }
+  if (takes_end()) return predict_at_end(z, held);
   const double drag = scene_.background_damping;
   for (int k = 0; k < count(); ++k) {
     const Body<2>& b = bodies_[k];
@@ -140,6 +153,21 @@ void SoftDisks::Work::predict(Vector& z) const {
     }
     z.segment<2>(3 * k) = u / b.radius;
     z[3 * k + 2] = dt_ * b.spin;
+  }
+}
+
+void SoftDisks::Work::predict_at_end(Vector& z, const std::vector<bool>& held) const {
+  const double step = beta_ * dt_, slow = 1 + step * scene_.background_damping;
+  for (int k = 0; k < count(); ++k) {
+    const Body<2>& b = bodies_[k];
+    Vec u = dt_ * plain(b.velocity);
+    if (b.inverse_mass > 0 && !held[k]) {
+      u = gamma_ * last_[k].way + step * (velocity_along(k) + step * plain(scene_.gravity)) / slow;
+    }
+    z.segment<2>(3 * k) = u / b.radius;
+    z[3 * k + 2] = b.inverse_inertia > 0 && !held[k]
+                       ? gamma_ * last_[k].turn + step * spin_along(k) / slow
+                       : dt_ * b.spin;
   }
 }
 
@@ -255,16 +283,22 @@ bool SoftDisks::Work::residual(const Vector& z, Vector& r) const {
   const double drag = scene_.background_damping;
   for (int k = 0; k < count(); ++k) {
     const Body<2>& b = bodies_[k];
-    const Vec u = b.radius * z.segment<2>(3 * k), v = u / dt_;
-    const double w = z[3 * k + 2] / dt_;
+    const Vec u = b.radius * z.segment<2>(3 * k);
+    const double a = z[3 * k + 2];
+    const bool end = takes_end();
+    const Vec v = end ? velocity_after(k, u) : Vec(u / dt_);
+    const double w = end ? spin_after(k, a) : a / dt_;
     if (b.inverse_mass > 0) {
-      const Vec rate = 2 / dt_ * (v - plain(b.velocity)) + drag * v - plain(scene_.gravity);
+      const Vec change = end ? Vec((v - velocity_along(k)) / (beta_ * dt_))
+                             : Vec(2 / dt_ * (v - plain(b.velocity)));
+      const Vec rate = change + drag * v - plain(scene_.gravity);
       r.segment<2>(3 * k) = rate / (b.inverse_mass * scale_);
     } else {
       r.segment<2>(3 * k) = z.segment<2>(3 * k) - dt_ / b.radius * plain(b.velocity);
     }
     if (b.inverse_inertia > 0) {
-      r[3 * k + 2] = (2 / dt_ * (w - b.spin) + drag * w) / (b.inverse_inertia * b.radius * scale_);
+      const double change = end ? (w - spin_along(k)) / (beta_ * dt_) : 2 / dt_ * (w - b.spin);
+      r[3 * k + 2] = (change + drag * w) / (b.inverse_inertia * b.radius * scale_);
     } else {
       r[3 * k + 2] = z[3 * k + 2] - dt_ * b.spin;
     }
@@ -288,7 +322,8 @@ bool SoftDisks::Work::factorize(const Vector& z) {
   double* const values = matrix_.valuePtr();
   std::fill_n(values, matrix_.nonZeros(), 0.0);
   const int* const outer = matrix_.outerIndexPtr();
-  const double drag = scene_.background_damping, rate = (2 / dt_ + drag) / dt_;
+  const double drag = scene_.background_damping, step = beta_ * dt_;
+  const double rate = takes_end() ? (1 / step + drag) / step : (2 / dt_ + drag) / dt_;
   for (int k = 0; k < count(); ++k) {
     const Body<2>& b = bodies_[k];
     const double move = b.inverse_mass > 0 ? rate * b.radius / (b.inverse_mass * scale_) : 1;
@@ -344,6 +379,7 @@ bool SoftDisks::Work::factorize(const Vector& z) {
 }
 
 void SoftDisks::Work::commit(const Vector& z) {
+  const double before = takes_end() ? energy().total() + losses_.total() : 0;
   SoftForce<double> f;
   for (SoftCandidate& c : candidates_) {
     const bool acts = force_of(c, motion_of(c, z), f);
@@ -371,7 +407,11 @@ void SoftDisks::Work::commit(const Vector& z) {
       const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
       const double v0 =
           w.normal.y() * bodies_[c.i].velocity.x() - w.normal.x() * bodies_[c.i].velocity.y();
-      const double v1 = 2 * f.along / dt_ - v0;
+      const SoftStep step = step_of(c);
+      const double v1 =
+          step.end ? (f.along - (w.normal.y() * step.drift.x() - w.normal.x() * step.drift.y())) *
+                         step.rate
+                   : 2 * f.along / dt_ - v0;
       if (c.memory.whole) {
         c.memory.whole = std::fabs(to - c.memory.rest) <= law.well;
       } else if (v0 * v1 <= 0) {
@@ -385,18 +425,23 @@ void SoftDisks::Work::commit(const Vector& z) {
     const Vec u = b.radius * z.segment<2>(3 * k), v = u / dt_;
     const double turn = z[3 * k + 2], w = turn / dt_;
     const double drag = scene_.background_damping * dt_;
+    const Vec first = plain(b.velocity);
+    const double first_spin = b.spin;
     if (b.inverse_mass > 0) {
       losses_.background += drag * v.squaredNorm() / b.inverse_mass;
-      b.velocity = 2 * v - plain(b.velocity);
+      b.velocity = takes_end() ? velocity_after(k, u) : Vec(2 * v - first);
     }
     if (b.inverse_inertia > 0) {
       losses_.background += drag * w * w / b.inverse_inertia;
-      b.spin = 2 * w - b.spin;
+      b.spin = takes_end() ? spin_after(k, turn) : 2 * w - first_spin;
     }
+    if (takes_end()) last_[k] = {u, first, turn, first_spin};
     b.position += u;
     angles_[k] += turn;
   }
+  last_dt_ = dt_;
   time_ += dt_;
+  if (takes_end()) losses_.scheme += before - energy().total() - losses_.total();
 }
 
 }  // namespace grainfield::dem

@@ -25,6 +25,7 @@ struct ImplicitSettlingSetup {
   double static_friction = 1;         ///< mu_static of the ground's wells; 0: none
   double well = 1e-3;                 ///< their half width a/d
   bool base_spins = false;            ///< the lowest row may roll
+  std::string scheme = "conserving";  ///< conserving | bdf2
   double step = 10;                   ///< time step over (1/10) pi sqrt(m/K)
   double relaxation = 1;              ///< dem/implicit/soft_disks.h
   double tolerance = 1e-12;           ///< likewise
@@ -36,7 +37,7 @@ struct ImplicitSettlingSetup {
   auto members() const {
     return std::tie(lattice, density, gravity, softness, damping, friction, slip_damping,
                     rolling_friction, coulomb, tangential_ratio, static_friction, well, base_spins,
-                    step, relaxation, tolerance, max_iterations, rest, max_time, records);
+                    scheme, step, relaxation, tolerance, max_iterations, rest, max_time, records);
   }
   double mass() const;       ///< kg
   double weight() const;     ///< N
@@ -47,12 +48,12 @@ struct ImplicitSettlingSetup {
 
 /// Columns of the curves: attributes "settling:NAME" of the snapshot, numbers between spaces.
 /// time: in sqrt(d/g); energies in m g d: kinetic, elastic, lost since the start by dashpots along
-/// the normal, by friction and by wells, and what is missing of the balance; iterations: of
-/// Newton's method per solve since the last row; spread: by how much the outermost base disks have
-/// parted, in d.
-inline constexpr const char* kSettlingColumns[] = {"time",        "kinetic",         "elastic",
-                                                   "lost_normal", "lost_tangential", "lost_well",
-                                                   "unbalanced",  "iterations",      "spread"};
+/// the normal, by friction, by wells and by BDF2 itself, and what is missing of the balance;
+/// iterations: of Newton's method per solve since the last row; spread: by how much the outermost
+/// base disks have parted, in d.
+inline constexpr const char* kSettlingColumns[] = {
+    "time",      "kinetic",     "elastic",    "lost_normal", "lost_tangential",
+    "lost_well", "lost_scheme", "unbalanced", "iterations",  "spread"};
 
 /// Snapshot "pile" at the end, at rest or after max_time, the lowest row first. Throws
 /// std::invalid_argument naming the key.

@@ -27,9 +27,6 @@ std::vector<std::string> values_of(const Key& key) {
   if (type.find("number") != std::string::npos) {
     out = {fmt::format("{}", key.least), fmt::format("{}", key.most)};
     if (key.or_zero) out.emplace_back("0");
-    // Longer steps are halved a thousand times, and nothing is asked meanwhile
-    // (docs/reliability.md).
-    if (key.path() == "settling.step") out[1] = "100";
   } else if (type == "integer") {
     out = {fmt::format("{:.0f}", key.least), fmt::format("{:.0f}", key.most)};
     if (key.or_zero) out.emplace_back("0");

@@ -103,6 +103,33 @@ TEST(ImplicitPile, SettlesToTheClosedFormAndToTheExplicitEnginesState) {
   EXPECT_LT(forces, 1e-5 * base.normal[0]);
 }
 
+// The same rest by BDF2, at steps with which the conserving scheme goes on swinging.
+TEST(ImplicitPile, Bdf2ComesToTheSameRestInFewLongSteps) {
+  LatticePileSetup s = pile_of(12, 60, 1e-4, "linear");
+  s.lattice.gap = 0;
+  const double mass = mass_of(s);
+  const double explicitly = explicit_step(mass, s.material.normal_stiffness);
+  SoftDisks slow(scene_of(s), pile_bodies(s.lattice, s.material.density),
+                 steps_of(10 * explicitly));
+  ASSERT_TRUE(settle(slow, 1e-9, 20000));
+  SoftDisks fast(scene_of(s), pile_bodies(s.lattice, s.material.density),
+                 steps_of(500 * explicitly, ImplicitScheme::bdf2));
+  ASSERT_TRUE(settle(fast, 1e-9, 2000));
+  const Base a = base_of(slow, 12), b = base_of(fast, 12);
+  double forces = 0;
+  for (std::size_t k = 0; k < a.normal.size(); ++k) {
+    forces = std::max({forces, std::fabs(a.normal[k] - b.normal[k]),
+                       std::fabs(a.horizontal[k] - b.horizontal[k])});
+  }
+  EXPECT_LT(forces, 1e-5 * a.normal[0]);
+  std::printf(
+      "conserving: %ld steps of 10, %ld iterations; BDF2: %ld steps of 500, %ld iterations, "
+      "%ld halved\n",
+      slow.tally().steps, slow.tally().iterations, fast.tally().steps, fast.tally().iterations,
+      fast.tally().halved);
+  EXPECT_LT(fast.tally().iterations, slow.tally().iterations / 4);
+}
+
 /// The source's laws on all contacts (or coulomb instead of viscous), slip damping in units of
 /// sqrt(m K), with or without wells of half width 1e-3 d under the lowest row.
 struct Ways {

@@ -23,8 +23,10 @@ inline double explicit_step(double mass, double stiffness) {
   return 0.1 * std::numbers::pi * std::sqrt(mass / stiffness);
 }
 
-inline ImplicitSettings steps_of(double time_step) {
+inline ImplicitSettings steps_of(double time_step,
+                                 ImplicitScheme scheme = ImplicitScheme::conserving) {
   ImplicitSettings out;
+  out.scheme = scheme;
   out.time_step = time_step;
   return out;
 }

@@ -103,7 +103,7 @@ SoftLaw rough(double stiffness, SoftFriction friction) {
 }
 
 // Two on the ground between walls and one on top, that never part.
-SoftDisks rocking(SoftFriction friction, double dt) {
+SoftDisks rocking(SoftFriction friction, ImplicitScheme scheme, double dt) {
   SoftScene scene;
   scene.grains = rough(100, friction);
   // Friction far from its limits: smooth in time.
@@ -118,14 +118,18 @@ SoftDisks rocking(SoftFriction friction, double dt) {
                              soft_disk(0.001, 1.3486)};
   start[2].velocity = {0.02, 0};
   start[0].spin = 0.03;
-  return SoftDisks(scene, start, steps_of(dt));
+  return SoftDisks(scene, start, steps_of(dt, scheme));
 }
 
 TEST(Implicit, IsOfSecondOrderInTime) {
-  for (const SoftFriction friction : {SoftFriction::viscous, SoftFriction::coulomb}) {
+  for (const auto& [friction, scheme] :
+       {std::pair{SoftFriction::viscous, ImplicitScheme::conserving},
+        {SoftFriction::coulomb, ImplicitScheme::conserving},
+        {SoftFriction::viscous, ImplicitScheme::bdf2},
+        {SoftFriction::coulomb, ImplicitScheme::bdf2}}) {
     std::vector<Eigen::VectorXd> ends;
-    for (int n = 40; n <= 320; n *= 2) {
-      SoftDisks disks = rocking(friction, 1.0 / n);
+    for (int n = 40; n <= 640; n *= 2) {
+      SoftDisks disks = rocking(friction, scheme, 1.0 / n);
       for (int k = 0; k < n; ++k) {
         disks.step(1);
         // All contacts last: four with walls, three of pairs.
@@ -144,6 +148,63 @@ TEST(Implicit, IsOfSecondOrderInTime) {
       EXPECT_NEAR(order, 2, 0.2);
     }
   }
+}
+
+// A touching disk under BDF2 follows the recurrence of its oscillator, whose roots die out where
+// the step is long, and lasts where it is short.
+TEST(Implicit, Bdf2LetsDieOutWhatIsTooFast) {
+  const double stiffness = 400, sag = 1 / stiffness, swing = 0.9 * sag, frequency = 20;
+  const SoftScene scene = smooth_ground(stiffness);
+  for (const double dt : {0.001, 0.1, 1.0}) {
+    SoftDisks disks(scene, {soft_disk(0.3, 0.5 - sag + swing)}, steps_of(dt, ImplicitScheme::bdf2));
+    double y = swing, v = 0, y_before = 0, v_before = 0;
+    for (int k = 0; k < 50; ++k) {
+      disks.step(1);
+      // z = from z_0, z_-1 with y' = v, v' = -w^2 y: solved by hand; the first step is Euler's.
+      const double by = k == 0 ? dt : 2 * dt / 3;
+      const double known_y = k == 0 ? y : (4 * y - y_before) / 3;
+      const double known_v = k == 0 ? v : (4 * v - v_before) / 3;
+      y_before = y;
+      v_before = v;
+      v = (known_v - by * frequency * frequency * known_y) / (1 + by * by * frequency * frequency);
+      y = known_y + by * v;
+      EXPECT_NEAR(disks.bodies()[0].position.y(), 0.5 - sag + y, 1e-12) << dt << " " << k;
+      EXPECT_NEAR(disks.bodies()[0].velocity.y(), v, 1e-11) << dt << " " << k;
+    }
+    const double energy = 0.5 * (v * v + frequency * frequency * y * y);
+    const double lost = 0.5 * frequency * frequency * swing * swing - energy;
+    EXPECT_NEAR(disks.losses().scheme, lost, 1e-12);
+    EXPECT_EQ(disks.losses().normal, 0);
+    if (dt == 0.001) {
+      EXPECT_NEAR(y, swing * std::cos(frequency * 50 * dt), 2e-2 * swing);
+    } else {
+      EXPECT_LT(std::fabs(y), 1e-6 * swing);
+    }
+  }
+}
+
+// Linear momentum, whatever it loses; free flight at any step, halved ones among them.
+TEST(Implicit, Bdf2KeepsMomentumAndFliesFreely) {
+  SoftScene scene;
+  scene.grains = rough(1e3, SoftFriction::coulomb);
+  std::vector<Body<2>> start = boxed_gas(scene, 4);
+  scene.walls.clear();
+  for (Body<2>& b : start) b.velocity -= 0.5 * (b.position - VectorOf<2>(2.3, 1.8));
+  SoftDisks disks(scene, start, steps_of(0.3, ImplicitScheme::bdf2));
+  const double before = disks.energy().total();
+  disks.step(30);
+  EXPECT_GT(disks.tally().halved, 0);
+  EXPECT_LT((momentum_of(disks.bodies()).linear - momentum_of(start).linear).norm(), 1e-11);
+  EXPECT_LT(disks.energy().total(), before);
+  EXPECT_NEAR(disks.energy().total() + disks.losses().total(), before, 1e-9);
+
+  SoftScene air;
+  air.gravity = {0, -1};
+  ImplicitSettings steps = steps_of(0.01, ImplicitScheme::bdf2);
+  SoftDisks flying(air, {soft_disk(0, 0)}, steps);
+  flying.step(100);
+  EXPECT_NEAR(flying.bodies()[0].velocity.y(), -1, 1e-12);
+  EXPECT_NEAR(flying.bodies()[0].position.y(), -0.5, 2e-4);  // Euler's first step: dt^2
 }
 
 // All laws lose what they say they lose.
@@ -271,24 +332,57 @@ std::string bits_of(const SoftDisks& disks) {
 }
 
 TEST(Implicit, SameBitsAgain) {
-  SoftScene scene;
-  scene.grains = rough(1e3, SoftFriction::coulomb);
-  scene.gravity = {0, -1};
-  const std::vector<Body<2>> start = boxed_gas(scene, 4);
-  SoftDisks one(scene, start, steps_of(0.03)), other(scene, start, steps_of(0.03));
-  one.step(300);
-  for (int k = 0; k < 300; ++k) other.step(1);
-  EXPECT_EQ(bits_of(one), bits_of(other));
+  for (const ImplicitScheme scheme : {ImplicitScheme::conserving, ImplicitScheme::bdf2}) {
+    SoftScene scene;
+    scene.grains = rough(1e3, SoftFriction::coulomb);
+    scene.gravity = {0, -1};
+    const std::vector<Body<2>> start = boxed_gas(scene, 4);
+    const ImplicitSettings steps = steps_of(0.03, scheme);
+    SoftDisks one(scene, start, steps), other(scene, start, steps);
+    one.step(300);
+    for (int k = 0; k < 300; ++k) other.step(1);
+    EXPECT_EQ(bits_of(one), bits_of(other));
 
-  // Stopped and resumed.
-  SoftDisks half(scene, start, steps_of(0.03)), rest(scene, start, steps_of(0.03));
-  half.step(143);
-  rest.restore(half.image());
-  rest.step(157);
-  EXPECT_EQ(rest.image(), one.image());
-  SoftDisks less(scene, {start[0]}, steps_of(0.03));
-  EXPECT_THROW(less.restore(half.image()), std::invalid_argument);
-  EXPECT_THROW(rest.restore(half.image() + "x"), std::invalid_argument);
+    // Stopped and resumed.
+    SoftDisks half(scene, start, steps), rest(scene, start, steps);
+    half.step(143);
+    rest.restore(half.image());
+    rest.step(157);
+    EXPECT_EQ(rest.image(), one.image());
+    SoftDisks less(scene, {start[0]}, steps);
+    EXPECT_THROW(less.restore(half.image()), std::invalid_argument);
+    EXPECT_THROW(rest.restore(half.image() + "x"), std::invalid_argument);
+  }
+}
+
+// Steps so long that they are halved: part by part, and resumed between two parts of one step.
+TEST(Implicit, PartsOfAStepAreTheStep) {
+  for (const ImplicitScheme scheme : {ImplicitScheme::conserving, ImplicitScheme::bdf2}) {
+    SoftScene scene;
+    scene.grains = rough(1e3, SoftFriction::viscous);
+    scene.gravity = {0, -1};
+    const std::vector<Body<2>> start = boxed_gas(scene, 4);
+    const ImplicitSettings steps = steps_of(1, scheme);
+    SoftDisks whole(scene, start, steps), parts(scene, start, steps);
+    whole.step(10);
+    ASSERT_GT(whole.tally().halved, 5);
+    long calls = 0, resumed = 0;
+    for (int ended = 0; ended < 10; ++calls) {
+      const bool ends = parts.try_part();
+      ended += ends;
+      EXPECT_EQ(parts.tally().steps, ended);
+      if (ends || calls % 3 != 0) continue;
+      SoftDisks next(scene, start, steps);
+      next.restore(parts.image());
+      ASSERT_EQ(next.image(), parts.image());
+      EXPECT_EQ(next.time(), parts.time());
+      parts = std::move(next);
+      ++resumed;
+    }
+    EXPECT_EQ(calls, whole.tally().halved + whole.tally().solves);
+    EXPECT_GT(resumed, 3);
+    EXPECT_EQ(parts.image(), whole.image());
+  }
 }
 
 // Relaxation changes the way of Newton's method, not where it ends.

@@ -19,6 +19,7 @@ std::vector<SummaryKey> settling_figures() {
       {"settling.lost_normal", "m g d", "energy that dashpots along the normal took"},
       {"settling.lost_tangential", "m g d", "energy that friction took"},
       {"settling.lost_well", "m g d", "energy that the wells took"},
+      {"settling.lost_scheme", "m g d", "energy that settling.scheme = \"bdf2\" took by itself"},
       {"settling.spread", "d", "by how much the outermost base disks have parted"},
       {"settling.spread_speed", "sqrt(g d)",
        "how fast they part in the last tenth of the records; 0 at rest"},

@@ -45,9 +45,13 @@ void declare_settling_keys(SectionKeys s) {
            "Liffman et al. 1992, eq. 30");
   s.flag("base_spins", IN(base_spins),
          "whether the lowest row may roll; the source's wells act on centres and do not turn it");
+  s.word("scheme", IN(scheme), {"conserving", "bdf2"},
+         "conserving: the source's, which keeps energy at any step; bdf2: the two-step backward "
+         "difference formula, whose own loss lets die out what swings too fast for the step",
+         "conserving: Liffman et al. 1992, eqs 23-36");
   s.number("step", "-", IN(step), {1e-3, 1e4},
-           "time step over (1/10) pi sqrt(m/K), what explicit integrators take; energy is kept at "
-           "any step, the ways are followed to second order in it");
+           "time step over (1/10) pi sqrt(m/K), what explicit integrators take; the ways are "
+           "followed to second order in it");
   s.number("relaxation", "-", IN(relaxation), {0.05, 1},
            "share of Newton's step that is tried first; below 1 more iterations",
            "Liffman et al. 1992: 0.5 to 0.9");

@@ -49,7 +49,7 @@ class SettlingAnalysis {
     add_figures(out.summary, figures_);
     out.summary["settling.normal_max_error"] = largest_error(normal_, hard_normal_);
     out.summary["settling.horizontal_max_error"] = largest_error(horizontal_, hard_horizontal_);
-    for (const char* loss : {"lost_normal", "lost_tangential", "lost_well"}) {
+    for (const char* loss : {"lost_normal", "lost_tangential", "lost_well", "lost_scheme"}) {
       const Eigen::VectorXd& values = columns_.at(loss);
       out.summary[std::string("settling.") + loss] = values[values.size() - 1];
     }
@@ -201,7 +201,8 @@ class SettlingAnalysis {
                     {{"kinetic", "kinetic"},
                      {"lost_normal", "taken by dashpots along the normal"},
                      {"lost_tangential", "taken by friction"},
-                     {"lost_well", "taken by wells"}}),
+                     {"lost_well", "taken by wells"},
+                     {"lost_scheme", "taken by the scheme"}}),
             history("Newton's method", "iterations a solve", "Means between the records.",
                     {{"iterations", "iterations"}}),
             history("Creep", "spread / d", "By how much the outermost base disks have parted.",
@@ -239,6 +240,7 @@ class SettlingAnalysis {
                                           "settling.lost_normal",
                                           "settling.lost_tangential",
                                           "settling.lost_well",
+                                          "settling.lost_scheme",
                                           "settling.spread",
                                           "settling.spread_speed"}));
     add_rows(out, "How it was made", origin_rows(result));

@@ -35,18 +35,18 @@ class Bodies:
         free = p.free()
         acceleration = np.where(free[:, None], force / p.mass[:, None], 0)
         acceleration += (p.position - p.low) @ (p.flow @ p.flow).T
-        spin = moment.copy()
-        if p.dim == 2:
-            spin = np.where((free & p.rotates)[:, None], moment / p.moments, 0)
-        else:
-            in_body = np.einsum("kba,kb->ka", p.turn, moment)
-            turned = np.einsum("kba,kb->ka", p.turn, p.spin)
-            in_body -= np.cross(turned, p.moments * turned)
-            spin = np.where((free & p.rotates)[:, None],
-                            np.einsum("kab,kb->ka", p.turn, in_body / p.moments), 0)
         half = 0.5 * self.step if self.leaps else 0.0
         self.velocity = p.velocity - half * acceleration
+        # Dashpots of rolling and twisting are of the spins looked for: they are found together.
+        spin = self.turning(moment, free)
         self.spin = p.spin - half * spin
+        unsure = np.zeros(p.size)
+        if any(self.material.get(k, 0) > 0 for k in ("rolling_damping", "twisting_damping")):
+            for _ in range(20):
+                before = self.spin
+                spin = self.turning(moment + self.rolling_dashpots(before), free)
+                self.spin = p.spin - half * spin
+                unsure = np.linalg.norm(self.spin - before, axis=1)
         # What damping of the motion changes of it, m/s.
         rate = values.get("rest.background_damping", 0.0)
         share = values.get("motion.local_damping", 0.0)
@@ -54,12 +54,42 @@ class Bodies:
                              + share * np.linalg.norm(acceleration, axis=1)
                              + p.radius * (rate * np.linalg.norm(self.spin, axis=1)
                                            + share * np.linalg.norm(spin, axis=1)))
-        if any(k.startswith("material.rolling_") or k.startswith("material.twisting_")
-               for k in values):  # their dashpots are no part of `moment`
-            self.slack += half * p.radius * np.linalg.norm(spin, axis=1)
+        self.slack += p.radius * unsure
         # Rounding: of a place against the sizes of things.
         self.grain = 4e-16 * (np.abs(p.position).max() + np.abs(p.edges).max())
         self.equal = equal_radius(p.volume, p.dim)
+
+    def turning(self, moment, free):
+        """Angular acceleration, 1/s2."""
+        p = self.p
+        if p.dim == 2:
+            return np.where((free & p.rotates)[:, None], moment / p.moments, 0)
+        in_body = np.einsum("kba,kb->ka", p.turn, moment)
+        turned = np.einsum("kba,kb->ka", p.turn, p.spin)
+        in_body -= np.cross(turned, p.moments * turned)
+        return np.where((free & p.rotates)[:, None],
+                        np.einsum("kab,kb->ka", p.turn, in_body / p.moments), 0)
+
+    def rolling_dashpots(self, spin):
+        """Moments of the dashpots against rolling and twisting at these spins, N m: what the caps
+        leave of spring and dashpot, less the spring."""
+        p, m = self.p, self.material
+        out = np.zeros((p.size, 3))
+        for k in range(len(p.i)):
+            i, j, n = p.i[k], p.j[k], p.normal[k]
+            turning = spin[i] - (spin[j] if j >= 0 else p.wall_spin[p.wall_of(k)])
+            near = p.radius[i] * (p.radius[j] / (p.radius[i] + p.radius[j]) if j >= 0 else 1)
+            force = p.rolling[k] - m.get("rolling_damping", 0) * near * np.cross(turning, n)
+            limit, size = m.get("rolling_friction", 0) * p.normal_force[k], np.linalg.norm(force)
+            force *= min(1, limit / size) if size > 0 else 0
+            twist = p.twisting[k] - m.get("twisting_damping", 0) * (turning @ n)
+            limit = m.get("twisting_friction", 0) * p.normal_force[k]
+            held = near * np.cross(n, force - p.rolling[k])
+            held = held + (min(max(twist, -limit), limit) - p.twisting[k]) * n
+            out[i] += held
+            if j >= 0:
+                out[j] -= held
+        return out
 
     # ------------------------------------------------------------- overlap of what touches
 
@@ -221,6 +251,8 @@ class Bodies:
             allowed_t = CLOSE * (np.linalg.norm(p.spring[k]) + along_c * np.linalg.norm(slip)) + along_c * slack + 1e-9 * limit
             if not self.leaps:
                 allowed_t += along_c * np.linalg.norm(v) + 1e-4 * limit
+            if p.axes is not None:  # the normal's part of the force turns with the normal found anew
+                allowed_t += 1e-6 * p.normal_force[k]
             if off > allowed_t:
                 self.complain("law of friction", f"{what}: off by {off:.3g} of {limit:.3g} N, allowed {allowed_t:.2g}")
 
