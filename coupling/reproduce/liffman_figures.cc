@@ -6,7 +6,8 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr const char *kHard = "liffman-lattice", *kSoft = "liffman-soft-piles",
-                     *kTent = "liffman-tent", *kDropped = "liffman-dropped-grains";
+                     *kTent = "liffman-tent", *kDropped = "liffman-dropped",
+                     *kDroppedGrains = "liffman-dropped-grains";
 // The middle of a flat normal force stays within this of its largest value: whole disks make steps.
 constexpr double kDip = 0.98;
 // A share of lines below this is none, above ten times this it is many.
@@ -63,15 +64,14 @@ SourceFigure convergence() {
   return out;
 }
 
-// An ensemble where the source has single piles.
-SourceFigure dropped() {
-  SourceFigure out =
-      told("fig. 20", "base pressure of piles dropped disk by disk, ensemble of 30", kDropped,
-           "slight depression in one pile, none in others", {"neither", "peak"}, "", nullptr);
-  out.word = [](const Results& r) -> std::optional<std::string> {
-    const auto word = r.text(kDropped, "dip.verdict.equal");
-    const auto difference = r.plain(kDropped, "dip.difference.equal");
-    const auto error = r.plain(kDropped, "dip.standard_error.equal");
+// An ensemble where the source has single piles. `member`: of a sweep, ".NAME", or nothing.
+SourceFigure dropped(const char* what, const char* study, const std::string& member) {
+  SourceFigure out = told("fig. 20", what, study, "slight depression in one pile, none in others",
+                          {"neither", "peak"}, "", nullptr);
+  out.word = [=](const Results& r) -> std::optional<std::string> {
+    const auto word = r.text(study, "dip.verdict" + member);
+    const auto difference = r.plain(study, "dip.difference" + member);
+    const auto error = r.plain(study, "dip.standard_error" + member);
     if (!word || !difference || !error) return std::nullopt;
     return fmt::format("{}: shoulder - centre = {:.3f} ± {:.3f} ρgh, by itself", *word, *difference,
                        *error);
@@ -102,7 +102,8 @@ std::vector<SourceFigure> liffman_figures() {
            "liffman.line_normal_centre.tent", dip_word),
       told("fig. 19", "N of the grains under a tent", kTent, "no dip", {"no dip"},
            "liffman.normal_centre.tent", dip_word),
-      dropped(),
+      dropped("base pressure of piles dropped disk by disk, 968 disks", kDropped, ""),
+      dropped("base pressure of piles dropped disk by disk, 200 disks", kDroppedGrains, ".equal"),
   };
 }
 

@@ -145,10 +145,12 @@ TEST(TenSteps, OfEveryKeyAtItsEndsAndWithEachOfItsWords) {
     const Folder folder;
     const std::string file = folder.write("x.toml", testing::small_case(study.name));
     Counts counts;
+    std::vector<std::string> never;  // keys of which no value ran
     for (const KeySection& section : study.sections) {
       if (section.role != KeyRole::grains) continue;
       for (const Key& key : keys()) {
         if (key.section != section.name || !key_applies(key, study.name)) continue;
+        const int before = counts.run + counts.failed;
         for (const Overrides& beginning : beginnings(study.name)) {
           for (const std::string& text : values_of(key)) {
             Overrides set = beginning;
@@ -157,10 +159,12 @@ TEST(TenSteps, OfEveryKeyAtItsEndsAndWithEachOfItsWords) {
             ASSERT_NO_FATAL_FAILURE(try_ten_steps(study, file, set, counts));
           }
         }
+        if (counts.run + counts.failed == before) never.push_back(key.path());
       }
     }
-    fmt::print("{}: {} run, {} ended as failed, {} refused, {} too large to run here\n", study.name,
-               counts.run, counts.failed, counts.refused, counts.large);
+    fmt::print("{}: {} run, {} ended as failed, {} refused, {} too large to run here; never: {}\n",
+               study.name, counts.run, counts.failed, counts.refused, counts.large,
+               fmt::join(never, " "));
     EXPECT_GT(counts.run + counts.failed, counts.refused / 4) << study.name;
     all.run += counts.run;
   }
