@@ -45,6 +45,9 @@ double parse(const ModelInfo& info, const Parameter& parameter, const std::strin
 
 /// The allowed range for a message about this text.
 std::string missed(const Parameter& parameter, const std::string& text, double value) {
+  if (std::fabs(value) > kUnbounded) {
+    return fmt::format("{}, and no more than {} in size", allowed(parameter), kUnbounded);
+  }
   const bool tiny =
       value >= 0 && value < parameter.least && parameter.least == kAboveZero &&
       text.substr(0, text.find_first_of("eEpP")).find_first_of("123456789") != std::string::npos;

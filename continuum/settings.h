@@ -1,16 +1,16 @@
 // What a model's maker needs to read its settings and to declare its parameters.
 #pragma once
-#include <limits>
 #include <string>
 
 #include "continuum/model.h"
 
 namespace grainfield::continuum {
 
-/// Parameter::least of a number that must be above zero.
-inline constexpr double kAboveZero = std::numeric_limits<double>::min();
-/// Parameter::most (and minus it, least) of a number without a bound.
-inline constexpr double kUnbounded = std::numeric_limits<double>::max();
+/// Parameter::least of a number that must be above zero: below, products of three underflow.
+inline constexpr double kAboveZero = 1e-50;
+/// Parameter::most (and minus it, least) of a number without a bound of its own: beyond, products
+/// of a few overflow.
+inline constexpr double kUnbounded = 1e50;
 
 /// A numerical parameter.
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,

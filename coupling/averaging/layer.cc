@@ -9,6 +9,7 @@
 
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/roof.h"
+#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -17,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Mean over columns of the highest edge of a free grain whose centre is in the column.
 double mean_surface(const dem::Snapshot& snapshot, double left, double right, double column) {
-  const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor((right - left) / column)));
+  const std::size_t columns = dem::count_columns(snapshot, 0, left, right, column);
   std::vector<double> top(columns, -infinity);
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;

@@ -10,6 +10,7 @@
 #include "coupling/averaging/clip.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/layer.h"
+#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -161,7 +162,7 @@ void Region::find_roof(const dem::Snapshot& snapshot) {
 
 void Region::find_surface(const dem::Snapshot& snapshot) {
   const double column = 2 * mean_diameter(snapshot), width = right() - left();
-  const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor(width / column)));
+  const std::size_t columns = dem::count_columns(snapshot, 0, left(), right(), column);
   std::vector<const dem::Grain*> top(columns, nullptr);
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;

@@ -5,11 +5,14 @@
 #include <limits>
 
 #include "coupling/averaging/extent.h"
+#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
 
 using Eigen::Index;
+
+constexpr double kMostColumns = 1e7;  // of a roof
 
 // The columns between whose middles t lies (in columns from the first edge), and how far along.
 struct Between {
@@ -32,7 +35,8 @@ Roof::Roof(const dem::Snapshot& snapshot, const Eigen::Vector3d& low, const Eige
     : low_(low.head<2>()) {
   Index n[2];
   for (int a = 0; a < 2; ++a) {
-    n[a] = static_cast<Index>(std::max(1.0, std::floor((high[a] - low[a]) / column)));
+    const double most = a == 0 ? 1e6 : kMostColumns / static_cast<double>(n[0]);
+    n[a] = static_cast<Index>(dem::count_columns(snapshot, a, low[a], high[a], column, most));
     size_[a] = (high[a] - low[a]) / static_cast<double>(n[a]);
   }
   constexpr double none = -std::numeric_limits<double>::infinity();

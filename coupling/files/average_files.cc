@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/container_hash/hash.hpp>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -64,6 +65,38 @@ std::vector<Item> items_of(const AverageRequest& request) {
   return out;
 }
 
+// Refuses what makes an ensemble of one packing: copies, and states of the same realization.
+class Independence {
+ public:
+  void add(const SnapshotName& name, const dem::Snapshot& s) {
+    const std::string shown = name.file + ":" + name.group;
+    const std::size_t at = name.group.rfind('/');
+    if (at != std::string::npos && at > 0) {
+      const std::string above = name.file + ":" + name.group.substr(0, at);
+      const auto [first, own] = states_.emplace(above, name.group);
+      if (!own) {
+        throw std::invalid_argument(fmt::format(
+            "{} and {}:{} are states of one packing, allowed: one state of each packing, as {}:{}",
+            shown, name.file, first->second, name.file, name.group.substr(at + 1)));
+      }
+    }
+    std::size_t places = s.grains.size();
+    for (const dem::Grain& g : s.grains) {
+      for (int a = 0; a < s.dim; ++a) boost::hash_combine(places, g.position[a]);
+    }
+    const auto [first, own] = packings_.emplace(places, shown);
+    if (own || s.grains.empty()) return;
+    throw std::invalid_argument(
+        fmt::format("{} is a copy of {}: every grain is at the same place, allowed: every packing "
+                    "once (a copy is no realization of its own)",
+                    shown, first->second));
+  }
+
+ private:
+  std::map<std::string, std::string> states_;
+  std::map<std::size_t, std::string> packings_;
+};
+
 // The packings of all snapshots, as one.
 struct Extents {
   double depth = 0, left = -std::numeric_limits<double>::infinity(),
@@ -89,6 +122,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
                 std::vector<std::string>& warnings) {
   Extents out;
   PackingWarnings of_forces;
+  Independence independence;
   const auto& wanted = request.options.quantities;
   const bool forces =
       wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
@@ -100,6 +134,7 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
       throw std::invalid_argument(fmt::format("{}:{} is {}D, the snapshot before it {}D",
                                               item.state.file, item.state.group, s.dim, out.dim));
     out.dim = s.dim;
+    independence.add(item.state, s);
     const Placement placed = place(s, request.frame);
     if (forces) add_warnings(item.state, s, of_forces);
     if (forces && request.response)
@@ -272,12 +307,30 @@ std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name) {
   return std::make_shared<const dem::Snapshot>(dem::read_snapshot(name.file, name.group));
 }
 
+namespace {
+
+// The snapshots REALIZATION/NAME of a file that has no snapshot called NAME itself.
+std::vector<std::string> states_called(const std::string& file, const std::string& name) {
+  std::vector<std::string> out;
+  if (!std::filesystem::exists(file) || name.find('/') != std::string::npos) return out;
+  for (const std::string& group : dem::list_snapshots(file)) {
+    if (group == name || group == "/" + name) return {};
+    if (group.ends_with("/" + name)) out.push_back(group);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& texts) {
   std::vector<SnapshotName> out;
   for (const auto& text : texts) {
     const std::size_t at = text.rfind(':');
     if (at != std::string::npos && !std::filesystem::exists(text)) {
-      out.push_back({text.substr(0, at), text.substr(at + 1), {}});
+      const std::string file = text.substr(0, at), group = text.substr(at + 1);
+      const std::vector<std::string> states = states_called(file, group);
+      if (states.empty()) out.push_back({file, group, {}});
+      for (const std::string& state : states) out.push_back({file, state, {}});
       continue;
     }
     const auto groups = dem::list_snapshots(text);

@@ -20,7 +20,8 @@ struct SnapshotName {
 /// The snapshot, read or held. Throws as dem::read_snapshot.
 std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name);
 
-/// "FILE.h5" (every snapshot of the file) or "FILE.h5:group". Throws std::invalid_argument, also
+/// "FILE.h5" (every snapshot of the file), "FILE.h5:GROUP" or "FILE.h5:STATE", which is every
+/// REALIZATION/STATE of a file without a group STATE. Throws std::invalid_argument, also
 /// when one is named twice.
 std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& texts);
 /// Throws std::invalid_argument, "FILE:GROUP: named twice", for a snapshot of an ensemble that is

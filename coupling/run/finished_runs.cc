@@ -46,28 +46,32 @@ Patience& patience() {
 }
 
 // The snapshots of a file, listed once as long as it stays the same.
-const std::vector<std::string>& groups_of(const std::string& file) {
-  struct Listed {
-    std::uintmax_t bytes = 0;
-    std::filesystem::file_time_type time;
-    std::vector<std::string> groups;
-  };
+struct Listed {
+  std::uintmax_t bytes = 0;
+  std::filesystem::file_time_type time;
+  std::vector<std::string> groups;
+  std::map<std::string, std::string> checksums;  // of the places, by group
+};
+
+const Listed& listed(const std::string& file) {
   static std::map<std::string, Listed> all;
   std::error_code error;
-  Listed now{std::filesystem::file_size(file, error), {}, {}};
+  Listed now{std::filesystem::file_size(file, error), {}, {}, {}};
   if (!error) now.time = std::filesystem::last_write_time(file, error);
   const auto at = all.find(file);
   if (!error && at != all.end() && at->second.bytes == now.bytes && at->second.time == now.time) {
-    return at->second.groups;
+    return at->second;
   }
   try {
     now.groups = dem::list_snapshots(file);
+    const std::vector<std::string> checksums = dem::places_checksums(file, now.groups);
+    for (std::size_t k = 0; k < checksums.size(); ++k) now.checksums[now.groups[k]] = checksums[k];
   } catch (const dem::CannotReadNow& e) {
     throw dem::CannotReadNow(std::string("grains.files: ") + e.what());
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(std::string("grains.files: ") + e.what());
   }
-  return (all[file] = std::move(now)).groups;
+  return all[file] = std::move(now);
 }
 
 // All that the files hold, at least as many as the case takes. `go_on` is asked before every file:
@@ -77,10 +81,12 @@ std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
                                                   const std::string& study,
                                                   const std::function<bool()>& go_on) {
   std::vector<FinishedRun> there;
+  std::map<std::string, std::string> seen;  // by checksum: which realization
   for (const std::string& file : value.get<GrainFiles>().files) {
     if (!go_on()) return std::nullopt;
     const std::size_t before = there.size();
-    const std::vector<std::string>& groups = groups_of(file);
+    const Listed& found = listed(file);
+    const std::vector<std::string>& groups = found.groups;
     const std::set<std::string> names(groups.begin(), groups.end());
     const std::string first = "/" + snapshots.front();
     for (const std::string& group : groups) {
@@ -89,7 +95,16 @@ std::optional<std::vector<FinishedRun>> find_runs(const Case& value,
       const bool all = std::all_of(snapshots.begin(), snapshots.end(), [&](const auto& name) {
         return names.contains(above + "/" + name);
       });
-      if (all) there.push_back({file, above});
+      if (!all) continue;
+      there.push_back({file, above});
+      const std::string& places = found.checksums.at(group);
+      const auto [first_one, own] = seen.emplace(places, fmt::format("{}:{}", file, group));
+      if (!own && !places.empty()) {
+        throw std::invalid_argument(fmt::format(
+            "grains.files: {}:{} is a copy of {}, allowed: every packing once (a copy is no "
+            "realization of its own)",
+            file, group, first_one->second));
+      }
     }
     if (there.size() == before) {
       throw std::invalid_argument(fmt::format(

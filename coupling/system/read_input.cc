@@ -12,6 +12,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "coupling/system/printable.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -76,11 +78,14 @@ std::string read_input(const std::string& file, const std::string& expected,
   }
   const bool regular = S_ISREG(is.st_mode);
   const auto start = Clock::now();
+  bool told = false;
   std::string text;
   std::array<char, 65536> block{};
   while (text.size() <= limits.bytes) {
     const ssize_t n = read(in, block.data(), block.size());
-    if (n > 0) {
+    if (n > 0 && S_ISCHR(is.st_mode) && isatty(in) == 0) {  // one that never ends
+      refuse(file, fmt::format("is {}, expected {}", kind(is.st_mode), expected));
+    } else if (n > 0) {
       text.append(block.data(), static_cast<std::size_t>(n));
     } else if (n < 0 && errno == EINTR) {
       continue;
@@ -95,6 +100,11 @@ std::string read_input(const std::string& file, const std::string& expected,
       poll(nullptr, 0, kPause);
     } else {
       ready(in, kPause);
+    }
+    if (!regular && limits.seconds == 0 && !told && text.empty() &&
+        seconds_since(start) > kForAWriter) {
+      told = true;
+      fmt::print(stderr, "grainfield: waiting for what is written to {}\n", printable(file));
     }
     if (!regular && limits.seconds > 0 && seconds_since(start) > limits.seconds) {
       refuse(file, fmt::format("is {} that does not come to its end within {:g} s, expected {}",

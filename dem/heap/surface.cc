@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/heap/columns.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
@@ -141,7 +142,7 @@ Surface free_surface(const Snapshot& snapshot, double column) {
   // Columns at whole multiples of their width, so that snapshots share them.
   const double first = std::floor(left / column), last = std::ceil(right / column);
   s.left = first * column;
-  s.top.assign(static_cast<std::size_t>(last - first), 0.0);
+  s.top.assign(count_columns(snapshot, 0, s.left, (last + 0.5) * column, column), 0.0);
   for (const Grain& g : snapshot.grains) {
     if (g.fixed) continue;
     const Outline corners = placed_outline(g);

@@ -15,6 +15,7 @@
 #include <type_traits>
 
 #include "dem/snapshot/check_snapshot.h"
+#include "dem/snapshot/hdf5_crc.h"
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
@@ -358,6 +359,23 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
 
 std::vector<std::string> list_snapshots(const std::string& file) {
   return snapshots_in(hdf5::open_for_reading(file));
+}
+
+std::vector<std::string> places_checksums(const std::string& file,
+                                          const std::vector<std::string>& groups) {
+  const hdf5::Handle opened = hdf5::open_for_reading(file);
+  std::vector<std::string> out(groups.size());
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const std::string grains = groups[k] + "/grains";
+    if (!hdf5::has_group(opened, grains)) continue;
+    const hdf5::Handle group = hdf5::open_group(opened, grains);
+    if (!hdf5::has_link(group, "position")) continue;
+    const hdf5::Handle places(H5Dopen2(group, "position", H5P_DEFAULT), H5Dclose);
+    if (places.valid() && hdf5::has_attribute(places, hdf5::kCrc)) {
+      out[k] = hdf5::read_text_attribute(places, hdf5::kCrc);
+    }
+  }
+  return out;
 }
 
 }  // namespace grainfield::dem

@@ -113,5 +113,9 @@ void write_snapshot(const std::string& file, const std::string& group, const Sna
 Snapshot read_snapshot(const std::string& file, const std::string& group);
 /// Every group of the file that holds a snapshot, in the file's order of names.
 std::vector<std::string> list_snapshots(const std::string& file);
+/// CRC-32 of the places of the grains of each of these snapshots as the file tells it, the same for
+/// copies; empty where the file tells none. Throws as list_snapshots.
+std::vector<std::string> places_checksums(const std::string& file,
+                                          const std::vector<std::string>& groups);
 
 }  // namespace grainfield::dem

@@ -218,7 +218,8 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "liffman.line_normal_centre.tent",
                                    "liffman.normal_centre.tent",
                                    "dip.difference.equal",
-                                   "dip.standard_error.equal"};
+                                   "dip.standard_error.equal",
+                                   "dip.standard_error"};
   std::set<std::string> all = keys;
   for (const char* model :
        {"cantelaube", "cantelaube_minus", "cantelaube_plus", "osl", "cantelaube_asymmetric_zero"}) {

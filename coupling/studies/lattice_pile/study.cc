@@ -11,6 +11,7 @@
 #include "continuum/closed/liffman.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
+#include "coupling/models/subject.h"
 #include "coupling/report/force_lines.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
@@ -361,6 +362,7 @@ Study lattice_pile_study() {
                                       realization_seed(value, number), threads);
   };
   out.check = [](const Case& value) {
+    require_subject(value.models, Subject::heap, 2, "compare.models");
     const MeasuredSetup& measured = value.get<MeasuredSetup>();
     if (!measured.field.empty()) measured_base(measured);
   };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/models/subject.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/solvers/keys.h"
 #include "coupling/studies/solvers/models_only.h"
@@ -73,6 +74,9 @@ Study solver_study(const char* name, const char* meaning, std::vector<std::strin
   out.fills = std::move(fills);
   out.check = [](const Case& value) {
     if (value.study != "elastic-half-space") require_depths(value.get<ProblemSetup>());
+    const int dim = places_of(value).facts.dim;
+    require_subject(value.models, is_heap(value) ? Subject::heap : Subject::load, dim,
+                    "compare.models");
     require_models(choices_of(value), places_of(value).facts);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {

@@ -12,6 +12,7 @@
 #include "continuum/settings.h"
 #include "continuum/size.h"
 #include "continuum/without_effect.h"
+#include "coupling/models/subject.h"
 #include "coupling/studies/wedge/analysis.h"
 #include "coupling/studies/wedge/setup.h"
 #include "dem/snapshot/number.h"
@@ -45,6 +46,7 @@ WedgeAnalysis::WedgeAnalysis(const Case& value) : value_(value), setup_(value.ge
   if (value.models.size() < 2)
     throw std::invalid_argument(fmt::format(
         "compare.models: found {} model(s), expected two or more", value.models.size()));
+  require_subject(value.models, Subject::heap, 2, "compare.models");
   for (const auto& base : setup_.bases)
     if (base != "rough" && base != "smooth" && !is_angle(base))
       throw std::invalid_argument(
