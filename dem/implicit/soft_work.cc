@@ -104,7 +104,9 @@ bool SoftDisks::Work::try_step(double dt) {
   Vector z(3 * count());
   predict(z);
   if (margin_ < 0 || !listed_for(z)) {
-    list(kMargin * widest_ * (z.size() > 0 ? z.cwiseAbs().maxCoeff() : 0));
+    // A guess may be further off than any step that is taken.
+    const double most = z.size() > 0 ? z.cwiseAbs().maxCoeff() : 0;
+    list(kMargin * widest_ * std::min(most, settings_.most_move));
   }
   const Vector guess = z;
   for (;;) {

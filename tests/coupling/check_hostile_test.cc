@@ -62,7 +62,7 @@ std::string repeated(const std::string& text, int times) {
 
 TEST(CheckHostile, FilesWithoutEnd) {
   const Folder folder;
-  refused("/dev/zero", "/dev/zero: is larger than 4 MB, expected a case file");
+  refused("/dev/zero", "/dev/zero: is a device, expected a case file");
   refused(folder.write("x.toml", std::string(5'000'000, '#')), "is larger than 4 MB");
   EXPECT_LT(most_memory(), 200);
 }
@@ -83,6 +83,7 @@ TEST(CheckHostile, PipesThatNobodyWritesTo) {
   };
   command("run " + pipe + " -o " + (folder / "out"), "is a pipe that nobody writes to");
   command("model flamant --points " + pipe, "is a pipe that nobody writes to");
+  command("model flamant --points /dev/zero", "/dev/zero: is a device, expected a CSV file");
   command("info " + pipe, "not a regular file");
   command("average " + pipe + " -o " + (folder / "f.h5"), "not a regular file");
   command("compare " + pipe + " --model flamant -o " + (folder / "c"), "not a regular file");

@@ -93,6 +93,17 @@ TEST(Nonsense, ModelsOfAnotherBodyAreRefused) {
   EXPECT_THAT(complaint("study = \"pile\"\n[compare]\nmodels = [\"layer\"]\n"),
               HasSubstr("compare.models: found \"layer\", which is no model of a heap under its "
                         "weight, allowed: "));
+  for (const char* study :
+       {"elastic-layer", "elastic-half-space", "osl-layer", "orthotropic-layer"})
+    EXPECT_THAT(complaint(fmt::format("study = \"{}\"\n[compare]\nmodels = [\"flamant\", "
+                                      "\"hydrostatic\"]\n",
+                                      study)),
+                HasSubstr("compare.models: found \"hydrostatic\", which is no model of a body"));
+  for (const char* study : {"osl-wedge", "wedge-core", "wedge", "lattice-pile"})
+    EXPECT_THAT(complaint(fmt::format("study = \"{}\"\n[compare]\nmodels = [\"cantelaube\", "
+                                      "\"layer\"]\n",
+                                      study)),
+                HasSubstr("compare.models: found \"layer\", which is no model of a heap"));
   int loads = 0, heaps = 0;
   for (const continuum::ModelInfo& info : continuum::registry()) {
     EXPECT_NE(is_of(info, Subject::load), is_of(info, Subject::heap)) << info.name;
@@ -144,6 +155,60 @@ TEST(Nonsense, NormalsAcrossTheLineOfCentresAreWarnedOf) {
                         "degrees off the line of centres (the first: 0 and 2)"));
   const Folder other;
   EXPECT_THAT(imported(other, "0,2,0.0025,0.009,0.5,0.86,0,-1").err, Not(HasSubstr("normal")));
+}
+
+TEST(Nonsense, CopiesAndStatesOfAPackingAreNoEnsemble) {
+  const Folder folder;
+  ASSERT_EQ(program("samples -o " + (folder / "s")).code, 0);
+  const std::string heaps = folder / "s/heaps.h5", copy = folder / "copy.h5";
+  testing::fs::copy_file(heaps, copy);
+  const auto averaged = [&](const std::string& what) {
+    return program("average " + what + " --grid 3x3 -o " + (folder / "a.h5"));
+  };
+  const Output twice = averaged(heaps + ":realization_000/pile " + copy + ":realization_000/pile");
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("copy.h5:realization_000/pile is a copy of "));
+  // The same packing under two names of one file.
+  ASSERT_EQ(imported(folder, "0,2,0.0025,0.009,0.5,0.86,0,-1").code, 0);
+  const std::string one = folder / "o.h5";
+  ASSERT_EQ(program("import --from csv " + (folder / "g.csv") + " " + (folder / "c.csv") + " " +
+                    (folder / "w.csv") + " --group again --add -o " + one)
+                .code,
+            0);
+  EXPECT_THAT(averaged(one + " --frame packing").err, HasSubstr("is a copy of "));
+
+  const std::string layer = folder / "s/layer.h5";
+  const Output states = averaged(layer);
+  EXPECT_EQ(states.code, 2);
+  EXPECT_THAT(states.err, HasSubstr("are states of one packing, allowed: one state of each"));
+  const Output loaded = averaged(layer + ":loaded");
+  EXPECT_EQ(loaded.code, 0) << loaded.err;
+  EXPECT_THAT(loaded.out, HasSubstr("4 realizations"));
+
+  const std::string pile =
+      folder.write("pile.toml", "study = \"pile-fit\"\n[grains]\nfiles = [\"" + heaps + "\", \"" +
+                                    copy + "\"]\n[ensemble]\nrealizations = 8\n");
+  const Output checked = program("check " + pile);
+  EXPECT_EQ(checked.code, 2);
+  EXPECT_THAT(checked.err, HasSubstr("copy.h5:/realization_000/pile is a copy of "));
+}
+
+TEST(Nonsense, AGrainGoneAstrayIsNamed) {
+  const Folder folder;
+  folder.write("g.csv",
+               "id,x,y,radius,density\n1,0,0.01,0.01,5000\n2,0,0.0299,0.01,5000\n"
+               "4,1e9,0.01,0.01,5000\n");
+  folder.write("c.csv", "i,j,fx,fy\n1,2,0,-15.4\n");
+  ASSERT_EQ(program("import --from csv " + (folder / "g.csv") + " " + (folder / "c.csv") +
+                    " --wall floor:y=0 -o " + (folder / "o.h5"))
+                .code,
+            0);
+  for (const char* frame : {"packing", "layer", "heap"}) {
+    const Output out = program("average " + (folder / "o.h5") + " --frame " + frame +
+                               " --grid 2x2 -o " + (folder / "a.h5"));
+    EXPECT_EQ(out.code, 2) << frame;
+    EXPECT_THAT(out.err, HasSubstr("grain 4 at x = 1e+09 m has gone astray")) << frame;
+  }
 }
 
 TEST(Nonsense, APackingCountsOnce) {

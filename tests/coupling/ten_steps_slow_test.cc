@@ -22,6 +22,8 @@ constexpr double kSeconds = 10;
 std::vector<std::string> values_of(const Key& key) {
   const std::string type = type_name(key);
   std::vector<std::string> out;
+  if (key.name == "outline") return {"[-1, -1, 1, -1, 0, 1]"};
+  if (key.name == "waypoints") return {"[0, 0, 0, 1, 0.001, 0]"};
   if (type == "boolean") return {"true", "false"};
   if (type.ends_with("word") || type.ends_with("words")) out = key.choices;
   if (type.find("number") != std::string::npos) {
@@ -47,14 +49,15 @@ std::string in_space(const Key& shapes) {
   throw std::logic_error(shapes.path() + " has no shape in space");
 }
 
-// Settings that give the key its effect in a case of this study.
-Overrides settings_for(const Key& key, const Study& study) {
+// Settings that give the key its effect in a case of this study that begins so.
+Overrides settings_for(const Key& key, const Study& study, const Overrides& beginning) {
   Overrides out;
   std::vector<const Key*> todo{&key};
   if (key.space && find_key(study.dimension_key) != nullptr && study.dimension_key != "study") {
     const Key& dimension = *find_key(study.dimension_key);
     out.push_back(dimension.path() + "=" + (dimension.choices.empty() ? "3" : in_space(dimension)));
   }
+  if (key.name == "unload_stress") out.emplace_back("sample.deformation=uniaxial");  // not in shear
   for (std::size_t k = 0; k < todo.size() && k < 20; ++k) {
     for (const Need& need : todo[k]->needs) {
       const Key& other = *find_key(need.key);
@@ -62,7 +65,11 @@ Overrides settings_for(const Key& key, const Study& study) {
       const std::string start = other.path() + "=";
       const bool set = std::any_of(
           out.begin(), out.end(), [&](const std::string& text) { return text.starts_with(start); });
-      if (set) continue;
+      const bool there =
+          std::any_of(need.values.begin(), need.values.end(), [&](const auto& value) {
+            return std::count(beginning.begin(), beginning.end(), start + value) > 0;
+          });
+      if (set || there) continue;
       const std::string& value = need.values.at(0);
       out.push_back(start + (type_name(other).starts_with("list") ? "[\"" + value + "\"]" : value));
       todo.push_back(&other);
@@ -71,24 +78,70 @@ Overrides settings_for(const Key& key, const Study& study) {
   return out;
 }
 
+// Beside what the case has: ends of a range often fit no other key.
+std::vector<std::string> near_values(const Key& key, const std::string& file,
+                                     const Overrides& set) {
+  try {
+    Case value = read_case(file, false, set);
+    return std::visit(
+        [&](auto get) -> std::vector<std::string> {
+          const auto& now = get(value);
+          using T = std::decay_t<decltype(now)>;
+          if constexpr (std::is_same_v<T, double>) {
+            return {fmt::format("{}", 1.1 * now), fmt::format("{}", 0.9 * now)};
+          } else if constexpr (std::is_same_v<T, int> || std::is_same_v<T, std::int64_t>) {
+            return {fmt::format("{}", now + 1)};
+          } else {
+            return {value_text(key, value)};
+          }
+        },
+        key.where);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
 // Other beginnings besides small_case(): the same study with other grains.
 std::vector<Overrides> beginnings(const std::string& study) {
-  std::vector<Overrides> out{{}};
+  const std::string spheres = "material.law=hertz", bodies = "material.law=penalty";
   if (study == "point-load") {
-    out.push_back(
-        {"packing.sizes=mono", "packing.kind=triangular", "packing.columns=20", "packing.rows=6"});
-    out.push_back({"packing.dim=3", "packing.kind=random", "material.law=hertz",
-                   "packing.width=0.05", "packing.depth=0.03"});
-  } else if (study == "sample") {
-    out.push_back(
-        {"sample.dim=3", "sample.shape=sphere", "material.law=hertz", "sample.grains=60"});
-    out.push_back({"sample.boundary=walls", "sample.grains=60"});
-  } else if (study == "cone") {
-    out = {{"cone.grains=100"}};
-  } else if (study == "hard-disks") {
-    out = {{"gas.grains=100"}};
+    const Overrides space{"packing.dim=3", "packing.width=0.05", "packing.depth=0.03",
+                          "compare.models=[\"boussinesq\"]"};
+    const auto with = [&](Overrides more) {
+      more.insert(more.end(), space.begin(), space.end());
+      return more;
+    };
+    return {
+        {},
+        {"packing.sizes=mono", "packing.kind=triangular", "packing.columns=20", "packing.rows=6"},
+        with({"packing.kind=random", spheres}),
+        with({"packing.kind=close_packed", "packing.sizes=mono", "packing.columns=6",
+              "packing.rows=4", spheres}),
+        with({"packing.kind=random", "packing.shape=superellipsoid", bodies,
+              "packing.radius_min=0.003", "packing.radius_max=0.0035"})};
   }
-  return out;
+  if (study == "point-load-verdict") {
+    return {{}, {"packing.sizes=mono", "packing.columns=20", "packing.rows=6"}};
+  }
+  if (study.starts_with("pile")) return {{}, {"shape.kind=disk", "material.law=linear"}};
+  if (study == "sample") {
+    const std::string small = "sample.grains=60";
+    return {{},
+            {"sample.dim=3", "sample.shape=sphere", spheres, small},
+            {"sample.boundary=walls", small},
+            {"sample.shape=rand1", "material.law=overlap_area", small},
+            {"sample.deformation=uniaxial", "sample.compression=uniaxial", small},
+            {"sample.dim=3", "sample.shape=superellipsoid", bodies, "sample.grains=150",
+             "sample.start_fraction=0.05"},
+            {"sample.dim=3", "sample.shape=sphere", spheres, small, "sample.boundary=walls",
+             "sample.filling=dropped"}};
+  }
+  if (study == "cone") {
+    return {{"cone.grains=100", spheres}, {"cone.grains=100", "cone.shape=superellipsoid", bodies}};
+  }
+  if (study == "pair") return {{}, {"pair.shape=sphere", spheres}};
+  if (study == "hard-disks") return {{"gas.grains=100"}};
+  return {{}};
 }
 
 struct Counts {
@@ -152,9 +205,14 @@ TEST(TenSteps, OfEveryKeyAtItsEndsAndWithEachOfItsWords) {
         if (key.section != section.name || !key_applies(key, study.name)) continue;
         const int before = counts.run + counts.failed;
         for (const Overrides& beginning : beginnings(study.name)) {
-          for (const std::string& text : values_of(key)) {
-            Overrides set = beginning;
-            for (std::string& setting : settings_for(key, study)) set.push_back(std::move(setting));
+          Overrides start = beginning;
+          for (std::string& setting : settings_for(key, study, beginning))
+            start.push_back(std::move(setting));
+          std::vector<std::string> values = values_of(key);
+          for (std::string& value : near_values(key, file, start))
+            values.push_back(std::move(value));
+          for (const std::string& text : values) {
+            Overrides set = start;
             set.push_back(key.path() + "=" + text);
             ASSERT_NO_FATAL_FAILURE(try_ten_steps(study, file, set, counts));
           }
