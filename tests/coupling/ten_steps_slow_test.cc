@@ -223,7 +223,11 @@ TEST(TenSteps, OfEveryKeyAtItsEndsAndWithEachOfItsWords) {
     fmt::print("{}: {} run, {} ended as failed, {} refused, {} too large to run here; never: {}\n",
                study.name, counts.run, counts.failed, counts.refused, counts.large,
                fmt::join(never, " "));
-    EXPECT_GT(counts.run + counts.failed, counts.refused / 4) << study.name;
+    // Laws of the plane have keys that a cone's section shares.
+    if (study.name != "cone") {
+      EXPECT_TRUE(never.empty()) << study.name << ": " << fmt::format("{}", fmt::join(never, " "));
+    }
+    EXPECT_LE(never.size(), 3U) << study.name;
     all.run += counts.run;
   }
   EXPECT_GT(all.run, 300);
