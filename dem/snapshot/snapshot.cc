@@ -16,6 +16,7 @@
 
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
 #include "dem/snapshot/wall_forces.h"
@@ -51,6 +52,17 @@ void require_rows(const TableSource& source, const std::string& what, std::size_
 }
 
 namespace {
+
+const char* what_is_allowed(double found) {
+  return std::isfinite(found) ? "of size 1e+100 at most" : "a finite number";
+}
+
+// Of an attribute.
+void require_size(double found, const std::string& name, const std::string& where) {
+  if (std::fabs(found) <= kMostNumber) return;
+  throw std::invalid_argument(fmt::format("{}: attribute '{}' is {}; it must be {}", where, name,
+                                          found, what_is_allowed(found)));
+}
 
 // Ids in ascending order, separated by spaces.
 std::vector<std::int64_t> ids_of(const std::string& text, const std::string& where) {
@@ -135,12 +147,12 @@ void read_lists(hid_t group, const std::string& name, int columns, const std::st
   if (!hdf5::has_link(group, name + "_start")) return;
   const auto start = hdf5::read_integers(group, name + "_start", 1, at);
   const auto numbers = hdf5::read_doubles(group, name, columns, at);
-  const auto bad =
-      std::find_if(numbers.begin(), numbers.end(), [](double v) { return !std::isfinite(v); });
+  const auto bad = std::find_if(numbers.begin(), numbers.end(),
+                                [](double v) { return !(std::fabs(v) <= kMostNumber); });
   if (bad != numbers.end())
-    throw std::invalid_argument(fmt::format("{}: row {} of {} is {}; it must be a finite number",
-                                            source.where, (bad - numbers.begin()) / columns, name,
-                                            *bad));
+    throw std::invalid_argument(fmt::format("{}: row {} of {} is {}; it must be {}", source.where,
+                                            (bad - numbers.begin()) / columns, name, *bad,
+                                            what_is_allowed(*bad)));
   require_rows(source, name + "_start", start.size(), rows.size() + 1);
   const auto total = static_cast<long long>(numbers.size()) / columns;
   if (start.front() != 0 || start.back() != total || !std::is_sorted(start.begin(), start.end()))
@@ -343,10 +355,11 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (name.starts_with("run_"))
       s.attributes[name.substr(4)] = hdf5::read_text_attribute(group, name);
   }
-  for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(s.gravity[k]) || !std::isfinite(s.applied_force[k]))
-      throw std::invalid_argument(
-          fmt::format("{}: gravity or the applied force is not a finite number", where));
+  require_size(s.time, "time", where);
+  for (int k = 0; k < 3; ++k) {
+    require_size(s.gravity[k], fmt::format("gravity_{}", "xyz"[k]), where);
+    require_size(s.applied_force[k], fmt::format("applied_force_{}", "xyz"[k]), where);
+  }
   const TableSource source{where, s.dim, format_of(group)};
   read_grains(hdf5::open_group(group, "grains"), source, s);
   read_walls(hdf5::open_group(group, "walls"), source, s);
