@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -327,7 +328,28 @@ Vec3 total_applied_force(const Snapshot& s) {
   return static_cast<double>(1 + s.also_loaded.size()) * s.applied_force;
 }
 
+void check_group_name(const std::string& name) {
+  bool good = std::none_of(name.begin(), name.end(), [](char c) {
+    return c == ':' || std::iscntrl(static_cast<unsigned char>(c)) != 0;
+  });
+  int parts = 0;
+  for (std::size_t at = name.starts_with('/') ? 1 : 0; good;) {
+    const std::size_t slash = name.find('/', at);
+    const std::string part = name.substr(at, slash - at);
+    good = !part.empty() && part != "." && part != ".." && ++parts < kDeepest;
+    if (slash == std::string::npos) break;
+    at = slash + 1;
+  }
+  if (good) return;
+  throw std::invalid_argument(
+      fmt::format("found the name \"{}\" of a snapshot, allowed: names such as packing or "
+                  "heap_1/loaded, without \":\", control characters and parts that are empty, "
+                  "\".\" or \"..\"",
+                  hdf5::shown(name)));
+}
+
 void write_snapshot(const std::string& file, const std::string& group_name, const Snapshot& s) {
+  check_group_name(group_name);
   hdf5::Handle handle = hdf5::open_for_adding(file);
   add_snapshot(handle, group_name, s);
   hdf5::finish(std::move(handle), file);
