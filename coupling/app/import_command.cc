@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "coupling/app/cell_text.h"
@@ -27,6 +28,7 @@ struct Given {
   ImportOptions options;
   std::string output, gravity, fixed, load;
   std::vector<std::string> walls, steps, periodic;
+  std::optional<double> friction;
   bool add = false;
 };
 
@@ -93,9 +95,12 @@ void parse(Given& given) {
   if (options.density < 0 || !std::isfinite(options.density))
     throw std::invalid_argument(
         fmt::format("--density: found {:g}, allowed: above 0", options.density));
-  if (options.friction < 0)
-    throw std::invalid_argument(
-        fmt::format("--friction: found {:g}, allowed: 0 and above", options.friction));
+  if (given.friction) {
+    options.friction = *given.friction;
+    if (std::isnan(options.friction))
+      throw std::invalid_argument(
+          fmt::format("--friction: found nan, allowed: 0 to {:g}", kMostFriction));
+  }
 }
 
 // First letter: force, second: branch.
@@ -119,6 +124,7 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
       sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
   const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
+  for (const std::string& text : imported.warnings) warn(text);
   if (imported.left_out > 0)
     say("  left out: {} contacts across periodic boundaries\n", imported.left_out);
   say("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
@@ -168,7 +174,8 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--gravity", given->gravity, "X,Y[,Z] in m/s2; default 9.81 down");
   command->add_option("--density", o.density,
                       "kg/m3 (2D: kg/m2), without a column mass or density");
-  command->add_option("--friction", o.friction, "Coulomb coefficient, without a column friction");
+  command->add_option("--friction", given->friction,
+                      "Coulomb coefficient, without a column friction");
   command
       ->add_option("--wall", given->walls,
                    "NAME:AXIS=POSITION[:ids=A,B][:fix=f_ID][:material=M], such as floor:y=0")
@@ -209,6 +216,12 @@ void add_import(CLI::App& app, Action& action) {
       import_snapshots(options, [&](ImportedSnapshot&& imported) {
         std::string& group = imported.group;
         if (group.front() != '/') group.insert(group.begin(), '/');
+        for (const std::string& there : groups)
+          if (group.starts_with(there + "/") || there.starts_with(group + "/"))
+            throw std::invalid_argument(fmt::format(
+                "{}: holds a snapshot {}, and {} would be one within the other; --group or --step "
+                "N=GROUP names another",
+                given->output, there, group));
         if (!groups.insert(group).second)
           throw std::invalid_argument(fmt::format(
               "{}: holds a snapshot {} already; --group or --step N=GROUP names another",

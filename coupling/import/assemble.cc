@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "coupling/import/outline_text.h"
 #include "dem/shapes/polygon.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
 
@@ -21,6 +24,13 @@ namespace {
 
 // Of a quaternion's length from 1: what is written with six digits.
 constexpr double kUnit = 1e-5;
+// Values of the column of fixed grains in a message.
+constexpr std::size_t kMostMarks = 6;
+// Median radii from the middle of the packing: a warning, and a refusal.
+constexpr double kFar = 1e6, kTooFar = 1e9;
+
+// Two that should be equal and are written with five digits or more.
+bool contradict(double a, double b) { return std::abs(a - b) > 1e-4 * std::abs(a); }
 
 std::array<double, 4> orientation_of(const ForeignRow& row,
                                      const std::array<ForeignColumn, 4>& columns, std::int64_t id) {
@@ -70,10 +80,10 @@ void Assembly::add_grains(const ForeignTable& table) {
   const ForeignColumn material = columns.find("material");
   cell_ = table.cell;
   const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
-  const ForeignColumn diameter = radius ? ForeignColumn{} : columns.find("diameter");
+  const ForeignColumn diameter = columns.find("diameter");
   if (!radius && !diameter && !outline) columns.missing("radius");
   const ForeignColumn mass = columns.find("mass");
-  const ForeignColumn density = mass ? ForeignColumn{} : columns.find("density");
+  const ForeignColumn density = columns.find("density");
   if (!mass && !density && !(options_.density > 0)) {
     try {
       columns.missing("mass");
@@ -93,7 +103,7 @@ void Assembly::add_grains(const ForeignTable& table) {
   }
   reader_.read(table, [&](const ForeignRow& row) {
     const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
-    GrainRow r{{}, 0, false, {row.file, row.line}};
+    GrainRow r{{}, 0, 0, false, {row.file, row.line}};
     dem::Grain& g = r.grain;
     g.id = row.whole(id);
     g.position = {row.number(x), row.number(y), z ? row.number(z) : 0};
@@ -113,16 +123,29 @@ void Assembly::add_grains(const ForeignTable& table) {
       if (row.empty(radius) && row.empty(diameter))
         row.refuse(fmt::format("grain {} has neither a radius nor an outline", g.id));
       g.radius = row.empty(radius) ? row.number(diameter) / 2 : row.number(radius);
+      if (!row.empty(radius) && !row.empty(diameter) &&
+          contradict(2 * g.radius, row.number(diameter)))
+        row.refuse(
+            fmt::format("grain {}: found radius {} m and diameter {} m, allowed: twice the "
+                        "radius, or one of the columns",
+                        g.id, g.radius, row.number(diameter)));
       if (!(g.radius > 0))
         row.refuse(fmt::format("grain {}: found radius {} m, allowed: above 0", g.id, g.radius));
     }
-    g.fixed = value(fixed) != 0;
+    g.fixed = row.flag(fixed);
     if (mark) {
       const auto& values = options_.fixed_values;
-      g.fixed = g.fixed || std::find(values.begin(), values.end(), row.text(mark)) != values.end();
+      const std::string_view text = row.text(mark);
+      const bool marked = std::find(values.begin(), values.end(), text) != values.end();
+      some_marked_ = some_marked_ || marked;
+      g.fixed = g.fixed || marked;
+      if (marks_.size() <= kMostMarks &&
+          std::find(marks_.begin(), marks_.end(), text) == marks_.end())
+        marks_.emplace_back(text);
     }
     g.mass = value(mass);
     r.density = mass ? 0 : density ? row.number(density) : options_.density;
+    if (mass && !row.empty(density)) r.told_density = row.number(density);
     const double given = mass ? g.mass : r.density;
     if (!(given > 0) && !(g.fixed && given == 0))
       row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
@@ -155,16 +178,27 @@ void Assembly::add_walls(const ForeignTable& table) {
     dem::Wall wall;
     wall.name = std::string(row.text(name));
     if (wall.name.empty()) row.refuse("the wall has no name");
+    for (std::size_t w = 0; w < wall_sources_.size(); ++w)
+      if (out_.snapshot.walls[w].name == wall.name)
+        row.refuse(
+            fmt::format("wall {} is there already, at {}", wall.name, wall_sources_[w].where()));
+    for (const WallChoice& choice : options_.walls)
+      if (choice.name == wall.name)
+        row.refuse(fmt::format("wall {} is there already, by --wall", wall.name));
     wall.point = {row.number(x), row.number(y), z ? row.number(z) : 0};
     wall.normal = {row.number(nx), row.number(ny), nz ? row.number(nz) : 0};
-    wall.friction = row.empty(friction) ? options_.friction : row.number(friction);
+    wall.friction = row.empty(friction) ? options_.friction : row.coefficient(friction);
     wall.material = row.text(material);
+    if (!(wall.point.cwiseAbs().maxCoeff() <= dem::kMostNumber))
+      row.refuse(fmt::format("wall {}: found a point beyond {:g} m, allowed: up to that", wall.name,
+                             dem::kMostNumber));
     const double length = wall.normal.norm();
     if (!(length > 0 && std::isfinite(length)))
       row.refuse(fmt::format("wall {}: its normal has length {:g}", wall.name, length));
     // A normal that is a unit vector up to rounding keeps its bits.
     if (std::abs(length - 1) > 1e-12) wall.normal /= length;
     out_.snapshot.walls.push_back(wall);
+    wall_sources_.push_back({row.file, row.line});
   });
 }
 
@@ -233,6 +267,14 @@ void Assembly::complete(GrainRow& row) const {
   }
   if (g.volume == 0) g.volume = volume;
   if (row.density > 0) g.mass = row.density * g.volume;
+  // In 2D a density may be one of spheres.
+  const double as_spheres = 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
+  if (row.told_density > 0 && g.mass > 0 && contradict(g.mass, row.told_density * g.volume) &&
+      (!g.outline.empty() || contradict(g.mass, row.told_density * as_spheres)))
+    throw std::invalid_argument(fmt::format(
+        "{}: grain {}: found mass {:g} kg and density {:g}, which makes {:g} kg, allowed: "
+        "those that agree, or one of the columns",
+        row.source.where(), g.id, g.mass, row.told_density, row.told_density * g.volume));
   if (!row.has_inertia) g.inertia = g.mass * gyration;
   if (out_.snapshot.dim == 2) {
     g.angular_velocity.setZero();
@@ -259,33 +301,92 @@ void Assembly::place(GrainRow& row) const {
                                     {"radius", g.radius},
                                     {"volume", g.volume},
                                     {"mass", g.mass},
-                                    {"inertia", g.inertia}})
-    if (!std::isfinite(value))
-      refuse(fmt::format("its {} becomes {}, allowed: a finite number", name, value));
+                                    {"inertia", g.inertia},
+                                    {"vx", g.velocity.x()},
+                                    {"vy", g.velocity.y()},
+                                    {"vz", g.velocity.z()},
+                                    {"angle", g.angle},
+                                    {"spin_x", g.angular_velocity.x()},
+                                    {"spin_y", g.angular_velocity.y()},
+                                    {"spin", g.spin}})
+    if (!(std::abs(value) <= dem::kMostNumber))
+      refuse(fmt::format("its {} becomes {}, allowed: a finite number, up to {:g}", name, value,
+                         dem::kMostNumber));
 }
 
-void Assembly::settle() {
-  dem::Snapshot& s = out_.snapshot;
-  if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
-  settle_dimension();
-  settle_cell();
-  std::stable_sort(rows_.begin(), rows_.end(),
-                   [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });
-  for (std::size_t k = 1; k < rows_.size(); ++k)
-    if (rows_[k].grain.id == rows_[k - 1].grain.id)
-      throw std::invalid_argument(fmt::format("{}: grain {} is there already, at {}",
-                                              rows_[k].source.where(), rows_[k].grain.id,
-                                              rows_[k - 1].source.where()));
-  dem::Vec3 middle(0, 0, 0);
-  for (GrainRow& row : rows_) {
-    if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
-    complete(row);
-    place(row);
-    middle += row.grain.position / static_cast<double>(rows_.size());
-    s.grains.push_back(std::move(row.grain));
+void Assembly::check_vectors() const {
+  if (out_.snapshot.dim == 3) return;
+  if (options_.gravity && options_.gravity->z() != 0)
+    throw std::invalid_argument(
+        fmt::format("--gravity: found {:g} m/s2 along z in 2D, allowed: X,Y (--dim 3 for grains in "
+                    "space)",
+                    options_.gravity->z()));
+  if (options_.applied_force.z() != 0)
+    throw std::invalid_argument(fmt::format("--load: found {:g} N along z in 2D, allowed: ID=FX,FY",
+                                            options_.applied_force.z()));
+}
+
+void Assembly::check_fixed() const {
+  if (options_.fixed_column.empty() || some_marked_) return;
+  std::vector<std::string> some = marks_;
+  if (some.size() > kMostMarks) some.back() = "...";
+  throw std::invalid_argument(fmt::format(
+      "--fixed {}={}: no grain has that; column {} holds {}", options_.fixed_column,
+      fmt::join(options_.fixed_values, ","), options_.fixed_column, fmt::join(some, ", ")));
+}
+
+void Assembly::check_places() {
+  const auto& grains = out_.snapshot.grains;
+  std::vector<std::size_t> order(grains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t k) {
+    const dem::Vec3& p = grains[k].position;
+    return std::tuple(p.x(), p.y(), p.z(), k);
+  };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const dem::Grain &a = grains[order[k - 1]], &b = grains[order[k]];
+    if (a.position != b.position) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: grains {} and {} have the same centre, ({:g}, {:g}, {:g}) m{}, allowed: a place for "
+        "each",
+        rows_[order[k]].source.where(), a.id, b.id, a.position.x(), a.position.y(), a.position.z(),
+        out_.snapshot.cell.is_periodic() ? " in the periodic cell" : ""));
   }
-  rows_ = {};
-  const std::size_t tables = s.walls.size();
+  const auto median = [&](auto value) {
+    std::vector<double> all;
+    all.reserve(grains.size());
+    for (const dem::Grain& g : grains) all.push_back(value(g));
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return *middle;
+  };
+  dem::Vec3 middle;
+  for (Eigen::Index a = 0; a < 3; ++a)
+    middle[a] = median([a](const dem::Grain& g) { return g.position[a]; });
+  const double radius = median([](const dem::Grain& g) { return g.radius; });
+  long long far = 0;
+  std::int64_t first = 0;
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const double radii = (grains[k].position - middle).norm() / radius;
+    if (radii <= kFar) continue;
+    if (!(radii <= kTooFar))
+      throw std::invalid_argument(fmt::format(
+          "{}: grain {} is {:.3g} median radii from the middle of the packing, allowed: up to {:g}",
+          rows_[k].source.where(), grains[k].id, radii, kTooFar));
+    if (far++ == 0) first = grains[k].id;
+  }
+  if (far > 0)
+    out_.warnings.push_back(fmt::format(
+        "{} of {} grains are more than {:g} median radii from the middle of the packing "
+        "(the first: {}): gone astray, or in other units?",
+        far, grains.size(), kFar, first));
+}
+
+void Assembly::settle_walls() {
+  dem::Snapshot& s = out_.snapshot;
+  dem::Vec3 middle(0, 0, 0);
+  for (const dem::Grain& g : s.grains) middle += g.position / static_cast<double>(s.grains.size());
   for (const WallChoice& choice : options_.walls) {
     if (choice.axis >= s.dim)
       throw std::invalid_argument(
@@ -300,6 +401,33 @@ void Assembly::settle() {
     wall.material = choice.material;
     s.walls.push_back(wall);
   }
+  sides_.resize(s.walls.size());
+}
+
+void Assembly::settle() {
+  dem::Snapshot& s = out_.snapshot;
+  if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
+  settle_dimension();
+  settle_cell();
+  check_vectors();
+  check_fixed();
+  std::stable_sort(rows_.begin(), rows_.end(),
+                   [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });
+  for (std::size_t k = 1; k < rows_.size(); ++k)
+    if (rows_[k].grain.id == rows_[k - 1].grain.id)
+      throw std::invalid_argument(fmt::format("{}: grain {} is there already, at {}",
+                                              rows_[k].source.where(), rows_[k].grain.id,
+                                              rows_[k - 1].source.where()));
+  for (GrainRow& row : rows_) {
+    if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
+    complete(row);
+    place(row);
+    s.grains.push_back(std::move(row.grain));
+  }
+  check_places();
+  rows_ = {};
+  const std::size_t tables = s.walls.size();
+  settle_walls();
   for (const WallForce& force : wall_forces_) {
     ContactRow row{{}, force.source};
     row.contact.i = index_of(force.grain);

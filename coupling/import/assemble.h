@@ -32,7 +32,8 @@ class Assembly {
   };
   struct GrainRow {
     dem::Grain grain;
-    double density = 0;  ///< 0: has its mass
+    double density = 0;       ///< 0: has its mass
+    double told_density = 0;  ///< beside the mass; 0: none
     bool has_inertia = false;
     Source source;
   };
@@ -47,8 +48,30 @@ class Assembly {
     Source source;
   };
 
+  /// A flat wall's contacts.
+  struct WallSide {
+    long long contacts = 0;
+    long long wrong = 0;         ///< of them, those whose grain is not on the side of the normal
+    dem::Vec3 towards{0, 0, 0};  ///< sum of the directions from their points to their grains
+  };
+  /// Of the normals that the files give.
+  struct GivenNormals {
+    long long all = 0, not_unit = 0, at_walls = 0, across = 0;
+    std::string first_not_unit, first_across;
+  };
+
   void settle_dimension();
   void settle_cell();
+  void settle_walls();
+  /// No two at one place, none far from all others, some that are fixed where they are named.
+  void check_places();
+  void check_fixed() const;
+  void check_vectors() const;
+  /// Throws for a wall whose normal does not point to the grains that touch it.
+  void check_sides();
+  void look_at_side(const dem::Contact& contact, bool has_point);
+  void look_at_given(const dem::Contact& contact);
+  void warn_of_normals();
   void complete(GrainRow& row) const;
   void place(GrainRow& row) const;
   std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
@@ -65,6 +88,11 @@ class Assembly {
   std::vector<GrainRow> rows_;
   std::vector<WallForce> wall_forces_;
   std::vector<ContactRow> contacts_;
+  std::vector<Source> wall_sources_;  // of the walls from tables
+  std::vector<WallSide> sides_;       // of all walls
+  GivenNormals given_;
+  std::vector<std::string> marks_;  // some that the column of fixed grains holds
+  bool some_marked_ = false;
   bool has_z_ = false;
   dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;

@@ -7,17 +7,24 @@
 #include <stdexcept>
 
 #include "coupling/import/assemble.h"
+#include "coupling/import/deep_overlaps.h"
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
 namespace {
 
 using dem::Vec3;
 
-constexpr double kMostForce = 1e100;  // N: squares and sums of many stay finite
 // A contact point farther than this many radii from a grain's centre lies across a periodic
 // boundary: contacts of stiff grains lie within one radius, of very soft ones slightly beyond.
 constexpr double kDistant = 2;
+// Cosine of the angle between a wall's normal and the direction from a contact point to its grain's
+// centre, least, and of the way from the wall to the centre of a disk or sphere, radii, where no
+// point is told: disks and spheres lie on what they touch, corners of polygons may stand out far.
+constexpr double kLeastCosine = 0.5, kLeastCosineOfPolygon = 0.1, kLeastHeight = 0.25;
+constexpr double kNotUnit = 1e-3;      // of a normal's length from 1
+constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's normal
 // Of the Coulomb limit: a contact this near to it slides.
 constexpr double kSliding = 1e-6;
 
@@ -97,10 +104,6 @@ void Assembly::add_contacts(const ForeignTable& table) {
     }
     const double sign = format_.force_sign * (options_.flip_forces ? -1 : 1);
     c.force = sign * (force ? force.of(row) : Vec3(normal_part.of(row) + tangential_part.of(row)));
-    const double largest = c.force.cwiseAbs().maxCoeff();
-    if (!(largest <= kMostForce))
-      row.refuse(
-          fmt::format("found a force of {:.3g} N, allowed: up to {:g} N", largest, kMostForce));
     if (s.dim == 2 && c.force.z() != 0)
       row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                              c.force.z()));
@@ -110,10 +113,10 @@ void Assembly::add_contacts(const ForeignTable& table) {
     if (s.dim == 2) c.point.z() = 0;
     if (normal) c.normal = normal.of(row);
     if (s.dim == 2) c.normal.z() = 0;
-    c.friction = row.empty(friction) ? options_.friction : row.number(friction);
+    c.friction = row.empty(friction) ? options_.friction : row.coefficient(friction);
     set_spring(springs ? std::optional<Vec3>(sign * springs.of(row)) : std::nullopt, c);
     if (!row.empty(spring) && s.dim == 2) c.spring = row.number(spring);
-    c.sliding = !row.empty(sliding) && row.number(sliding) != 0;
+    c.sliding = row.flag(sliding);
     add_contact(std::move(r), bool(normal), pointed, row.empty(sliding));
   });
 }
@@ -143,6 +146,13 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
       throw;
     }
   };
+  const double largest = c.force.cwiseAbs().maxCoeff();
+  if (!(largest <= dem::kMostNumber))
+    refuse(
+        fmt::format("found a force of {:.3g} N, allowed: up to {:g} N", largest, dem::kMostNumber));
+  if (std::abs(c.spring) > dem::kMostNumber)
+    refuse(fmt::format("found a spring of {:.3g} N, allowed: up to {:g} N", c.spring,
+                       dem::kMostNumber));
   if (c.i == c.j) refuse(fmt::format("grain {} in contact with itself", at(c.i).id));
   if (c.j >= 0 && c.i > c.j) {
     std::swap(c.i, c.j);
@@ -153,6 +163,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   // The file's point is near some image of the grain.
   if (has_point) c.point += dem::shift_to(s.cell, nearest(c.point - at(c.i).position));
   const dem::Grain& a = at(c.i);
+  if (has_normal) look_at_given(c);
   if (c.j < 0) {
     const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
     c.normal = -wall.normal;
@@ -162,11 +173,18 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
       c.point = a.position - (a.position - wall.point).dot(wall.normal) * wall.normal;
     }
     const double arm = (c.point - a.position).norm();
+    const double height = std::abs((a.position - wall.point).dot(wall.normal));
+    if (arm > kDistant * a.radius && has_point && height <= kDistant * a.radius)
+      refuse(fmt::format(
+          "the point ({:g}, {:g}, {:g}) m of the contact with wall {} is {:g} m from "
+          "grain {} of radius {:g} m, allowed: up to {:g} radii",
+          c.point.x(), c.point.y(), c.point.z(), wall.name, arm, a.id, a.radius, kDistant));
     if (arm > kDistant * a.radius)
       refuse(fmt::format(
           "grain {} of radius {:g} m in contact with wall {} at a distance of {:g} m: is the wall "
           "where it says?",
           a.id, a.radius, wall.name, arm));
+    look_at_side(c, has_point);
   } else {
     const dem::Grain& b = at(c.j);
     c.image = nearest(b.position - a.position);
@@ -187,6 +205,13 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
         ++out_.left_out;
         return;
       }
+      if (has_point && d <= kDistant * std::max(a.radius, b.radius) + std::min(a.radius, b.radius))
+        refuse(fmt::format(
+            "the point ({:g}, {:g}, {:g}) m of the contact is {:g} m from grain {} of radius {:g} "
+            "m "
+            "and {:g} m from grain {} of radius {:g} m, allowed: up to {:g} radii from each",
+            c.point.x(), c.point.y(), c.point.z(), (c.point - a.position).norm(), a.id, a.radius,
+            (c.point - second).norm(), b.id, b.radius, kDistant));
       refuse(fmt::format(
           "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
           "periodic boundary? --periodic AXIS=LOW:HIGH says where, --leave-out-distant imports the "
@@ -210,8 +235,89 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   contacts_.push_back(std::move(row));
 }
 
+void Assembly::look_at_given(const dem::Contact& c) {
+  const double length = c.normal.norm();
+  if (!(length > 0 && std::isfinite(length))) return;
+  const auto names = [&] {
+    const auto& s = out_.snapshot;
+    const std::int64_t i = s.grains[static_cast<std::size_t>(c.i)].id;
+    return c.j < 0 ? fmt::format("{} and {}", i, s.walls[static_cast<std::size_t>(-1 - c.j)].name)
+                   : fmt::format("{} and {}", i, s.grains[static_cast<std::size_t>(c.j)].id);
+  };
+  ++given_.all;
+  if (std::abs(length - 1) > kNotUnit && given_.not_unit++ == 0)
+    given_.first_not_unit = fmt::format("{}, length {:g}", names(), length);
+  if (c.j >= 0) return;
+  ++given_.at_walls;
+  const Vec3& normal = out_.snapshot.walls[static_cast<std::size_t>(-1 - c.j)].normal;
+  if (-c.normal.dot(normal) < kAcrossNormal * length && given_.across++ == 0)
+    given_.first_across = names();
+}
+
+void Assembly::look_at_side(const dem::Contact& c, bool has_point) {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
+  const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+  WallSide& side = sides_[static_cast<std::size_t>(-1 - c.j)];
+  const Vec3 arm = grain.position - c.point;
+  ++side.contacts;
+  if (arm.squaredNorm() > 0) side.towards += arm.normalized();
+  const bool round = grain.outline.empty();
+  const double cosine = round ? kLeastCosine : kLeastCosineOfPolygon;
+  const bool behind = arm.dot(wall.normal) < cosine * arm.norm();
+  const double height = (grain.position - wall.point).dot(wall.normal);
+  side.wrong += behind || (!has_point && round && height < kLeastHeight * grain.radius);
+}
+
+void Assembly::check_sides() {
+  const dem::Snapshot& s = out_.snapshot;
+  for (std::size_t w = 0; w < sides_.size(); ++w) {
+    const WallSide& side = sides_[w];
+    if (side.wrong == 0) continue;
+    const dem::Wall& wall = s.walls[w];
+    const auto text = [&](const Vec3& v) {
+      return s.dim == 2
+                 ? fmt::format("({:.3g}, {:.3g})", v.x() + 0.0, v.y() + 0.0)
+                 : fmt::format("({:.3g}, {:.3g}, {:.3g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+    };
+    const std::string found = fmt::format(
+        "{} of {} grains in contact with wall {} are not on the side to which its normal "
+        "{} points",
+        side.wrong, side.contacts, wall.name, text(wall.normal));
+    if (2 * side.wrong < side.contacts) {
+      out_.warnings.push_back(found);
+      continue;
+    }
+    const bool table = w < wall_sources_.size();
+    const double length = side.towards.norm();
+    const std::string where =
+        length > kLeastCosine * static_cast<double>(side.contacts)
+            ? fmt::format("; they lie towards {}", text(side.towards / length))
+            : "";
+    throw std::invalid_argument(fmt::format(
+        "{}: {}, allowed: a normal into the grains{}{}",
+        table ? wall_sources_[w].where() : "--wall " + wall.name, found, where,
+        table ? "" : "; --wall points to the middle of all grains, a table of walls says it"));
+  }
+}
+
+void Assembly::warn_of_normals() {
+  if (given_.not_unit > 0)
+    out_.warnings.push_back(fmt::format(
+        "{} of {} normals in the files are not of unit length (the first: {}); they were made so",
+        given_.not_unit, given_.all, given_.first_not_unit));
+  if (given_.across > 0)
+    out_.warnings.push_back(fmt::format(
+        "{} of {} normals in the files at walls are more than 60 degrees off their wall's "
+        "(the first: {}); they point from the grain to the wall, and the wall's is taken",
+        given_.across, given_.at_walls, given_.first_across));
+}
+
 ImportedSnapshot Assembly::finish() {
   dem::Snapshot& s = out_.snapshot;
+  check_sides();
+  warn_of_normals();
+  if (const std::string text = deep_overlaps(s); !text.empty()) out_.warnings.push_back(text);
   std::stable_sort(
       contacts_.begin(), contacts_.end(), [](const ContactRow& a, const ContactRow& b) {
         return std::pair(a.contact.i, a.contact.j) < std::pair(b.contact.i, b.contact.j);

@@ -8,10 +8,17 @@
 #include <stdexcept>
 
 #include "coupling/import/format.h"
+#include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
+
+// "pp", or what each end of an axis is: fixed, shrink-wrapped (with a minimum).
+bool is_boundary(std::string_view word) {
+  return word == "pp" ||
+         (word.size() == 2 && word.find_first_not_of("fsm") == std::string_view::npos);
+}
 
 class DumpScan {
  public:
@@ -84,7 +91,9 @@ class DumpScan {
       if (!next(line, "the time")) return false;
       line = trimmed(line);
       const std::optional<double> time = dem::parse_number(line);
-      if (!time) refuse(fmt::format("found \"{}\", expected the time", line.substr(0, 60)));
+      if (!time || !(*time >= 0 && *time <= dem::kMostNumber))
+        refuse(fmt::format("found \"{}\", expected the time, a finite number from 0",
+                           line.substr(0, 60)));
       table_.time = *time;
       return true;
     }
@@ -109,6 +118,12 @@ class DumpScan {
     words.erase(words.begin(), words.begin() + 2);
     const bool tilted = words.size() == 6, general = words.size() == 5;
     if (words.size() > 3) words.erase(words.begin(), words.end() - 3);
+    // Very old dumps have none.
+    bool known = words.empty() || words.size() == 3;
+    for (const std::string_view word : words) known = known && is_boundary(word);
+    if (!known)
+      refuse(fmt::format("found the boundaries \"{}\", expected three of pp or two of f, s, m each",
+                         name.substr(0, 60)));
     dem::Cell<3> cell;
     for (std::size_t a = 0; a < words.size(); ++a) cell.periodic[a] = words[a] == "pp";
     const std::size_t wanted = general ? 4 : tilted ? 3 : 2;

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "continuum/model.h"
 #include "coupling/import/assemble.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -20,6 +22,8 @@ namespace {
 // A contact point farther than this many radii from its wall's plane is on another wall.
 constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
 constexpr double kOffWall = 2;
+// Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
+constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
 
 // The tables of one time step; of a format without steps all of them.
 struct StepTables {
@@ -81,6 +85,52 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   return out;
 }
 
+// What stands alone; what depends on the files is told where they are read.
+void check_options(const ImportOptions& options) {
+  const auto refuse = [](const std::string& text) { throw std::invalid_argument(text); };
+  if (options.dim != 0 && options.dim != 2 && options.dim != 3)
+    refuse(fmt::format("--dim: found {}, allowed: 2, 3", options.dim));
+  if (!std::isnan(options.friction) &&
+      !(options.friction >= 0 && options.friction <= kMostFriction))
+    refuse(
+        fmt::format("--friction: found {:g}, allowed: 0 to {:g}", options.friction, kMostFriction));
+  if (!(options.time_step >= 0 && options.time_step <= dem::kMostNumber))
+    refuse(fmt::format("--time-step: found {:g}, allowed: a finite number of seconds from 0",
+                       options.time_step));
+  const auto require_size = [&](const dem::Vec3& v, const char* option) {
+    const double largest = v.cwiseAbs().maxCoeff();
+    if (!(largest <= dem::kMostNumber))
+      refuse(fmt::format("{}: found {:g}, allowed: up to {:g}", option, largest, dem::kMostNumber));
+  };
+  if (options.gravity) require_size(*options.gravity, "--gravity");
+  require_size(options.applied_force, "--load");
+  for (std::size_t k = 0; k < options.periodic.size(); ++k)
+    for (std::size_t l = 0; l < k; ++l)
+      if (options.periodic[k].axis == options.periodic[l].axis)
+        refuse(fmt::format("--periodic: axis {} is given twice, allowed: once",
+                           "xyz"[options.periodic[k].axis]));
+  std::set<std::string> called;
+  for (const WallChoice& wall : options.walls) {
+    require_size(dem::Vec3::Constant(wall.position), "--wall");
+    std::set<std::string> own(wall.ids.begin(), wall.ids.end());
+    own.insert(wall.name);
+    for (const std::string& name : own)
+      if (!called.insert(name).second)
+        refuse(
+            fmt::format("--wall {}: a wall is called {} already, allowed: every name and id once",
+                        wall.name, name));
+  }
+  const auto require_name = [&](const std::string& name, const char* option) {
+    try {
+      if (!name.empty()) dem::check_group_name(name);
+    } catch (const std::invalid_argument& e) {
+      refuse(fmt::format("{}: {}", option, e.what()));
+    }
+  };
+  require_name(options.group, "--group");
+  for (const StepChoice& step : options.steps) require_name(step.group, "--step");
+}
+
 std::string list_of(const ImportOptions& options) {
   return fmt::format("{}", fmt::join(options.files, ", "));
 }
@@ -140,8 +190,7 @@ PeriodicAxis parse_periodic(const std::string& text) {
 void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take) {
   const ImportFormat& format = find_import_format(options.format);
-  if (options.dim != 0 && options.dim != 2 && options.dim != 3)
-    throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", options.dim));
+  check_options(options);
   ColumnNames names(format.columns);
   for (const std::string& text : options.columns) names.choose(text);
   Steps steps;
@@ -196,6 +245,10 @@ void import_snapshots(const ImportOptions& options,
         choice.group.empty() ? (options.group.empty() ? plain : options.group) : choice.group;
     const std::optional<double>& time = tables.grains.front().time;
     done.snapshot.time = time ? *time : static_cast<double>(choice.step) * options.time_step;
+    if (!(done.snapshot.time <= dem::kMostNumber))
+      throw std::invalid_argument(
+          fmt::format("--time-step {:g}: the time of step {} becomes {:g} s, allowed: up to {:g}",
+                      options.time_step, choice.step, done.snapshot.time, dem::kMostNumber));
     auto& attributes = done.snapshot.attributes;
     attributes["imported_from"] = format.name;
     attributes["imported_files"] = list_of(options);
@@ -206,6 +259,7 @@ void import_snapshots(const ImportOptions& options,
 
 dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
                             const ArrayTable& contacts, const ArrayTable& walls) {
+  check_options(options);
   const ImportFormat format = csv_format();
   ColumnNames names(format.columns);
   TableReader reader;
@@ -225,11 +279,28 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
 
 namespace {
 
-// Counts a contact of two disks or spheres, whose normal is along the line of centres.
+void look_at_friction(const dem::Contact& c, PackingCheck& check) {
+  if (!std::isfinite(c.friction)) return;
+  ++check.known_friction;
+  const double most = c.friction * std::max(c.normal_force, 0.0) * (1 + kBeyondFriction);
+  check.beyond_friction +=
+      !c.sliding && std::fabs(c.tangential_force) > most + kBeyondForce * c.force.norm();
+}
+
+// Counts a contact of two disks or spheres, whose normal is along the line of centres, or of
+// polygons, whose normal is less than a right angle off it.
 void look_at_normal(const dem::Snapshot& s, const dem::Contact& c, PackingCheck& check) {
   const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
   const dem::Grain& j = s.grains[static_cast<std::size_t>(c.j)];
   const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
+  if (!i.outline.empty() || !j.outline.empty()) {
+    ++check.polygon_pairs;
+    if (c.normal.dot(dem::second_place(s, c) - i.position) >= 0) return;
+    if (check.turned_normals++ > 0) return;
+    check.turned_i = i.id;
+    check.turned_j = j.id;
+    return;
+  }
   if (!round(i) || !round(j)) return;
   ++check.round_pairs;
   const dem::Vec3 branch = dem::second_place(s, c) - i.position;
@@ -262,6 +333,7 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     add(sum, c.i, c.point - s.grains[static_cast<std::size_t>(c.i)].position, c.force);
     if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
     if (c.j >= 0) look_at_normal(s, c, check);
+    look_at_friction(c, check);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
     if (c.j < 0) {

@@ -65,13 +65,21 @@ struct ImportedSnapshot {
   std::string group;
   dem::Snapshot snapshot;
   long long left_out = 0;  ///< distant pairs
+  /// What in the files makes the packing doubtful and does not show in the snapshot: grains far
+  /// from all others, normals that were not unit vectors or contradict their wall, grains that a
+  /// narrow period has laid upon each other; a sentence each.
+  std::vector<std::string> warnings;
 };
 
 /// Reads step by step and hands each on: memory for one step, whatever the files' size. Units: SI.
 /// Throws std::invalid_argument naming file, line, what was found and what is allowed: a missing
 /// column (with those found and the nearest), contacts of unknown grains or with themselves or
 /// twice, values that are not finite, ids that repeat, a truncated file, 2D mixed with 3D, radius
-/// or mass not above 0, polygons that are not convex, steps that are not there.
+/// or mass not above 0, polygons that are not convex, steps that are not there; walls, columns and
+/// periods that are named twice, walls whose contacts are not on the side of their normal, grains
+/// at one place, flags other than 0 and 1, coefficients of friction outside 0 to kMostFriction,
+/// numbers beyond dem::kMostNumber, a radius and a diameter, or a mass and a density, that
+/// contradict.
 void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take);
 
@@ -107,6 +115,13 @@ struct PackingCheck {
   int round_pairs = 0;        ///< contacts between round grains
   int odd_normals = 0;  ///< of them, those whose normal is over 60 degrees off the line of centres
   std::int64_t odd_i = 0, odd_j = 0;  ///< ids of the first such two
+  int polygon_pairs = 0;              ///< contacts of polygons, with each other or with disks
+  int turned_normals =
+      0;  ///< of them, those whose normal is over 90 degrees off the line of centres
+  std::int64_t turned_i = 0, turned_j = 0;  ///< ids of the first such two
+  /// Contacts that are not marked as sliding and bear more than friction allows, and those whose
+  /// friction is known.
+  int beyond_friction = 0, known_friction = 0;
 };
 PackingCheck check_packing(const dem::Snapshot& snapshot);
 

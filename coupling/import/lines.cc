@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "coupling/system/read_input.h"
+#include "dem/cannot_read_now.h"
 
 namespace grainfield::coupling {
 
@@ -23,9 +24,15 @@ Lines::Lines(const std::string& file)
 }
 
 bool Lines::next(std::string_view& line) {
+  errno = 0;
   in_.getline(buffer_.get(), static_cast<std::streamsize>(longest));
   std::streamsize count = in_.gcount();
-  if (in_.bad()) throw std::runtime_error(file_ + ": cannot be read on");
+  if (in_.bad()) {
+    const std::string after = line_ == 0 ? "" : fmt::format(" on behind line {}", line_);
+    throw dem::CannotReadNow(
+        fmt::format("{}: cannot be read{}: {}", file_, after,
+                    errno != 0 ? std::strerror(errno) : "the system gives no reason"));
+  }
   if (count == 0 && in_.eof()) return false;
   ++line_;
   if (in_.fail())

@@ -16,7 +16,8 @@ class Lines {
   /// Throws std::invalid_argument naming the file: not there, a folder, compressed.
   explicit Lines(const std::string& file);
   /// The next line without its end ("\n" or "\r\n"), valid until the next call; false at the end of
-  /// the file. Throws std::invalid_argument for a line that is too long.
+  /// the file. Throws std::invalid_argument for a line that is too long, dem::CannotReadNow where
+  /// the system cannot read on.
   bool next(std::string_view& line);
   const std::string& file() const { return file_; }
   /// Number of the line that next() gave last, from 1.

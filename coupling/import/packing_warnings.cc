@@ -59,9 +59,26 @@ std::string odd_normals(const PackingCheck& check) {
       check.odd_normals, check.round_pairs, check.odd_i, check.odd_j);
 }
 
+std::string turned_normals(const PackingCheck& check) {
+  if (check.turned_normals == 0) return "";
+  return fmt::format(
+      "{} of {} contacts of polygons have a normal more than 90 degrees off the line of centres "
+      "(the first: {} and {}); it points from i to j",
+      check.turned_normals, check.polygon_pairs, check.turned_i, check.turned_j);
+}
+
+std::string beyond_friction(const PackingCheck& check) {
+  if (check.beyond_friction == 0) return "";
+  return fmt::format(
+      "{} of {} contacts of known friction bear a tangential force beyond friction times normal "
+      "force and are not marked as sliding",
+      check.beyond_friction, check.known_friction);
+}
+
 // One of each kind; empty: none.
 std::vector<std::string> warning_texts(const PackingCheck& check) {
-  return {unbalanced(check), unsupported(check), off_walls(check), odd_normals(check)};
+  return {unbalanced(check),  unsupported(check),    off_walls(check),
+          odd_normals(check), turned_normals(check), beyond_friction(check)};
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
 /// fixed grains that carry another part of the weight than 0.9 to 1.1, contacts with walls more
-/// than two radii off them, normals far off the line of centres. `tension_in` aside.
+/// than two radii off them, normals far off the line of centres, tangential forces beyond friction.
+/// `tension_in` aside.
 std::vector<std::string> warnings_of(const PackingCheck& check);
 
 /// Of the free grains; nan without one.

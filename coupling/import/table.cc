@@ -225,6 +225,12 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
     std::optional<double> constant;
     if (at == columns.end() && candidate.chosen) constant = dem::parse_number(candidate.theirs);
     if (at == columns.end() && !constant) continue;
+    if (constant && !std::isfinite(*constant))
+      throw std::invalid_argument(fmt::format(
+          "--column {}={}: expected a column or a finite number", ours, candidate.theirs));
+    if (at != columns.end() && std::count(at, columns.end(), candidate.theirs) > 1)
+      throw std::invalid_argument(fmt::format("{}:{}: column \"{}\" is there twice, allowed: once",
+                                              table_.file, table_.header_line, candidate.theirs));
     if (candidate.chosen) names_.mark_used(ours, candidate.theirs);
     const int index = at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
     return {ours, index, constant};
@@ -296,6 +302,7 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
+  if (column.index < 0) return column.name;
   const std::string& theirs = (*columns)[static_cast<std::size_t>(column.index)];
   return theirs == column.name ? theirs : fmt::format("{} ({})", theirs, column.name);
 }
@@ -326,6 +333,22 @@ long long ForeignRow::whole(const ForeignColumn& column) const {
                        column.constant ? column.name : name_of(column),
                        column.constant ? fmt::format("{}", value) : std::string(text(column))));
   return static_cast<long long>(value);
+}
+
+bool ForeignRow::flag(const ForeignColumn& column) const {
+  if (empty(column)) return false;
+  const double value = number(column);
+  if (value != 0 && value != 1)
+    refuse(fmt::format("column {}: found {}, allowed: 0, 1", name_of(column), value));
+  return value != 0;
+}
+
+double ForeignRow::coefficient(const ForeignColumn& column) const {
+  const double value = number(column);
+  if (!(value >= 0 && value <= kMostFriction))
+    refuse(fmt::format("column {}: found {}, allowed: 0 to {:g}", name_of(column), value,
+                       kMostFriction));
+  return value;
 }
 
 void TableReader::read_arrays(const ForeignTable& table,

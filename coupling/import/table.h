@@ -16,6 +16,10 @@
 
 namespace grainfield::coupling {
 
+/// Largest coefficient of friction that a file may tell: what stands for "never slides" in
+/// practice.
+inline constexpr double kMostFriction = 1e6;
+
 enum class TableKind { unknown, grains, contacts, walls };
 
 /// A column in memory: numbers (nan: not told), or words.
@@ -85,7 +89,8 @@ struct ForeignColumn {
 class TableColumns {
  public:
   TableColumns(const ForeignTable& table, ColumnNames& names);
-  /// Empty when the table has no such column.
+  /// Empty when the table has no such column. Throws std::invalid_argument "FILE:LINE: ..." for one
+  /// that is there twice, and for a constant that is not finite.
   ForeignColumn find(const std::string& ours) const;
   /// Throws std::invalid_argument "FILE:LINE: no column ...; found: ...; nearest ...".
   ForeignColumn need(const std::string& ours) const;
@@ -115,6 +120,10 @@ class ForeignRow {
   double number(const ForeignColumn& column) const;
   /// The same for whole numbers ("7", "7.0", "1e3").
   long long whole(const ForeignColumn& column) const;
+  /// The same for flags: 1 or 0; false where it is empty.
+  bool flag(const ForeignColumn& column) const;
+  /// The same for coefficients of friction, 0 to kMostFriction.
+  double coefficient(const ForeignColumn& column) const;
   /// Throws std::invalid_argument "FILE:LINE: what".
   [[noreturn]] void refuse(const std::string& what) const;
 

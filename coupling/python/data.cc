@@ -242,6 +242,8 @@ Packing packing_of(const py::dict& grains, const py::dict& contacts, const py::d
                              of_contacts = table_of("contacts", contacts),
                              of_walls = table_of("walls", walls);
   const double time = options["time"].cast<double>();
+  if (!std::isfinite(time))
+    throw std::invalid_argument(fmt::format("time: found {}, allowed: a finite number", time));
   const Released released(false);
   Snapshot state = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
   state.time = time;

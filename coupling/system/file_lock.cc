@@ -76,6 +76,12 @@ FileLock::FileLock(const std::string& file, const std::string& what, const std::
       if (dem::means_storage_failed(error)) throw dem::StorageFailed(why);
       throw std::invalid_argument(why);
     }
+    struct stat is = {};
+    if (fstat(descriptor, &is) == 0 && !S_ISREG(is.st_mode)) {
+      close(descriptor);
+      throw std::invalid_argument(fmt::format(
+          "{}: {} is a pipe or a device, expected a file of grainfield's; remove it", what, file));
+    }
     const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
     const bool known = locked || errno == EWOULDBLOCK;
     const Holder holder = read_holder(descriptor);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/hdf5_crc.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
 #include "dem/snapshot/wall_forces.h"
@@ -52,6 +54,17 @@ void require_rows(const TableSource& source, const std::string& what, std::size_
 }
 
 namespace {
+
+const char* what_is_allowed(double found) {
+  return std::isfinite(found) ? "of size 1e+100 at most" : "a finite number";
+}
+
+// Of an attribute.
+void require_size(double found, const std::string& name, const std::string& where) {
+  if (std::fabs(found) <= kMostNumber) return;
+  throw std::invalid_argument(fmt::format("{}: attribute '{}' is {}; it must be {}", where, name,
+                                          found, what_is_allowed(found)));
+}
 
 // Ids in ascending order, separated by spaces.
 std::vector<std::int64_t> ids_of(const std::string& text, const std::string& where) {
@@ -136,12 +149,12 @@ void read_lists(hid_t group, const std::string& name, int columns, const std::st
   if (!hdf5::has_link(group, name + "_start")) return;
   const auto start = hdf5::read_integers(group, name + "_start", 1, at);
   const auto numbers = hdf5::read_doubles(group, name, columns, at);
-  const auto bad =
-      std::find_if(numbers.begin(), numbers.end(), [](double v) { return !std::isfinite(v); });
+  const auto bad = std::find_if(numbers.begin(), numbers.end(),
+                                [](double v) { return !(std::fabs(v) <= kMostNumber); });
   if (bad != numbers.end())
-    throw std::invalid_argument(fmt::format("{}: row {} of {} is {}; it must be a finite number",
-                                            source.where, (bad - numbers.begin()) / columns, name,
-                                            *bad));
+    throw std::invalid_argument(fmt::format("{}: row {} of {} is {}; it must be {}", source.where,
+                                            (bad - numbers.begin()) / columns, name, *bad,
+                                            what_is_allowed(*bad)));
   require_rows(source, name + "_start", start.size(), rows.size() + 1);
   const auto total = static_cast<long long>(numbers.size()) / columns;
   if (start.front() != 0 || start.back() != total || !std::is_sorted(start.begin(), start.end()))
@@ -316,7 +329,28 @@ Vec3 total_applied_force(const Snapshot& s) {
   return static_cast<double>(1 + s.also_loaded.size()) * s.applied_force;
 }
 
+void check_group_name(const std::string& name) {
+  bool good = std::none_of(name.begin(), name.end(), [](char c) {
+    return c == ':' || std::iscntrl(static_cast<unsigned char>(c)) != 0;
+  });
+  int parts = 0;
+  for (std::size_t at = name.starts_with('/') ? 1 : 0; good;) {
+    const std::size_t slash = name.find('/', at);
+    const std::string part = name.substr(at, slash - at);
+    good = !part.empty() && part != "." && part != ".." && ++parts < kDeepest;
+    if (slash == std::string::npos) break;
+    at = slash + 1;
+  }
+  if (good) return;
+  throw std::invalid_argument(
+      fmt::format("found the name \"{}\" of a snapshot, allowed: names such as packing or "
+                  "heap_1/loaded, without \":\", control characters and parts that are empty, "
+                  "\".\" or \"..\"",
+                  hdf5::shown(name)));
+}
+
 void write_snapshot(const std::string& file, const std::string& group_name, const Snapshot& s) {
+  check_group_name(group_name);
   hdf5::Handle handle = hdf5::open_for_adding(file);
   add_snapshot(handle, group_name, s);
   hdf5::finish(std::move(handle), file);
@@ -344,10 +378,11 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
     if (name.starts_with("run_"))
       s.attributes[name.substr(4)] = hdf5::read_text_attribute(group, name);
   }
-  for (int k = 0; k < 3; ++k)
-    if (!std::isfinite(s.gravity[k]) || !std::isfinite(s.applied_force[k]))
-      throw std::invalid_argument(
-          fmt::format("{}: gravity or the applied force is not a finite number", where));
+  require_size(s.time, "time", where);
+  for (int k = 0; k < 3; ++k) {
+    require_size(s.gravity[k], fmt::format("gravity_{}", "xyz"[k]), where);
+    require_size(s.applied_force[k], fmt::format("applied_force_{}", "xyz"[k]), where);
+  }
   const TableSource source{where, s.dim, format_of(group)};
   read_grains(hdf5::open_group(group, "grains"), source, s);
   read_walls(hdf5::open_group(group, "walls"), source, s);

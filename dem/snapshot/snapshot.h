@@ -103,10 +103,14 @@ bool is_loaded(const Snapshot& snapshot, std::int64_t id);
 /// The applied force of all grains that carry it, N.
 Vec3 total_applied_force(const Snapshot& snapshot);
 
+/// Throws std::invalid_argument saying what is allowed unless the parts of the name between "/" can
+/// be groups that every command can name again: none empty, "." or "..", no ":", no control
+/// characters.
+void check_group_name(const std::string& name);
 /// Writes the snapshot as group `group` ("/unloaded", "/realization_003/loaded") of the file,
 /// creating the file or adding to it. Not atomic: the caller writes beside and renames.
 /// Throws StorageFailed (dem/storage_failed.h) naming the file, std::invalid_argument for names of
-/// walls or materials with commas.
+/// walls or materials with commas and for what check_group_name refuses.
 void write_snapshot(const std::string& file, const std::string& group, const Snapshot& snapshot);
 /// Throws std::invalid_argument naming the file and what is missing or broken (not HDF5, truncated,
 /// no such group or column, contacts naming unknown grains, and what check_snapshot refuses).

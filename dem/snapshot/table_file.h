@@ -13,6 +13,7 @@
 
 #include "dem/snapshot/columns.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/limits.h"
 
 namespace grainfield::dem {
 
@@ -139,7 +140,7 @@ void write_table(hid_t group, const std::vector<Column<Row>>& columns, const std
 
 /// All rows of a table, with defaults for the columns that the file need not have. `row_name`:
 /// what a row is called in messages; the columns before are filled. Throws std::invalid_argument:
-/// what is missing, of another length, not finite, out of its range.
+/// what is missing, of another length, not finite, beyond kMostNumber, out of its range.
 template <class Row>
 std::vector<Row> read_table(hid_t group, const std::vector<Column<Row>>& columns,
                             const TableSource& source, const std::string& table_name,
@@ -170,8 +171,11 @@ std::vector<Row> read_table(hid_t group, const std::vector<Column<Row>>& columns
             const auto values = hdf5::read_doubles(group, column.name, width, at);
             fit(values.size());
             for (std::size_t k = 0; k < values.size(); ++k) {
-              if (!std::isfinite(values[k]) && !column.may_be_nan)
+              const bool untold = column.may_be_nan && std::isnan(values[k]);
+              if (!std::isfinite(values[k]) && !untold)
                 refuse(column, k / width, values[k], "a finite number");
+              if (std::fabs(values[k]) > kMostNumber)
+                refuse(column, k / width, values[k], "of size 1e+100 at most");
               table::element(rows[k / width].*member, static_cast<int>(k % width)) = values[k];
             }
           } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -193,6 +197,8 @@ std::vector<Row> read_table(hid_t group, const std::vector<Column<Row>>& columns
               if (std::is_same_v<Number, int> && (values[k] < -1'000'000 || values[k] > 1'000'000))
                 refuse(column, k / width, values[k], "at most 1000000");
               auto& number = table::element(rows[k / width].*member, static_cast<int>(k % width));
+              if (std::is_same_v<Number, bool> && values[k] != 0 && values[k] != 1)
+                refuse(column, k / width, values[k], "0 or 1");
               if constexpr (std::is_same_v<Number, bool>)
                 number = values[k] != 0;
               else

@@ -54,7 +54,10 @@ TEST(Average, MethodsCutsAndQuantities) {
 TEST(Average, DoubtsAreNamed) {
   const Folder folder;
   dem::Snapshot pulled = test::layer(4), bare = test::layer(4);
-  for (dem::Contact& c : pulled.contacts) c.force = -c.force;
+  for (dem::Contact& c : pulled.contacts) {
+    c.force = -c.force;
+    c.normal_force = -c.normal_force;
+  }
   bare.contacts.clear();
   int files = 0;
   const auto said = [&](const dem::Snapshot& s) {

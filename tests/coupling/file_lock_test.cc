@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -59,6 +60,13 @@ TEST_F(FileLockTest, WhereThereAreLocksNobodyIsToldToRemoveAnything) {
   const FileLock first(file(), "out", "wait for it", "grainfield fit");
   EXPECT_THAT(take(), AllOf(HasSubstr("in use by process " + std::to_string(getpid())),
                             Not(HasSubstr("remove"))));
+}
+
+TEST_F(FileLockTest, APipeIsNoLock) {
+  ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
+  EXPECT_EQ(take(), "out: " + file() +
+                        " is a pipe or a device, expected a file of grainfield's; remove it");
+  EXPECT_TRUE(testing::fs::exists(file()));
 }
 
 // Taken, but not signed yet.

@@ -19,6 +19,7 @@ namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Output;
 using testing::program;
 using ::testing::StartsWith;
@@ -314,6 +315,73 @@ TEST(Import, WarnsOfAWallThatIsElsewhere) {
               HasSubstr("2 of 2 contacts with walls are more than two radii off their wall: is it "
                         "where it says?"));
   EXPECT_EQ(program("import --from csv --wall floor:y=0 " + files).err, "");
+}
+
+// What can be taken and is doubtful.
+TEST(Import, WarnsOfDoubtfulValues) {
+  const std::string g = "id,x,y,radius,density\n1,0,1,1,5000\n2,0,2.9,1,5000\n";
+  const auto warned = [](const std::string& grains, const std::string& contacts,
+                         const std::string& options) {
+    const Folder folder;
+    const Output output =
+        program("import --from csv " + folder.write("g.csv", grains) + " " +
+                folder.write("c.csv", contacts) + " " + options + " -o " + (folder / "o.h5"));
+    EXPECT_EQ(output.code, 0) << output.err;
+    return output.err;
+  };
+  const auto one = [&](const std::string& row, const std::string& options = "") {
+    return warned(g, "i,j,px,py,nx,ny,fx,fy\n" + row + "\n", options);
+  };
+  EXPECT_THAT(one("1,2,0,1.95,0,1,0,-3"), Not(HasSubstr("normal")));
+  EXPECT_THAT(one("1,2,0,1.95,0,1.0001,0,-3"), Not(HasSubstr("normal")));
+  EXPECT_THAT(
+      one("1,2,0,1.95,0,3,0,-3"),
+      HasSubstr("warning: /packing: 1 of 1 normals in the files are not of unit length (the "
+                "first: 1 and 2, length 3); they were made so"));
+  EXPECT_THAT(one("1,floor,0,0,1,0,0,3", "--wall floor:y=0"),
+              HasSubstr("1 of 1 normals in the files at walls are more than 60 degrees off their "
+                        "wall's (the first: 1 and floor)"));
+  EXPECT_THAT(one("1,floor,0,0,0.1,-1,0,3", "--wall floor:y=0"), Not(HasSubstr("60 degrees")));
+  // One grain far away of three; a period of two thirds of the packing's width.
+  EXPECT_THAT(warned(g + "3,0,5e6,1,5000\n", "i,j,fx,fy\n1,2,0,-3\n", ""),
+              HasSubstr("1 of 3 grains are more than 1e+06 median radii from the middle of the "
+                        "packing (the first: 3)"));
+  const std::string row = "id,x,y,radius,density\n1,1,1,1,5000\n2,3,1,1,5000\n3,5.5,1,1,5000\n";
+  EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:6.5"),
+              Not(HasSubstr("overlap")));
+  EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:4"),
+              HasSubstr("pairs of grains that overlap by more than half the smaller radius: 1 (the "
+                        "first: 1 and 3); is the period narrower than the packing"));
+  const auto sliding = [&](const char* force, int mark) {
+    return warned(g, fmt::format("i,j,fx,fy,friction,sliding\n1,2,{},-3,0.5,{}\n", force, mark),
+                  "");
+  };
+  EXPECT_THAT(sliding("2", 0),
+              HasSubstr("1 of 1 contacts of known friction bear a tangential force beyond friction "
+                        "times normal force and are not marked as sliding"));
+  EXPECT_THAT(sliding("1.5", 0), Not(HasSubstr("friction")));
+  EXPECT_THAT(sliding("2", 1), Not(HasSubstr("friction")));
+}
+
+TEST(Import, WarnsOfNormalsThatPointBackwards) {
+  const Folder folder;
+  const auto import = [&](const std::string& second, const char* normal) {
+    return program(
+        "import --from csv " +
+        folder.write("g",
+                     "id,x,y,radius,density,outline\n"
+                     "1,0,0.5,,1000,-0.5 -0.5;0.5 -0.5;0.5 0.5;-0.5 0.5\n" +
+                         second) +
+        " " + folder.write("c", fmt::format("i,j,px,py,nx,ny,fx,fy\n1,2,0,1,{},0,-7\n", normal)) +
+        " -o " + (folder / "o.h5"));
+  };
+  for (const char* second : {"2,0,1.49,0.5,1000,\n", "2,0,1.5,,1000,-1 -0.5;0 1;1 -0.5\n"}) {
+    EXPECT_THAT(import(second, "0,-1").err,
+                HasSubstr("1 of 1 contacts of polygons have a normal more than 90 degrees off the "
+                          "line of centres (the first: 1 and 2); it points from i to j"));
+    EXPECT_THAT(import(second, "0,1").err, Not(HasSubstr("normal")));
+    EXPECT_THAT(import(second, "0.9,0.436").err, Not(HasSubstr("90 degrees")));
+  }
 }
 
 TEST(Import, UnixAndOtherLineEnds) {

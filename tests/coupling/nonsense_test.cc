@@ -154,7 +154,7 @@ TEST(Nonsense, NormalsAcrossTheLineOfCentresAreWarnedOf) {
               HasSubstr("1 of 1 contacts between round grains have a normal more than 60 "
                         "degrees off the line of centres (the first: 0 and 2)"));
   const Folder other;
-  EXPECT_THAT(imported(other, "0,2,0.0025,0.009,0.5,0.86,0,-1").err, Not(HasSubstr("normal")));
+  EXPECT_THAT(imported(other, "0,2,0.0025,0.009,0.5,0.866,0,-1").err, Not(HasSubstr("normal")));
 }
 
 TEST(Nonsense, CopiesAndStatesOfAPackingAreNoEnsemble) {

@@ -79,6 +79,7 @@ inline dem::Snapshot stressed_heap(const StressedHeap& setup,
     c.normal_force = -force.dot(normal);
     c.tangential_force = force.dot(dem::Vec3(-normal.y(), normal.x(), 0));
     c.friction = 0.5;
+    c.sliding = std::fabs(c.tangential_force) > c.friction * c.normal_force;
     s.contacts.push_back(c);
   };
   const double half = std::sqrt(3.0) / 2;

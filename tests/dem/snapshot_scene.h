@@ -23,9 +23,11 @@ inline Snapshot small_snapshot() {
     g.angle = random.uniform();
     g.radius = random.uniform();
     g.mass = random.uniform();
+    g.volume = 3 * g.radius * g.radius;
     g.fixed = k % 5 == 0;
     s.grains.push_back(g);
   }
+  s.grains[3].radius = 1;
   s.grains[4].outline = {{-1, -1}, {1, -1}, {0, 1}};
   s.walls.push_back({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
   s.walls.push_back({"left", {-1, 0, 0}, {1, 0, 0}, 0});
@@ -33,11 +35,14 @@ inline Snapshot small_snapshot() {
   c.i = 3;
   c.j = 7;
   c.force = Vec3(1, 2, 0);
-  c.normal_force = 3;
+  c.normal = Vec3(-0.6, -0.8, 0);
+  c.normal_force = 2.2;
   c.sliding = true;
   s.contacts = {c};
   c.j = -2;
   c.point = Vec3(-1, 4, 0);
+  c.normal = Vec3(-1, 0, 0);
+  c.normal_force = 1;
   s.contacts.push_back(c);
   s.walls[1].force = Vec3(-1, -2, 0);
   s.walls[1].torque = Vec3(0, 0, 4);
@@ -58,6 +63,7 @@ inline Snapshot full_snapshot(int dim) {
     g.position = vector();
     g.velocity = vector();
     for (double* v : {&g.angle, &g.spin, &g.radius, &g.mass, &g.inertia, &g.volume}) *v = some();
+    if (g.id == 3) g.radius += 1;  // the image of its contact is edges away
     g.material = materials[g.id % 3];
     g.rotates = g.id % 4 != 0;
     g.image = {static_cast<int>(g.id) - 1, 0, 0};
@@ -75,7 +81,9 @@ inline Snapshot full_snapshot(int dim) {
   }
   for (Contact& c : s.contacts) {
     for (Vec3* v : {&c.point, &c.normal, &c.force}) *v = vector();
-    for (double* v : {&c.normal_force, &c.tangential_force, &c.spring, &c.friction}) *v = some();
+    c.normal.normalize();
+    c.normal_force = -c.force.dot(c.normal);
+    for (double* v : {&c.tangential_force, &c.spring, &c.friction}) *v = some();
     if (dim == 3) c.spring_vector = vector();
     if (c.j >= 0) c.image = {-1, 2, 0};
     c.rolling_spring = vector();

@@ -238,6 +238,60 @@ TEST_F(SnapshotFile, RefusesWhatCannotBe) {
                         "quaternion (w, x, y, z)"));
   EXPECT_THAT(said([](Snapshot& s) { s.grains[3].orientation[2] = NAN; }),
               HasSubstr("orientation of grain 3 is nan; it must be a finite number"));
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[5].id = 17; }),
+              HasSubstr(":/s: id of the grains in rows 5 and 17 is 17; it must be another one for "
+                        "every grain"));
+  EXPECT_EQ(said([](Snapshot& s) { std::swap(s.grains[5].id, s.grains[17].id); }),
+            "no std::invalid_argument");
+  EXPECT_THAT(said([](Snapshot& s) { s.loaded_grain = 20; }),
+              HasSubstr("loaded_grain is 20; it must be the id of a grain, or -1 for none"));
+  EXPECT_THAT(said([](Snapshot& s) { s.loaded_grain = -2; }), HasSubstr("loaded_grain is -2"));
+  EXPECT_THAT(said([](Snapshot& s) {
+                s.also_loaded = {5, 20};
+              }),
+              HasSubstr("also_loaded is 20; it must be the id of a grain"));
+  EXPECT_EQ(said([](Snapshot& s) { s.loaded_grain = -1; }), "no std::invalid_argument");
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[3].radius = 0; }),
+              HasSubstr("radius of grain 3 is 0 m; it must be above 0"));
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[3].mass = 0; }),
+              HasSubstr("mass of grain 3 is 0; it must be above 0"));
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[3].volume = -1; }),
+              HasSubstr("volume of grain 3 is -1; it must be above 0"));
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[0].mass = -1; }),
+              HasSubstr("mass of grain 0 is -1; it must be 0 or more for a fixed grain"));
+  EXPECT_EQ(said([](Snapshot& s) { s.grains[0].mass = s.grains[0].volume = 0; }),  // fixed
+            "no std::invalid_argument");
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].normal *= 2; }),
+              HasSubstr("normal of contact 1 has length 2; it must be a unit vector"));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].normal_force *= -1; }),
+              HasSubstr("it must be what force and normal say, "));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].friction = -0.1; }),
+              HasSubstr("friction of contact 1 is -0.1; it must be 0 or more"));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].friction = INFINITY; }),
+              HasSubstr("friction of contact 1 is inf; it must be a finite number"));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].point.x() = 1e9; }),
+              HasSubstr("point of contact 1 is 1e+09 m from a grain of its; it must be within 10 "
+                        "radii, "));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[0].image[1] = 2000; }),
+              HasSubstr("point of contact 0 is "));
+  EXPECT_THAT(said([](Snapshot& s) {
+                s.contacts[0].j = s.contacts[0].i;
+                s.contacts[0].image = {0, 0, 0};
+              }),
+              HasSubstr("j of contact 0 is 3 as its i is; a grain does not touch itself"));
+  EXPECT_THAT(said([](Snapshot& s) { s.walls[1].normal *= 1.1; }),
+              HasSubstr("normal of wall left has length 1.1; it must be a unit vector"));
+  EXPECT_THAT(said([](Snapshot& s) { s.walls[1].friction = -1; }),
+              HasSubstr("friction of wall left is -1; it must be 0 or more"));
+  EXPECT_THAT(said([](Snapshot& s) { s.contacts[1].force.x() = 1e200; }),
+              HasSubstr("force of contact 1 is 1e+200; it must be of size 1e+100 at most"));
+  EXPECT_THAT(said([](Snapshot& s) { s.grains[3].velocity.x() = -1e200; }),
+              HasSubstr("velocity of grain 3 is -1e+200; it must be of size 1e+100 at most"));
+  EXPECT_THAT(said([](Snapshot& s) { s.gravity.y() = 1e101; }),
+              HasSubstr(":/s: attribute 'gravity_y' is 1e+101; it must be of size 1e+100 at most"));
+  EXPECT_THAT(said([](Snapshot& s) { s.applied_force.z() = INFINITY; }),
+              HasSubstr("attribute 'applied_force_z' is inf; it must be a finite number"));
+  EXPECT_THAT(said([](Snapshot& s) { s.time = NAN; }), HasSubstr("attribute 'time' is nan"));
   EXPECT_THAT(said([](Snapshot& s) { s.grains[3].moments.y() = 0; }),
               HasSubstr("moments of grain 3 are "));
   EXPECT_EQ(said([](Snapshot& s) { s.grains[0].moments.y() = 0; }),  // fixed
@@ -308,6 +362,10 @@ TEST_F(SnapshotFile, RefusesTablesThatDoNotFit) {
   EXPECT_THAT(
       said("grains/material", Whole(20, 2), 1),
       HasSubstr("material of grain 0 is 2; it must be a place in its list of names, or -1"));
+  EXPECT_THAT(said("contacts/sliding", Whole{1, 7}, 1),
+              HasSubstr("sliding of contact 1 is 7; it must be 0 or 1"));
+  EXPECT_THAT(said("grains/fixed", Whole(20, -1), 1),
+              HasSubstr("fixed of grain 0 is -1; it must be 0 or 1"));
   EXPECT_THAT(said("contacts/image", Whole(6, 1LL << 40), 3),
               HasSubstr("image of contact 0 is 1099511627776; it must be at most 1000000"));
   EXPECT_THAT(said("walls/triangles_start", Whole{0, 0, 2, 1, 3}, 1),
