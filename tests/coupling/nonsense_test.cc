@@ -197,7 +197,7 @@ TEST(Nonsense, AGrainGoneAstrayIsNamed) {
   const Folder folder;
   folder.write("g.csv",
                "id,x,y,radius,density\n1,0,0.01,0.01,5000\n2,0,0.0299,0.01,5000\n"
-               "4,1e9,0.01,0.01,5000\n");
+               "4,1e6,0.01,0.01,5000\n");
   folder.write("c.csv", "i,j,fx,fy\n1,2,0,-15.4\n");
   ASSERT_EQ(program("import --from csv " + (folder / "g.csv") + " " + (folder / "c.csv") +
                     " --wall floor:y=0 -o " + (folder / "o.h5"))
@@ -207,7 +207,7 @@ TEST(Nonsense, AGrainGoneAstrayIsNamed) {
     const Output out = program("average " + (folder / "o.h5") + " --frame " + frame +
                                " --grid 2x2 -o " + (folder / "a.h5"));
     EXPECT_EQ(out.code, 2) << frame;
-    EXPECT_THAT(out.err, HasSubstr("grain 4 at x = 1e+09 m has gone astray")) << frame;
+    EXPECT_THAT(out.err, HasSubstr("grain 4 at x = 1e+06 m has gone astray")) << frame;
   }
 }
 
