@@ -57,7 +57,9 @@ void add_average(CLI::App& app, Action& action) {
   auto given = std::make_shared<Given>();
   AverageRequest& wanted = given->request;
   AverageOptions& options = wanted.options;
-  command->add_option("snapshots", given->snapshots, "FILE.h5 (all in it) or FILE.h5:group")
+  command
+      ->add_option("snapshots", given->snapshots,
+                   "FILE.h5 (all in it), FILE.h5:group, or FILE.h5:state of every realization")
       ->required();
   add_output(*command, given->output,
              "FIELD.h5; FIELD.xdmf comes beside it; or FIELD.csv, a table");

@@ -90,7 +90,10 @@ void add_structure(CLI::App& app, Action& action) {
       app.add_subcommand("structure", "coordination, base forces, force chains, orientation");
   auto names = std::make_shared<std::vector<std::string>>();
   auto folder = std::make_shared<std::string>();
-  command->add_option("snapshots", *names, "FILE.h5 (all in it) or FILE.h5:group")->required();
+  command
+      ->add_option("snapshots", *names,
+                   "FILE.h5 (all in it), FILE.h5:group, or FILE.h5:state of every realization")
+      ->required();
   add_output(*command, *folder,
              "folder for grains.csv, coordination.csv, base_forces.csv, one below it per "
              "snapshot where there are several");
