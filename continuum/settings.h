@@ -7,10 +7,10 @@
 namespace grainfield::continuum {
 
 /// Parameter::least of a number that must be above zero: below, products of three underflow.
-inline constexpr double kAboveZero = 1e-50;
+inline constexpr double kAboveZero = 1e-60;
 /// Parameter::most (and minus it, least) of a number without a bound of its own: beyond, products
 /// of a few overflow.
-inline constexpr double kUnbounded = 1e50;
+inline constexpr double kUnbounded = 1e60;
 
 /// A numerical parameter.
 Parameter number(std::string name, std::string unit, std::string meaning, std::string source,

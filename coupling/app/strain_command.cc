@@ -57,7 +57,6 @@ void add_strain(CLI::App& app, Action& action) {
       settle(request, support->count() > 0, width->count() > 0);
       request.before = one_snapshot(given->before);
       request.after = one_snapshot(given->after);
-      require_each_once({request.before, request.after});
       require_other_file("-o", given->output,
                          {request.before.file, request.after.file, given->where.points});
       request.points = given->where.read({request.before});

@@ -84,10 +84,13 @@ class Independence {
     for (const dem::Grain& g : s.grains) {
       for (int a = 0; a < s.dim; ++a) boost::hash_combine(places, g.position[a]);
     }
+    for (const dem::Contact& c : s.contacts) {
+      for (int a = 0; a < s.dim; ++a) boost::hash_combine(places, c.force[a]);
+    }
     const auto [first, own] = packings_.emplace(places, shown);
     if (own || s.grains.empty()) return;
     throw std::invalid_argument(
-        fmt::format("{} is a copy of {}: every grain is at the same place, allowed: every packing "
+        fmt::format("{} is a copy of {}: places and forces are the same, allowed: every packing "
                     "once (a copy is no realization of its own)",
                     shown, first->second));
   }

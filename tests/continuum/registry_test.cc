@@ -83,12 +83,12 @@ TEST(Registry, NumbersTooSmallToCountAreToldTheBound) {
     }
     return "accepted";
   };
-  for (const std::string h : {"1e-320", "1e-400", "1e-51"})
-    EXPECT_EQ(refusal(h), "model layer: h = " + h + " is out of range; allowed: at least 1e-50 m");
-  for (const std::string h : {"1e51", "1e308"})
+  for (const std::string h : {"1e-320", "1e-400", "1e-61"})
+    EXPECT_EQ(refusal(h), "model layer: h = " + h + " is out of range; allowed: at least 1e-60 m");
+  for (const std::string h : {"1e61", "1e308"})
     EXPECT_EQ(refusal(h), "model layer: h = " + h +
                               " is out of range; allowed: above 0 m, and no " +
-                              "more than 1e+50 in size");
+                              "more than 1e+60 in size");
   for (const std::string h : {"0", "-0.0", "-1e-320", "-3"})
     EXPECT_EQ(refusal(h), "model layer: h = " + h + " is out of range; allowed: above 0 m");
 }

@@ -164,7 +164,7 @@ TEST(Errors, AverageOptions) {
       folder.write("case.toml", tiny_case("[output]\nvtu = false\nreport = false\n"));
   ASSERT_EQ(program("run " + file + " -o " + (folder / "made")).code, 0);
   const std::string start =
-      "average " + (folder / "made/snapshots.h5") + " -o " + (folder / "f.h5");
+      "average " + (folder / "made/snapshots.h5") + ":loaded -o " + (folder / "f.h5");
   expect_refusal(program(start + " --kernel lucky"), 2, "lucy");
   expect_refusal(program(start + " --method corse_graining"), 2, "coarse_graining");
   expect_refusal(program(start + " --width -1"), 2, "--width: found -1");

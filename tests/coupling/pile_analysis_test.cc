@@ -25,9 +25,11 @@ using testing::Folder;
 using ::testing::HasSubstr;
 
 // Files of realizations that hold these heaps.
-std::vector<std::string> files_of(const Folder& folder, const std::vector<dem::Snapshot>& heaps) {
+std::vector<std::string> files_of(const Folder& folder, std::vector<dem::Snapshot> heaps) {
   std::vector<std::string> out;
   for (std::size_t r = 0; r < heaps.size(); ++r) {
+    // Forces may have been changed since.
+    for (dem::Contact& c : heaps[r].contacts) c.normal_force = -c.force.dot(c.normal);
     out.push_back(folder / ("r" + std::to_string(r) + ".h5"));
     dem::RunResult result;
     result.snapshots = {{"pile", heaps[r]}};

@@ -167,7 +167,7 @@ inline void inject_names(const Texts& evils) {
     for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
              {"info", name + "/fields.h5"},
              {"compare", name + "/fields.h5", "--model", "flamant", "-o", name + "2"},
-             {"average", name + "/snapshots.h5", "--grid", "5x4", "-o", name + ".h5"},
+             {"average", name + "/snapshots.h5:loaded", "--grid", "5x4", "-o", name + ".h5"},
              {"structure", name + "/snapshots.h5", "-o", name + "3"},
              {"check", name + ".toml"}}) {
       const Ending ending = finish({words, {}, folder.path(), {}});

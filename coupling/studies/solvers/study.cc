@@ -75,8 +75,9 @@ Study solver_study(const char* name, const char* meaning, std::vector<std::strin
   out.check = [](const Case& value) {
     if (value.study != "elastic-half-space") require_depths(value.get<ProblemSetup>());
     const int dim = places_of(value).facts.dim;
-    require_subject(value.models, is_heap(value) ? Subject::heap : Subject::load, dim,
-                    "compare.models");
+    if (value.compare.models != CompareSetup{}.models)
+      require_subject(value.models, is_heap(value) ? Subject::heap : Subject::load, dim,
+                      "compare.models");
     require_models(choices_of(value), places_of(value).facts);
   };
   out.analyse = [](const Case& value, const std::vector<std::string>&, int) {

@@ -46,7 +46,8 @@ WedgeAnalysis::WedgeAnalysis(const Case& value) : value_(value), setup_(value.ge
   if (value.models.size() < 2)
     throw std::invalid_argument(fmt::format(
         "compare.models: found {} model(s), expected two or more", value.models.size()));
-  require_subject(value.models, Subject::heap, 2, "compare.models");
+  if (value.compare.models != CompareSetup{}.models)
+    require_subject(value.models, Subject::heap, 2, "compare.models");
   for (const auto& base : setup_.bases)
     if (base != "rough" && base != "smooth" && !is_angle(base))
       throw std::invalid_argument(
