@@ -183,6 +183,7 @@ TEST(FitCommand, CopiesOfAHeapAreNoRealizations) {
     std::string& each = twice.attributes.at(name);
     each += "," + each.substr(0, each.find(','));
   }
+  twice.realizations = 3;
   testing::fs::remove(folder / "f.h5");
   write_fields(folder / "f.h5", {{"average", twice}});
   const Output field = program("fit " + (folder / "f.h5") + models + (folder / "field"));
