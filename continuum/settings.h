@@ -6,7 +6,7 @@
 
 namespace grainfield::continuum {
 
-/// Parameter::least of a number that must be above zero: below, products of three underflow.
+/// Parameter::least of a number that must be above zero: below, products of a few underflow.
 inline constexpr double kAboveZero = 1e-60;
 /// Parameter::most (and minus it, least) of a number without a bound of its own: beyond, products
 /// of a few overflow.

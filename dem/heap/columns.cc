@@ -23,15 +23,15 @@ std::size_t count_columns(const Snapshot& snapshot, int axis, double from, doubl
   const Grain* furthest = nullptr;
   for (const Grain& g : snapshot.grains) {
     if (g.fixed) continue;
-    if (furthest == nullptr || std::fabs(g.position[axis] - middle) >
-                                   std::fabs(furthest->position[axis] - middle)) {
+    if (furthest == nullptr ||
+        std::fabs(g.position[axis] - middle) > std::fabs(furthest->position[axis] - middle)) {
       furthest = &g;
     }
   }
   throw std::invalid_argument(fmt::format(
       "grain {} at {} = {:g} m has gone astray: the packing, with its middle at {:g} m, would have "
       "{:.3g} columns of {:.3g} m, allowed: up to {:g}",
-      furthest->id, "xyz"[axis], furthest->position[axis], middle, count, column, most));
+      furthest->id, "xyz"[axis], furthest -> position[axis], middle, count, column, most));
 }
 
 }  // namespace grainfield::dem
