@@ -1,5 +1,7 @@
 // Snapshots with wrong bytes, foreign files, and files that HDF5 itself does not survive.
 #include <gmock/gmock.h>
+#include <pthread.h>
+#include <sys/mman.h>
 
 #include <chrono>
 #include <cmath>
@@ -247,6 +249,44 @@ TEST(DamagedFile, AChildTellsHowItEnded) {
 #endif
   // What it does to signals, limits and memory is its own.
   EXPECT_EQ(end([] { return true; }).end, ChildEnd::ok);
+}
+
+// What a thread of the parent takes at the moment of the fork and gives back at once, as malloc
+// does for a new arena.
+class TakenAtTheFork {
+ public:
+  TakenAtTheFork() {
+    static const int once = pthread_atfork(take, give_back, nullptr);
+    EXPECT_EQ(once, 0);
+    bytes() = 200'000'000;
+  }
+  ~TakenAtTheFork() { bytes() = 0; }
+  TakenAtTheFork(const TakenAtTheFork&) = delete;
+  TakenAtTheFork& operator=(const TakenAtTheFork&) = delete;
+
+ private:
+  static std::size_t& bytes() {
+    static std::size_t count = 0;
+    return count;
+  }
+  static void*& taken() {
+    static void* at = nullptr;
+    return at;
+  }
+  static void take() {
+    if (bytes() > 0) {
+      taken() = mmap(nullptr, bytes(), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    }
+  }
+  static void give_back() {
+    if (bytes() > 0) munmap(taken(), bytes());
+  }
+};
+
+TEST(DamagedFile, AChildHasItsMemoryWhateverItsParentHas) {
+  const TakenAtTheFork taken;
+  const auto write_some = [] { return std::vector<char>(50'000'000, 1).back() == 1; };
+  EXPECT_EQ(run_in_child({1, 1e8}, write_some).end, ChildEnd::ok);
 }
 
 }  // namespace
