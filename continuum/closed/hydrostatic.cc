@@ -46,7 +46,7 @@ ModelInfo hydrostatic_info() {
       "pressure of the material above, the same in every direction",
       2,
       {number("rho_g", "N/m3", "weight of a unit volume (N/m2 with an areal density)",
-              "force balance", 1, -kUnbounded, kUnbounded),
+              "force balance", 1, kAboveZero, kUnbounded),
        number("level", "m", "height of the free surface (of a heap: its apex)", "force balance", 0,
               -kUnbounded, kUnbounded),
        number("left_deg", "deg", "slope of a heap's left flank; 0: a level surface",

@@ -52,12 +52,14 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
-  command
-      ->add_option("--coverage", request.coverage,
-                   "sizes N: how often intervals from N of the heaps hold the constants of the "
-                   "rest (coverage.md); takes long")
-      ->delimiter(',');
-  command->add_option("--draws", request.draws, "of --coverage, of each size; default 100");
+  auto* coverage =
+      command
+          ->add_option("--coverage", request.coverage,
+                       "sizes N: how often intervals from N of the heaps hold the constants of the "
+                       "rest (coverage.md); takes long")
+          ->delimiter(',');
+  command->add_option("--draws", request.draws, "of --coverage, of each size; default 100")
+      ->needs(coverage);
   add_output(*command, request.folder, "folder; default results/fit-INPUT");
   add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {

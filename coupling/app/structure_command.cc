@@ -56,8 +56,11 @@ void show(const std::string& title, const dem::Snapshot& s, const std::string& f
   say("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
   say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", made.size.measured,
       made.size.theory);
-  say("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
-      chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
+  if (chains.chains.empty())
+    say("  force chains: none among {} bearing grains\n", chains.bearing);
+  else
+    say("  force chains: {} of {:.3g} grains, {} of {} bearing grains in them\n",
+        chains.chains.size(), chains.mean_length, chains.in_chains, chains.bearing);
   if (made.axes) {
     if (std::isnan(made.axes->order))
       say("  orientation: none (disks)\n");

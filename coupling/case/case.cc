@@ -40,7 +40,7 @@ std::string model_value(const continuum::Parameter& parameter, const std::string
 }  // namespace
 
 Case read_case(const std::string& file, bool quick, const Overrides& overrides) {
-  std::vector<Assignment> base, fast, set;
+  std::vector<Assignment> base, fast;
   for (auto& a : read_document(file)) {
     if (!is_quick(a)) {
       base.push_back(std::move(a));
@@ -55,7 +55,7 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
         fmt::format("{}: holds no key; a case names at least its study, e.g. study = \"{}\"", file,
                     default_study()));
   }
-  for (const auto& text : overrides) set.push_back(parse_override(text));
+  std::vector<Assignment> set = parse_overrides(overrides);
 
   Draft draft;
   draft.file = file;

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -192,6 +193,20 @@ std::vector<Assignment> read_document(const std::string& file) {
   std::vector<Assignment> out;
   out.reserve(placed.size());
   for (auto& [line, assignment] : placed) out.push_back(std::move(assignment));
+  return out;
+}
+
+std::vector<Assignment> parse_overrides(const std::vector<std::string>& texts) {
+  std::vector<Assignment> out;
+  std::map<std::string, std::string> seen;
+  for (const std::string& text : texts) {
+    out.push_back(parse_override(text));
+    const auto [before, first] = seen.emplace(out.back().path, out.back().text);
+    if (!first) {
+      throw std::invalid_argument(fmt::format("--set: {} is given twice, {} and {}; leave one out",
+                                              out.back().path, before->second, out.back().text));
+    }
+  }
   return out;
 }
 

@@ -99,17 +99,25 @@ void check_sweep(const Draft& draft) {
   const Assignment where = written(draft, "sweep.key");
   if (sweep.key.compare(0, 6, "sweep.") == 0)
     reject(where, "sweep.key", "cannot be one of [sweep]");
+  std::vector<std::string> names;
+  if (sweep.key == kVariant) {
+    for (const Variant& variant : draft.value.variants) names.push_back(variant.name);
+  }
   if (sweep.values.empty()) {
-    std::vector<std::string> names;
-    if (sweep.key == "variant") {
-      for (const Variant& variant : draft.value.variants) names.push_back(variant.name);
-    }
     reject(where, "sweep.key",
            names.empty()
                ? std::string("needs sweep.values as well")
                : fmt::format("needs sweep.values as well, of: {}", fmt::join(names, ", ")));
   }
   check_names(draft, values);
+  if (!names.empty()) {
+    for (const std::string& name : sweep.values) {
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      reject(values, "sweep.values",
+             fmt::format("found \"{}\", allowed: {}; nearest: {}", name, fmt::join(names, ", "),
+                         continuum::nearest(name, names)));
+    }
+  }
   const bool known = find_key(sweep.key) != nullptr;
   const Members members(draft);
   for (const auto& text : sweep.values) {

@@ -48,6 +48,18 @@ std::vector<std::string> names_in(const CompareRequest& request) {
   return names;
 }
 
+// A model beside itself would be the nearest and the next.
+void require_different(const std::vector<ModelChoice>& models) {
+  for (auto one = models.begin(); one != models.end(); ++one) {
+    for (auto other = models.begin(); other != one; ++other) {
+      if (one->name == other->name && one->settings == other->settings) {
+        throw std::invalid_argument(
+            fmt::format("model {}: found twice with the same settings, allowed: once", one->name));
+      }
+    }
+  }
+}
+
 Field field_in(const CompareRequest& request, const std::string& name) {
   if (request.held.empty()) return read_field(request.file, name);
   for (const auto& [held, field] : request.held)
@@ -291,6 +303,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   std::vector<ModelMap> model_maps;
   std::vector<std::string> names;
   for (const auto& choice : request.models) names.push_back(choice.name);
+  require_different(request.models);
   const bool flanks_apart = takes_flanks_apart(names);
   for (const auto& choice : request.models) {
     require_known(choice, facts, request.file);

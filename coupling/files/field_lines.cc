@@ -9,6 +9,7 @@
 
 #include "coupling/heap/field_rows.h"
 #include "coupling/heap/heap_field.h"
+#include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -180,6 +181,11 @@ SceneField scene_field(Field field, const std::string& name, const LineOptions& 
     if (static_cast<int>(options.origin.size()) != dim)
       refuse_field(where, fmt::format("--origin: found {} numbers, the field has {} coordinates",
                                       options.origin.size(), dim));
+    for (const double number : options.origin) {
+      if (!(std::abs(number) <= dem::kMostNumber))
+        refuse_field(where, fmt::format("--origin: found {}, allowed: {:g} m at most, either way",
+                                        number, dem::kMostNumber));
+    }
     field.points.rowwise() -= Eigen::Map<const Eigen::RowVectorXd>(options.origin.data(), dim);
   }
   out.field = std::move(field);

@@ -186,8 +186,7 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
       if (a.path == "fit" || a.path.compare(0, 4, "fit.") == 0) apply(draft, a);
     }
   }
-  for (const std::string& text : overrides) {
-    const Assignment a = parse_override(text);
+  for (const Assignment& a : parse_overrides(overrides)) {
     if (a.path.compare(0, 4, "fit.") != 0) reject(a, a.path, "found another section, allowed: fit");
     apply(draft, a);
   }
@@ -195,11 +194,24 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
   return draft.value.get<FitSetup>();
 }
 
+namespace {
+
+// A field was averaged before.
+void require_no_width(const Overrides& overrides) {
+  for (const Assignment& a : parse_overrides(overrides)) {
+    if (a.path != "fit.width_diameters") continue;
+    reject(a, a.path, "found a width, but the input is a field, which was averaged over its own");
+  }
+}
+
+}  // namespace
+
 FitOutcome fit_files(const FitRequest& request) {
   Case value;
   value.study = "pile-fit";
   value.get<FitSetup>() = read_fit_setup(request.case_file, request.overrides);
   Chosen chosen = choose(request.inputs);
+  if (request.field || !chosen.field.empty()) require_no_width(request.overrides);
   chosen.heaps.insert(chosen.heaps.end(), request.heaps.begin(), request.heaps.end());
   const std::string first = first_name(request);
   OutputFolder results(request.folder, "grainfield fit " + first);

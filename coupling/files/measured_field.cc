@@ -14,6 +14,7 @@
 #include "continuum/model.h"
 #include "coupling/files/placement.h"
 #include "coupling/import/format.h"
+#include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -72,11 +73,11 @@ struct Measure {
   explicit operator bool() const { return bool(column); }
   double of(const ForeignRow& row) const {
     const double value = factor * row.number(column);
-    if (!std::isfinite(value))
+    if (!(std::abs(value) <= dem::kMostNumber))
       row.refuse(
-          fmt::format("column {}: found {}, which becomes {} in SI units, allowed: finite "
-                      "numbers",
-                      column.name, row.text(column), value));
+          fmt::format("column {}: found {}, which becomes {} in SI units, allowed: {:g} at "
+                      "most, either way",
+                      column.name, row.text(column), value, dem::kMostNumber));
     return value;
   }
 };
@@ -162,10 +163,11 @@ std::pair<std::string, double> component_of(const ForeignRow& row, std::string_v
 }
 
 void require_above_zero(const char* option, double value, const char* why) {
-  if (value > 0 && std::isfinite(value)) return;
+  if (value > 0 && value <= dem::kMostNumber) return;
   throw std::invalid_argument(std::isnan(value)
                                   ? fmt::format("{}: is missing; {}", option, why)
-                                  : fmt::format("{}: found {:g}, allowed: above 0", option, value));
+                                  : fmt::format("{}: found {:g}, allowed: above 0, up to {:g}",
+                                                option, value, dem::kMostNumber));
 }
 
 void check(const MeasuredRequest& r) {
@@ -176,8 +178,9 @@ void check(const MeasuredRequest& r) {
   if (r.dim != 2 && r.dim != 3)
     throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", r.dim));
   require_above_zero("--height", r.height, "the height of the heap or layer, m");
-  if (!(r.width >= 0 && std::isfinite(r.width)))
-    throw std::invalid_argument(fmt::format("--width: found {:g}, allowed: above 0", r.width));
+  if (!(r.width >= 0 && r.width <= dem::kMostNumber))
+    throw std::invalid_argument(fmt::format("--width: found {:g}, allowed: above 0, up to {:g}",
+                                            r.width, dem::kMostNumber));
   if (r.geometry == "layer") {
     if (!std::isnan(r.load)) require_above_zero("--load", r.load, "");
     return;

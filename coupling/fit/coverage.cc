@@ -128,10 +128,16 @@ ConstantCoverage of_constant(const std::vector<Drawn>& draws, std::size_t m, std
 Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
                      const CoverageOptions& options) {
   const int n = data.realizations();
+  if (n < 6) {
+    throw std::invalid_argument(
+        fmt::format("coverage: found {} realization{}, allowed: 6 or more (at least 3 are drawn, "
+                    "from at most half of them)",
+                    n, n == 1 ? "" : "s"));
+  }
   for (const int size : options.sizes) {
     if (size < 3 || size > n / 2) {
-      throw std::invalid_argument(
-          fmt::format("sizes: found {}, allowed: 3 to {}, half of the realizations", size, n / 2));
+      throw std::invalid_argument(fmt::format(
+          "coverage: found a size of {}, allowed: 3 to {}, half of the realizations", size, n / 2));
     }
   }
   if (options.draws < 1) {

@@ -18,6 +18,7 @@
 #include "coupling/unknown_name.h"
 #include "coupling/version.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -62,6 +63,30 @@ void check(const NamedFields& fields) {
         throw std::invalid_argument(
             fmt::format("field \"{}\": column \"{}\" has {} values and {} errors for {} points",
                         name, column.name, column.value.size(), column.error.size(), n));
+    }
+  }
+}
+
+// Of a file that others may have written.
+void check_numbers(const Field& field, const std::string& where) {
+  const auto refuse = [&](const std::string& what, double value, const char* allowed) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}: found {:g}, allowed: {}", where, what, value, allowed));
+  };
+  for (const double x : field.points.reshaped()) {
+    if (!(std::abs(x) <= dem::kMostNumber)) refuse("points", x, "up to 1e100 in size");
+  }
+  for (const Column& column : field.columns) {
+    for (const double v : column.value) {
+      if (std::abs(v) > dem::kMostNumber)
+        refuse("value/" + column.name, v, "up to 1e100 in size, or nan");
+    }
+    for (const double v : column.samples.reshaped()) {
+      if (std::abs(v) > dem::kMostNumber)
+        refuse("samples/" + column.name, v, "up to 1e100 in size, or nan");
+    }
+    for (const double e : column.error) {
+      if (e < 0 || e > dem::kMostNumber) refuse("error/" + column.name, e, "0 to 1e100, or nan");
     }
   }
 }
@@ -230,6 +255,7 @@ Field read_field(const std::string& file, const std::string& name) {
   } catch (const std::invalid_argument& problem) {
     throw std::invalid_argument(file + ": " + problem.what());
   }
+  check_numbers(field, where);
   return field;
 }
 

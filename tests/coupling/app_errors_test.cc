@@ -80,6 +80,28 @@ TEST(Errors, CaseFiles) {
   EXPECT_FALSE(testing::fs::exists(folder / "out"));
 }
 
+// Options that would be taken without a word: the last of two, or none.
+TEST(Errors, NothingIsGivenTwiceOrForNothing) {
+  const Folder folder;
+  const std::string file =
+      folder.write("x.toml", tiny_case("[output]\nvtu = false\nreport = false\n"));
+  expect_refusal(program("check " + file + " --set ensemble.seed=3 --set 'ensemble.seed = 4'"), 2,
+                 "--set: ensemble.seed is given twice, 3 and 4; leave one out");
+  expect_refusal(program("fit x.h5 --set fit.heights=[0.3] --heights 0.4"), 2,
+                 "--set: fit.heights is given twice, [0.3] and [0.4]; leave one out");
+  expect_refusal(program("fit x.h5 --draws 5"), 2, "--draws requires --coverage");
+  expect_refusal(program("check contact-laws --set 'sweep.values=[\"ratio_2\"]'"), 2,
+                 "--set: sweep.values: found \"ratio_2\", allowed: ratio_025, ratio_1");
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "made")).code, 0);
+  const std::string field = folder / "made/fields.h5";
+  expect_refusal(
+      program("compare " + field + " --model flamant --model flamant -o " + (folder / "c")), 2,
+      "model flamant: found twice with the same settings, allowed: once");
+  expect_refusal(
+      program("compare " + field + " --model flamant --origin nan,0 -o " + (folder / "c")), 2,
+      "--origin: found nan, allowed: 1e+100 m at most, either way");
+}
+
 TEST(Errors, UnreadableFile) {
   if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
   const Folder folder;

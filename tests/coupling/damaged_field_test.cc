@@ -23,7 +23,7 @@ Field sample() {
   for (const char* name : {"sigma_xx", "sigma_yy"}) {
     Column& column = field.add(name, "N/m");
     column.value = Eigen::VectorXd::Random(12);
-    column.error = Eigen::VectorXd::Random(12);
+    column.error = Eigen::VectorXd::Random(12).cwiseAbs();
     column.samples = Eigen::MatrixXd::Random(12, 3);
   }
   field.add("density", "1").value[3] = 2;
@@ -63,6 +63,30 @@ TEST(DamagedField, AWrongByteIsNoticedOrChangesNothing) {
   flip_bytes(folder / "f.h5", folder, 509, true, bits_of, found);
   EXPECT_GT(found.copies, 200);
   EXPECT_GT(found.refused, found.copies / 4);
+}
+
+// What no computation leaves, and no model or fit could use.
+TEST(DamagedField, NumbersThatCannotBeAreRefused) {
+  const TestFolder folder;
+  const auto refused = [&](const auto& change, const std::string& what) {
+    Field field = sample();
+    change(field);
+    write_fields(folder / "f.h5", {{"map", field}});
+    try {
+      read_field(folder / "f.h5", "map");
+      ADD_FAILURE() << what;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_EQ(e.what(), folder / "f.h5" + ":/map: " + what);
+    }
+  };
+  refused([](Field& f) { f.points(3, 1) = NAN; },
+          "points: found nan, allowed: up to 1e100 in size");
+  refused([](Field& f) { f.columns[0].value[2] = 1e300; },
+          "value/sigma_xx: found 1e+300, allowed: up to 1e100 in size, or nan");
+  refused([](Field& f) { f.columns[1].error[2] = -1; },
+          "error/sigma_yy: found -1, allowed: 0 to 1e100, or nan");
+  refused([](Field& f) { f.columns[1].samples(2, 1) = -INFINITY; },
+          "samples/sigma_yy: found -inf, allowed: up to 1e100 in size, or nan");
 }
 
 TEST(DamagedField, OneWithoutChecksumsDoesNotEndTheProgram) {

@@ -168,6 +168,8 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
     EXPECT_FALSE(std::filesystem::exists(folder / "f"));
   };
   const std::string head = "x (mm),component,value (kPa),error (kPa)\n", good = heap_options();
+  refused(head + "0,pressure,1e299,1\n", good, "m.csv:2: column value: found 1e299");
+  refused(head + "0,pressure,1,1e299\n", good, "m.csv:2: column error: found 1e299");
   refused(
       "x (mm),komponent,value (kPa),error (kPa)\n", good,
       "m.csv:1: no column \"component\"; found: x, komponent, value, error; nearest: komponent");
