@@ -79,7 +79,8 @@ TEST(LayerVerdictRun, MistakesAreNamed) {
               HasSubstr("variant.third.sweep.key: cannot be part of a variant"));
   std::string text = tiny_verdict();
   text.replace(text.find("\"uneven\"]"), 9, "\"unevn\"]");
-  EXPECT_THAT(refusal(folder, text), HasSubstr("found \"unevn\", nearest: uneven"));
+  EXPECT_THAT(refusal(folder, text),
+              HasSubstr("found \"unevn\", allowed: even, uneven; nearest: uneven"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[verdict.models]\n")), HasSubstr("verdict"));
   text = tiny_verdict();
   text.replace(text.find("\"flamant\""), 9, "\"flamand\"");

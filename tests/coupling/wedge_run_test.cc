@@ -204,8 +204,11 @@ TEST(WedgeRun, SettingsThatCombinationsLeaveWithoutEffect) {
   EXPECT_THAT(refusal("wedge-map.toml", layers),
               HasSubstr("model fe_mohr_coulomb_wedge: layers = 4 has no effect with history = "
                         "at_once"));
-  Overrides springs = once;
-  springs.insert(springs.end(), {"wedge.bases=[\"rough\",\"25\"]", "model.heap.base_stiffness=50",
-                                 "wedge.histories=[\"at_once\",\"rise\"]", "model.heap.layers=4"});
+  const Overrides springs{"wedge.histories=[\"at_once\",\"rise\"]",
+                          "wedge.dilations_deg=[28]",
+                          "model.heap.cells=8",
+                          "wedge.bases=[\"rough\",\"25\"]",
+                          "model.heap.base_stiffness=50",
+                          "model.heap.layers=4"};
   EXPECT_EQ(refusal("wedge-map.toml", springs), "accepted");
 }
