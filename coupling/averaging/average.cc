@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
+#include "dem/snapshot/same_grain.h"
 #include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
 #include "coupling/statistics/parallel.h"
@@ -188,10 +189,10 @@ void require_same_grains(const dem::Snapshot& unloaded, const dem::Snapshot& loa
     const dem::Grain &a = unloaded.grains[g], &b = loaded.grains[g];
     if (a.id != b.id)
       refuse(fmt::format("grain {} is id {} unloaded, id {} loaded", g, a.id, b.id));
-    if (a.radius != b.radius)
+    if (!dem::same_radius(a, b))
       refuse(fmt::format("grain id {} has radius {} m unloaded, {} m loaded", a.id, a.radius,
                          b.radius));
-    if (a.outline != b.outline)
+    if (!dem::same_outline(a, b))
       refuse(fmt::format("grain id {} has another outline loaded than unloaded", a.id));
     if (a.fixed != b.fixed) refuse(fmt::format("grain id {} is fixed in one of them only", a.id));
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/same_grain.h"
 
 namespace grainfield::dem {
 
@@ -16,7 +17,7 @@ ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after) {
   for (std::size_t k = 0; k < before.grains.size(); ++k) {
     const Grain& a = before.grains[k];
     const Grain& b = after.grains[k];
-    if (a.id != b.id || a.radius != b.radius) {
+    if (a.id != b.id || !same_radius(a, b)) {
       throw std::invalid_argument("snapshots do not belong together: different grains");
     }
     const Vec3 way = after.cell.is_periodic() ? displacement(a, b, before.cell, after.cell, counted)

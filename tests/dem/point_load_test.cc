@@ -271,6 +271,12 @@ TEST(ContactChanges, CountsGainedLostAndSliding) {
   EXPECT_EQ(changes.lost, 1);
   EXPECT_EQ(changes.newly_sliding, 1);
   EXPECT_DOUBLE_EQ(changes.max_displacement_over_radius, 0.5);
+  // A radius that a file had rounded.
+  b.grains[1].radius *= 1 + 1e-9;
+  EXPECT_EQ(compare_contacts(a, b).gained, 2);
+  b.grains[1].radius *= 1.001;
+  EXPECT_THROW(compare_contacts(a, b), std::invalid_argument);
+  b.grains[1].radius = a.grains[1].radius;
   b.grains.pop_back();
   EXPECT_THROW(compare_contacts(a, b), std::invalid_argument);
 }
