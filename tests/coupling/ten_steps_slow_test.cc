@@ -50,6 +50,15 @@ std::string in_space(const Key& shapes) {
 }
 
 // Settings that give the key its effect in a case of this study that begins so.
+// A setting takes the place of an earlier one of the same key.
+void put(Overrides& set, const std::string& setting) {
+  const std::string start = setting.substr(0, setting.find('=') + 1);
+  set.erase(std::remove_if(set.begin(), set.end(),
+                           [&](const std::string& one) { return one.rfind(start, 0) == 0; }),
+            set.end());
+  set.push_back(setting);
+}
+
 Overrides settings_for(const Key& key, const Study& study, const Overrides& beginning) {
   Overrides out;
   std::vector<const Key*> todo{&key};
@@ -206,14 +215,13 @@ TEST(TenSteps, OfEveryKeyAtItsEndsAndWithEachOfItsWords) {
         const int before = counts.run + counts.failed;
         for (const Overrides& beginning : beginnings(study.name)) {
           Overrides start = beginning;
-          for (std::string& setting : settings_for(key, study, beginning))
-            start.push_back(std::move(setting));
+          for (std::string& setting : settings_for(key, study, beginning)) put(start, setting);
           std::vector<std::string> values = values_of(key);
           for (std::string& value : near_values(key, file, start))
             values.push_back(std::move(value));
           for (const std::string& text : values) {
             Overrides set = start;
-            set.push_back(key.path() + "=" + text);
+            put(set, key.path() + "=" + text);
             ASSERT_NO_FATAL_FAILURE(try_ten_steps(study, file, set, counts));
           }
         }
