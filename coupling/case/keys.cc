@@ -170,9 +170,12 @@ bool varies_dimension(const Case& value) {
 std::string toml_text(const std::string& text) {
   std::string out = "\"";
   for (const char ch : text) {
+    const auto code = static_cast<unsigned char>(ch);
     if (ch == '"' || ch == '\\') out += '\\';
     if (ch == '\n') {
       out += "\\n";
+    } else if ((code < 0x20 && ch != '\t') || code == 0x7f) {
+      out += fmt::format("\\u{:04X}", code);  // TOML has no other way
     } else {
       out += ch;
     }

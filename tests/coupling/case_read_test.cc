@@ -19,6 +19,18 @@ using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+// What a run keeps for --resume is read again, whatever the title.
+TEST(ReadCase, TextsAreWrittenSoThatTheyAreReadAgain) {
+  const Folder folder;
+  std::string title;
+  for (char ch = 1; ch < 0x7f; ++ch) title += ch;
+  title += "\x7f \u00e9 \U0001F3D6";
+  const std::string text = "study = \"pile\"\ntitle = " + toml_text(title) + "\n";
+  const Case once = read_case(folder.write("x.toml", text), false, {});
+  EXPECT_EQ(once.title, title);
+  EXPECT_EQ(read_case(folder.write("again.toml", write_case(once)), false, {}).title, title);
+}
+
 TEST(ReadCase, FitsNeedEveryEntryOnce) {
   const auto fit = [](const std::string& line) {
     return complaint("study = \"pile-fit\"\n[fit]\n" + line + "\n");
