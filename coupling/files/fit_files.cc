@@ -11,6 +11,7 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/files/average_files.h"
+#include "coupling/files/measured_field.h"
 #include "coupling/fit/coverage.h"
 #include "coupling/fit/fits.h"
 #include "coupling/fit/heap_result.h"
@@ -196,6 +197,29 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
 
 namespace {
 
+bool is_measured(const Field& field) {
+  const auto method = field.attributes.find("method");
+  return method != field.attributes.end() && method->second == "measured";
+}
+
+// What nobody has chosen follows what there is: the components, and the base where all places are
+// on it.
+void take_what_was_measured(const Field& field, const FitRequest& request, FitSetup& setup) {
+  const auto chosen = [&](const std::string& key) {
+    return !request.case_file.empty() ||
+           std::any_of(request.overrides.begin(), request.overrides.end(),
+                       [&](const std::string& o) { return parse_override(o).path == key; });
+  };
+  if (!chosen("fit.components")) {
+    std::vector<std::string> there;
+    for (const std::string& name : kPlaneStress) {
+      if (field.find(name) != nullptr) there.push_back(name);
+    }
+    if (!there.empty()) setup.components = there;
+  }
+  if (!chosen("fit.heights") && name_of_measured(field) == "base") setup.heights = {0};
+}
+
 // A field was averaged before.
 void require_no_width(const Overrides& overrides) {
   for (const Assignment& a : parse_overrides(overrides)) {
@@ -222,13 +246,18 @@ FitOutcome fit_files(const FitRequest& request) {
   FitOutcome out;
   Observations data;
   std::function<dem::Snapshot()> drawn;
-  if (request.field) {
-    out.packings = {first};
-    data = observe_heap_field(value.get<FitSetup>(), *request.field, first);
-  } else if (!chosen.field.empty()) {
-    out.packings = {chosen.field_file + ":" + chosen.field};
-    data = observe_heap_field(value.get<FitSetup>(), read_field(chosen.field_file, chosen.field),
-                              out.packings.front());
+  if (request.field || !chosen.field.empty()) {
+    out.packings = {request.field ? first : chosen.field_file + ":" + chosen.field};
+    const Field field =
+        request.field ? *request.field : read_field(chosen.field_file, chosen.field);
+    const bool measured = is_measured(field);
+    if (measured) take_what_was_measured(field, request, value.get<FitSetup>());
+    data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
+    if (measured) {
+      const std::vector<std::string> doubts = measured_doubts(field);
+      data.warnings.insert(data.warnings.end(), doubts.begin(), doubts.end());
+      data.no_heap = fmt::format("{}", fmt::join(doubts, "; "));
+    }
   } else {
     const HeapReader heaps = reader_of(chosen.heaps);
     for (std::size_t k = 0; k < heaps.count; ++k) out.packings.push_back(heaps.name(k));

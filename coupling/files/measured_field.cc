@@ -24,6 +24,8 @@ namespace {
 // base's pressures carrying such a share of the weight.
 constexpr double kOutside = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
 constexpr double kDegree = 3.14159265358979323846 / 180;
+// A wrong unit, or another heap's size: no arching carries so much.
+constexpr double kImpossible = 5;
 constexpr std::size_t kEnoughToCarry = 5;
 
 constexpr double kSamePlace = 1e-9;   // of h
@@ -223,6 +225,73 @@ std::string name_of_measured(const Field& field) {
   return (heights.array() + h).abs().maxCoeff() <= kSamePlace * h ? "base" : "measured";
 }
 
+namespace {
+
+// A measured heap in the plane, as its field tells it.
+struct MeasuredHeap {
+  double left, right;  ///< from the apex to the feet, m
+  double weight;       ///< of the wedge, N/m
+};
+
+std::optional<MeasuredHeap> heap_of(const Field& field) {
+  if (field.points.cols() != 2 || field.attributes.count("left_deg") == 0 ||
+      field.find("sigma_yy") == nullptr) {
+    return std::nullopt;
+  }
+  const auto number = [&](const char* key) { return std::stod(field.attributes.at(key)); };
+  const double h = number("h");
+  const double left = h / std::tan(number("left_deg") * kDegree);
+  const double right = h / std::tan(number("right_deg") * kDegree);
+  return MeasuredHeap{left, right, 0.5 * number("rho_g_h") * (left + right)};
+}
+
+Eigen::Index places_outside(const Field& field, const MeasuredHeap& heap) {
+  const auto x = field.points.col(0).array();
+  return (x < -kOutside * heap.left || x > kOutside * heap.right).count();
+}
+
+// Places and pressures on the base, from left to right.
+std::vector<std::pair<double, double>> base_pressures(const Field& field) {
+  const Column& pressure = *field.find("sigma_yy");
+  const double h = std::stod(field.attributes.at("h"));
+  std::vector<std::pair<double, double>> base;
+  for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
+    const bool low = std::fabs(field.points(k, 1) + h) < 1e-6 * h;
+    if (low && std::isfinite(pressure.value[k])) {
+      base.emplace_back(field.points(k, 0), -pressure.value[k]);
+    }
+  }
+  std::sort(base.begin(), base.end());
+  return base;
+}
+
+// What the pressures on the base carry of the weight; nan: too few of them.
+double carried_share(const Field& field, const MeasuredHeap& heap) {
+  const std::vector<std::pair<double, double>> base = base_pressures(field);
+  if (base.size() < kEnoughToCarry || places_outside(field, heap) > 0) return kNan;
+  double carried = 0;
+  for (std::size_t k = 1; k < base.size(); ++k) {
+    carried += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
+  }
+  return carried / heap.weight;
+}
+
+std::string of_share(double share) {
+  return fmt::format("the pressures on the base carry {:.3g} of the heap's weight", share);
+}
+
+void refuse_impossible_weight(const Field& field) {
+  const std::optional<MeasuredHeap> heap = heap_of(field);
+  const double share = heap ? carried_share(field, *heap) : kNan;
+  if (!(share > kImpossible)) return;
+  throw std::invalid_argument(
+      fmt::format("{}, allowed: up to {:g}; correct the unit of the values, or --height, --slope, "
+                  "--rho-g",
+                  of_share(share), kImpossible));
+}
+
+}  // namespace
+
 Field measured_field(const MeasuredRequest& request) {
   check(request);
   const double h = request.height;
@@ -298,32 +367,21 @@ Field measured_field(const MeasuredRequest& request) {
   about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
   about["left_deg"] = fmt::format("{}", request.left_deg);
   about["right_deg"] = fmt::format("{}", request.right_deg);
+  refuse_impossible_weight(out);
   return out;
 }
 
 std::vector<std::string> measured_doubts(const Field& field) {
-  const Column* pressure = field.find("sigma_yy");
-  if (field.points.cols() != 2 || field.attributes.count("left_deg") == 0 || pressure == nullptr) {
-    return {};
-  }
-  const auto number = [&](const char* key) { return std::stod(field.attributes.at(key)); };
-  const double h = number("h"), most = number("rho_g_h");
-  const double left = h / std::tan(number("left_deg") * kDegree);
-  const double right = h / std::tan(number("right_deg") * kDegree);
+  const std::optional<MeasuredHeap> heap = heap_of(field);
+  if (!heap) return {};
   std::vector<std::string> out;
-  const auto x = field.points.col(0).array();
-  const Eigen::Index outside = (x < -kOutside * left || x > kOutside * right).count();
-  if (outside > 0) {
+  if (const Eigen::Index outside = places_outside(field, *heap); outside > 0) {
     out.push_back(
         fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and "
                     "{:.3g} m: is the unit of x right?",
-                    outside, x.size(), -left, right));
+                    outside, field.points.rows(), -heap->left, heap->right));
   }
-  std::vector<std::pair<double, double>> base;  // x and pressure
-  for (Eigen::Index k = 0; k < x.size(); ++k) {
-    const bool low = std::fabs(field.points(k, 1) + h) < 1e-6 * h;
-    if (low && std::isfinite(pressure->value[k])) base.emplace_back(x[k], -pressure->value[k]);
-  }
+  const std::vector<std::pair<double, double>> base = base_pressures(field);
   const auto pulls = std::count_if(base.begin(), base.end(), [](auto p) { return p.second < 0; });
   if (2 * pulls > static_cast<long>(base.size())) {
     out.push_back(
@@ -331,18 +389,9 @@ std::vector<std::string> measured_doubts(const Field& field) {
                     "heap presses; turn their signs",
                     pulls, base.size()));
   }
-  if (base.size() < kEnoughToCarry || outside > 0) return out;
-  std::sort(base.begin(), base.end());
-  double carried = 0;
-  for (std::size_t k = 1; k < base.size(); ++k) {
-    carried += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
-  }
-  const double weight = 0.5 * most * (left + right), share = carried / weight;
+  const double share = carried_share(field, *heap);
   if (share < kLeastCarried || share > kMostCarried) {
-    out.push_back(
-        fmt::format("the pressures on the base carry {:.3g} of the heap's weight: are the "
-                    "units, --height, --slope and --rho-g right?",
-                    share));
+    out.push_back(of_share(share) + ": are the units, --height, --slope and --rho-g right?");
   }
   return out;
 }

@@ -28,8 +28,8 @@ struct MeasuredRequest {
 /// empty error is none. The field has a column per stress (nan where it was not measured), with
 /// errors, and what `compare` and `fit` ask for as attributes. Throws std::invalid_argument, one
 /// line naming file and line, what was found and what is allowed: a missing column, an unknown unit
-/// or component, no number, a negative error, a value twice; and options that are missing or out of
-/// range.
+/// or component, no number, a negative error, a value twice, pressures that carry more than five
+/// times the heap's weight; and options that are missing or out of range.
 Field measured_field(const MeasuredRequest& request);
 
 /// What is hardly so, a sentence each, of a heap in the plane: places outside it, pressures that

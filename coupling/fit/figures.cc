@@ -37,6 +37,9 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.left_deg", "deg", "slope of the left flank, for models that take the flanks apart"},
       {"fit.right_deg", "deg", "the same on the right"},
       {"fit.friction_deg", "deg", "friction angle of these models"},
+      {"fit.weight_over_wedge", "-",
+       "weight of the heaps over that of wedges of their height and slopes: 1 for pointed heaps, "
+       "more under round tops; not there where it is not known"},
       {"fit.weights", "text", "values, their working units and what is missing for errors"},
       {"fit.warnings", "text",
        "what makes the constants doubtful: unbalanced heaps, heights below the averaging width"},
@@ -58,6 +61,9 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.*.cv_behind_error", "-", "its standard error over the realizations"},
       {"fit.*.heights_behind", "-", "the same on the height left out"},
       {"fit.*.heights_behind_error", "-", "its standard error over the realizations"},
+      {"fit.*.aic_behind", "-",
+       "of a single field with errors: chi2 + 2 x free numbers less the best model's; above 10 it "
+       "counts"},
       {"fit.*.supported", "text", "yes: not behind the best by more than chance; no"},
       {"fit.*.branch", "text", "branch of Cantelaube's theory with the nearest core angle"},
       {"fit.*.flank_balance_x", "-",

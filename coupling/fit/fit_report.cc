@@ -188,6 +188,9 @@ void add_figures(const EnsembleFits& fits, Summary& summary) {
       summary["fit.right_deg"] = facts.right_deg;
       summary["fit.friction_deg"] = facts.friction();
     }
+    if (std::isfinite(fits.observed.weight_over_wedge)) {
+      summary["fit.weight_over_wedge"] = fits.observed.weight_over_wedge;
+    }
     summary["fit.weights"] = weights_note(fits);
     summary["fit.warnings"] = fmt::format("{}", fmt::join(fits.observed.warnings, "; "));
   }

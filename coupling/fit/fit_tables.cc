@@ -189,6 +189,7 @@ void add_ranking(Summary& summary, const Selection& selection) {
     summary[prefix + "cv_behind_error"] = s.behind_error;
     summary[prefix + "heights_behind"] = s.heights_behind;
     summary[prefix + "heights_behind_error"] = s.heights_error;
+    if (std::isfinite(s.aic_behind)) summary[prefix + "aic_behind"] = s.aic_behind;
     summary[prefix + "supported"] = s.supported ? "yes" : "no";
   }
 }

@@ -132,6 +132,10 @@ EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
     f.note += (f.note.empty() ? "" : "; ") + off;
     if (first.name == f.name) out.selection.sentence += fmt::format(" {}: {}.", f.name, off);
   }
+  if (!out.observed.no_heap.empty()) {
+    const bool asks = out.observed.no_heap.back() == '?';
+    out.selection.sentence += fmt::format(" But {}{}", out.observed.no_heap, asks ? "" : ".");
+  }
   out.verdict.model = first.name;
   out.verdict.alone = out.selection.distinguishable;
   out.verdict.sentence = out.selection.sentence;

@@ -78,6 +78,7 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
   out.width = setup.width_diameters * diameter;
   warn_of_low_heights(setup.heights, least, out.width, out);
   warn_of_unlike_heaps(heaps.name, out);
+  warn_of_round_tops(out);
   warn_of_set_slopes(setup, out);
   AverageOptions options;
   options.method = "coarse_graining";

@@ -14,6 +14,8 @@
 namespace grainfield::coupling {
 namespace {
 
+// Heaps that weigh so many times their wedge, or as much less, are none.
+constexpr double kRound = 1.2;
 constexpr int kMapColumns = 101, kMapRows = 33;
 constexpr double kRounding = 1e-9;  // of the largest value
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
@@ -171,6 +173,19 @@ void warn_of_low_heights(const std::vector<double>& heights, double height, doub
       "or a smaller fit.width_diameters",
       low.size() == 1 ? "" : "s", fmt::join(low, ", "), width, width / height,
       std::ceil(100 * width / height) / 100));
+}
+
+void warn_of_round_tops(Observations& out) {
+  double sum = 0;
+  for (const PileFrame& frame : out.frames) sum += frame.weight_over_wedge();
+  out.weight_over_wedge = sum / static_cast<double>(out.frames.size());
+  if (!(out.weight_over_wedge > kRound || out.weight_over_wedge < 1 / kRound)) return;
+  out.no_heap = fmt::format(
+      "the heaps weigh {:.2f} times the wedge of their height and slopes{}, and models of heaps "
+      "are "
+      "of wedges",
+      out.weight_over_wedge, out.weight_over_wedge > 1 ? ": their tops are round or flat" : "");
+  out.warnings.push_back(out.no_heap);
 }
 
 void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, Observations& out) {

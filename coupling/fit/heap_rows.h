@@ -37,6 +37,10 @@ void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, doub
 /// Depth of a point below the mean flank, over h.
 double depth_below_flank(const HeapFacts& facts, double x, double y);
 
+/// Sets out.weight_over_wedge of out.frames; where the heaps are no wedges out.no_heap says so, and
+/// a warning.
+void warn_of_round_tops(Observations& out);
+
 /// Mean height and unit of stress of out.frames.
 void set_mean_heap(Observations& out);
 

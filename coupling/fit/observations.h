@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/case/case.h"
 #include "coupling/field.h"
@@ -36,9 +37,12 @@ struct Observations {
   int left_out = 0;                      ///< values that some realization does not have
   std::string note;                      ///< what the reader must know; may be empty
   std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each
+  std::string
+      no_heap;  ///< why the data are none of such a heap: said with the verdict; may be empty
   // Of heaps.
-  HeapFacts facts;                ///< in the same units: rho_g = height = 1
-  std::vector<PileFrame> frames;  ///< one per realization
+  HeapFacts facts;                  ///< in the same units: rho_g = height = 1
+  std::vector<PileFrame> frames;    ///< one per realization
+  double weight_over_wedge = kNan;  ///< mean over the heaps (PileFrame); nan: not known
 };
 
 /// Moves the rows of `all` that are finite in every realization into out.data and counts the

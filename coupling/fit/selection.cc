@@ -88,6 +88,23 @@ Difference paired(const FitData& data, const Weights& weights, const Forecast& o
   return out;
 }
 
+// chi2 with the errors of the values, whose components at a point may be tied and count as one, + 2
+// x the numbers that are free.
+double akaike(const FitData& data, const Fit& fit) {
+  double squares = 0;
+  for (const double r : fit.residual) {
+    if (std::isfinite(r)) squares += r * r;
+  }
+  const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
+                                  [](const FittedParameter& p) { return std::isfinite(p.error); });
+  return squares / static_cast<double>(data.components.size()) + 2 * static_cast<double>(free);
+}
+
+// How many have judged.
+std::string judges(int count) {
+  return count == 1 ? "one field with errors" : fmt::format("{} realizations", count);
+}
+
 // What the best fit says against every model; empty: nothing.
 std::string doubt(const Fit& best) {
   if (!(best.chi2_per_dof > best.chance)) return "";
@@ -106,6 +123,10 @@ double least_errors(int realizations) {
 }
 
 std::string evidence(const Score& s) {
+  if (std::isfinite(s.aic_behind)) {
+    return fmt::format("behind by {:.1f} in chi2 + 2 x free numbers (more than {:g} counts)",
+                       s.aic_behind, kNoSupport);
+  }
   std::string out =
       fmt::format("behind by {:.2g} +- {:.1g} on realizations left out", s.behind, s.behind_error);
   if (std::isfinite(s.heights_behind)) {
@@ -129,8 +150,9 @@ std::string sign_warnings(const std::vector<Fit>& fits, const std::vector<std::s
 
 void mark_supported(std::vector<Score>& ranking, double least_errors) {
   for (Score& s : ranking) {
-    const bool clearly_behind =
-        s.behind > least_errors * s.behind_error && !(s.heights_behind < 0);  // false for nan
+    const bool clearly_behind = s.behind > least_errors * s.behind_error &&
+                                !(s.heights_behind < 0) &&  // false for nan
+                                !(s.aic_behind <= kNoSupport);
     s.supported = &s == &ranking.front() || !clearly_behind;
   }
   // Who is at least as far behind in both as one that is not supported is not supported either.
@@ -187,6 +209,7 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
           paired(data, weights, heights[k].replicate(1, r), heights[best].replicate(1, r));
       s.heights_behind = apart.mean / signal;
       s.heights_error = apart.error / signal;
+      if (!left_out) s.aic_behind = akaike(data, fits[k]) - akaike(data, fits[best]);
     }
     out.ranking.push_back(s);
   }
@@ -202,14 +225,20 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
     out.sentence = fmt::format("{} is the only model.", names.front());
   } else if (out.distinguishable) {
     const Score& second = out.ranking[1];
-    out.sentence = fmt::format("{} is supported: the next, {}, is {}; {} realization{}.",
-                               names.front(), second.name, evidence(second), r, r == 1 ? "" : "s");
+    out.sentence = fmt::format("{} is supported: the next, {}, is {}; {}.", names.front(),
+                               second.name, evidence(second), judges(r));
   } else {
     out.sentence = fmt::format("Not distinguishable: {}", fmt::join(names, ", "));
+    if (names.size() < m) {
+      std::vector<std::string> behind;
+      for (const Score& s : out.ranking) {
+        if (!s.supported) behind.push_back(s.name);
+      }
+      out.sentence += fmt::format("; not supported: {}", fmt::join(behind, ", "));
+    }
     if (judged) {
       const Score& second = out.ranking[1];
-      out.sentence += fmt::format("; {} is {}; {} realization{}.", second.name, evidence(second), r,
-                                  r == 1 ? "" : "s");
+      out.sentence += fmt::format("; {} is {}; {}.", second.name, evidence(second), judges(r));
     } else {
       out.sentence +=
           fmt::format("; the nearest misses by {:.1f} % (relative L2), the next by {:.1f} %.",

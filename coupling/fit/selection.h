@@ -12,11 +12,14 @@
 // the second does not have it ahead; nor is any that is at least as far behind in both as one that
 // is not: a larger deficit with a larger error is no better support than a smaller one. The rest
 // are "not distinguishable". Of a single field with errors the differences are those of the mean,
-// with the errors that came with it.
+// with the errors that came with it. Its constants are fitted to the very noise that judges them,
+// so that a model must be behind in Akaike's criterion too, chi2 + 2 x free numbers with these
+// errors, by more than 10 (Burnham and Anderson 2002, 2.6: essentially no support).
 #pragma once
 #include <string>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "coupling/fit/fit.h"
 
 namespace grainfield::coupling {
@@ -34,8 +37,12 @@ struct Score {
   double behind_error = 0;    ///< standard error of that
   double heights_behind = 0;  ///< second judge: difference to the best model's; nan below 2 heights
   double heights_error = 0;   ///< standard error of that
+  double aic_behind = kNan;   ///< of a single field with errors: Akaike's difference to the best
   bool supported = false;     ///< see above
 };
+
+/// What aic_behind counts as behind.
+inline constexpr double kNoSupport = 10;
 
 /// Sets `supported` of scores with their differences to the best, which is the first: see above;
 /// `least_errors`: standard errors that count as behind. Without scores (behind nan) all are

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cctype>
 #include <cmath>
 
@@ -19,6 +21,7 @@ void average_maps(const Eigen::MatrixXd& samples, const std::function<bool(doubl
                   StressMaps& maps) {
   const Eigen::Index n = maps.points.rows();
   const auto count = static_cast<double>(samples.cols());
+  maps.realizations = static_cast<int>(samples.cols());
   maps.mean = maps.error = Eigen::MatrixXd::Constant(n, 3, kNan);
   for (Eigen::Index p = 0; p < n; ++p) {
     if (!shown(maps.points(p, 0), maps.points(p, 1))) continue;
@@ -59,9 +62,13 @@ std::vector<Section> map_sections(const StressMaps& m, const Eigen::MatrixXd& mo
   }
   Picture where = maps(titled(fmt::format("here {} fails", name), "W"), "x / h", "y / h",
                        "(grains - model) / standard error", residuals);
-  where.caption =
-      "Residuals in standard errors of the ensemble's mean. Chance alone gives patches of 2 in "
-      "places; a coherent region beyond 3 is where the model is wrong.";
+  const double rare =
+      boost::math::quantile(boost::math::students_t(std::max(1, m.realizations - 1)), 0.995);
+  where.caption = fmt::format(
+      "Residuals in standard errors of the mean of {} realizations. Chance alone puts one place in "
+      "a hundred beyond {:.1f} (Student's t); a coherent region beyond it is where the model is "
+      "wrong.",
+      m.realizations, rare);
   out.emplace_back(std::move(where));
   return out;
 }

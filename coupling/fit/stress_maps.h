@@ -12,6 +12,7 @@ namespace grainfield::coupling {
 /// The ensemble's mean stress on a grid, lengths over h, stresses in the unit of the fit.
 struct StressMaps {
   int columns = 0, rows = 0;
+  int realizations = 0;         ///< behind `error`
   Eigen::MatrixXd points;       ///< n x 2; no rows: there is no map
   Eigen::MatrixXd mean, error;  ///< n x 3 (xx, yy, xy); error: standard, nan with one realization
 };

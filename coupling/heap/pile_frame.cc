@@ -85,6 +85,11 @@ double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
 
 }  // namespace
 
+double PileFrame::weight_over_wedge() const {
+  const auto foot = [&](double slope_deg) { return height / std::tan(slope_deg * kDegree); };
+  return weight / (0.5 * pressure() * (foot(repose_left_deg) + foot(repose_right_deg)));
+}
+
 Eigen::MatrixXd PileFrame::to_packing(const Eigen::MatrixXd& scaled) const {
   Eigen::MatrixXd out = height * scaled;
   out.col(0).array() += apex_x;
@@ -115,6 +120,7 @@ PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
     area += grain.volume;
   }
   frame.grain_density = mass / area;
+  frame.weight = mass * frame.gravity;
   const dem::Surface surface = dem::free_surface(pile, frame.diameter);
   const dem::HeapShape heap = dem::measure_heap(surface);
   frame.height = heap.height;

@@ -25,12 +25,16 @@ struct PileFrame {
   double grain_density = 0;                          ///< mass over area of the grains, kg/m2
   double gravity = 0;                                ///< m/s2
   double diameter = 0;                               ///< mean of the grains, m
+  double weight = 0;                                 ///< of the free grains, N/m
   /// Grains in flight (dem/heap/carried.h), which are no part of the surface, the height and the
   /// volume fraction: the first with id and place, and how many; empty: none.
   std::string in_flight;
 
   /// rho g h, N/m: grain density times volume fraction times gravity times height.
   double pressure() const { return grain_density * volume_fraction * gravity * height; }
+  /// The weight over that of a wedge of this height with these slopes, rho g h^2/2 (cot left + cot
+  /// right): 1 for a pointed heap, more under a round or flat top; nan: no slope.
+  double weight_over_wedge() const;
   /// From scaled coordinates to the packing's axes; n x 2, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& scaled) const;
   /// Distance from the apex in half bases: -1 at the left foot, 1 at the right one.

@@ -152,8 +152,14 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
                         "-0.139 and 0.139 m: is the unit of x right?"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
-  EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 150"),
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
               HasSubstr("of the heap's weight: are the units"));
+  // The verdict says it again.
+  const std::string file = folder / "f";
+  const Output out = program("fit " + file + " --model osl --model bcc -o " + (folder / "fit"));
+  EXPECT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("warning: the pressures on the base carry 3.14 of the heap's"));
+  EXPECT_THAT(out.out, HasSubstr(" But the pressures on the base carry 3.14 of the heap's"));
 }
 
 TEST(ImportField, SaysWhatIsWrongInOneLine) {
@@ -168,6 +174,9 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
     EXPECT_FALSE(std::filesystem::exists(folder / "f"));
   };
   const std::string head = "x (mm),component,value (kPa),error (kPa)\n", good = heap_options();
+  std::string heavy = head;
+  for (int k = -3; k <= 3; ++k) heavy += fmt::format("{},pressure,20,0.1\n", 40 * k);
+  refused(heavy, good, "allowed: up to 5; correct the unit of the values, or --height");
   refused(head + "0,pressure,1e299,1\n", good, "m.csv:2: column value: found 1e299");
   refused(head + "0,pressure,1,1e299\n", good, "m.csv:2: column error: found 1e299");
   refused(

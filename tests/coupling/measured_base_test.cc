@@ -46,7 +46,7 @@ std::string table(double dip) {
 std::string field_of(const Folder& folder, double dip) {
   const std::string file = folder / fmt::format("m{:g}.h5", dip);
   const Output out = program("import-field " + folder.write("m.csv", table(dip)) +
-                             " --height 0.0866 --slope 60 --rho-g 15000 --width 0.002 -o " + file);
+                             " --height 0.0866 --slope 60 --rho-g 300000 --width 0.002 -o " + file);
   EXPECT_EQ(out.code, 0) << out.err;
   return file;
 }
