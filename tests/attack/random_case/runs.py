@@ -226,6 +226,9 @@ class Attack:
             if code != 130:
                 complain("interrupt", f"exit {code}: {text.strip()[-200:]}")
                 return
+            if "are complete" in text:  # after the results had taken their places
+                code = 0
+                break
             out["repeats"].append("interrupted")
             rest = ["--threads", "1", "--resume"]
             code, text = finished(start(self.program, case, again, *rest), 2 * self.limit)
