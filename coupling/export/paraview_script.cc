@@ -21,11 +21,25 @@ def opened(name):
     return XMLUnstructuredGridReader(registrationName=name, FileName=[os.path.join(here, name)])
 
 
+def dressed(shown, where, name, title):
+    ColorBy(shown, (where, name))
+    shown.RescaleTransferFunctionToDataRange(True)
+    shown.SetScalarBarVisibility(view, True)
+    colours = GetColorTransferFunction(name)
+    colours.NanOpacity = 0
+    GetScalarBar(colours, view).Title = title
+
+
 )";
 
 constexpr const char* kEnd = R"(
-ResetCamera()
+view.ResetCamera(True)
 Render()
+)";
+constexpr const char* kFlat = "view.InteractionMode = \"2D\"\n";
+constexpr const char* kFromAbove = R"(view.ResetCamera()
+GetActiveCamera().Azimuth(25)
+GetActiveCamera().Elevation(20)
 )";
 
 }  // namespace
@@ -42,23 +56,22 @@ std::string paraview_of_packing(const std::string& stem, const dem::Snapshot& pa
         "balls.ScaleArray = [\"POINTS\", \"radius\"]\n"
         "balls.ScaleFactor = 2\n"
         "balls.GlyphMode = \"All Points\"\n"
+        "balls.GlyphType.ThetaResolution = balls.GlyphType.PhiResolution = 24\n"
         "shown = Show(balls, view)\n";
   } else {
     out += "shown = Show(grains, view)\n";
     if (!space) out += "shown.Representation = \"Surface With Edges\"\n";
   }
   out += fmt::format(
-      "ColorBy(shown, (\"{}\", \"pressure\"))\n"
-      "shown.RescaleTransferFunctionToDataRange(True)\n"
-      "shown.SetScalarBarVisibility(view, True)\n"
+      "dressed(shown, \"{}\", \"pressure\", \"pressure ({})\")\n"
       "contacts = opened(\"{}-contacts.vtu\")\n"
       "lines = Show(contacts, view)\n"
       "lines.LineWidth = 2\n"
       "ColorBy(lines, (\"CELLS\", \"normal_force\"))\n"
       "chains = opened(\"{}-chains.vtu\")\n"
       "Hide(chains, view)\n",
-      space ? "POINTS" : "CELLS", stem, stem);
-  if (!space) out += "view.InteractionMode = \"2D\"\n";
+      space ? "POINTS" : "CELLS", space ? "Pa" : "N/m", stem, stem);
+  out += space ? kFromAbove : kFlat;
   return out + kEnd;
 }
 
@@ -70,12 +83,10 @@ std::string paraview_of_field(const std::string& stem, const Field& field,
   out += fmt::format("field = opened(\"{}.vtu\")\nshown = Show(field, view)\n", stem);
   if (field.nx < 2) out += "shown.Representation = \"Points\"\nshown.PointSize = 6\n";
   if (found != nullptr) {
-    out += fmt::format("ColorBy(shown, (\"POINTS\", \"{}\"))\n", found->name);
-    out +=
-        "shown.RescaleTransferFunctionToDataRange(True)\nshown.SetScalarBarVisibility(view, "
-        "True)\n";
+    out += fmt::format("dressed(shown, \"POINTS\", \"{0}\", \"{0} ({1})\")\n", found->name,
+                       found->unit);
   }
-  if (field.points.cols() == 2) out += "view.InteractionMode = \"2D\"\n";
+  out += field.points.cols() == 2 ? kFlat : kFromAbove;
   return out + kEnd;
 }
 
