@@ -144,6 +144,10 @@ void check_pile(const PileSetup& s) {
     require(s.source.shift == 0, "source.shift", s.source.shift,
             "0 with source.kind \"point\", whose funnel moves by source.move");
   } else {
+    require(std::fabs(s.source.shift) <= 0.5 * s.source.length, "source.shift", s.source.shift,
+            fmt::format("at most half of source.length, {:g} m, either way: a layer falls on the "
+                        "last one",
+                        0.5 * s.source.length));
     require(s.source.opening == 0, "source.opening", s.source.opening,
             "0 with source.kind \"line\"");
     require(s.source.move == 0, "source.move", s.source.move,

@@ -118,6 +118,13 @@ void PileRun::drop_layer() {
     const double plateau = plateau_of(surface, line_, kPlateauDrop * mean_diameter_).length();
     const double middle = 0.5 * (line_.left + line_.right) + setup_.source.shift;
     line_ = {middle - 0.5 * plateau, middle + 0.5 * plateau};
+    const double end = 0.5 * setup_.floor.length;
+    if (line_.left < -end || line_.right > end) {
+      throw ComputationFailed(fmt::format(
+          "a layer from {:.3g} to {:.3g} m would fall beyond the floor, which ends at {:g} m on "
+          "either side, after {} grains; lower source.shift or raise floor.length",
+          line_.left, line_.right, end, poured_));
+    }
     if (line_.length() < kPoint * largest_diameter_) {
       check_line_long_enough(setup_, poured_);
       end_pour();

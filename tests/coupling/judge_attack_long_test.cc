@@ -21,5 +21,14 @@ TEST(JudgeAttack, AThousandRandomTruths) {
   }
 }
 
+TEST(JudgeAttack, FiveHundredFieldsWithErrors) {
+  test::JudgeTally tally;
+  test::JudgeAttack attack(20002);
+  for (int k = 0; k < 500; ++k) attack.strike_one_field(tally);
+  fmt::print("judge: one field, {}\n", tally.text());
+  EXPECT_LE(tally.refused_truth, 0.01 * tally.truths);
+  EXPECT_LE(tally.wrong, 0.01 * tally.truths);
+}
+
 }  // namespace
 }  // namespace grainfield::coupling

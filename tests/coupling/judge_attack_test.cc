@@ -24,5 +24,15 @@ TEST(JudgeAttack, RandomTruthsAreSeldomRefused) {
   EXPECT_GT(named, 10);
 }
 
+TEST(JudgeAttack, OneFieldIsSeldomRefusedItsTruth) {
+  test::JudgeTally tally;
+  test::JudgeAttack attack(2);
+  for (int k = 0; k < 40; ++k) attack.strike_one_field(tally);
+  EXPECT_EQ(tally.truths, 40);
+  EXPECT_LE(tally.refused_truth, 2);
+  EXPECT_LE(tally.wrong, 2);
+  EXPECT_GT(tally.named, 0);
+}
+
 }  // namespace
 }  // namespace grainfield::coupling

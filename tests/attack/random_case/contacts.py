@@ -58,13 +58,14 @@ class Bodies:
                                            + share * np.linalg.norm(spin, axis=1)))
         self.slack += p.radius * unsure
         # A corrector moves the grains once more after the forces, by 3/16 of what the predictor's
-        # acceleration was wrong by: of all forces at most, where contacts have just closed. m
+        # acceleration was wrong by: where a contact has just closed or opened as much as the largest
+        # that the forces give. m
         pushed = np.zeros(p.size)
         for ends in (p.i, p.j):
             np.add.at(pushed, ends[ends >= 0], np.linalg.norm(p.force[ends >= 0], axis=1))
         self.corrected = np.zeros(p.size)
         if self.integrator == "gear":
-            self.corrected = np.where(free, 3 / 32 * self.step**2 * pushed / p.mass, 0)
+            self.corrected = np.where(free, 3 / 32 * self.step**2 * (pushed / p.mass).max(), 0)
         # Rounding: of a place against the sizes of things.
         self.grain = 4e-16 * (np.abs(p.position).max() + np.abs(p.edges).max())
         self.equal = equal_radius(p.volume, p.dim)
@@ -254,7 +255,10 @@ class Bodies:
             allowed += 1e-5 * elastic  # areas of deep lenses, differences of nearly equal sums
         if not self.leaps:
             allowed += across * np.linalg.norm(v) + 1e-4 * elastic
-        if j < 0:  # a servo has given its wall the velocity of the step to come
+        # A servo has given its wall, or the cell, the velocity of the step to come.
+        changed = np.linalg.norm(p.flow) * np.linalg.norm(p.other_centre(k) - p.position[i]) if rest and j >= 0 else 0.0
+        allowed += across * changed
+        if j < 0:
             allowed += across * np.linalg.norm(p.wall_velocity[p.wall_of(k)])
         if abs(p.normal_force[k] - expected) > allowed:
             self.complain("law", f"{what}: normal force {p.normal_force[k]:.9g}, by the law {expected:.9g} (elastic {elastic:.9g}, allowed {allowed:.2g})")
@@ -265,6 +269,7 @@ class Bodies:
             expected_t = p.spring[k] - along_c * slip
             off = np.linalg.norm(along - expected_t)
             allowed_t = CLOSE * (np.linalg.norm(p.spring[k]) + along_c * np.linalg.norm(slip)) + along_c * slack + 1e-9 * limit
+            allowed_t += along_c * changed
             if not self.leaps:
                 allowed_t += along_c * np.linalg.norm(v) + 1e-4 * limit
             if p.axes is not None:  # the normal's part of the force turns with the normal found anew

@@ -120,6 +120,7 @@ class Attack:
         word = said(text)
         if code == 2:
             out["refused"].append(word)
+            shutil.rmtree(results, ignore_errors=True)  # one that an analysis refuses keeps its grains
             if not any(path in word for path in self.keys if "." in path):
                 complain("word", f"exit 2 without a key: {text.strip()[-300:]}")
                 return False
