@@ -126,16 +126,21 @@ Eigen::VectorXd best_parameters(const FitData& data, const Eigen::VectorXd& valu
   Residuals residuals{data, values, model, bounds, weights.weight};
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd best = bounds.inner(starts.front());
-  bool best_converged = false;
+  bool best_converged = false, best_answers = false;
   for (const Eigen::VectorXd& start : starts) {
     Eigen::VectorXd inner = bounds.inner(start);
     bool good = false;
     const double misfit = minimise(residuals, inner, good);
     if (ends != nullptr && good) ends->push_back(bounds.outer(inner));
-    if (misfit < least) {
+    // Where no value is inside, 0 everywhere is no answer of the model, however near it is.
+    int outside = 0;
+    predict(data, model, bounds.outer(inner), &outside);
+    const bool answers = outside < data.values();
+    if ((answers && !best_answers) || (answers == best_answers && misfit < least)) {
       least = misfit;
       best = inner;
       best_converged = good;
+      best_answers = answers;
     }
   }
   for (int round = 0; huber > 0 && weights.known() && round < kHuberRounds; ++round) {

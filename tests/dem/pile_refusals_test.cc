@@ -72,6 +72,10 @@ TEST(Pile, RefusesWhatHasNoEffect) {
   s.source.shift = 0.1;
   EXPECT_THAT(refusal(s),
               testing::HasSubstr("source.shift: found 0.1, allowed: 0 with source.kind"));
+  // Layers beside one another, beyond the walls in the end.
+  s = small_pile("line", "disk");
+  s.source.shift = 0.6 * s.source.length;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("allowed: at most half of source.length"));
   s = small_pile("line", "disk");
   s.source.move = 0.1;
   EXPECT_THAT(refusal(s),
