@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,7 @@
 #include "dem/snapshot/child.h"
 #include "dem/snapshot/hdf5_damage.h"
 #include "dem/snapshot/hdf5_file.h"
+#include "dem/snapshot/hdf5_headers.h"
 
 namespace grainfield::dem::hdf5 {
 namespace {
@@ -64,17 +66,20 @@ std::set<State>& known_structures() {
 // here: they say it.
 class Walk {
  public:
-  explicit Walk(bool contents) : contents_(contents) {}
+  Walk(bool contents, const std::string& file)
+      : contents_(contents), file_(file, std::ios::binary) {}
 
   void group(hid_t id, int depth) {
-    attributes(id);
     H5O_info_t info;
     if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return failed();
+    attributes(id, info.addr);
     if (depth > kDeepest || !seen_.emplace(info.fileno, info.addr).second) return;
     Below below{*this, depth};
     if (H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, link, &below) < 0) failed();
   }
   bool out_of_memory() const { return out_of_memory_; }
+  /// An attribute's name, type and space do not end within it.
+  bool reaches_beyond() const { return reaches_beyond_; }
   /// Of all datasets met, as they claim.
   double bytes() const { return bytes_; }
 
@@ -119,12 +124,30 @@ class Walk {
     return 0;
   }
 
-  void attributes(hid_t id) {
+  // Of a file without a block of its user's before it, as all of ours are.
+  std::string bytes_at(std::uint64_t offset, std::uint64_t count) {
+    std::string out(count, '\0');
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(offset));
+    file_.read(out.data(), static_cast<std::streamsize>(count));
+    out.resize(static_cast<std::size_t>(std::max<std::streamsize>(file_.gcount(), 0)));
+    return out;
+  }
+
+  void attributes(hid_t id, haddr_t header) {
+    const auto read = [this](std::uint64_t at, std::uint64_t n) { return bytes_at(at, n); };
+    if (!attributes_end_within(read, header)) {
+      reaches_beyond_ = true;
+      return;
+    }
     if (H5Aiterate2(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, attribute, this) < 0) failed();
   }
 
   void dataset(hid_t set) {
-    attributes(set);
+    H5O_info_t info;
+    if (H5Oget_info2(set, &info, H5O_INFO_BASIC) < 0) return failed();
+    attributes(set, info.addr);
+    if (reaches_beyond_) return;
     const Handle claimed(H5Dget_space(set), H5Sclose);
     bytes_ += kNumber * static_cast<double>(std::max<hssize_t>(
                             0, claimed.valid() ? H5Sget_simple_extent_npoints(claimed) : 0));
@@ -156,17 +179,18 @@ class Walk {
   void failed() { out_of_memory_ = out_of_memory_ || hdf5::out_of_memory(); }
 
   std::set<std::pair<unsigned long, haddr_t>> seen_;
-  bool contents_, out_of_memory_ = false;
+  bool contents_, out_of_memory_ = false, reaches_beyond_ = false;
+  std::ifstream file_;
   double bytes_ = 0;
 };
 
-// False when it takes more memory than allowed.
+// False when it takes more memory than allowed, or an attribute reaches beyond its message.
 bool go_through(const std::string& file, Walk& walk) {
   const Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) return true;
   const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
   if (root.valid()) walk.group(root, 0);
-  return !walk.out_of_memory();
+  return !walk.out_of_memory() && !walk.reaches_beyond();
 }
 
 // Whether the user has limited our memory, so that want of it says nothing about the file.
@@ -178,7 +202,7 @@ bool memory_is_limited() {
 std::string why(const ChildResult& result) {
   switch (result.end) {
     case ChildEnd::failed:
-      return "reading it takes more memory than the file can need";
+      return "reading it takes more memory than the file can need, or bytes beyond an attribute";
     case ChildEnd::endless:
       return "reading it does not come to an end";
     case ChildEnd::crashed:
@@ -200,7 +224,7 @@ double content_bytes(const std::string& file) {
   const StructureOnly alone;
   const Handle handle = open_for_reading(file);
   const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
-  Walk walk(false);
+  Walk walk(false, file);
   if (root.valid()) walk.group(root, 0);
   return walk.bytes();
 }
@@ -220,7 +244,7 @@ void probe(const std::string& file) {
       alone ? ChildLimits{kStructureSeconds, kStructureMemory, kStructureClock}
             : ChildLimits{kSeconds + size / kBytesPerSecond, kMemory + kMemoryShare * size};
   const ChildResult result = run_in_child(limits, [&] {
-    Walk walk(!alone);
+    Walk walk(!alone, file);
     return go_through(file, walk);
   });
   if (alone && (result.end == ChildEnd::endless || result.end == ChildEnd::failed)) {
