@@ -122,7 +122,7 @@ def average(
     named = {name: Field(core, name=name) for name, core in out.fields}
     field = named.pop(next(iter(named)))
     field.beside = named
-    field.warnings = out.warnings + ([out.gaps] if out.gaps else [])
+    field.warnings = out.warnings + out.gaps.splitlines()
     field.seconds = out.seconds
     _warn(field.warnings)
     return field
