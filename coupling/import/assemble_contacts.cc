@@ -208,11 +208,14 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
             "and {:g} m from grain {} of radius {:g} m, allowed: up to {:g} radii from each",
             c.point.x(), c.point.y(), c.point.z(), (c.point - a.position).norm(), a.id, a.radius,
             (c.point - second).norm(), b.id, b.radius, kDistant));
+      const char* remedy = options_.files.empty()
+                               ? "periodic={\"x\": (low, high)} says where"
+                               : "--periodic AXIS=LOW:HIGH says where, --leave-out-distant imports "
+                                 "the packing without such contacts";
       refuse(fmt::format(
           "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
-          "periodic boundary? --periodic AXIS=LOW:HIGH says where, --leave-out-distant imports the "
-          "packing without such contacts",
-          a.id, b.id, a.radius, b.radius, d));
+          "periodic boundary? {}",
+          a.id, b.id, a.radius, b.radius, d, remedy));
     }
   }
   const double length = c.normal.norm();
