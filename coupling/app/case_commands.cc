@@ -23,6 +23,20 @@ void warn_of_keys_without_effect(const Case& value) {
   }
 }
 
+namespace {
+
+// "point-load, compared with layer and flamant"; of a study that compares no model, its name.
+std::string study_text(const Case& value) {
+  std::string out = value.study;
+  for (std::size_t k = 0; k < value.models.size(); ++k) {
+    const bool last = k + 1 == value.models.size();
+    out += (k == 0 ? ", compared with " : last ? " and " : ", ") + value.models[k].label;
+  }
+  return out;
+}
+
+}  // namespace
+
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "validate a case without running it");
   auto file = std::make_shared<std::string>();
@@ -36,8 +50,7 @@ void add_check(CLI::App& app, Action& action) {
       *file = find_case(*file);
       const Case value = read_case(*file, *quick, *sets);
       warn_of_keys_without_effect(value);
-      say("{}: ok ({}, {} model{})\n", printable_name(*file), value.study, value.models.size(),
-          value.models.size() == 1 ? "" : "s");
+      say("{}: ok ({})\n", printable_name(*file), study_text(value));
       say("{}", outlook_text(value));
       return 0;
     };
@@ -46,12 +59,13 @@ void add_check(CLI::App& app, Action& action) {
 
 void add_keys(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("keys", "every case key: type, unit, default, range, meaning");
-  auto sections = std::make_shared<std::vector<std::string>>();
+  auto names = std::make_shared<std::vector<std::string>>();
   auto markdown = std::make_shared<bool>(false);
   auto summary = std::make_shared<bool>(false);
-  command->add_option(
-      "section", *sections,
-      "only these sections, keys or parts of keys, such as fit, fit.heights, frict");
+  command->add_option("name", *names,
+                      "only those of a study (pile), a section (fit), a key (fit.heights) or with "
+                      "a part (frict); cone, pair, sample and wedge are studies and, with a dot "
+                      "behind, sections (pair.)");
   command->add_flag("--markdown", *markdown, "as the page docs/keys.md");
   command->add_flag("--summary", *summary, "the keys of summary.json instead");
   command->callback([=, &action] {
@@ -62,8 +76,8 @@ void add_keys(CLI::App& app, Action& action) {
         say("{}", keys_markdown());
       } else {
         std::vector<std::string> texts;
-        for (const std::string& section : *sections) texts.push_back(keys_text(section));
-        say("{}", sections->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
+        for (const std::string& name : *names) texts.push_back(keys_text(name));
+        say("{}", names->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
       }
       return 0;
     };

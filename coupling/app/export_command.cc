@@ -24,6 +24,8 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr std::size_t kNamed = 8;  // files, in the list of what was written
+
 struct ExportRequest {
   std::vector<std::string> files;
   std::string to, case_file, snapshots, group, column = "sigma_yy", output;
@@ -91,6 +93,15 @@ std::vector<std::string> chosen(const std::vector<std::string>& there, const std
                                           continuum::nearest(wanted, there)));
 }
 
+// "2 files: a.vtu, b.vtu"; of many the first ones.
+std::string listed(const std::vector<std::filesystem::path>& files) {
+  std::string out = fmt::format("{} file{}: ", files.size(), files.size() == 1 ? "" : "s");
+  for (std::size_t k = 0; k < files.size() && k < kNamed; ++k) {
+    out += (k == 0 ? "" : ", ") + files[k].string();
+  }
+  return files.size() > kNamed ? out + ", ..." : out;
+}
+
 int export_file(const ExportRequest& given) {
   const Exporter& exporter = find_exporter(given.to);
   if (given.files.size() != 1) {
@@ -124,10 +135,11 @@ int export_file(const ExportRequest& given) {
       exporter.packing(dem::read_snapshot(file, name), target);
     }
   }
+  const auto written = folder.staged();
   folder.publish();
-  say("{} of {} as {} in {}\n",
+  say("{} of {} as {} in {}\n{}\n",
       names.size() == 1 ? names.front() : fmt::format("{} states", names.size()), file, given.to,
-      given.output);
+      given.output, listed(written));
   return 0;
 }
 
@@ -160,12 +172,14 @@ int export_deck(ExportRequest given) {
   folder.require_other_than({given.case_file, given.snapshots});
   write_text_file(folder.staging("packing.data"), deck.data);
   write_text_file(folder.staging("in.lammps"), deck.input);
+  const auto written = folder.staged();
   folder.publish();
   say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots, packing.grains.size(),
       packing.walls.size(),
       setup.loaded.empty() ? "" : fmt::format(", load on {}", setup.loaded.size()));
   for (const std::string& line : deck.notes) note("note: {}", line);
-  say("in {}: lmp -in in.lammps; its first lines say how to come back\n", given.output);
+  say("{}\nin {}: lmp -in in.lammps; its first lines say how to come back\n", listed(written),
+      given.output);
   return 0;
 }
 

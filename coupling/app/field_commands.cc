@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include "coupling/app/commands.h"
@@ -24,8 +25,8 @@ namespace {
 
 // Warns of points without a value; they are nan in the file.
 void print_gaps(const Gaps& gaps, const Field& field) {
-  const std::string text = gaps.text(field.points);
-  if (!text.empty()) note("{}", text);
+  std::istringstream lines(gaps.text(field.points));
+  for (std::string line; std::getline(lines, line);) note("{}", line);
 }
 
 bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }

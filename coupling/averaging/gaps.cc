@@ -1,13 +1,15 @@
 #include "coupling/averaging/gaps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr std::size_t named = 3;
+constexpr Eigen::Index named = 3;
 
 std::string place(const Eigen::MatrixXd& at, Eigen::Index p) {
   std::string text;
@@ -29,32 +31,43 @@ void Gaps::add(const Gaps& other) {
 }
 
 std::string Gaps::text(const Eigen::MatrixXd& at) const {
-  std::string text;
-  if (!few_grains.empty()) {
-    text = fmt::format(
-        "{} of {} points have fewer than {} grains in the averaging volume and are nan:",
-        few_grains.size(), points, least_grains);
-    std::size_t n = 0;
-    for (const auto& [p, grains] : few_grains) {
-      if (n == named) break;
-      text += fmt::format("{} {} with {:.3g}", n++ == 0 ? "" : ",", place(at, p), grains);
+  std::vector<std::string> lines;
+  std::string places;
+  Eigen::Index few = 0, empty = 0;
+  for (const auto& [p, grains] : few_grains) {
+    if (grains == 0) {
+      ++empty;
+    } else if (++few <= named) {
+      places += fmt::format("{} {} with {:.3g}", few == 1 ? "" : ",", place(at, p), grains);
     }
-    if (few_grains.size() > named) text += ", ...";
-    text += "; a larger width takes in more";
+  }
+  if (few > 0) {
+    lines.push_back(fmt::format(
+        "{} of {} points{} have fewer than {} grains in the averaging volume and are nan:{}{}; a "
+        "larger width takes in more",
+        few, points - empty, empty > 0 ? " within the packing" : "", least_grains, places,
+        few > named ? ", ..." : ""));
+  }
+  if (empty > 0) {
+    lines.push_back(
+        fmt::format("{} of {} points lie outside the packing, without a grain in the "
+                    "averaging volume, and are nan",
+                    empty, points));
   }
   if (!outside.empty()) {
-    text += fmt::format(
-        "{}{} of {} points have less than a tenth of the averaging volume inside "
-        "the packing and are nan:",
-        text.empty() ? "" : "\n", outside.size(), points);
-    std::size_t n = 0;
+    places.clear();
+    Eigen::Index n = 0;
     for (const auto& entry : outside) {
       if (n == named) break;
-      text += fmt::format("{} {}", n++ == 0 ? "" : ",", place(at, entry.first));
+      places += fmt::format("{} {}", n++ == 0 ? "" : ",", place(at, entry.first));
     }
-    if (outside.size() > named) text += ", ...";
+    lines.push_back(fmt::format(
+        "{} of {} points have less than a tenth of the averaging volume inside the packing and are "
+        "nan:{}{}",
+        outside.size(), points, places,
+        static_cast<Eigen::Index>(outside.size()) > named ? ", ..." : ""));
   }
-  return text;
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 }  // namespace grainfield::coupling

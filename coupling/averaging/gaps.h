@@ -16,9 +16,10 @@ struct Gaps {
   int least_grains = 0;
 
   void add(const Gaps& other);
-  /// "3 of 120 points have fewer than 3 grains in the averaging volume and are nan: (0, 0.1)
-  /// with 1, ...; take a larger width"; the first three are named. `at`: the coordinates to print.
-  /// Empty without gaps.
+  /// "3 of 120 points within the packing have fewer than 3 grains in the averaging volume and are
+  /// nan: (0, 0.1) with 1, ...; a larger width takes in more"; the first three are named. Points
+  /// without any grain are counted by themselves. `at`: the coordinates to print. Empty without
+  /// gaps.
   std::string text(const Eigen::MatrixXd& at) const;
 };
 

@@ -67,8 +67,25 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
                      continuum::nearest(value, key.choices)));
 }
 
+// A number with something behind it that is no unit, such as "4 mn" or "4mm".
+void refuse_unknown_unit(const Key& key, const Assignment& a) {
+  for (const Scalar& item : a.items) {
+    const auto* text = std::get_if<std::string>(&item);
+    if (text == nullptr || measured(key, a, *text)) continue;
+    std::string number = text->substr(0, text->find_first_not_of(" +-.0123456789"));
+    number.erase(number.find_last_not_of(' ') + 1);
+    if (number.size() == text->size() || !dem::parse_number(number)) continue;
+    reject(a, key.path(),
+           fmt::format("found \"{}\", expected a number {}", *text,
+                       key.unit == "-"
+                           ? "without unit"
+                           : fmt::format("in {}, or with a unit ({})", key.unit, known_units())));
+  }
+}
+
 [[noreturn]] void wrong_type(const Key& key, const Assignment& a) {
   const std::string type = type_name(key);
+  if (type == "number" || type == "list of numbers") refuse_unknown_unit(key, a);
   const char* article = type == "integer" ? "an" : "a";
   const char* example = type == "list of numbers" ? " [0.2, 0.4]"
                         : type == "list of words" ? " [\"one\", \"two\"]"

@@ -52,8 +52,8 @@ struct Case {
   SweepSetup sweep;
   std::vector<Variant> variants;    ///< members of a sweep whose key is "variant"
   std::vector<ModelChoice> models;  ///< in the order of compare.models
-  /// Keys that were written but have no effect with what the case chooses elsewhere, a line each:
-  /// "FILE:LINE: KEY: ...".
+  /// Warnings of keys that were written: those without effect with what the case chooses elsewhere,
+  /// and values that are hardly meant (case/doubts.h), a line each: "FILE:LINE: KEY: ...".
   std::vector<std::string> without_effect;
   /// What studies and what they share hold: each part's own type, with its defaults.
   Setups setups;

@@ -13,6 +13,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/case/cost.h"
 #include "coupling/case/dimensions.h"
+#include "coupling/case/doubts.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
@@ -227,6 +228,18 @@ void check_grains(const Draft& draft) {
   check_memory(draft, outlook);
 }
 
+// A doubtful value is named before what follows from it.
+void check_grains_or_doubt(const Draft& draft) {
+  try {
+    check_grains(draft);
+  } catch (const std::invalid_argument& e) {
+    const std::vector<Doubt> found = doubts(draft);
+    const std::string what = e.what();
+    if (found.empty() || what.find(found.front().key + ":") != std::string::npos) throw;
+    throw std::invalid_argument(found.front().text + "; with it " + what);
+  }
+}
+
 }  // namespace
 
 Assignment written(const Draft& draft, const std::string& path) {
@@ -261,8 +274,9 @@ void finish(Draft& draft) {
   if (const Study& study = study_of(draft.value); study.check != nullptr) {
     blame(draft, [&] { study.check(draft.value); });
   }
-  check_grains(draft);
+  check_grains_or_doubt(draft);
   check_sweep(draft);
+  for (const Doubt& doubt : doubts(draft)) draft.value.without_effect.push_back(doubt.text);
   for (const auto& [path, a] : draft.last) {
     const Key& key = *find_key(path);
     if (!is_without_effect(key, draft.value)) continue;

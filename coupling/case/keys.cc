@@ -74,14 +74,18 @@ struct Defaults {
   std::vector<std::pair<std::string, std::string>> others;  // study, default
 };
 
+std::string default_of(const Key& key, const Study& study) {
+  Case value;
+  value.study = study.name;
+  return value_text(key, value);
+}
+
 Defaults defaults_of(const Key& key) {
   Defaults out;
   for (const Study& study : studies()) {
     if (!key_applies(key, study.name)) continue;
-    Case value;
-    value.study = study.name;
     const std::string text =
-        key.path() == "study" ? value_text(key, Case()) : value_text(key, value);
+        key.path() == "study" ? value_text(key, Case()) : default_of(key, study);
     if (out.first.empty()) {
       out.first = text;
     } else if (text != out.first) {
@@ -151,6 +155,68 @@ void add_needs(const Study& study, std::vector<Key>& list) {
 std::string limits(const Key& key) {
   const std::string with = condition(key);
   return own_studies(key) + (with.empty() ? "" : "with " + with + ": ");
+}
+
+// A key's path is nearest to keys, a word to sections and studies.
+[[noreturn]] void refuse_name(const std::string& name) {
+  const bool path = name.find('.') != std::string::npos;
+  std::vector<std::string> near = sections(), names;
+  for (const Study& study : studies()) names.push_back(study.name);
+  const std::string known =
+      fmt::format("sections: {}; studies: {}", fmt::join(near, ", "), fmt::join(names, ", "));
+  near.insert(near.end(), names.begin(), names.end());
+  if (path) {
+    near.clear();
+    for (const Key& key : keys()) near.push_back(key.path());
+  }
+  throw std::invalid_argument(fmt::format("keys: no {} '{}'; nearest: {}; {}",
+                                          path ? "key" : "section or study", name,
+                                          continuum::nearest(name, near), known));
+}
+
+// Letters that a search for keys takes.
+constexpr std::size_t kLeastPart = 3;
+
+// What has the name "" (all), of a study, a section, a key or a part of keys, whichever comes
+// first.
+std::vector<const Key*> keys_named(const std::string& name) {
+  const auto of = [](auto wanted) {
+    std::vector<const Key*> out;
+    for (const Key& key : keys()) {
+      if (wanted(key)) out.push_back(&key);
+    }
+    return out;
+  };
+  if (name.empty()) return of([](const Key&) { return true; });
+  if (find_study(name) != nullptr) return of([&](const Key& k) { return key_applies(k, name); });
+  const auto section = of([&](const Key& k) { return k.section == name; });
+  if (!section.empty()) return section;
+  if (const Key* one = find_key(name)) return {one};
+  const auto part = of([&](const Key& k) {
+    return name.size() >= kLeastPart && k.path().find(name) != std::string::npos;
+  });
+  if (part.empty()) refuse_name(name);
+  return part;
+}
+
+// A key as `grainfield keys` prints it; of one study with its default, null: of all.
+std::string key_lines(const Key& key, const Study* study) {
+  std::string standard;
+  if (study != nullptr) {
+    standard = default_of(key, *study);
+  } else {
+    const Defaults defaults = defaults_of(key);
+    standard = defaults.first;
+    for (const auto& [other, text] : defaults.others) {
+      standard += fmt::format("; {}: {}", other, text);
+    }
+  }
+  const std::string with = condition(key);
+  const std::string before =
+      study == nullptr ? limits(key) : (with.empty() ? "" : "with " + with + ": ");
+  return fmt::format("  {} = {}  ({}; {}; {})\n      {}{}{}\n", key.name, standard, type_shown(key),
+                     key.unit == "-" ? "no unit" : key.unit, allowed(key), before, key.meaning,
+                     key.source.empty() ? "" : " [" + key.source + "]");
 }
 
 // Whether members of the sweep may differ in their grains' number of dimensions.
@@ -345,50 +411,18 @@ std::string value_text(const Key& key, const Case& value) {
       key.where);
 }
 
-// Letters that a search for keys takes.
-constexpr std::size_t kLeastPart = 3;
-
-std::string keys_text(const std::string& section) {
-  const auto names = sections();
-  const Key* one = find_key(section);
-  const bool known =
-      section.empty() || std::find(names.begin(), names.end(), section) != names.end();
-  // A part of a key's path: all keys that have it.
-  const auto has_part = [&](const Key& key) {
-    return section.size() >= kLeastPart && key.path().find(section) != std::string::npos;
-  };
-  const bool part = one == nullptr && !known && std::any_of(keys().begin(), keys().end(), has_part);
-  if (one == nullptr && !known && !part) {
-    // A key's path is nearest to keys, a word to sections.
-    std::vector<std::string> near = names;
-    if (section.find('.') != std::string::npos) {
-      near.clear();
-      for (const Key& key : keys()) near.push_back(key.path());
-    }
-    throw std::invalid_argument(
-        fmt::format("keys: no {} '{}'; nearest: {}; known: {}",
-                    section.find('.') == std::string::npos ? "section" : "key", section,
-                    continuum::nearest(section, near), fmt::join(names, ", ")));
-  }
-  std::string out, current = "-";
-  for (const Key& key : keys()) {
-    const bool wanted = known  ? section.empty() || key.section == section
-                        : part ? has_part(key)
-                               : &key == one;
-    if (!wanted) continue;
-    if (key.section != current) {
-      current = key.section;
+std::string keys_text(const std::string& name) {
+  const Study* study = find_study(name);
+  std::string out = study == nullptr ? "" : fmt::format("study {}: {}\n", name, study->meaning);
+  std::string current = "-";
+  for (const Key* key : keys_named(name)) {
+    if (key->section != current) {
+      current = key->section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", heading(current));
-      if (const auto note = note_of(current); !note.empty()) out += "  # " + note + "\n";
+      const auto note = study == nullptr ? note_of(current) : "";
+      if (!note.empty()) out += "  # " + note + "\n";
     }
-    const Defaults defaults = defaults_of(key);
-    std::string others;
-    for (const auto& [study, text] : defaults.others)
-      others += fmt::format("; {}: {}", study, text);
-    out +=
-        fmt::format("  {} = {}{}  ({}; {}; {})\n      {}{}{}\n", key.name, defaults.first, others,
-                    type_shown(key), key.unit == "-" ? "no unit" : key.unit, allowed(key),
-                    limits(key), key.meaning, key.source.empty() ? "" : " [" + key.source + "]");
+    out += key_lines(*key, study);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "coupling/case/study.h"
@@ -164,6 +165,16 @@ std::optional<double> measured(const Key& key, const Assignment& a, const std::s
                              text, key.unit));
   }
   return measure->value;
+}
+
+std::string known_units() {
+  std::string symbols, prefixes;
+  for (const Symbol& one : kSymbols) {
+    if (std::string_view(one.name) != "1") symbols += std::string(" ") + one.name;
+  }
+  for (const auto& [prefix, ten] : kPrefixes) prefixes += std::string(" ") + prefix;
+  return fmt::format("{}, with{} before; a blank before both, as in \"3.6 mm\"", symbols.substr(1),
+                     prefixes);
 }
 
 void check_units(const Draft& draft) {

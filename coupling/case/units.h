@@ -29,6 +29,9 @@ UnitKinds kinds_of(const std::string& unit);
 /// unit of another kind; nothing for a text that is none.
 std::optional<double> measured(const Key& key, const Assignment& a, const std::string& text);
 
+/// The units that parse_measure knows, for messages.
+std::string known_units();
+
 /// Throws likewise for units of space in a case of the plane, and the other way round.
 void check_units(const Draft& draft);
 

@@ -19,7 +19,8 @@ canvas {{ display: block; width: 100%; height: 100%; cursor: grab; }}
 <canvas id="view"></canvas>
 <div id="bar"><h1 id="title"></h1>
 <label>colour <select id="by"></select></label> <span id="least"></span><span id="scale"></span><span id="most"></span><br>
-<label><input type="checkbox" id="forces" checked> contact forces</label> &nbsp; <span id="help"></span></div>
+<label><input type="checkbox" id="forces" checked> contact forces</label><br>
+<span id="help">the wheel zooms, drag moves, the pointer on a grain shows its numbers</span></div>
 <div id="tip"></div>
 <script>
 "use strict";
@@ -37,7 +38,8 @@ const canvas = document.getElementById("view"), pen = canvas.getContext("2d");
 const by = document.getElementById("by"), forces = document.getElementById("forces"), tip = document.getElementById("tip");
 for (const [name] of quantities) by.add(new Option(name));
 document.getElementById("help").textContent =
-  (space ? "drag turns, shift and drag moves" : "drag moves") + ", wheel zooms, double click shows all";
+  "the wheel zooms, " + (space ? "drag turns, shift and drag moves" : "drag moves") +
+  ", double click shows all; the pointer on a grain shows its numbers; lines: normal forces, as wide as they are large";
 
 // Turns about the vertical (z) and tilts; in the plane x, y as they are.
 let yaw = 0.5, tilt = 0.3, zoom = 1, midX = 0, midY = 0;

@@ -65,13 +65,13 @@ std::string dip_sentence(const Dip& dip) {
   }
   const bool peak = dip.verdict == "peak";
   const double p = dip.difference.p_value;
-  const std::string spread =
-      fmt::format(
-          "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} (two-sided) if there "
-          "were none",
-          numbers, dip.difference.mean, dip.difference.standard_error, dip.difference.values,
-          2 * std::min(p, 1 - p)) +
-      few_realizations(dip.difference.values);
+  const std::string spread = fmt::format(
+                                 "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} "
+                                 "(two-sided; dip.p_value "
+                                 "= {:.2g} is one-sided) if there were none",
+                                 numbers, dip.difference.mean, dip.difference.standard_error,
+                                 dip.difference.values, 2 * std::min(p, 1 - p), p) +
+                             few_realizations(dip.difference.values);
   if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
   if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);
   return fmt::format("No dip and no peak beyond the spread: {}.", spread);

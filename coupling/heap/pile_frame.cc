@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "continuum/constants.h"
 #include "coupling/averaging/layer.h"
@@ -16,6 +19,10 @@ namespace {
 
 // The highest part of a small heap, in the middle of which its apex is taken to lie.
 constexpr double kHighest = 0.9;
+constexpr double kMiddle = 0.95;   // of the mass: all but grains that have rolled off
+constexpr int kGap = 2;            // columns without grains that part a heap
+constexpr double kOnePiece = 0.8;  // of the area at least, in a heap
+constexpr double kLeastSlope = 5;  // degrees: flatter is a layer
 
 // Apex and feet from the columns themselves.
 void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
@@ -35,6 +42,39 @@ void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
   frame.apex_x = sum / count;
   frame.half_left = frame.apex_x - left;
   frame.half_right = right - frame.apex_x;
+}
+
+// Share of the area below the surface in the largest run of columns without a gap of two, such as
+// a grain that has rolled off leaves.
+double largest_piece(const dem::Surface& surface) {
+  double all = 0, piece = 0, largest = 0;
+  int empty = 0;
+  for (const double top : surface.top) {
+    empty = top > 0 ? 0 : empty + 1;
+    if (empty >= kGap) piece = 0;
+    piece += top;
+    all += top;
+    largest = std::max(largest, piece);
+  }
+  return all > 0 ? largest / all : 1;
+}
+
+// Distance from x within which this share of the free grains' mass lies, m.
+double reach_of_mass(const dem::Snapshot& pile, double x, double share) {
+  std::vector<std::pair<double, double>> away;  // distance, mass
+  double all = 0;
+  for (const dem::Grain& grain : pile.grains) {
+    if (grain.fixed) continue;
+    away.emplace_back(std::fabs(grain.position.x() - x), grain.mass);
+    all += grain.mass;
+  }
+  std::sort(away.begin(), away.end());
+  double within = 0;
+  for (const auto& [distance, mass] : away) {
+    within += mass;
+    if (within >= share * all) return distance;
+  }
+  return away.back().first;
 }
 
 // A rough floor lies at the tops of the fixed grains that carry: there a pile's own floor is zero,
@@ -90,6 +130,24 @@ double PileFrame::weight_over_wedge() const {
   return weight / (0.5 * pressure() * (foot(repose_left_deg) + foot(repose_right_deg)));
 }
 
+std::string PileFrame::no_heap(std::size_t number) const {
+  const auto because = [&](const std::string& why) {
+    return fmt::format("realization {}: {}", number, why);
+  };
+  if (largest_piece < kOnePiece) {
+    return because(
+        fmt::format("it lies in pieces, the largest with {:.0f} % of it", 100 * largest_piece));
+  }
+  if (std::isnan(repose_left_deg + repose_right_deg)) {
+    return because("a flank on which no line fits (too flat, or too few grains)");
+  }
+  if (repose_left_deg + repose_right_deg < 2 * kLeastSlope) {
+    return because(fmt::format("flanks of {:.1f} and {:.1f} degrees, a layer", repose_left_deg,
+                               repose_right_deg));
+  }
+  return "";
+}
+
 Eigen::MatrixXd PileFrame::to_packing(const Eigen::MatrixXd& scaled) const {
   Eigen::MatrixXd out = height * scaled;
   out.col(0).array() += apex_x;
@@ -130,6 +188,8 @@ PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
   frame.half_left = heap.half_base_left();
   frame.half_right = heap.half_base_right();
   if (!(frame.half_left > 0 && frame.half_right > 0)) measure_small_heap(surface, frame);
+  frame.middle_reach = reach_of_mass(pile, frame.apex_x, kMiddle);
+  frame.largest_piece = largest_piece(surface);
   const dem::HeapWindows windows = dem::windows_of(heap, frame.diameter);
   frame.volume_fraction = fraction_in(pile, windows.whole);
   if (std::isnan(frame.volume_fraction)) {

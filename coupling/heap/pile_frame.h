@@ -26,6 +26,9 @@ struct PileFrame {
   double gravity = 0;                                ///< m/s2
   double diameter = 0;                               ///< mean of the grains, m
   double weight = 0;                                 ///< of the free grains, N/m
+  double middle_reach = 0;   ///< from the apex: 95 % of the free grains' mass lies within, m
+  double largest_piece = 1;  ///< share of the area below the surface that the largest part of the
+                             ///< heap without a gap of two columns holds
   /// Grains in flight (dem/heap/carried.h), which are no part of the surface, the height and the
   /// volume fraction: the first with id and place, and how many; empty: none.
   std::string in_flight;
@@ -35,6 +38,9 @@ struct PileFrame {
   /// The weight over that of a wedge of this height with these slopes, rho g h^2/2 (cot left + cot
   /// right): 1 for a pointed heap, more under a round or flat top; nan: no slope.
   double weight_over_wedge() const;
+  /// Why this is no heap, with its number as a realization: "realization 3: no line fits a flank";
+  /// empty: it is one.
+  std::string no_heap(std::size_t number) const;
   /// From scaled coordinates to the packing's axes; n x 2, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& scaled) const;
   /// Distance from the apex in half bases: -1 at the left foot, 1 at the right one.

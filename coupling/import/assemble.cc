@@ -84,13 +84,10 @@ void Assembly::add_grains(const ForeignTable& table) {
   if (!radius && !diameter && !outline) columns.missing("radius");
   const ForeignColumn mass = columns.find("mass");
   const ForeignColumn density = columns.find("density");
-  if (!mass && !density && !(options_.density > 0)) {
-    try {
-      columns.missing("mass");
-    } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(std::string(e.what()) + "; or --density");
-    }
-  }
+  if (!mass && !density && !(options_.density > 0))
+    columns.missing("mass", "or --density",
+                    options_.dim == 3 ? "mass (kg) or density (kg/m3) tells it"
+                                      : "mass (kg) or density (kg/m2) tells it");
   const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
   const ForeignColumn fixed = columns.find("fixed");
   const ForeignColumn mark =

@@ -51,7 +51,9 @@ class Assembly {
   /// A flat wall's contacts.
   struct WallSide {
     long long contacts = 0;
-    long long wrong = 0;         ///< of them, those whose grain is not on the side of the normal
+    long long wrong = 0;  ///< of them, those whose grain is not on the side of the normal
+    long long deep = 0;   ///< of these, those on it, but with their centre too near the wall
+    std::string first_deep;
     dem::Vec3 towards{0, 0, 0};  ///< sum of the directions from their points to their grains
   };
   /// Of the normals that the files give.

@@ -55,16 +55,12 @@ void Assembly::add_contacts(const ForeignTable& table) {
   const Triple force = find_triple(columns, "f", s.dim);
   Triple normal_part, tangential_part;
   if (!force) {
-    if (!columns.find("fnx")) columns.missing(columns.find("ftx") ? "fnx" : "fx");
+    if (!columns.find("fnx"))
+      columns.missing(columns.find("ftx") ? "fnx" : "fx", "", "forces (n, dim) tells it");
     normal_part = need_triple(columns, "fn", s.dim);
-    if (!columns.find("ftx")) {
-      try {
-        columns.missing("ftx");
-      } catch (const std::invalid_argument& e) {
-        throw std::invalid_argument(std::string(e.what()) +
-                                    "; without friction: --column ftx,fty,ftz=0,0,0");
-      }
-    }
+    if (!columns.find("ftx"))
+      columns.missing("ftx", "without friction: --column ftx,fty,ftz=0,0,0",
+                      "without friction: ftx = 0 and its like");
     tangential_part = need_triple(columns, "ft", s.dim);
   }
   const Triple point = find_triple(columns, "p", s.dim), normal = find_triple(columns, "n", s.dim);
@@ -212,11 +208,14 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
             "and {:g} m from grain {} of radius {:g} m, allowed: up to {:g} radii from each",
             c.point.x(), c.point.y(), c.point.z(), (c.point - a.position).norm(), a.id, a.radius,
             (c.point - second).norm(), b.id, b.radius, kDistant));
+      const char* remedy = options_.files.empty()
+                               ? "periodic={\"x\": (low, high)} says where"
+                               : "--periodic AXIS=LOW:HIGH says where, --leave-out-distant imports "
+                                 "the packing without such contacts";
       refuse(fmt::format(
           "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
-          "periodic boundary? --periodic AXIS=LOW:HIGH says where, --leave-out-distant imports the "
-          "packing without such contacts",
-          a.id, b.id, a.radius, b.radius, d));
+          "periodic boundary? {}",
+          a.id, b.id, a.radius, b.radius, d, remedy));
     }
   }
   const double length = c.normal.norm();
@@ -266,7 +265,13 @@ void Assembly::look_at_side(const dem::Contact& c, bool has_point) {
   const double cosine = round ? kLeastCosine : kLeastCosineOfPolygon;
   const bool behind = arm.dot(wall.normal) < cosine * arm.norm();
   const double height = (grain.position - wall.point).dot(wall.normal);
-  side.wrong += behind || (!has_point && round && height < kLeastHeight * grain.radius);
+  const bool near = !has_point && round && height < kLeastHeight * grain.radius;
+  side.wrong += behind || near;
+  if (behind || !near || !(height > 0)) return;
+  ++side.deep;
+  if (side.first_deep.empty())
+    side.first_deep = fmt::format("grain {}: radius {:.3g} m, centre {:.3g} m above it", grain.id,
+                                  grain.radius, height);
 }
 
 void Assembly::check_sides() {
@@ -284,16 +289,22 @@ void Assembly::check_sides() {
         "{} of {} grains in contact with wall {} are not on the side to which its normal "
         "{} points",
         side.wrong, side.contacts, wall.name, text(wall.normal));
+    if (2 * side.deep >= side.contacts)
+      throw std::invalid_argument(fmt::format(
+          "{} of {} grains in contact with wall {} reach through it by three quarters of their "
+          "radius and more ({}); allowed: radii, places and walls in m that fit each other",
+          side.deep, side.contacts, wall.name, side.first_deep));
     if (2 * side.wrong < side.contacts) {
       out_.warnings.push_back(found);
       continue;
     }
     const bool table = w < wall_sources_.size();
     const double length = side.towards.norm();
+    // Without contact points the direction is that of the normal.
+    const bool told = length > kLeastCosine * static_cast<double>(side.contacts) &&
+                      side.towards.dot(wall.normal) < kLeastCosine * length;
     const std::string where =
-        length > kLeastCosine * static_cast<double>(side.contacts)
-            ? fmt::format("; they lie towards {}", text(side.towards / length))
-            : "";
+        told ? fmt::format("; they lie towards {}", text(side.towards / length)) : "";
     throw std::invalid_argument(fmt::format(
         "{}: {}, allowed: a normal into the grains{}{}",
         table ? wall_sources_[w].where() : "--wall " + wall.name, found, where,

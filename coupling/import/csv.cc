@@ -2,12 +2,25 @@
 // contacts, one with name and nx one of walls, any other one of grains.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "coupling/import/format.h"
 
 namespace grainfield::coupling {
 namespace {
+
+// A header line of another separator would be one column with a long name.
+void require_commas(std::string_view header, const Lines& lines) {
+  const auto count = [&](char ch) { return std::count(header.begin(), header.end(), ch); };
+  for (const auto& [other, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}}) {
+    if (count(other) <= count(',')) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: found columns parted by {}, expected commas (and points in decimals)",
+                    lines.where(), name));
+  }
+}
 
 std::vector<ForeignTable> scan(const std::string& file) {
   Lines lines(file);
@@ -18,6 +31,7 @@ std::vector<ForeignTable> scan(const std::string& file) {
     line = trimmed(line);
     if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     if (line.empty() || line.front() == '#') continue;
+    require_commas(line, lines);
     std::vector<std::string_view> names;
     split(line, ',', names);
     table.columns = std::make_shared<const std::vector<std::string>>(names.begin(), names.end());

@@ -238,7 +238,8 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
   return {ours, -1, std::nullopt};
 }
 
-void TableColumns::missing(const std::string& what) const {
+void TableColumns::missing(const std::string& what, const std::string& option,
+                           const std::string& argument) const {
   const auto& columns = *table_.columns;
   // LAMMPS' scaled coordinates run from 0 to 1 over the box: no lengths.
   for (const char* scaled : {"s", "su"})
@@ -255,12 +256,16 @@ void TableColumns::missing(const std::string& what) const {
     nearest = same_meaning(instead, columns);
     if (!nearest.empty()) nearest += fmt::format(" (--column {}={})", instead, nearest);
   }
+  const std::string found = columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, " "));
+  // Names in memory are ours: none is another's word for the one that is missing.
+  if (table_.arrays != nullptr)
+    throw std::invalid_argument(fmt::format("{}: no \"{}\"; found: {}{}", table_.file, what, found,
+                                            argument.empty() ? "" : "; " + argument));
   if (nearest.empty()) nearest = continuum::nearest(what, columns);
-  throw std::invalid_argument(
-      fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS",
-                  table_.file, table_.header_line, what,
-                  columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, " ")),
-                  nearest.empty() ? "" : "; nearest: " + nearest, what));
+  throw std::invalid_argument(fmt::format(
+      "{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS{}", table_.file,
+      table_.header_line, what, found, nearest.empty() ? "" : "; nearest: " + nearest, what,
+      option.empty() ? "" : "; " + option));
 }
 
 ForeignColumn TableColumns::need(const std::string& ours) const {

@@ -96,7 +96,9 @@ class TableColumns {
   ForeignColumn need(const std::string& ours) const;
   /// By the file's own name; throws as need().
   ForeignColumn need_theirs(const std::string& theirs) const;
-  [[noreturn]] void missing(const std::string& what) const;
+  /// What else would do: as an option of the program; as an argument, for a table in memory.
+  [[noreturn]] void missing(const std::string& what, const std::string& option = "",
+                            const std::string& argument = "") const;
 
  private:
   const ForeignTable& table_;

@@ -167,13 +167,18 @@ std::vector<fs::path> OutputFolder::earlier_results() const {
   return out;
 }
 
-void OutputFolder::publish() {
-  const HeldSignals held(AfterHold::forget);
+std::vector<fs::path> OutputFolder::staged() const {
   std::vector<fs::path> results;
   for (const auto& entry : fs::recursive_directory_iterator(partial_)) {
     if (entry.is_regular_file()) results.push_back(entry.path().lexically_relative(partial_));
   }
   std::sort(results.begin(), results.end());
+  return results;
+}
+
+void OutputFolder::publish() {
+  const HeldSignals held(AfterHold::forget);
+  std::vector<fs::path> results = staged();
   std::stable_partition(results.begin(), results.end(),
                         [](const fs::path& file) { return file.filename() != kSummary; });
   // What could go wrong goes wrong before anything is removed.

@@ -36,6 +36,8 @@ class OutputFolder {
   /// Path of a file to be written: staging area / inner. Folders on the way are made, and one whose
   /// name ends with a slash.
   std::string staging(const std::string& inner = "") const;
+  /// Files that publish() will move to their place, sorted, below the folder.
+  std::vector<std::filesystem::path> staged() const;
   /// Removes the results of an earlier command, summary.json before all, and moves everything from
   /// the staging area to its place, summary.json last: a summary never stands beside another run's
   /// data. Whatever else is in the folder stays. Throws dem::StorageFailed, and as require_free.

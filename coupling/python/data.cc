@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -155,11 +156,31 @@ py::dict about(const Packing& self) {
   return out;
 }
 
+// Options of the program as arguments: "--flip-forces" is flip_forces, "--wall" is walls.
+std::string in_words_of_python(const std::string& text) {
+  std::string out;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool option = text.compare(k, 2, "--") == 0 && k + 2 < text.size() &&
+                        std::islower(static_cast<unsigned char>(text[k + 2])) != 0 &&
+                        (k == 0 || text[k - 1] == ' ' || text[k - 1] == '(');
+    if (!option) {
+      out += text[k];
+      continue;
+    }
+    const std::size_t start = out.size();
+    for (k += 2; k < text.size() && (text[k] == '-' || std::isalpha(text[k]) != 0); ++k)
+      out += text[k] == '-' ? '_' : text[k];
+    --k;
+    if (out.compare(start, std::string::npos, "wall") == 0) out += "s";
+  }
+  return out;
+}
+
 py::dict checked(const Packing& self) {
   const coupling::PackingCheck check = coupling::check_packing(*self.state);
   std::vector<std::string> warnings;
   const auto add = [&](const std::string& text) {
-    if (!text.empty()) warnings.push_back(text);
+    if (!text.empty()) warnings.push_back(in_words_of_python(text));
   };
   add(coupling::strange_units(*self.state));
   const std::string tension = coupling::tension_in(check);
@@ -245,9 +266,13 @@ Packing packing_of(const py::dict& grains, const py::dict& contacts, const py::d
   if (!std::isfinite(time))
     throw std::invalid_argument(fmt::format("time: found {}, allowed: a finite number", time));
   const Released released(false);
-  Snapshot state = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
-  state.time = time;
-  return {std::make_shared<const Snapshot>(std::move(state))};
+  try {
+    Snapshot state = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
+    state.time = time;
+    return {std::make_shared<const Snapshot>(std::move(state))};
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(in_words_of_python(e.what()));
+  }
 }
 
 const coupling::Column& column_in(const HeldField& self, const std::string& name) {

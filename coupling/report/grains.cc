@@ -22,6 +22,7 @@ constexpr double least_share = 0.02;  // of the widest: thinner lines are not dr
 // than this every n-th has an arrow.
 constexpr double arrow_diameters = 3;
 constexpr std::size_t most_arrows = 1800;
+constexpr int above_colours = 56;  // pixels over the packing, for a colour bar
 
 struct Line {
   Eigen::Vector2d from, to;
@@ -70,6 +71,16 @@ double force_scale(const std::vector<Line>& lines) {
   for (const Line& line : lines)
     if (line.force != 0) sizes.push_back(std::abs(line.force));
   return sizes.empty() ? 1 : quantile(std::move(sizes));
+}
+
+// Over the packing: the colours of style::sequential from 0 to `most`.
+void add_colour_bar(Picture& picture, double most, const std::string& label) {
+  const double height = picture.height;
+  picture.program += style::sequential_palette;
+  picture.program += fmt::format(
+      "set cbrange [0:{:.6g}]\nset colorbox horizontal user origin screen 0.35, screen {:.4f} size "
+      "screen 0.4, screen {:.4f}\nset label 2 {} at screen 0.34, screen {:.4f} right\n",
+      most, 1 - 20 / height, 10 / height, style::quoted(label), 1 - 15 / height);
 }
 
 }  // namespace
@@ -134,7 +145,7 @@ Picture packing(const std::string& title, const dem::Snapshot& snapshot,
 Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot) {
   Picture picture;
   picture.title = title;
-  Scene scene(picture, snapshot);
+  Scene scene(picture, snapshot, above_colours);
   double oldest = 0, youngest = 0;
   bool first = true;
   for (const dem::Grain& g : snapshot.grains) {
@@ -149,8 +160,10 @@ Picture grains_by_age(const std::string& title, const dem::Snapshot& snapshot) {
     return g.fixed ? "0x9a9a9a" : style::sequential((static_cast<double>(g.id) - oldest) / span);
   });
   scene.set_axes();
+  add_colour_bar(picture, span, "grains dropped before");
   scene.plot_grains("#666666");
-  picture.program += "\n";
+  // A plot without points: gnuplot draws the bar where something has its colours.
+  picture.program += ", NaN with lines palette\n";
   picture.caption =
       "Colour by the order in which the grains were dropped: dark first, bright last.";
   picture.caption += scene.strays();

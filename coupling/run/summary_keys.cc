@@ -87,7 +87,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"case.study", "text", "kind of study"},
       {"case.hash", "text", "FNV-1a hash of the written-out case (case.toml)"},
       {"warnings", "text",
-       "what to mind of these results, a sentence each; not there where there is nothing"},
+       "what to mind of these results, a sentence each; the key is missing where there is none"},
       {"version", "text",
        "of grainfield, with the commit it was built from (+: files were changed)"},
       {"ensemble.realizations", "-", "independent packings"},

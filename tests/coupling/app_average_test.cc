@@ -98,7 +98,7 @@ TEST(Average, HeapsAverageInScaledCoordinates) {
   const Output out = program("average" + files + " --frame heap --grid 21x11 --width 0.02 -o " +
                              (folder / "f.h5"));
   ASSERT_EQ(out.code, 0) << out.err;
-  EXPECT_THAT(out.err, HasSubstr("points have fewer than 3 grains"));
+  EXPECT_THAT(out.err, HasSubstr("14 of 189 points within the packing have fewer than 3 grains"));
   const Field field = field_of(folder / "f.h5");
   EXPECT_EQ(field.nx, 21);
   EXPECT_EQ(field.points(0, 1), -1);

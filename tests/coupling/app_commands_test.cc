@@ -53,7 +53,7 @@ TEST(Commands, CasesAreFoundByTheirNames) {
   for (const std::string name : {"fit-osl-point", "fit-osl-point.toml"}) {
     const Output shipped = program("check " + name, there);
     EXPECT_EQ(shipped.code, 0) << shipped.err;
-    EXPECT_THAT(shipped.out, HasSubstr("fit-osl-point.toml: ok (pile-fit"));
+    EXPECT_THAT(shipped.out, HasSubstr("fit-osl-point.toml: ok (pile-fit)\n"));
   }
   const Output unknown = program("run fit-ols-point", there);
   EXPECT_EQ(unknown.code, 2);
@@ -68,7 +68,7 @@ TEST(Commands, CasesAreFoundByTheirNames) {
   EXPECT_EQ(program("check fit-osl-point", there).code, 0);
   folder.write("fit-osl-point.toml", tiny_case());
   for (const std::string name : {"fit-osl-point", "fit-osl-point.toml"}) {
-    EXPECT_THAT(program("check " + name, there).out, HasSubstr("ok (point-load,"));
+    EXPECT_THAT(program("check " + name, there).out, HasSubstr("ok (point-load, compared with "));
   }
 }
 

@@ -16,6 +16,7 @@ namespace grainfield::coupling {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using ::testing::Not;
 
 TEST(Keys, EveryPathIsDeclaredOnceWithMeaningUnitAndDefault) {
@@ -83,12 +84,28 @@ TEST(Keys, OneKeyAlone) {
   }
 }
 
+TEST(Keys, OfOneStudyWithItsOwnDefaults) {
+  const std::string text = keys_text("pile");
+  EXPECT_THAT(text, StartsWith("study pile: grains poured into a pile"));
+  EXPECT_THAT(text, HasSubstr("  study = \"pile\"  ("));
+  EXPECT_THAT(text, HasSubstr("\n[heap]\n"));
+  EXPECT_THAT(text, HasSubstr("  friction = 0.54  (number"));
+  EXPECT_THAT(text, Not(HasSubstr("[packing]")));
+  EXPECT_THAT(text, Not(HasSubstr("half_width = ")));  // of [average], not of piles
+  // A study with the name of one of its sections; the section has a dot.
+  EXPECT_THAT(keys_text("pair"), HasSubstr("\n[material]\n"));
+  EXPECT_THAT(keys_text("pair."), StartsWith("[pair]\n"));
+  EXPECT_THAT(keys_text("pair."), Not(HasSubstr("[material]")));
+}
+
 TEST(Keys, UnknownSectionNamesTheNearest) {
   try {
     keys_text("materiel");
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_THAT(e.what(), HasSubstr("no section 'materiel'; nearest: material"));
+    EXPECT_THAT(e.what(),
+                HasSubstr("no section or study 'materiel'; nearest: material; sections: "));
+    EXPECT_THAT(e.what(), HasSubstr("; studies: point-load, "));
   }
 }
 

@@ -64,7 +64,11 @@ TEST(CaseUnits, AnotherKindIsRefused) {
               HasSubstr("packing.width: found \"3 kPa\", expected a number in m, or with a unit of "
                         "that kind"));
   EXPECT_THAT(complaint(head + "width = \"3 inch\"\n"),
-              HasSubstr("packing.width: found \"3 inch\""));
+              HasSubstr("packing.width: found \"3 inch\", expected a number in m, or with a unit "
+                        "(m g s N Pa J Hz rad deg, with n u m c d k M G before; a blank before "
+                        "both, as in \"3.6 mm\")"));
+  EXPECT_THAT(complaint(head + "width = \"4mm\"\n"), HasSubstr("found \"4mm\", expected"));
+  EXPECT_THAT(complaint(head + "width = \"wide\"\n"), HasSubstr("expected a number"));
   EXPECT_THAT(complaint("study = \"point-load\"\n[material]\nfriction = \"0.5 m\"\n"),
               HasSubstr("expected a number without unit"));
   // Stiffness of grains in the plane is N/m.

@@ -166,7 +166,13 @@ TEST(ExportForms, PicturesOfPackings) {
   const Folder folder;
   exported(kHeaps + ":" + first_of(kHeaps) + " --to svg -o " + (folder / "svg"));
   exported(kBox + ":" + first_of(kBox) + " --to png -o " + (folder / "png"));
-  exported(kBox + ":" + first_of(kBox) + " --to html -o " + (folder / "html"));
+  const Output page =
+      program("export " + kBox + ":" + first_of(kBox) + " --to html -o " + (folder / "html"));
+  EXPECT_THAT(page.out, HasSubstr("\n1 file: "));
+  EXPECT_THAT(page.out, HasSubstr(".html\n"));
+  const Output many = program("export " + kLayer + " --to csv -o " + (folder / "csv"));
+  EXPECT_THAT(many.out, HasSubstr(" files: "));
+  EXPECT_THAT(many.out, HasSubstr(", ...\n"));
   for (const char* form : {"svg", "png", "html"}) {
     int files = 0;
     for (const auto& entry : testing::fs::directory_iterator(folder / form)) {

@@ -52,6 +52,8 @@ TEST(ImportMistakes, MistakesInCsv) {
       {"id,x,y,radus,mass\n1,0,0,1,1\n", c, "",
        "g.txt:1: no column \"radius\"; found: id x y radus mass; nearest: radus; other names by "
        "--column radius=THEIRS"},
+      {"id;x;y;radius;mass\n1;0;0;1;1\n", c, "",
+       "g.txt:1: found columns parted by semicolons, expected commas (and points in decimals)"},
       {"id,x,y,R [m],mass\n1,0,0,1,1\n", c, "", "nearest: R [m]; other names by --column"},
       {"id,x,y,diam,mass\n1,0,0,1,1\n", c, "", "nearest: diam (--column diameter=diam); other"},
       {"particle,x,y,radius,mass\n1,0,0,1,1\n", c, "",

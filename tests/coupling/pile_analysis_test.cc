@@ -100,6 +100,45 @@ TEST(PileFrame, MeasuresALatticeHeap) {
   EXPECT_DOUBLE_EQ(f.in_half_bases(f.apex_x + f.half_right / 2), 0.5);
 }
 
+TEST(PileFrame, PiecesAndLayersAreNoHeaps) {
+  const dem::Snapshot heap = test::lattice_heap(20);
+  EXPECT_EQ(pile_frame(heap).no_heap(0), "");
+  EXPECT_DOUBLE_EQ(pile_frame(heap).largest_piece, 1);
+  // In a wedge of half base b the mass beyond x is that of (1 - x/b)^2.
+  const PileFrame f = pile_frame(heap);
+  EXPECT_NEAR(f.middle_reach, (1 - std::sqrt(0.05)) * f.half_left, 0.05 * f.half_left);
+  dem::Snapshot two = heap;
+  for (dem::Grain& grain : two.grains) {
+    if (grain.position.x() > f.apex_x) grain.position.x() += 0.3;
+  }
+  two.contacts.clear();
+  const PileFrame parted = pile_frame(two);
+  EXPECT_LT(parted.largest_piece, 0.6);
+  EXPECT_THAT(parted.no_heap(2), HasSubstr("realization 2: it lies in pieces, the largest with 5"));
+  PileFrame layer = f;
+  layer.repose_left_deg = 1;
+  layer.repose_right_deg = 2;
+  EXPECT_EQ(layer.no_heap(1), "realization 1: flanks of 1.0 and 2.0 degrees, a layer");
+}
+
+// One pile of several that fell apart does not widen the pictures of all.
+TEST(PileAnalysis, PicturesEndWithTheHeap) {
+  const Folder folder;
+  const dem::Snapshot heap = test::lattice_heap(20);
+  dem::Snapshot pieces = heap;
+  pieces.contacts.clear();
+  for (dem::Grain& grain : pieces.grains) grain.position.x() *= 5;
+  ASSERT_NE(pile_frame(pieces).no_heap(1), "");
+  const Case value = pile_case();
+  const auto reach = [&](const std::vector<dem::Snapshot>& heaps) {
+    return PileEnsemble(value, files_of(folder, heaps), 1).x().maxCoeff();
+  };
+  EXPECT_EQ(reach({heap, pieces}), reach({heap}));
+  const PileFrame frame = pile_frame(heap);
+  EXPECT_NEAR(reach({heap}), 1.08 * frame.half_left / frame.height, 0.05);
+  EXPECT_GT(reach({pieces}), 3 * reach({heap}));
+}
+
 // Grains in flight, single ones and a pair that touches, are no part of the heap; a rattler is.
 TEST(PileFrame, GrainsInFlightAreNoHeap) {
   dem::Snapshot heap = test::lattice_heap(30);

@@ -172,7 +172,14 @@ TEST(PileRun, AFlatPileIsSaidToHaveNoApex) {
   const std::string run = "run " + folder.write("x.toml", tiny_pile()) + " -o " + (folder / "out");
   const Output flat = program(run + " --set source.grains=4");
   ASSERT_EQ(flat.code, 0) << flat.err;
-  EXPECT_THAT(testing::read_text(folder / "out/summary.json"), HasSubstr("on which no line fits"));
+  const std::string why = "no heap formed in 2 of 2 piles: realization 0: ";
+  EXPECT_THAT(flat.err, HasSubstr("warning: " + why));
+  const std::string summary = testing::read_text(folder / "out/summary.json");
+  EXPECT_THAT(summary, HasSubstr(why));
+  EXPECT_THAT(summary, HasSubstr("No heap formed in 2 of 2 piles. "));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  EXPECT_THAT(page, HasSubstr(why));
+  EXPECT_THAT(page, HasSubstr("- (no line fits a flank of 2 of 2 piles)"));
 }
 
 TEST(PileRun, SameBitsOnAnyThreadsAndAfterAStop) {

@@ -138,6 +138,8 @@ TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   EXPECT_THAT(age, HasSubstr("0x440154"));
   EXPECT_THAT(age, HasSubstr("0xfde725"));
   EXPECT_THAT(age, HasSubstr("filledcurves closed"));
+  EXPECT_THAT(age, HasSubstr("set colorbox horizontal"));
+  EXPECT_THAT(age, HasSubstr("grains dropped before"));
   // A magnification of the largest displacement to three diameters.
   EXPECT_THAT(displacements("t", heap, moved).caption, HasSubstr("times as long"));
   EXPECT_THROW(displacements("t", heap, test::lattice_heap(5)), std::invalid_argument);

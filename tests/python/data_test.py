@@ -2,6 +2,7 @@
 
 import gc
 import re
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -114,6 +115,9 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
                                            mass=table["mass"], contacts=contacts))
         files = csv(tmp_path / "grains", table), csv(tmp_path / "contacts", contacts)
         there = program("import", "--from", "csv", *files, "-o", tmp_path / "p.h5", code=2)
+        # Options are named as Python's arguments.
+        there = there.replace("(--wall)", "(walls)")
+        there = re.sub("--periodic .*", 'periodic={"x": (low, high)} says where', there)
         # Rows are counted from 0, lines of a file from 1 with the header.
         assert there == re.sub(r"(grains|contacts):(\d+)",
                                lambda m: f"{tmp_path / m[1]}:{int(m[2]) + 2}", text)
@@ -129,8 +133,28 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
     assert wrong.startswith('grains: unknown column "colour"; nearest: ')
     assert error_of(lambda: gf.packing([0, 1], [0], 1, mass=1)) == "grains: y has 1 values, id has 2"
     assert "expected a finite number" in error_of(lambda: gf.packing([np.nan], [0], 1, mass=1))
+    assert error_of(lambda: gf.packing([0], [0], 1)) == (
+        "grains: no \"mass\"; found: id x y radius; mass (kg) or density (kg/m2) tells it")
+    one = error_of(lambda: gf.packing([0, 2], [0, 0], 1, mass=1, contacts={"i": [0], "j": [1], "force": [[0, 1]]}))
+    assert one == "contacts.force: found an array of shape (1, 2), allowed: (1,); nearest: forces, which takes (n, 2)"
+    none = error_of(lambda: gf.packing([0, 2], [0, 0], 1, mass=1, contacts={"i": [0], "j": [1]}))
+    assert none == "contacts: no \"fx\"; found: i j; forces (n, dim) tells it"
+    assert "--" not in error_of(lambda: gf.packing([0], [0], 1, mass=1, friction=-1))
+    large = error_of(lambda: gf.packing([0], [0.005], 5, mass=1, walls="floor:y=0",
+                                        contacts={"i": [0], "j": ["floor"], "forces": [[0, 1]]}))
+    assert large.startswith("1 of 1 grains in contact with wall floor reach through it") and "radius 5 m" in large
     short = error_of(lambda: gf.packing([0], [0], 1, mass=1, velocities=[[1, 2, 3]]))
     assert short == "grains.velocities: found an array of shape (1, 3), allowed: (n, 2)"
+
+
+def test_what_makes_a_packing_doubtful_is_a_warning():
+    pulled = {"i": [0], "j": [1], "forces": [[1.0, 0.0]]}
+    with pytest.warns(UserWarning) as told:
+        packing = gf.packing([0.0, 0.01], [0.0, 0.0], 0.005, mass=1, contacts=pulled)
+    assert [str(one.message) for one in told] == packing.check()["warnings"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        heap()
 
 
 def test_polygons_and_periodic_cells_come_from_arrays():

@@ -30,6 +30,14 @@ def test_fields_and_profiles_show_bands_and_models():
     assert gf.average(heaps, frame="heap", grid=(9, 5)).plot().get_ylabel() == "y/h"
     axes = gf.compare(cut, [f"osl:eta={ETA},mu={MU}", "ife"]).plot()
     assert [line.get_label() for line in axes.lines] == ["grains", "osl", "ife"]
+    # Tables of profiles have compression positive, fields tension: the label has the sign.
+    assert axes.get_ylabel() == "-sigma_yy (N/m)"
+    lines = dict(zip(("grains", "osl", "ife"), axes.lines))
+    assert np.nanmean(lines["grains"].get_ydata()) > 0 > np.nanmean(cut.sigma_yy)
+    axes = gf.fit(heaps, ["osl"], heights=[0.2]).plot()
+    assert axes.get_title() == "-sigma_xx at 0.2 h" and axes.get_ylabel() == "-sigma_xx (N/m)"
+    shear = gf.fit(heaps, ["osl"], heights=[0.2]).plot(profile="sigma_xy at 0.2 h")
+    assert shear.get_title() == "sigma_xy at 0.2 h" and shear.get_ylabel() == "sigma_xy (N/m)"
     with pytest.raises(ValueError, match="profile: found top, allowed: "):
         gf.compare(cut, "ife").plot(profile="top")
 

@@ -93,9 +93,10 @@ def average(
     snapshots: a packing, "FILE.h5" (all in it) or "FILE.h5:group", or a list of these: realizations
     of one, whose mean and standard error the field holds. unloaded: states before the load, one for
     each; the field then is the response, loaded - unloaded; so is it with response=True of files
-    that hold both under these names. points (k, dim) in the frame, m, or a grid (81, 31), or cuts,
-    shares of the height. frame: layer, heap or packing. width: m; default one mean diameter
-    (particle_centre, area_exact: 2.5). rings: in 3D, points are radius and height.
+    that hold both under these names. points (k, dim) in the frame (layer, packing: m; heap: shares of
+    the height, from the apex), or a grid (81, 31), or cuts, shares of the height. frame: layer, heap
+    or packing. width: m in every frame; default one mean diameter (particle_centre, area_exact: 2.5).
+    rings: in 3D, points are radius and height.
 
     The field's warnings are also given as Python warnings. Raises ValueError.
     """
@@ -122,7 +123,7 @@ def average(
     named = {name: Field(core, name=name) for name, core in out.fields}
     field = named.pop(next(iter(named)))
     field.beside = named
-    field.warnings = out.warnings + ([out.gaps] if out.gaps else [])
+    field.warnings = out.warnings + out.gaps.splitlines()
     field.seconds = out.seconds
     _warn(field.warnings)
     return field

@@ -196,7 +196,7 @@ class Packing(_Rows):
 class Field:
     """Values on points, with their spread over realizations.
 
-    points (n, dim), m or in the frame's unit; field["sigma_yy"] or field.sigma_yy (n): means;
+    points (n, dim), m, in frame "heap" shares of the height; field["sigma_yy"] or field.sigma_yy (n): means;
     field.error("sigma_yy") (n): standard errors, nan with one realization; field.samples("sigma_yy")
     (n, realizations) or None. shape: (nx, ny) or (nx, ny, nz) of a grid, x fastest, else None.
     Arrays are read-only views. units: of every column. attributes: what is known of it.

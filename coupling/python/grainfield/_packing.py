@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import warnings
 from typing import Any, Mapping, Sequence
 
 import numpy as np
@@ -25,6 +27,10 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
                 raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
                                  f"allowed: (n, {dim})")
             out.update({part: array[:, k] for k, part in enumerate(vectors[name][:dim])})
+        elif array.ndim == 2 and vectors:
+            near = difflib.get_close_matches(name, vectors, 1, 0)[0]
+            raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: ({len(array)},); "
+                             f"nearest: {near}, which takes (n, {dim})")
         elif array.dtype.kind in "US" or array.dtype == object:
             out[name] = [str(word) for word in value]
         else:
@@ -68,7 +74,7 @@ def packing(
 
     Other keywords are further columns of the grains under the names of docs/import.md (angle, spin,
     material, ...). The checks are those of `grainfield import`: grains:12 in a message is row 12,
-    from 0. Raises ValueError.
+    from 0. What `.check()` finds is given as Python warnings. Raises ValueError.
     """
     dim = 2 if z is None else 3
     x = np.atleast_1d(np.asarray(x, float))
@@ -110,4 +116,7 @@ def packing(
             "flip_forces": flip_forces,
         },
     )
-    return Packing(core)
+    made = Packing(core)
+    for line in made.check()["warnings"]:
+        warnings.warn(line, stacklevel=2)
+    return made

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -114,11 +115,22 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None) -> Any:
     _band(ax, x, profiles["simulation"][here], profiles["standard_error"], here, "grains")
     for model in models_in(profiles):
         ax.plot(x, profiles[model][here], "--", label=model)
-    ax.set_title(profile)
+    quantity = _quantity(profiles, profile)
+    ax.set_title("-" + profile if profile.startswith("sigma") and quantity.startswith("-") else profile)
     ax.set_xlabel(f"x ({profiles.units['x']})")
-    ax.set_ylabel(profiles.units["simulation"])
+    ax.set_ylabel(f"{quantity} ({profiles.units['simulation']})".strip())
     ax.legend()
     return ax
+
+
+def _quantity(profiles: Table, profile: str) -> str:
+    """What a profile shows: tables of profiles have compression positive, "-sigma_yy"; shears as
+    they are. "" where neither the profile's name nor the table's notes tell it."""
+    named = re.match(r"sigma_(\w)(\w)\b", profile)
+    if named:
+        return ("-" if named[1] == named[2] else "") + named[0]
+    told = (re.match(r"#?\s*(-?sigma_\w\w)\b", note) for note in profiles.notes)
+    return next((match[1] for match in told if match), "")
 
 
 def models_in(profiles: Table) -> list[str]:

@@ -127,7 +127,7 @@ StudyResult analyse_cones(const Case& value, const std::vector<std::string>& fil
     return cone_page(result, first, page);
   };
   out.overview = {{"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
-                  {"p of a dip", "dip.p_value", ""},
+                  {"p of a dip, one-sided", "dip.p_value", ""},
                   {"repose (deg)", "cone.repose_deg", ""},
                   {"h (m)", "cone.height", ""},
                   {"centre pressure (rho g h)", "dip.centre", ""},

@@ -62,7 +62,7 @@ std::vector<SummaryKey> pile_figures() {
       {"dip.standard_error", "rho g h", "its standard error over realizations"},
       {"dip.p_value", "-",
        "one-sided probability of a difference this high if it were 0 (Student's t); nan below 3 "
-       "realizations"},
+       "realizations; the verdict's p is two-sided: 2 min(p, 1 - p)"},
       {"dip.verdict", "text",
        "dip | peak | neither | undecided (at 5 %, two-sided: 2 min(p, 1 - p))"},
       {"change.*.coordination", "-", "contacts of a grain under the changed gravity"},

@@ -17,6 +17,9 @@ namespace {
 
 // Profiles and maps reach beyond the feet by this factor.
 constexpr double kReach = 1.08;
+// And beyond what holds most of the mass by this one at the most, where a flank's line is so flat
+// that its foot is far outside. In a wedge it is 1.24 half bases.
+constexpr double kMostReach = 1.6;
 // Mean diameters: narrower kernels see single contacts.
 constexpr double kLeastWidth = 0.25;
 
@@ -42,7 +45,7 @@ double coordination(const dem::Snapshot& snapshot) {
 
 PileEnsemble::PileEnsemble(const Case& value, const std::vector<std::string>& files, int threads)
     : value_(value), files_(files) {
-  double reach = 0;
+  double reach = 0, reach_of_all = 0;
   for (const std::string& file : files) {
     const Realization realization = read_realization(file);
     frames_.push_back(pile_frame(realization["pile"]));
@@ -50,8 +53,12 @@ PileEnsemble::PileEnsemble(const Case& value, const std::vector<std::string>& fi
     const auto n = static_cast<double>(files.size());
     height_ += f.height / n;
     pressure_ += f.pressure() / n;
-    reach = std::max(reach, kReach * std::max(f.half_left, f.half_right) / f.height);
+    const double feet = kReach * std::max(f.half_left, f.half_right);
+    const double own = std::min(feet, kMostReach * f.middle_reach) / f.height;
+    reach_of_all = std::max(reach_of_all, own);
+    if (f.no_heap(0).empty()) reach = std::max(reach, own);
   }
+  if (reach == 0) reach = reach_of_all;
   // An odd number of points, so that one is under the apex.
   const AverageSetup& setup = value.get<AverageSetup>();
   x_ = Eigen::VectorXd::LinSpaced(2 * (setup.points / 2) + 1, -reach, reach);

@@ -46,12 +46,13 @@ class PileAnalysis {
       out.sweep_charts.push_back(*beside);
     }
     const std::string averaged = describe(piles_.methods().front().options);
-    out.page = [averaged, beside](const StudyResult& result, const Realization* first) {
-      return page(result, first, averaged, beside);
+    out.page = [averaged, beside, flat = flat_piles()](const StudyResult& result,
+                                                       const Realization* first) {
+      return page(result, first, averaged, beside, flat);
     };
     out.overview = {{"dip ratio", "dip.ratio", ""},
                     {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
-                    {"p of a dip", "dip.p_value", ""},
+                    {"p of a dip, one-sided", "dip.p_value", ""},
                     {"repose (deg)", "repose.mean_deg", ""},
                     {"left - right (deg)", "repose.left_minus_right_deg", ""},
                     {"volume fraction", "heap.volume_fraction", ""},
@@ -274,17 +275,14 @@ class PileAnalysis {
     summary["dem.grain_steps"] = sum;
   }
 
-  /// Of piles on which no line fits a flank; empty when there are none.
-  std::string flat_piles() const {
-    const auto &left = piles_.figures().at("dem.repose_angle_left_deg"),
-               &right = piles_.figures().at("dem.repose_angle_right_deg");
-    int flat = 0;
-    for (std::size_t r = 0; r < left.size(); ++r) flat += std::isnan(left[r] + right[r]) ? 1 : 0;
-    if (flat == 0) return "";
-    return fmt::format(
-        "{} of {} piles {} a flank on which no line fits (too flat, or too few grains): apex and "
-        "shoulders mean little. ",
-        flat, left.size(), flat == 1 ? "has" : "have");
+  // What is said of each pile that is no heap.
+  std::vector<std::string> no_heaps() const {
+    std::vector<std::string> out;
+    for (std::size_t r = 0; r < piles_.frames().size(); ++r) {
+      std::string why = piles_.frames()[r].no_heap(r);
+      if (!why.empty()) out.push_back(std::move(why));
+    }
+    return out;
   }
 
   void add_dip(StudyResult& out, const Dip& dip) const {
@@ -293,7 +291,15 @@ class PileAnalysis {
     out.summary["dip.standard_error"] = dip.difference.standard_error;
     out.summary["dip.p_value"] = dip.difference.p_value;
     out.summary["dip.verdict"] = dip.verdict;
-    std::string sentence = flat_piles() + dip_sentence(dip);
+    std::string sentence = dip_sentence(dip);
+    if (const auto none = no_heaps(); !none.empty()) {
+      const std::string count = fmt::format("in {} of {} piles", none.size(), files_.size());
+      out.warnings.push_back(fmt::format(
+          "no heap formed {}: {}{}; apex, slopes and shoulders mean little there; more grains, or "
+          "more friction, make one",
+          count, none.front(), none.size() == 1 ? "" : ", and others"));
+      sentence = fmt::format("No heap formed {}. {}", count, sentence);
+    }
     if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
     out.comparison.verdict.sentence = sentence;
     out.summary["verdict.sentence"] = sentence;
@@ -328,8 +334,31 @@ class PileAnalysis {
     return table;
   }
 
+  // "no line fits a flank of 2 of 3 piles"; empty: of all piles both slopes are known.
+  std::string flat_piles() const {
+    std::size_t flat = 0;
+    for (const PileFrame& f : piles_.frames()) {
+      flat += std::isnan(f.repose_left_deg + f.repose_right_deg) ? 1U : 0U;
+    }
+    if (flat == 0) return "";
+    return fmt::format("no line fits a flank of {} of {} piles", flat, piles_.frames().size());
+  }
+
+  // Figures without a value say why, where it is the flanks.
+  static void add_reasons(ReportRows& rows, const std::string& flat) {
+    for (auto& [name, value] : rows) {
+      const bool slope = name.find("repose") != std::string::npos;
+      const bool window = name.find("(pile.volume_fraction_") != std::string::npos ||
+                          name.find("(density.") != std::string::npos;
+      if (!value.starts_with("-") || (value.size() > 1 && value[1] != ' ')) continue;
+      if (slope && !flat.empty()) value = "- (" + flat + ")";
+      if (window) value = "- (a pile is too small or too flat for these windows)";
+    }
+  }
+
   static Report page(const StudyResult& result, const Realization* first,
-                     const std::string& averaged, const std::optional<Chart>& beside) {
+                     const std::string& averaged, const std::optional<Chart>& beside,
+                     const std::string& flat) {
     PileReport in;
     if (beside) in.beside = beside->picture();
     in.title = title_of(result.value);
@@ -390,6 +419,7 @@ class PileAnalysis {
                                               "dem.unbalanced_force_ratio",
                                               "average.coarse_graining.balance_rms",
                                               "average.particle_centre.balance_rms"});
+    add_reasons(in.figures, flat);
     add_energy_rows(result.summary, in.figures);
     in.changes = changes_of(result.summary);
     in.made = origin_rows(result);

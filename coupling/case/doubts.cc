@@ -1,0 +1,73 @@
+#include "coupling/case/doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr double kLargeGrain = 0.5;                // m, of a radius or side: a boulder's
+constexpr double kLightest = 10, kHeaviest = 1e5;  // kg/m3, kg/m2
+constexpr double kDeepFall = 1000;                 // grain diameters
+
+constexpr std::array kSizes{"shape.radius",       "shape.side",         "packing.radius",
+                            "packing.radius_min", "packing.radius_max", "packing.radius_small",
+                            "packing.side",       "cone.radius",        "sample.radius",
+                            "lattice.radius",     "settling.radius"};
+// A height from which grains fall, and the size of these.
+constexpr std::array kFalls{std::pair{"source.height", "shape.radius"},
+                            std::pair{"cone.drop", "cone.radius"},
+                            std::pair{"packing.drop_height", "packing.radius_max"}};
+
+// Of a key that means something here; nothing for others.
+std::optional<double> value_of(const Draft& draft, const std::string& path) {
+  const Key* key = find_key(path);
+  if (key == nullptr || !key_applies(*key, draft.value.study)) return std::nullopt;
+  if (is_without_effect(*key, draft.value)) return std::nullopt;
+  const auto* where = std::get_if<double& (*)(Case&)>(&key->where);
+  if (where == nullptr) return std::nullopt;
+  return (*where)(const_cast<Case&>(draft.value));  // only read
+}
+
+// Only what somebody wrote.
+std::optional<double> written_value(const Draft& draft, const std::string& path) {
+  return draft.last.contains(path) ? value_of(draft, path) : std::nullopt;
+}
+
+std::string in_millimetres(double value) {
+  return fmt::format("the unit is m; {0:g} mm is written \"{0:g} mm\"", value);
+}
+
+}  // namespace
+
+std::vector<Doubt> doubts(const Draft& draft) {
+  std::vector<Doubt> out;
+  const auto add = [&](const std::string& path, const std::string& what) {
+    out.push_back({path, fmt::format("{}: {}: {}", written(draft, path).origin, path, what)});
+  };
+  for (const char* path : kSizes) {
+    const auto size = written_value(draft, path);
+    if (!size || !(*size > kLargeGrain)) continue;
+    add(path, fmt::format("found {:g} m, a boulder's size; {}", *size, in_millimetres(*size)));
+  }
+  const auto density = written_value(draft, "material.density");
+  if (density && !(*density >= kLightest && *density <= kHeaviest)) {
+    const bool space = dimension_of(draft.value) == 3;
+    add("material.density",
+        fmt::format("found {:g} {}, which no grain has (sand: {})", *density,
+                    space ? "kg/m3" : "kg/m2", space ? "2650, or \"2.65 g/cm3\"" : "2650"));
+  }
+  for (const auto& [path, radius] : kFalls) {
+    const auto height = written_value(draft, path), grain = value_of(draft, radius);
+    if (!height || !grain || !(*height > kDeepFall * 2 * *grain)) continue;
+    add(path, fmt::format("found {:g} m, a fall of {:.0f} grain diameters; {}", *height,
+                          *height / (2 * *grain), in_millimetres(*height)));
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling
