@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -72,7 +73,12 @@ void refuse_unknown_unit(const Key& key, const Assignment& a) {
   for (const Scalar& item : a.items) {
     const auto* text = std::get_if<std::string>(&item);
     if (text == nullptr || measured(key, a, *text)) continue;
-    std::string number = text->substr(0, text->find_first_not_of(" +-.0123456789"));
+    const std::size_t behind = text->find_first_not_of(" +-.0123456789");
+    if (behind == std::string::npos ||
+        std::ispunct(static_cast<unsigned char>((*text)[behind])) != 0) {
+      continue;  // "20,40" is no number with a unit
+    }
+    std::string number = text->substr(0, behind);
     number.erase(number.find_last_not_of(' ') + 1);
     if (number.size() == text->size() || !dem::parse_number(number)) continue;
     reject(a, key.path(),
