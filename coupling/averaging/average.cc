@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
-#include "dem/snapshot/same_grain.h"
 #include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
 #include "coupling/statistics/parallel.h"
 #include "coupling/unknown_name.h"
+#include "dem/snapshot/same_grain.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -37,8 +37,8 @@ void check_nesting(std::string_view text, const std::string& origin, bool lines)
 std::vector<Assignment> read_document(const std::string& file);
 /// "key.path=value": the value is TOML, or else taken as a bare word. Throws std::invalid_argument.
 Assignment parse_override(const std::string& text);
-/// Several, in their order. Throws std::invalid_argument, "--set: KEY: ...", for a key that is given
-/// twice, too.
+/// Several, in their order. Throws std::invalid_argument, "--set: KEY: ...", for a key that is
+/// given twice, too.
 std::vector<Assignment> parse_overrides(const std::vector<std::string>& texts);
 /// A scalar as TOML text; strings without quotes.
 std::string scalar_text(const Scalar& scalar);

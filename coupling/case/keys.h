@@ -86,10 +86,9 @@ std::string toml_text(const std::string& text);
 /// what names files, fields and keys of summary.json.
 bool plain_name(const std::string& text);
 
-/// What `grainfield keys` prints: all (""), those of a study, by its name, with its defaults, one
-/// section
-/// ("fit"), one key ("fit.heights"), or those with a part of that name ("frict", "pair."). Throws
-/// std::invalid_argument with the nearest name for an unknown one.
+/// What `grainfield keys` prints: all (""), those of a study, by its name, with its defaults,
+/// one section ("fit"), one key ("fit.heights"), or those with a part of that name ("frict",
+/// "pair."). Throws std::invalid_argument with the nearest name for an unknown one.
 std::string keys_text(const std::string& name);
 /// docs/keys.md.
 std::string keys_markdown();

@@ -659,10 +659,6 @@ class Sweep {
     auto& contacts = world_.contacts;
     const auto& acting = world_.acting;
     const auto& b = world_.grains.bodies[i];
-    // Steps leave out grains that stand: nothing of their contacts with walls is begun either.
-    if constexpr (kind == SweepKind::start) {
-      if (b.inverse_mass == 0) return;
-    }
     for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
       auto& pair = contacts.walls[k];
       if (aside_ || !world_.walls.is_plain(pair.j)) [[unlikely]] {

@@ -16,8 +16,8 @@ namespace grainfield::coupling {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 TEST(Keys, EveryPathIsDeclaredOnceWithMeaningUnitAndDefault) {
   std::set<std::string> seen;

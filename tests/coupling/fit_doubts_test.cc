@@ -122,6 +122,50 @@ TEST(FitDoubts, OtherUnitsAndTurnedGravityAreNotMissingContacts) {
   EXPECT_THAT(doubt(up), HasSubstr("gravity points the other way (--gravity)"));
 }
 
+// Without the grains above this height, and without their contacts.
+dem::Snapshot cut_off(const dem::Snapshot& whole, double height) {
+  dem::Snapshot out = whole;
+  out.grains.clear();
+  out.contacts.clear();
+  std::vector<int> kept(whole.grains.size(), -1);
+  for (std::size_t k = 0; k < whole.grains.size(); ++k) {
+    if (whole.grains[k].position.y() > height) continue;
+    kept[k] = static_cast<int>(out.grains.size());
+    out.grains.push_back(whole.grains[k]);
+  }
+  for (dem::Contact c : whole.contacts) {
+    c.i = kept[static_cast<std::size_t>(c.i)];
+    if (c.j >= 0 && (c.j = kept[static_cast<std::size_t>(c.j)]) < 0) continue;
+    if (c.i >= 0) out.contacts.push_back(c);
+  }
+  return out;
+}
+
+TEST(FitDoubts, HeapsThatAreNoWedgesAreSaidWithTheVerdict) {
+  const Folder folder;
+  const dem::Snapshot pointed = heap();
+  const double floor = pointed.walls.front().point.y();
+  double top = floor;
+  for (const dem::Grain& g : pointed.grains) top = std::max(top, g.position.y());
+  const auto said = [&](const std::string& name, const dem::Snapshot& s) {
+    const std::string file = folder / (name + ".h5");
+    dem::write_snapshot(file, "/pile", s);
+    const Output fit = program("fit " + file + " --heights 0.2,0.3" + kModels + (folder / name));
+    EXPECT_EQ(fit.code, 0) << fit.err;
+    const double ratio = std::get<double>(
+        read_summary(folder / (name + "/summary.json")).at("fit.weight_over_wedge"));
+    return std::pair(fit.out, ratio);
+  };
+  const auto [of_pointed, near_one] = said("pointed", pointed);
+  EXPECT_NEAR(near_one, 1, 0.1);
+  EXPECT_THAT(of_pointed, Not(HasSubstr("times the wedge")));
+  // A wedge without its upper 0.4: (1 - 0.4^2)/0.6^2 times the wedge of what is left.
+  const auto [of_flat, flat] = said("flat", cut_off(pointed, floor + 0.6 * (top - floor)));
+  EXPECT_NEAR(flat, 2.33, 0.3);
+  EXPECT_THAT(of_flat,
+              HasSubstr(" times the wedge of their height and slopes: their tops are round"));
+}
+
 TEST(FitDoubts, HeapsOfUnlikeHeightAreNamed) {
   const Folder folder;
   const std::string file = folder / "heap.h5";

@@ -18,6 +18,15 @@ Score score(double heights, double behind, double error) {
   return s;
 }
 
+std::vector<Fit> fits_of(const FitData& data, const Weights& weights,
+                         const std::vector<FitModel>& models) {
+  FitOptions options;
+  options.bootstrap = 0;
+  std::vector<Fit> out;
+  for (const FitModel& m : models) out.push_back(fit(data, weights, m, options));
+  return out;
+}
+
 TEST(Support, ALargerDeficitWithALargerErrorIsNoBetter) {
   std::vector<Score> ranking{score(0, 0, 0), score(0.02, 0.034, 0.014), score(0.03, 0.098, 0.052)};
   mark_supported(ranking, 2);
@@ -47,12 +56,8 @@ TEST(Support, SaysWhenNoModelAgrees) {
   FitData data = places(9);
   fill(data, predict(data, minus[0], Eigen::VectorXd(0)), 8, 0.03, 0.03, random);
   const Weights c = weights_of(data);
-  FitOptions options;
-  options.bootstrap = 0;
   const auto sentence = [&](const std::vector<FitModel>& models) {
-    std::vector<Fit> fits;
-    for (const FitModel& m : models) fits.push_back(fit(data, c, m, options));
-    return select(data, c, models, fits).sentence;
+    return select(data, c, models, fits_of(data, c, models)).sentence;
   };
   EXPECT_EQ(sentence(minus), "cantelaube_minus is the only model.");
   EXPECT_EQ(sentence(wrong).find("hydrostatic is the only model. No model agrees within the "
@@ -92,8 +97,6 @@ TEST(Support, OneFieldWithErrorsExcludesAModel) {
   const std::vector<FitModel> models{find_fit_model(all, "osl_yield"),
                                      find_fit_model(all, "hydrostatic"),
                                      find_fit_model(all, "cantelaube_minus")};
-  FitOptions options;
-  options.bootstrap = 0;
   FitData data = places(11);
   const Eigen::VectorXd truth = predict(data, models[0], vector({-0.3}));
   dem::Random random(9);
@@ -103,8 +106,7 @@ TEST(Support, OneFieldWithErrorsExcludesAModel) {
       fill(data, truth, 1, noise, 0.03, random);
       data.error = Eigen::VectorXd::Constant(data.values(), noise * kRhoG * kHeight);
       const Weights w = weights_of(data);
-      std::vector<Fit> fits;
-      for (const FitModel& m : models) fits.push_back(fit(data, w, m, options));
+      const std::vector<Fit> fits = fits_of(data, w, models);
       const Selection s = select(data, w, models, fits);
       const bool alone = s.distinguishable && s.ranking.front().name == "osl_yield";
       (noise < 0.1 ? named : named_in_noise) += alone ? 1 : 0;
@@ -137,8 +139,6 @@ TEST(Support, OneFieldOfATrueModelDoesNotExcludeIt) {
   const std::vector<FitModel> models{find_fit_model(all, "osl"),
                                      find_fit_model(all, "cantelaube_continuous"),
                                      find_fit_model(all, "cantelaube")};
-  FitOptions options;
-  options.bootstrap = 0;
   FitData data = places(11);
   const Eigen::VectorXd truth = predict(data, models[0], vector({0.74, -0.31}));
   dem::Random random(11);
@@ -147,9 +147,7 @@ TEST(Support, OneFieldOfATrueModelDoesNotExcludeIt) {
     fill(data, truth, 1, 0.05, 1e-6, random);
     data.error = Eigen::VectorXd::Constant(data.values(), 0.05 * kRhoG * kHeight);
     const Weights w = weights_of(data);
-    std::vector<Fit> fits;
-    for (const FitModel& m : models) fits.push_back(fit(data, w, m, options));
-    const Selection s = select(data, w, models, fits);
+    const Selection s = select(data, w, models, fits_of(data, w, models));
     for (const Score& one : s.ranking) {
       if (!one.supported) (one.name == "osl" ? wrong : others) += 1;
     }
