@@ -93,14 +93,14 @@ ModelInfo cantelaube_info() {
            choice("branch",
                   "minus: the axis yields, a dip; zero: no kink at the axis, a plateau; plus: the "
                   "axis yields, a peak",
-                  "Roul 4.10-4.12", {"minus", "zero", "plus"}),
+                  "Roul, below 4.12", {"minus", "zero", "plus"}),
            optional_number("beta_hat_deg", "deg",
                            "half tip angle of the core, instead of a branch; below 90 - phi_deg",
-                           "Roul 4.8", kNarrowest, 90)},
+                           "Roul 4.10", kNarrowest, 90)},
           make,
           heap_figures(
               {{"beta_hat_deg", "deg", "half tip angle of the elastic core, from the vertical"},
-               {"a1", "-", "core: sigma_yy under the axis = (a1 - 1) rho g depth (Roul 4.6)"},
+               {"a1", "-", "core: sigma_yy under the axis = (a1 - 1) rho g depth (Roul 4.11)"},
                {"a2", "-", "core: sigma_xx = (a2 - 1) rho g depth"},
                {"b1", "-", "core: kink of sigma_yy at the axis; below 0 a dip"},
                yield_figure("flanks and a yielding axis")})};

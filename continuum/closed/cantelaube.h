@@ -8,14 +8,12 @@
 //   b1 = cot b + (cos^2 b + sin b cos b / t)(cot b - 1/t)
 //   a2 = 1 + sin^2 b (t / tan b - 1)
 // Both obey equilibrium; the flank lies on Mohr and Coulomb's limit; they agree on the core's
-// boundary for every t. What fixes t (Roul 4.10-4.12) names the branch:
+// boundary for every t. What fixes t (Roul, below 4.12) names the branch:
 //   zero   b1 = 0, no kink at the axis:       t = sin b / sqrt(1 + cos^2 b), a plateau
-//   minus  the axis yields, sigma_xx largest: t = sin b / (1 - cos b)^2 (sqrt(1 + (1-cos b)^2) -
-//   1),
-//          b1 < 0, a dip
-//   plus   the axis yields, sigma_yy largest: t = sin b / (1 + cos b)^2 (sqrt(1 + (1+cos b)^2) +
-//   1),
-//          b1 > 0, a peak
+//   minus  the axis yields, sigma_xx largest; b1 < 0, a dip:
+//          t = sin b / (1 - cos b)^2 (sqrt(1 + (1 - cos b)^2) - 1)
+//   plus   the axis yields, sigma_yy largest; b1 > 0, a peak:
+//          t = sin b / (1 + cos b)^2 (sqrt(1 + (1 + cos b)^2) + 1)
 // (Roul 4.9 prints the flank's two coefficients in exchanged places: docs/theory-wedge.md.)
 #pragma once
 #include "continuum/closed/heap_field.h"

@@ -328,7 +328,7 @@ ModelInfo cantelaube_asymmetric_info() {
        choice("branch",
               "zero: one linear core, which continuity determines; minus, plus: a core that yields "
               "on an inner ray, with a dip or a peak there",
-              "Roul 4.10-4.12", {"zero", "minus", "plus"}),
+              "Roul, below 4.12", {"zero", "minus", "plus"}),
        number(
            "yield_ray_deg", "deg",
            "branches minus and plus: angle of the inner ray from the downward vertical, positive "

@@ -43,7 +43,7 @@ FitParameter beta_hat(double phi) {
           90 - phi / kDegree - 0.1};
 }
 
-// Roul 4.6, 4.9 with seven free numbers: inside |x| < Y tan(beta_hat), Y = -y,
+// Roul 4.11, 4.8 with seven free numbers: inside |x| < Y tan(beta_hat), Y = -y,
 //   (xx, yy, xy) = rho g ((a2 - 1) Y, (a1 - 1) Y + b1 |x|, a1 x)           y up: xy changes sign
 // outside rho g (a_xx, a_yy, -+a_xy) (|x| tan(slope) - Y), blended over `blend`: free constants
 // jump on the core's boundary, and the quadrature of a kernel would make steps of it.

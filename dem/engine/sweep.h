@@ -1,25 +1,19 @@
 // One step: forces of the pairs in a fixed order, then the motion of the grains (see engine.h for
 // the algorithm).
 #pragma once
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "dem/engine/batch.h"
+#include "dem/engine/contact_forces.h"
 #include "dem/engine/flatten.h"
+#include "dem/engine/outer_forces.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
-#include "dem/motion/local_damping.h"
 #include "dem/motion/round_lanes.h"
 
 namespace grainfield::dem {
-
-// A grain that moves further than this share of its radius in one step, or a wall that moves so far
-// through one, has diverged: a contact would be crossed before it is seen.
-inline constexpr double kMaxMoveShare = 0.5;
 
 enum class SweepKind {
   start,    ///< only the acceleration of new grains
@@ -34,9 +28,6 @@ class Sweep {
   using Force = ContactForce<dim>;
   using Vector = typename World::Vector;
   using Body = typename World::Body;
-  using Overlap = typename World::Overlap;
-  using Rule = typename World::Acting::Rule;
-  using Memory = typename World::Acting::Memory;
   /// All pairs are evaluated before any sum, several side by side (batch.h).
   static constexpr bool in_lanes = InLanes<typename World::Shape>;
   /// Rows of pairs are evaluated and summed side by side, several rows at a time (sphere_lanes.h).
@@ -51,20 +42,20 @@ class Sweep {
         integrator_(world.time_step),
         books_(world.balance.on),
         rolls_(world.rolling.on),
-        aside_(books_ || rolls_),
-        local_damping_(world.local_damping) {}
+        contact_forces_(world),
+        outer_forces_(world) {}
 
   /// After a search: nothing has been added up yet.
   void reset() { sums_.assign(world_.grains.bodies.size(), Sum{}); }
 
-  /// Some grain has left its margin since clear_moved().
-  bool moved() const { return moved_.load(std::memory_order_relaxed); }
+  /// Some grain has left its margin since clear_moved(), or a wall has crossed one.
+  bool moved() const { return moved_.load(std::memory_order_relaxed) || contact_forces_.crossed(); }
   void clear_moved() { moved_ = false; }
 
   /// Before the next step there has to be a search: for a wall that leaves its margin.
   void ask_for_search() { moved_.store(true, std::memory_order_relaxed); }
   /// Some wall goes through a grain by more than half its radius a step.
-  bool crossed() const { return crossed_.load(std::memory_order_relaxed); }
+  bool crossed() const { return contact_forces_.crossed(); }
 
   /// Begins a step for all grains of a thread's block.
   GRAINFIELD_FLATTEN void begin_block(int rank) {
@@ -85,12 +76,13 @@ class Sweep {
   /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
   /// their second grain, as they do when one thread sweeps all.
   GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
-    if constexpr (in_lanes) return evaluate(rank, dt);
+    if constexpr (in_lanes) return contact_forces_.evaluate(rank, dt);
     const bool periodic = world_.cell.is_periodic();
     for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
       Force& f = world_.contacts.pair_forces[k];
       const bool across = periodic && is_image(world_.contacts.images[k]);
-      if (!(across ? pair_force_across(i, k, dt, f) : pair_force(i, k, dt, f))) {
+      if (!(across ? contact_forces_.pair_across(i, k, dt, f)
+                   : contact_forces_.pair(i, k, dt, f))) {
         f = Force{};
         continue;
       }
@@ -152,9 +144,9 @@ class Sweep {
           pairs.first(i), end, last,
           [&](int k, Force& f) {
             if constexpr (in_lanes) {
-              return evaluated(k, f);
+              return contact_forces_.evaluated(k, f);
             } else {
-              return pair_force(i, k, dt, f);
+              return contact_forces_.pair(i, k, dt, f);
             }
           },
           force, torque);
@@ -211,8 +203,8 @@ class Sweep {
         evaluate();
         Sum& sum = sums_[i];
         sum_pairs<SweepKind::move_on>(
-            special, end, last, [&](int k, Force& f) { return pair_force(i, k, dt, f); }, sum.force,
-            sum.torque);
+            special, end, last, [&](int k, Force& f) { return contact_forces_.pair(i, k, dt, f); },
+            sum.force, sum.torque);
         if (in_cell && end < pairs.last(i)) {
           const Force across = sum_across<SweepKind::move_on>(i, last, dt);
           sum.force += across.force;
@@ -241,7 +233,7 @@ class Sweep {
   void end_rows(int from, int to, const Vector& applied, double dt, Begins& begins) {
     const auto& bodies = world_.grains.bodies;
     const auto& contacts = world_.contacts;
-    const bool together = world_.all_round && !(local_damping_ > 0) && !world_.cell.flows();
+    const bool together = world_.all_round && !outer_forces_.damps() && !world_.cell.flows();
     int list[kBatch], count = 0;
     for (int i = from; i < to; ++i) {
       if (bodies[i].inverse_mass == 0) {
@@ -251,7 +243,7 @@ class Sweep {
       if (together && bodies[i].inverse_inertia > 0) {
         Sum& sum = sums_[i];
         if (contacts.walls.first(i) < contacts.walls.last(i)) {
-          walls<SweepKind::move_on>(i, dt, sum.force, sum.torque);
+          contact_forces_.template add_walls<false>(i, dt, sum.force, sum.torque);
         }
         if (world_.is_loaded(i)) [[unlikely]]
           sum.force += applied;
@@ -297,16 +289,16 @@ class Sweep {
     auto& grains = world_.grains;
     auto& b = grains.bodies[i];
     const bool flows = in_cell && world_.cell.flows();
-    walls<kind>(i, dt, force, torque);
+    contact_forces_.template add_walls<kind == SweepKind::last>(i, dt, force, torque);
     if (world_.is_loaded(i)) force += applied;
-    Damping damping;
-    if (local_damping_ > 0) [[unlikely]] {
-      damping = damping_of(i, force, torque);
+    typename OuterForces<World>::Damping damping;
+    if (outer_forces_.damps()) [[unlikely]] {
+      damping = outer_forces_.damping(i, force, torque);
       force += damping.force;
       torque += damping.torque;
     }
     if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
-      record_outer(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
+      outer_forces_.record(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
     }
     const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
     if constexpr (kind == SweepKind::start) {
@@ -386,9 +378,9 @@ class Sweep {
         first_across(i), world_.contacts.pairs.last(i), last,
         [&](int k, Force& f) {
           if constexpr (in_lanes) {
-            return evaluated_across(k, dt, f);
+            return contact_forces_.evaluated_across(k, dt, f);
           } else {
-            return pair_force_across(i, k, dt, f);
+            return contact_forces_.pair_across(i, k, dt, f);
           }
         },
         sum.force, sum.torque_i);
@@ -455,8 +447,8 @@ class Sweep {
   ///   d/dt (kinetic energy of the fluctuations u + elastic energy)
   ///     = sum over contacts f . G l - sum over grains m u . G u,
   /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
-  /// that cross by edges n (pair_force_across). `local`: what of the load is local damping. It is
-  /// against the flow and no part of that.
+  /// that cross by edges n (ContactForces::pair_across). `local`: what of the load is local
+  /// damping. It is against the flow and no part of that.
   [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load, const Vector local) {
     auto& grains = world_.grains;
     const auto& cell = world_.cell;
@@ -484,267 +476,24 @@ class Sweep {
     sum.torque += f.torque_j;
   }
 
-  // In lanes: a thread evaluates the pairs of its block's rows but those that reach into a later
-  // block, and those that come in from an earlier one. The sums are as without.
-
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
-    const auto& contacts = world_.contacts;
-    const int last = contacts.blocks.last(rank);
-    PairBatches batch(world_, dt, books_, rolls_,
-                      [&](const Rule& rule, const Body& a, const Body& b, const Overlap& o,
-                          Memory& memory, int k) {
-                        return acts(rule, a, b, o, dt, memory, world_.rolling.pairs,
-                                    world_.balance.pairs, k)
-                            .force;
-                      });
-    for (const auto& [i, k] : contacts.blocks.incoming(rank)) batch.add(i, k);
-    for (int i = contacts.blocks.first(rank); i < last; ++i) {
-      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
-        const int j = contacts.pairs[k].j;
-        if (j < last || j >= world_.awake) batch.add(i, k);
-      }
-    }
-    batch.finish();
-  }
   GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
     const bool periodic = world_.cell.is_periodic();
     for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
       Force f;
       const bool across = periodic && is_image(world_.contacts.images[k]);
-      if (across ? evaluated_across(k, dt, f) : evaluated(k, f)) add_to_second(k, f);
+      if (across ? contact_forces_.evaluated_across(k, dt, f) : contact_forces_.evaluated(k, f))
+        add_to_second(k, f);
     }
-  }
-  bool evaluated(int k, Force& f) const {
-    f = world_.contacts.pair_forces[k];
-    return !f.force.isZero(0);
-  }
-  bool evaluated_across(int k, double dt, Force& f) {
-    if (!evaluated(k, f)) return false;
-    if (world_.cell.flows()) {
-      world_.grains.cell_work[world_.contacts.pairs[k].j] +=
-          dt * f.force.dot(world_.cell.drift(world_.contacts.images[k]));
-    }
-    return true;
-  }
-
-  /// Force of pair k between grain i and its second one; 0 and an empty memory when they do not
-  /// touch.
-  bool pair_force(int i, int k, double dt, Force& force) {
-    if (aside_) [[unlikely]] {
-      const Evaluated r = pair_aside(i, k, dt);
-      force = r.force;
-      return r.touches;
-    }
-    auto& pair = world_.contacts.pairs[k];
-    const auto& grains = world_.grains;
-    const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
-    typename World::Overlap o;
-    if (!world_.acting.overlap(grains.shapes, i, a, pair.j, b, pair.feature, o)) {
-      pair.memory = {};
-      return false;
-    }
-    force = world_.acting.force(world_.pair_rule(i, pair.j), a, b, o, dt, pair.memory);
-    return true;
-  }
-
-  /// The same with an image of the second grain. By the thread that has the second grain's block,
-  /// which therefore keeps the flow's work.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN bool pair_force_across(int i, int k, double dt,
-                                                              Force& force) {
-    auto& pair = world_.contacts.pairs[k];
-    auto& grains = world_.grains;
-    const PairImage image = world_.contacts.images[k];
-    const auto& a = grains.bodies[i];
-    const typename World::Body b = world_.image_of(grains.bodies[pair.j], image);
-    typename World::Overlap o;
-    if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) {
-      pair.memory = {};
-      if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
-      if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
-      return false;
-    }
-    const auto& rule = world_.pair_rule(i, pair.j);
-    force =
-        acts(rule, a, b, o, dt, pair.memory, world_.rolling.pairs, world_.balance.pairs, k).force;
-    if (world_.cell.flows()) {
-      grains.cell_work[pair.j] += dt * force.force.dot(world_.cell.drift(image));
-    }
-    return true;
-  }
-
-  struct Evaluated {
-    Force force;
-    bool touches = false;
-  };
-  // With an energy balance or resistance against rolling the same is done out of line: nothing of
-  // it is in the step loop, and nothing that the loop keeps in registers has an address there.
-  [[gnu::noinline]] Evaluated pair_aside(int i, int k, double dt) {
-    auto& pair = world_.contacts.pairs[k];
-    const auto& grains = world_.grains;
-    const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
-    typename World::Overlap o;
-    if (world_.acting.overlap(grains.shapes, i, a, pair.j, b, pair.feature, o)) {
-      const auto& rule = world_.pair_rule(i, pair.j);
-      auto& rolling = world_.rolling.pairs;
-      return {acts(rule, a, b, o, dt, pair.memory, rolling, world_.balance.pairs, k).force, true};
-    }
-    pair.memory = {};
-    if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
-    if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
-    return {};
-  }
-  /// Force of contact k of a list, with resistance against rolling and its account.
-  Acted<dim, Memory> acts(const Rule& rule, const Body& a, const Body& b, const Overlap& o,
-                          double dt, Memory& memory, std::vector<RollingMemory<dim>>& rolling,
-                          std::vector<Account<dim>>& accounts, int k) const {
-    Acted<dim, Memory> out;
-    out.before = memory;
-    out.force = world_.acting.force(rule, a, b, o, dt, memory);
-    if (rolls_) {
-      out.rolled = &rolling[k];
-      out.moment = roll(rule, a, b, o, dt, rolling[k], out.force);
-    }
-    if (!books_) return out;
-    out.after = memory;
-    book<World::Acting::central>(accounts[k], rule, a, b, o, out, dt, [](Force&) {});
-    return out;
-  }
-  /// Moments against rolling and twisting, added to a contact's force; that on the first body.
-  SpinOf<dim> roll(const Rule& rule, const Body& a, const Body& b, const Overlap& o, double dt,
-                   RollingMemory<dim>& memory, Force& force) const {
-    if constexpr (World::Shape::outlines) {
-      return zero<SpinOf<dim>>();  // refused by make_engine
-    } else {
-      return world_.acting.roll(rule, a, b, o, dt, memory, force);
-    }
-  }
-
-  struct Damping {
-    Vector force = zero<Vector>();
-    SpinOf<dim> torque = zero<SpinOf<dim>>();
-  };
-  /// Cundall's, of all other forces on a grain.
-  [[gnu::noinline]] Damping damping_of(int i, const Vector force, const SpinOf<dim> torque) const {
-    const auto& b = world_.grains.bodies[i];
-    return {local_damping(Vector(force + world_.weight(i)), Vector(world_.fluctuation(i)),
-                          local_damping_),
-            local_damping(torque, b.spin, local_damping_)};
-  }
-
-  /// Damping and the applied force on a grain, before its step ends, or (dt = 0) before its first
-  /// one begins. `local`: its local damping.
-  [[gnu::noinline]] void record_outer(int i, const Vector applied, const Damping& local,
-                                      double dt) {
-    auto& account = world_.balance.outer[world_.grains.ids[i]];
-    const auto& b = world_.grains.bodies[i];
-    const Vector velocity = world_.fluctuation(i);  // damping is against the flow
-    const double rate = world_.around.drag;
-    const Vector drag = rate * world_.grains.inertias[i].mass * velocity - local.force;
-    SpinOf<dim> turning = zero<SpinOf<dim>>();
-    if (b.inverse_inertia > 0) {
-      turning = rate * angular_momentum_of(b, world_.rotation(i), world_.grains.inertias[i]) -
-                local.torque;
-    }
-    account.damped += 0.5 * dt *
-                      (Vector(account.drag + drag).dot(velocity) +
-                       power_of(SpinOf<dim>(account.drag_torque + turning), b.spin));
-    account.work += 0.5 * dt * Vector(account.applied + applied).dot(b.velocity);
-    account.drag = drag;
-    account.drag_torque = turning;
-    account.applied = applied;
-  }
-
-  template <SweepKind kind>
-  void walls(int i, double dt, Vector& force, SpinOf<dim>& torque) {
-    auto& contacts = world_.contacts;
-    const auto& acting = world_.acting;
-    const auto& b = world_.grains.bodies[i];
-    for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
-      auto& pair = contacts.walls[k];
-      if (aside_ || !world_.walls.is_plain(pair.j)) [[unlikely]] {
-        const Sum sum = other_wall(i, k, dt);
-        force += sum.force;
-        torque += sum.torque;
-        k += world_.walls.slots_of(world_.walls.wall_of(pair.j)) - 1;
-        continue;
-      }
-      typename World::Overlap o;
-      Force f;
-      if (acting.overlap(world_.grains.shapes, i, b, world_.walls.plane(pair.j), o)) {
-        f = acting.force(world_.wall_rule(i, pair.j), b, acting.wall_body(), o, dt, pair.memory);
-        force += f.force;
-        torque += f.torque_i;
-      } else {
-        pair.memory = {};
-      }
-      if constexpr (kind == SweepKind::last) contacts.wall_forces[k] = f;
-    }
-  }
-
-  /// Forces of a wall that moves or is no plane (or of any, with an energy balance or resistance
-  /// against rolling), whose first slot is pair `first`.
-  [[gnu::noinline]] Sum other_wall(int i, int first, double dt) {
-    auto& contacts = world_.contacts;
-    const auto& b = world_.grains.bodies[i];
-    const int slot = contacts.walls[first].j, wall = world_.walls.wall_of(slot);
-    const int slots = world_.walls.slots_of(wall);
-    const auto& rule = world_.wall_rule(i, slot);
-    typename World::Body at_wall = world_.acting.wall_body();
-    at_wall.velocity = world_.walls.state(wall).velocity;
-    at_wall.spin = world_.walls.state(wall).spin;
-    Sum sum;
-    unsigned felt = 0;
-    std::array<Vector, kMostPatches> normals;
-    visit_wall(world_, i, b, first,
-               [&](int, int k, const typename World::Overlap& o, const typename World::Body& body,
-                   const Vector& normal) {
-                 auto& memory = contacts.walls[k].memory;
-                 Acted<dim, Memory> acted{{}, memory, {}};
-                 Force& f = acted.force;
-                 f = world_.acting.force(rule, b, body, o, dt, memory);
-                 if (rolls_) {
-                   acted.rolled = &world_.rolling.walls[k];
-                   acted.moment = roll(rule, b, body, o, dt, world_.rolling.walls[k], f);
-                 }
-                 const auto about_centre = [&](Force& part) {
-                   world_.add_wall_torque(wall, b, o, part);
-                 };
-                 about_centre(f);
-                 if (rolls_) f.torque_j -= acted.moment;
-                 sum.force += f.force;
-                 sum.torque += f.torque_i;
-                 felt |= 1U << (k - first);
-                 normals[k - first] = normal;
-                 contacts.wall_forces[k] = f;
-                 if (std::fabs(body.velocity.dot(normal)) * dt > kMaxMoveShare * b.radius) {
-                   crossed_ = moved_ = true;
-                 }
-                 if (!books_) return;
-                 acted.after = memory;
-                 book<World::Acting::central>(world_.balance.walls[k], rule, b, at_wall, o, acted,
-                                              dt, about_centre);
-               });
-    for (int s = 0; s < slots; ++s) {
-      const int k = first + s;
-      const bool touches = (felt >> s & 1U) != 0;
-      contacts.wall_normals[k] = touches ? normals[s] : Vector(Vector::Zero());
-      if (touches) continue;
-      contacts.walls[k].memory = {};
-      if (rolls_ && dt > 0) world_.rolling.walls[k] = {};
-      contacts.wall_forces[k] = Force{};
-      if (books_ && dt > 0) world_.balance.walls[k].add({}, b, at_wall, dt);
-    }
-    return sum;
   }
 
   World& world_;
   typename World::Integrator integrator_;
-  const bool books_;            // there is an energy balance
-  const bool rolls_;            // there is resistance against rolling or twisting
-  const bool aside_;            // contacts are evaluated out of line for either
-  const double local_damping_;  // Cundall's alpha
-  std::vector<Sum> sums_;       // what earlier grains have left for a later one; 0 between steps
-  std::atomic<bool> moved_{false}, crossed_{false};
+  const bool books_;  // there is an energy balance
+  const bool rolls_;  // there is resistance against rolling or twisting
+  ContactForces<World> contact_forces_;
+  OuterForces<World> outer_forces_;
+  std::vector<Sum> sums_;  // what earlier grains have left for a later one; 0 between steps
+  std::atomic<bool> moved_{false};
 };
 
 }  // namespace grainfield::dem
