@@ -120,6 +120,15 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
   EXPECT_GT(value(compared, "compare.peak.rel_l2"), value(compared, "compare.osl.rel_l2"));
   EXPECT_TRUE(std::isfinite(value(compared, "verdict.position_error")));
   EXPECT_THAT(testing::read_text(folder / "compare/profiles.csv"), Not(HasSubstr("-nan")));
+  // The base itself is a height like any other, as it is for fit; what lies outside is refused.
+  const Output base =
+      program("compare " + (folder / "field.h5") +
+              " --heights 0,0.2 --model hydrostatic --model ife -o " + (folder / "base"));
+  ASSERT_EQ(base.code, 0) << base.err;
+  EXPECT_THAT(testing::read_text(folder / "base/profiles.csv"), HasSubstr("sigma_yy"));
+  expect_refusal(program("compare " + (folder / "field.h5") + " --heights=-0.1 --model ife -o " +
+                         (folder / "none")),
+                 "--heights: found -0.1, allowed: 0 (the base) to 1, shares of the height");
 }
 
 TEST(FitCommand, TooFewHeapsFallBackAndSaySo) {
