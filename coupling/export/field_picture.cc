@@ -83,13 +83,15 @@ Lines lines_of(const std::string& title, const Field& field) {
   return best;
 }
 
-bool is_measured(const Field& field) {
-  const auto method = field.attributes.find("method");
-  return method != field.attributes.end() && method->second == "measured";
-}
-
 bool is_normal_stress(const std::string& name) {
   return name.size() == 8 && name.starts_with("sigma_") && name[6] == name[7];
+}
+
+// Of a label in which gnuplot takes _ for an index.
+std::string shown_name(std::string name) {
+  if (name.size() == 8 && name.starts_with("sigma_")) return "σ_{" + name.substr(6) + "}";
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::vector<const Column*> drawn_columns(const Field& field, const std::string& column) {
@@ -104,7 +106,7 @@ std::vector<const Column*> drawn_columns(const Field& field, const std::string& 
 }
 
 Frame profile_frame(const Field& field, const Lines& lines, const Column& column) {
-  const bool measured = is_measured(field), normal = is_normal_stress(column.name);
+  const bool measured = field.is_measured(), normal = is_normal_stress(column.name);
   const std::vector<std::string> axes = axes_of(field);
   Frame frame{fmt::format("{}{} ({})", normal ? "-" : "", column.name, column.unit), {}};
   for (const auto& [others, rows] : lines.rows) {
@@ -149,7 +151,8 @@ Picture field_picture(const std::string& title, const Field& field, const std::s
   const std::string of = of_length(field);
   if (field.nx > 1 && field.ny > 1 && field.points.cols() == 2) {
     const Column& drawn = drawn_column(field, column);
-    return maps(title, axes[0] + of, axes[1] + of, fmt::format("{} ({})", drawn.name, drawn.unit),
+    return maps(title, axes[0] + of, axes[1] + of,
+                fmt::format("{} ({})", shown_name(drawn.name), drawn.unit),
                 {{drawn.name, field.nx, field.ny, field.points, drawn.value}});
   }
   if (field.points.rows() == 0) throw std::invalid_argument(title + ": holds no points");

@@ -79,8 +79,7 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   p += diverging ? style::diverging : style::sequential_palette;
   p += fmt::format(
       "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel {} offset 0,0.2\nset ylabel {} offset 1,0\nset cblabel {} noenhanced\nset "
-      "multiplot\n",
+      "set xlabel {} offset 0,0.2\nset ylabel {} offset 1,0\nset cblabel {}\nset multiplot\n",
       low_limit, high_limit, style::quoted(x_label), style::quoted(y_label),
       style::quoted(value_label));
   for (std::size_t k = 0; k < all.size(); ++k) {
