@@ -168,8 +168,8 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--from", o.format, "lammps | liggghts | yade | csv")->required();
   add_output(*command, given->output, "SNAPSHOT.h5")->required();
   command->add_option("--units", o.units,
-                      "of lengths in the files, with velocities and volumes: m (default), cm, mm, "
-                      "um; a column of a CSV table may name its own, \"x (mm)\"");
+                      "m (default) | cm | mm | um: of the files' lengths, with velocities and "
+                      "volumes; a column of a CSV table may name its own, \"x (mm)\"");
   command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
   command
       ->add_option("--column", o.columns,
