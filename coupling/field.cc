@@ -19,4 +19,9 @@ Column& Field::add(const std::string& name, const std::string& unit) {
   return columns.back();
 }
 
+bool Field::is_measured() const {
+  const auto method = attributes.find("method");
+  return method != attributes.end() && method->second == "measured";
+}
+
 }  // namespace grainfield::coupling

@@ -33,6 +33,8 @@ struct Field {
 
   const Column* find(const std::string& name) const;
   Column& add(const std::string& name, const std::string& unit);
+  /// Of import-field, not of grains.
+  bool is_measured() const;
 };
 
 }  // namespace grainfield::coupling

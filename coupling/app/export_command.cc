@@ -28,7 +28,7 @@ constexpr std::size_t kNamed = 8;  // files, in the list of what was written
 
 struct ExportRequest {
   std::vector<std::string> files;
-  std::string to, case_file, snapshots, group, column = "sigma_yy", output;
+  std::string to, case_file, snapshots, group, column, output;
   std::vector<std::string> sets;
   bool quick = false;
 };
@@ -126,20 +126,31 @@ int export_file(const ExportRequest& given) {
   const std::vector<std::string> names = chosen(fields, wanted, file);
   OutputFolder folder(given.output, "grainfield export");
   folder.require_other_than({file});
+  std::vector<std::string> done, skipped;
   for (const std::string& name : names) {
     const std::string title = std::filesystem::path(file).filename().string() + ", " + name;
     const ExportTarget target{folder, stem_of(name), title, given.column};
     if (packings.empty()) {
-      exporter.field(read_field(file, name), target);
+      const Field field = read_field(file, name);
+      try {
+        exporter.field(field, target);
+      } catch (const std::invalid_argument& e) {
+        if (names.size() == 1) throw;
+        skipped.emplace_back(e.what());
+        continue;
+      }
     } else {
       exporter.packing(dem::read_snapshot(file, name), target);
     }
+    done.push_back(name);
   }
+  if (done.empty()) throw std::invalid_argument(skipped.front());
   const auto written = folder.staged();
   folder.publish();
   say("{} of {} as {} in {}\n{}\n",
-      names.size() == 1 ? names.front() : fmt::format("{} states", names.size()), file, given.to,
+      done.size() == 1 ? done.front() : fmt::format("{} states", done.size()), file, given.to,
       given.output, listed(written));
+  for (const std::string& line : skipped) note("left out: {}", line);
   return 0;
 }
 
@@ -200,7 +211,8 @@ void add_export(CLI::App& app, Action& action) {
   command->add_option("--to", given->to, forms)->required();
   command->add_option("--group", given->group,
                       "the one of this name; default: all, for lammps the first unloaded one");
-  command->add_option("--column", given->column, "of a field's picture");
+  command->add_option("--column", given->column,
+                      "of a field's picture; default: the vertical stress, of profiles every one");
   command->add_option("--set", given->sets, "lammps: override of the case: key.path=value")
       ->allow_extra_args(false);
   command->add_flag("--quick", given->quick, "lammps: with the case's quick setting");

@@ -111,7 +111,7 @@ std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
   return text;
 }
 
-void show(const ImportedSnapshot& imported, bool default_gravity) {
+void show(const ImportedSnapshot& imported, const std::string& units, bool default_gravity) {
   const dem::Snapshot& s = imported.snapshot;
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
@@ -120,8 +120,10 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
       s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls, s.walls.size());
   if (s.cell.is_periodic()) say("  {}\n", cell_text(s.cell));
   const GrainSizes sizes = grain_sizes(s);
-  say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as SI)\n", sizes.diameter,
-      sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3");
+  const std::string read_as =
+      units == "m" ? "SI" : fmt::format("SI, lengths, velocities and volumes of {}", units);
+  say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as {})\n", sizes.diameter,
+      sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3", read_as);
   const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   for (const std::string& text : imported.warnings) warn(text);
@@ -165,6 +167,9 @@ void add_import(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--from", o.format, "lammps | liggghts | yade | csv")->required();
   add_output(*command, given->output, "SNAPSHOT.h5")->required();
+  command->add_option("--units", o.units,
+                      "m (default) | cm | mm | um: of the files' lengths, with velocities and "
+                      "volumes; a column of a CSV table may name its own, \"x (mm)\"");
   command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
   command
       ->add_option("--column", o.columns,
@@ -229,7 +234,7 @@ void add_import(CLI::App& app, Action& action) {
         file.write_with([&](const std::string& temporary) {
           dem::write_snapshot(temporary, group, imported.snapshot);
         });
-        show(imported, !options.gravity);
+        show(imported, options.units, !options.gravity);
       });
       file.commit();
       return 0;

@@ -31,7 +31,7 @@ void add_import_field(CLI::App& app, Action& action) {
       ->required();
   add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
-  command->add_option("--dim", r.dim, "2 (default; 1 Pa counts as 1 N/m) | 3");
+  command->add_option("--dim", r.dim, "2 (default, where 1 Pa counts as 1 N/m) | 3");
   command->add_option("--height", r.height, "of the heap or layer, m");
   auto* slope = command->add_option("--slope", given->slope, "of both sides of a heap, degrees");
   command->add_option("--left-deg", r.left_deg, "of the left side");

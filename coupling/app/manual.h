@@ -22,8 +22,8 @@ std::string manual_of_program(const CLI::App& app);
 /// grainfield-NAME(1): synopsis, arguments and options of one command.
 std::string manual_of_command(const CLI::App& command);
 
-/// A file for bash: completes commands, their options, names of shipped cases and of models, and
-/// else names of files.
+/// A file for bash: completes commands, their options, the values that an option's help lists,
+/// names of shipped cases, of models and of studies, and else names of files.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace grainfield::coupling

@@ -169,6 +169,11 @@ void set(const Key& key, const Assignment& a, Case& value) {
 
 [[noreturn]] void unknown(const Assignment& a) {
   const std::string section = a.path.substr(0, a.path.find('.'));
+  if (section == "units" || section == "unit") {
+    reject(a, section,
+           "unknown: numbers are in SI units, and a value in another carries it, as in radius = "
+           "\"3.6 mm\"");
+  }
   for (const KeySection& known : study_sections()) {
     if (known.former == nullptr || section != known.former) continue;
     reject(a, section, fmt::format("found the section's former name, now: {}", known.name));

@@ -203,6 +203,11 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
   return c;
 }
 
+std::string Comparison::label() const {
+  if (measured()) return "measured";
+  return realizations > 1 ? fmt::format("grains, mean of {}", realizations) : "grains";
+}
+
 std::map<std::string, double> summary_figures(const Comparison& c, std::size_t main) {
   std::map<std::string, double> figures;
   const auto put = [&](const std::string& prefix, const Measures& m) {

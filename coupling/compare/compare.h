@@ -22,6 +22,7 @@ struct Profile {
   Eigen::VectorXd error;          ///< standard error of the mean; nan or empty with one realization
   Eigen::MatrixXd samples;        ///< x.size() x realizations, or empty
   double independent_length = 0;  ///< m: Kernel::independent_length of the averaging
+  bool measured = false;          ///< in a laboratory: texts speak of no grains
 };
 
 /// One model on all the profiles' points, smoothed as the data are (compare/smooth.h).
@@ -87,6 +88,11 @@ struct Comparison {
   Scale scale;
   int dim = 2;  ///< of the grains
 
+  bool measured() const { return !profiles.empty() && profiles.front().measured; }
+  /// "measurement" or "grains".
+  const char* subject() const { return measured() ? "measurement" : "grains"; }
+  /// What pictures call the profiles: "grains, mean of 8", "grains", "measured".
+  std::string label() const;
   /// Unit of normalised profiles: F/h, N/m; in space F/h^2, Pa.
   double unit() const { return dim == 3 ? load / (depth * depth) : load / depth; }
 };

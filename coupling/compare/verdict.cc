@@ -104,10 +104,12 @@ bool beyond_spread(const Projection& p, int realizations) {
 
 // Says so where the grains are farther from both than the two from each other: then the number is
 // no share of a way between them.
-std::string beyond_both(const Projection& p) {
+std::string beyond_both(const Comparison& c, const Projection& p) {
   if (p.position >= -most_beyond && p.position <= 1 + most_beyond) return "";
-  return " (beyond both: the two differ less from each other than the grains from either, so this "
-         "says only on which side the grains are)";
+  return fmt::format(
+      " (beyond both: the two differ less from each other than the {0} from either, so this says "
+      "only on which side the {0} {1})",
+      c.subject(), c.measured() ? "is" : "are");
 }
 
 // Whether the realizations differ at all (those of a perfect lattice do not).
@@ -192,9 +194,8 @@ void add_misfit(const Comparison& c, const ModelComparison& best, const Agreemen
                 std::string& sentence) {
   if (misses(best)) {
     sentence = fmt::format(
-        "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
-        "L2). {}",
-        100 * best.overall.rel_l2, sentence);
+        "None of the models describes {} {}: even the nearest misses by {:.0f} % (relative L2). {}",
+        c.measured() ? "this" : "these", c.subject(), 100 * best.overall.rel_l2, sentence);
     return;
   }
   if (found.ratio > found.chance) {
@@ -241,8 +242,9 @@ Verdict judge(const Comparison& c) {
       break;
     }
   if (other == order.end()) {
-    v.sentence = fmt::format("Of the {} models, the grains are nearest to {}{}.", best.family,
-                             describe(best, by_chi2), runner_up);
+    v.sentence =
+        fmt::format("Of the {} models, the {} {} nearest to {}{}.", best.family, c.subject(),
+                    c.measured() ? "is" : "are", describe(best, by_chi2), runner_up);
     add_misfit(c, best, found, v.sentence);
     return v;
   }
@@ -255,34 +257,36 @@ Verdict judge(const Comparison& c) {
   const bool none = misses(best);
   if (v.distinguishable) {
     v.sentence = fmt::format(
-        "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) they stand "
-        "at {:.2f} +- {:.2f}{}{}.",
-        none ? "They are nearer to the" : "The grains support the", best.family,
-        none ? " than to" : ", not", loser.family, describe(best, by_chi2),
-        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, beyond_both(p),
+        "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) {} at {:.2f} "
+        "+- {:.2f}{}{}.",
+        c.measured() ? (none ? "It is nearer to the" : "The measurement supports the")
+                     : (none ? "They are nearer to the" : "The grains support the"),
+        best.family, none ? " than to" : ", not", loser.family, describe(best, by_chi2),
+        describe(loser, by_chi2), loser.family, best.family,
+        c.measured() ? "it stands" : "they stand", p.position, p.error, beyond_both(c, p),
         runner_up);
   } else if (std::isfinite(p.error)) {
     v.sentence = fmt::format(
         "{} and {} are not distinguishable within {}: nearest is {}, "
-        "against {}; on the line from {} (0) to {} (1) the grains stand at {:.2f} +- {:.2f}{}{}.",
+        "against {}; on the line from {} (0) to {} (1) the {} at {:.2f} +- {:.2f}{}{}.",
         best.family, loser.family,
         single ? std::string("the errors of this field")
                : fmt::format("the spread of {} realizations", c.realizations),
-        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position,
-        p.error, beyond_both(p), runner_up);
+        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family,
+        c.measured() ? "measurement stands" : "grains stand", p.position, p.error,
+        beyond_both(c, p), runner_up);
     v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
   } else {
     v.sentence = fmt::format(
-        "{}: the grains are nearest to {}, against {}; on the line from {} (0) to {} (1) they "
-        "stand "
-        "at {:.2f}{}.",
+        "{}: the {} nearest to {}, against {}; on the line from {} (0) to {} (1) {} at {:.2f}{}.",
         c.realizations < 2 ? "One realization, spread unknown"
         : spread ? fmt::format("Mean of {} realizations without their single values, spread of the "
                                "position unknown",
                                c.realizations)
                  : fmt::format("All {} realizations are equal, spread unknown", c.realizations),
-        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position,
-        beyond_both(p));
+        c.measured() ? "measurement is" : "grains are", describe(best, by_chi2),
+        describe(loser, by_chi2), loser.family, best.family,
+        c.measured() ? "it stands" : "they stand", p.position, beyond_both(c, p));
   }
   add_misfit(c, best, found, v.sentence);
   return v;

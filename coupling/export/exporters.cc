@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
+#include "coupling/export/field_picture.h"
 #include "coupling/export/field_vtu.h"
 #include "coupling/export/packing_page.h"
 #include "coupling/export/packing_tables.h"
@@ -33,7 +34,8 @@ void packing_as_vtu(const dem::Snapshot& packing, const ExportTarget& to) {
 
 void field_as_vtu(const Field& field, const ExportTarget& to) {
   write_text_file(file_of(to, ".vtu"), field_vtu(field));
-  write_text_file(file_of(to, "-paraview.py"), paraview_of_field(to.stem, field, to.column));
+  const std::string column = field.columns.empty() ? "" : drawn_column(field, to.column).name;
+  write_text_file(file_of(to, "-paraview.py"), paraview_of_field(to.stem, field, column));
 }
 
 void packing_as_csv(const dem::Snapshot& packing, const ExportTarget& to) {
@@ -64,20 +66,7 @@ Picture picture_of(const dem::Snapshot& packing_, const ExportTarget& to) {
 }
 
 Picture picture_of(const Field& field, const ExportTarget& to) {
-  const Column* column = field.find(to.column);
-  if (column == nullptr) {
-    std::vector<std::string> names;
-    for (const Column& one : field.columns) names.push_back(one.name);
-    throw std::invalid_argument(
-        fmt::format("--column: found \"{}\", allowed: {}", to.column, fmt::join(names, ", ")));
-  }
-  if (field.nx < 2 || field.ny < 2 || field.points.cols() != 2) {
-    throw std::invalid_argument(fmt::format(
-        "{}: only a field on a grid in the plane is drawn as a map (--to vtu and csv take any)",
-        to.title));
-  }
-  return maps(to.title, "x (m)", "y (m)", fmt::format("{} ({})", column->name, column->unit),
-              {{column->name, field.nx, field.ny, field.points, column->value}});
+  return field_picture(to.title, field, to.column);
 }
 
 template <class Held, bool bitmap>
@@ -95,8 +84,9 @@ const std::vector<Exporter>& exporters() {
       {"csv", "tables; of a packing those that import reads", packing_as_csv, field_as_csv},
       {"html", "a page of the packing that zooms and shows a grain's numbers", packing_as_html,
        nullptr},
-      {"svg", "a picture of the packing, or a map of --column", as_picture<dem::Snapshot, false>,
-       as_picture<Field, false>},
+      {"svg",
+       "a picture of the packing; of a field on a grid a map of --column, on lines its profiles",
+       as_picture<dem::Snapshot, false>, as_picture<Field, false>},
       {"png", "the same as bitmap", as_picture<dem::Snapshot, true>, as_picture<Field, true>},
   };
   return all;

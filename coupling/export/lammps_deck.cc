@@ -163,12 +163,16 @@ std::string walls_of(const dem::Snapshot& s, const dem::MaterialSetup& m, Lammps
   return out;
 }
 
+bool has_fixed(const dem::Snapshot& s) {
+  return std::any_of(s.grains.begin(), s.grains.end(), [](const auto& g) { return g.fixed; });
+}
+
 std::string import_command(const dem::Snapshot& s, const char* state) {
   std::string out = fmt::format(
       "grainfield import --from lammps {0}.grains {0}.contacts --column 'i,j=c_ids[1..2]' --column "
-      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]' --fixed type=2 --group "
+      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --group "
       "/{0}",
-      state);
+      state, has_fixed(s) ? " --fixed type=2" : "");
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
     int axis = 0;
@@ -212,11 +216,9 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   const dem::MaterialSetup& m = setup.material;
   const double gravity = s.gravity.norm();
   double largest = 0, weight = 0;
-  bool any_fixed = false;
   std::size_t free = 0;
   for (const dem::Grain& g : s.grains) {
     largest = std::max(largest, g.radius);
-    any_fixed |= g.fixed;
     if (g.fixed) continue;
     weight += g.mass * gravity;
     ++free;
@@ -254,7 +256,7 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
     out += "fix damp free addforce v_damp_x v_damp_y v_damp_z\n";
     deck.notes.push_back("rest.background_damping slows displacement alone, not rotation");
   }
-  if (any_fixed) out += "fix hold fixed freeze\n";
+  if (has_fixed(s)) out += "fix hold fixed freeze\n";
   out += fmt::format(
       "compute ids all property/local patom1 patom2 cutoff radius\n"
       "compute p all pair/local fx fy fz p1 p2 p3 cutoff radius\n"

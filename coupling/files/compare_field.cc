@@ -274,6 +274,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     scenes.push_back(std::move(scene));
   }
   const SceneField& scene = scenes.front();
+  const bool measured = scene.field.is_measured();
   RunFacts facts = scene.facts;
   facts.depth = lines.front().profile.depth;
   std::vector<PointSet> sets;
@@ -288,6 +289,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
         {points, line.base ? Smoothing::marginal : Smoothing::kernel, line.kernel.get(), heap});
     facts.depth = std::min(facts.depth, line.profile.depth);
     profiles.push_back(line.profile);
+    profiles.back().measured = measured;
     if (line.base) main = l;
   }
   const double spanned = heap && facts.height > 0 ? 1 + scene.apex / facts.height : 1;
@@ -328,7 +330,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
 
-  CompareOutcome out{comparison.verdict.sentence, "", ""};
+  CompareOutcome out{comparison.verdict.sentence, "", "", measured};
   if (kernels.size() > 1) {
     out.note = fmt::format(
         "fields seen through different kernels, models through each one's own: "

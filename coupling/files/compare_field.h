@@ -20,8 +20,9 @@ struct CompareRequest {
 
 struct CompareOutcome {
   std::string verdict;
-  std::string note;   ///< fields seen through different kernels; empty: all through one
-  std::string lacks;  ///< of the report (ReportResult::complaint)
+  std::string note;       ///< fields seen through different kernels; empty: all through one
+  std::string lacks;      ///< of the report (ReportResult::complaint)
+  bool measured = false;  ///< the field is of no grains (Field::is_measured)
 };
 
 /// Compares any models of the registry with any field whose origin is known: responses to a load

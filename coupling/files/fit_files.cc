@@ -197,11 +197,6 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
 
 namespace {
 
-bool is_measured(const Field& field) {
-  const auto method = field.attributes.find("method");
-  return method != field.attributes.end() && method->second == "measured";
-}
-
 // What nobody has chosen follows what there is: the components, and the base where all places are
 // on it.
 void take_what_was_measured(const Field& field, const FitRequest& request, FitSetup& setup) {
@@ -250,7 +245,7 @@ FitOutcome fit_files(const FitRequest& request) {
     out.packings = {request.field ? first : chosen.field_file + ":" + chosen.field};
     const Field field =
         request.field ? *request.field : read_field(chosen.field_file, chosen.field);
-    const bool measured = is_measured(field);
+    const bool measured = out.measured = field.is_measured();
     if (measured) take_what_was_measured(field, request, value.get<FitSetup>());
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
     if (measured) {

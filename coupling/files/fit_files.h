@@ -29,7 +29,8 @@ struct FitOutcome {
   std::string note;                   ///< weights and what is missing for better ones
   std::vector<std::string> warnings;  ///< what makes the constants doubtful
   std::string verdict;
-  std::string coverage;  ///< tables; empty: not asked for
+  std::string coverage;   ///< tables; empty: not asked for
+  bool measured = false;  ///< the field is of no grains (Field::is_measured)
 };
 
 /// What a user chooses of [fit] beside its keys, as overrides of it; empty lists and no width

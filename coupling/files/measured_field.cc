@@ -54,20 +54,6 @@ std::vector<std::string> names_of(const Units& units) {
   return names;
 }
 
-// A column of the file: "value (kPa)", "value [kPa]".
-struct Heading {
-  std::string name, unit;
-  int index = -1;
-};
-Heading heading_of(const std::string& text, int index) {
-  const std::size_t open = text.find_first_of("([");
-  if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
-  const std::size_t close = text.find_first_of(")]", open);
-  const std::string_view all = text;
-  return {std::string(trimmed(all.substr(0, open))),
-          std::string(trimmed(all.substr(open + 1, close - open - 1))), index};
-}
-
 // A number's column and what its numbers are times.
 struct Measure {
   ForeignColumn column;
@@ -93,7 +79,7 @@ class Reader {
   }
 
   ForeignColumn need(const std::string& name) const {
-    if (const Heading* found = find(name)) return {name, found->index, std::nullopt};
+    if (const Heading* found = find(name)) return {name, found->index, std::nullopt, std::nullopt};
     std::vector<std::string> there;
     for (const Heading& h : headings_) there.push_back(h.name);
     refuse(fmt::format("no column \"{}\"; found: {}; nearest: {}", name, fmt::join(there, ", "),
@@ -122,7 +108,7 @@ class Reader {
     for (const auto& [unit, factor] : units) {
       if (unit != heading->unit) continue;
       const double scale = !std::isnan(factor) ? factor : &units == &lengths() ? own : scaled(unit);
-      return {{name, heading->index, std::nullopt}, scale};
+      return {{name, heading->index, std::nullopt, std::nullopt}, scale};
     }
     const auto names = names_of(units);
     refuse(heading->unit.empty()

@@ -270,8 +270,8 @@ std::vector<Frame> profile_frames(const EnsembleFits& fits, const std::string& c
     if (!only.empty() && std::find(only.begin(), only.end(), name) == only.end()) continue;
     const std::vector<int> rows = rows_at(data, number, static_cast<int>(level));
     if (rows.size() < 3) continue;
-    Series grains{"grains", data.points(rows, 0), sign * mean(rows), fits.weights.error(rows),
-                  true};
+    Series grains{fits.observed.measured ? "measured" : "grains", data.points(rows, 0),
+                  sign * mean(rows), fits.weights.error(rows), true};
     if (!fits.weights.known()) grains.error.resize(0);
     Frame frame{frame_title(fits, component, name), {grains}};
     for (const Line& line : lines) {
@@ -326,7 +326,9 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
     std::vector<Frame> frames = profile_frames(fits, component);
     if (frames.empty()) continue;
     Picture picture =
-        heap ? curves("Grains and the best models: " + component, from, "ρ g h", frames)
+        heap ? curves((seen.measured ? "Measurement" : "Grains") +
+                          (" and the best models: " + component),
+                      from, "ρ g h", frames)
              : curves(fmt::format("Response of {} to the load, and all models", component), from,
                       fmt::format("{}σ_{{{}}}  (F/h)", component == "sigma_xy" ? "" : "-",
                                   component.substr(6)),
@@ -350,8 +352,10 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
       if (!frame.series.empty()) frames.push_back(std::move(frame));
     }
     if (!frames.empty()) {
-      Picture picture = curves("Where the best model fails: " + best, from,
-                               "(grains - model) / standard error", frames);
+      Picture picture = curves(
+          "Where the best model fails: " + best, from,
+          fmt::format("({} - model) / standard error", seen.measured ? "measured" : "grains"),
+          frames);
       picture.caption = "Beyond 2 or 3 in a row the model is wrong there.";
       out.emplace_back(std::move(picture));
     }

@@ -174,8 +174,8 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);
   // Cells in the floor feel what is above them, whatever their width.
-  if (field_attribute(field, "method", where) != "measured")
-    warn_of_low_heights(shares, height, out.width, out);
+  out.measured = field_attribute(field, "method", where) == "measured";
+  if (!out.measured) warn_of_low_heights(shares, height, out.width, out);
   warn_of_set_slopes(setup, out);
   warn_of_unlike_heaps(
       [&](std::size_t r) { return fmt::format("realization {} of {}", r + 1, where); }, out);

@@ -34,6 +34,7 @@ struct Observations {
   double height = 0;                     ///< h, m: mean over the realizations
   double unit = 0;                       ///< of stresses, N/m: mean rho g h, or F/h
   double width = 0;                      ///< of the averaging kernel, m
+  bool measured = false;                 ///< in a laboratory: texts speak of no grains
   int left_out = 0;                      ///< values that some realization does not have
   std::string note;                      ///< what the reader must know; may be empty
   std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each

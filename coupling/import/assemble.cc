@@ -66,6 +66,16 @@ bool nearest_of_its_fix(const std::vector<WallChoice>& walls, std::size_t wall,
 
 std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file, line); }
 
+void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& column) {
+  if (!column.unit) return;
+  const bool plane =
+      column.unit->kind == parse_unit(column.name == "volume" ? "m2" : "kg/m2")->kind;
+  (plane ? plane_units_ : space_units_)
+      .push_back(fmt::format("{}:{}: column {}: found \"{}\"", table.file, table.header_line,
+                             column.name,
+                             (*table.columns)[static_cast<std::size_t>(column.index)]));
+}
+
 void Assembly::add_grains(const ForeignTable& table) {
   const TableColumns columns(table, names_);
   const ForeignColumn id = columns.need("id"), x = columns.need("x"), y = columns.need("y");
@@ -89,6 +99,8 @@ void Assembly::add_grains(const ForeignTable& table) {
                     options_.dim == 3 ? "mass (kg) or density (kg/m3) tells it"
                                       : "mass (kg) or density (kg/m2) tells it");
   const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
+  if (!mass) remember_unit(table, density);
+  remember_unit(table, volume);
   const ForeignColumn fixed = columns.find("fixed");
   const ForeignColumn mark =
       options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
@@ -96,11 +108,12 @@ void Assembly::add_grains(const ForeignTable& table) {
   for (const WallChoice& wall : options_.walls) {
     wall_columns.emplace_back();
     for (std::size_t k = 0; !wall.fix.empty() && k < 7; ++k)
-      wall_columns.back()[k] = columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1));
+      wall_columns.back()[k] =
+          columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1), k < 4 ? "fx" : "px");
   }
   reader_.read(table, [&](const ForeignRow& row) {
     const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
-    GrainRow r{{}, 0, 0, false, {row.file, row.line}};
+    GrainRow r{{}, 0, 0, false, 0, {row.file, row.line}};
     dem::Grain& g = r.grain;
     g.id = row.whole(id);
     g.position = {row.number(x), row.number(y), z ? row.number(z) : 0};
@@ -112,7 +125,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     g.material = row.text(material);
     if (!row.empty(outline)) {
       try {
-        g.outline = parse_outline(row.text(outline));
+        g.outline = parse_outline(row.text(outline), outline.unit ? outline.unit->ten : 0);
       } catch (const std::invalid_argument& e) {
         row.refuse(fmt::format("grain {}: {}", g.id, e.what()));
       }
@@ -150,6 +163,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     r.has_inertia = !row.empty(inertia);
     g.inertia = value(inertia);
     g.volume = value(volume);
+    if (table.length && volume.index >= 0 && !volume.unit) r.volume_ten = table.length->ten;
     if (g.volume < 0 || g.inertia < 0)
       row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
                              g.volume < 0 ? "volume" : "inertia", std::min(g.volume, g.inertia)));
@@ -205,6 +219,10 @@ void Assembly::settle_dimension() {
   const auto other = std::find_if(rows_.begin(), rows_.end(),
                                   [&](const GrainRow& row) { return row.grain.position.z() != z; });
   s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
+  if (const auto& told = s.dim == 2 ? space_units_ : plane_units_; !told.empty())
+    throw std::invalid_argument(
+        fmt::format("{0} in a packing in {1}D, allowed: density in kg/m{1}, volume in m{1}",
+                    told.front(), s.dim));
   if (s.dim == 2 && other != rows_.end())
     throw std::invalid_argument(fmt::format(
         "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "
@@ -262,6 +280,7 @@ void Assembly::complete(GrainRow& row) const {
     volume = std::numbers::pi * g.radius * g.radius * (plane ? 1 : 4.0 / 3 * g.radius);
     gyration = (plane ? 0.5 : 0.4) * g.radius * g.radius;
   }
+  if (row.volume_ten != 0) g.volume *= std::pow(10.0, out_.snapshot.dim * row.volume_ten);
   if (g.volume == 0) g.volume = volume;
   if (row.density > 0) g.mass = row.density * g.volume;
   // In 2D a density may be one of spheres.

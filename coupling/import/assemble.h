@@ -35,6 +35,7 @@ class Assembly {
     double density = 0;       ///< 0: has its mass
     double told_density = 0;  ///< beside the mass; 0: none
     bool has_inertia = false;
+    int volume_ten = 0;  ///< a volume is of lengths times 10 to this
     Source source;
   };
   struct WallForce {  ///< of a "fix wall/gran ... contacts"
@@ -62,6 +63,8 @@ class Assembly {
     std::string first_not_unit, first_across;
   };
 
+  /// Remembers a unit that is one of the plane or one of space.
+  void remember_unit(const ForeignTable& table, const ForeignColumn& column);
   void settle_dimension();
   void settle_cell();
   void settle_walls();
@@ -90,8 +93,9 @@ class Assembly {
   std::vector<GrainRow> rows_;
   std::vector<WallForce> wall_forces_;
   std::vector<ContactRow> contacts_;
-  std::vector<Source> wall_sources_;  // of the walls from tables
-  std::vector<WallSide> sides_;       // of all walls
+  std::vector<std::string> plane_units_, space_units_;  // told by headers, for messages
+  std::vector<Source> wall_sources_;                    // of the walls from tables
+  std::vector<WallSide> sides_;                         // of all walls
   GivenNormals given_;
   std::vector<std::string> marks_;  // some that the column of fixed grains holds
   bool some_marked_ = false;

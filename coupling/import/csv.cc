@@ -27,6 +27,7 @@ std::vector<ForeignTable> scan(const std::string& file) {
   ForeignTable table;
   table.file = file;
   table.separator = ',';
+  table.units_in_header = true;
   for (std::string_view line; lines.next(line);) {
     line = trimmed(line);
     if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);

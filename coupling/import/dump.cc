@@ -101,6 +101,7 @@ class DumpScan {
       if (!next(line, "the units")) return false;
       if (trimmed(line) != "si")
         refuse(fmt::format("units \"{}\", expected si (m, kg, s, N)", trimmed(line)));
+      table_.told_units = lines_.where();
       return true;
     }
     if (name.starts_with("LABEL")) return next(line, "the label");

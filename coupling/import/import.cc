@@ -85,6 +85,14 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   return out;
 }
 
+// Of --units.
+Unit length_unit(const std::string& text) {
+  const std::optional<Unit> unit = parse_unit(text);
+  if (unit && unit->kind == parse_unit("m")->kind) return *unit;
+  throw std::invalid_argument(
+      fmt::format("--units: found \"{}\", allowed: a unit of length, such as m, cm, mm, um", text));
+}
+
 // What stands alone; what depends on the files is told where they are read.
 void check_options(const ImportOptions& options) {
   const auto refuse = [](const std::string& text) { throw std::invalid_argument(text); };
@@ -131,6 +139,20 @@ void check_options(const ImportOptions& options) {
   for (const StepChoice& step : options.steps) require_name(step.group, "--step");
 }
 
+// The table's lengths are in `unit`, those of its cell too.
+void set_length(const Unit& unit, ForeignTable& table) {
+  if (!table.told_units.empty())
+    throw std::invalid_argument(fmt::format(
+        "{}: the file says that it is in SI units, and --units another", table.told_units));
+  table.length = unit;
+  const double divisor = std::pow(10.0, std::abs(unit.ten));
+  const auto scale = [&](double& length) {
+    length = unit.ten < 0 ? length / divisor : length * divisor;
+  };
+  for (double& length : table.cell.low) scale(length);
+  for (double& length : table.cell.edges.reshaped()) scale(length);
+}
+
 std::string list_of(const ImportOptions& options) {
   return fmt::format("{}", fmt::join(options.files, ", "));
 }
@@ -146,8 +168,8 @@ WallChoice parse_wall(const std::string& text) {
   if (good) {
     wall.name = std::string(parts[0]);
     wall.axis = parts[1][0] - 'x';
-    const std::optional<double> position = dem::parse_number(parts[1].substr(2));
-    good = position && std::isfinite(*position);
+    const std::optional<double> position = parse_length(std::string(parts[1].substr(2)));
+    good = position.has_value();
     if (good) wall.position = *position;
   }
   for (std::size_t k = 2; good && k < parts.size(); ++k) {
@@ -177,10 +199,9 @@ PeriodicAxis parse_periodic(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z' &&
       colon != std::string::npos) {
-    const auto low = dem::parse_number(std::string_view(text).substr(2, colon - 2));
-    const auto high = dem::parse_number(std::string_view(text).substr(colon + 1));
-    if (low && high && std::isfinite(*low) && std::isfinite(*high) && *low < *high)
-      return {text[0] - 'x', *low, *high};
+    const auto low = parse_length(text.substr(2, colon - 2));
+    const auto high = parse_length(text.substr(colon + 1));
+    if (low && high && *low < *high) return {text[0] - 'x', *low, *high};
   }
   throw std::invalid_argument(fmt::format(
       "--periodic: found \"{}\", expected AXIS=LOW:HIGH with LOW below HIGH, such as x=0:0.1",
@@ -191,12 +212,14 @@ void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take) {
   const ImportFormat& format = find_import_format(options.format);
   check_options(options);
+  const Unit length = length_unit(options.units);
   ColumnNames names(format.columns);
   for (const std::string& text : options.columns) names.choose(text);
   Steps steps;
   bool stepped = false;
   for (const std::string& file : options.files) {
     for (ForeignTable& table : format.scan(file)) {
+      if (length.ten != 0) set_length(length, table);
       stepped = stepped || table.step.has_value();
       StepTables& tables = steps[table.step.value_or(0)];
       switch (kind_of(table, names)) {

@@ -41,6 +41,7 @@ struct StepChoice {
 struct ImportOptions {
   std::string format;                ///< lammps | liggghts | yade | csv
   std::vector<std::string> files;    ///< told apart by what they hold
+  std::string units = "m";           ///< of lengths, velocities and volumes without a unit there
   std::vector<std::string> columns;  ///< "ours=theirs", "ours=number", "i,j=c_id[1..2]"
   int dim = 0;                       ///< 0: 2 when there is no z or every z is the same, else 3
   std::optional<dem::Vec3> gravity;  ///< m/s2; default 9.81 down (2D: -y, 3D: -z)
@@ -71,7 +72,8 @@ struct ImportedSnapshot {
   std::vector<std::string> warnings;
 };
 
-/// Reads step by step and hands each on: memory for one step, whatever the files' size. Units: SI.
+/// Reads step by step and hands each on: memory for one step, whatever the files' size. Units: SI,
+/// but for columns of a CSV table that name theirs, "x (mm)", and for what options.units says.
 /// Throws std::invalid_argument naming file, line, what was found and what is allowed: a missing
 /// column (with those found and the nearest), contacts of unknown grains or with themselves or
 /// twice, values that are not finite, ids that repeat, a truncated file, 2D mixed with 3D, radius

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "coupling/import/lines.h"
-#include "dem/snapshot/number.h"
+#include "coupling/unit.h"
 
 namespace grainfield::coupling {
 
-dem::Outline parse_outline(std::string_view text) {
+dem::Outline parse_outline(std::string_view text, int ten) {
   dem::Outline outline;
   std::vector<std::string_view> corners, numbers;
   split(text, ';', corners);
@@ -20,7 +20,7 @@ dem::Outline parse_outline(std::string_view text) {
     std::array<double, 2> corner{};
     bool good = numbers.size() == 2;
     for (std::size_t d = 0; good && d < 2; ++d) {
-      const std::optional<double> number = dem::parse_number(numbers[d]);
+      const std::optional<double> number = times_ten(std::string(numbers[d]), ten);
       good = number && std::isfinite(*number);
       if (good) corner[d] = *number;
     }

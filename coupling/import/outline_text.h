@@ -7,7 +7,8 @@
 
 namespace grainfield::coupling {
 
-/// Corners, m. Throws std::invalid_argument saying which corner is no pair of finite numbers.
-dem::Outline parse_outline(std::string_view text);
+/// Corners, m; of numbers times 10^ten m. Throws std::invalid_argument saying which corner is no
+/// pair of finite numbers.
+dem::Outline parse_outline(std::string_view text, int ten = 0);
 
 }  // namespace grainfield::coupling

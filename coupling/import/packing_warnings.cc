@@ -125,13 +125,14 @@ std::string strange_units(const dem::Snapshot& packing) {
   const char* unit = packing.dim == 2 ? "kg/m2" : "kg/m3";
   if (sizes.density < kLeastDensity || sizes.density > kMostDensity) {
     return fmt::format(
-        "mean density {:.3g} {}, where grains have {:g} to {:g}: are the file's units SI?",
+        "mean density {:.3g} {}, where grains have {:g} to {:g}: are the file's units SI "
+        "(import --units)?",
         sizes.density, unit, kLeastDensity, kMostDensity);
   }
   if (sizes.diameter < kLeastDiameter || sizes.diameter > kMostDiameter) {
     return fmt::format(
         "mean diameter {:.3g} m, where grains have {:g} to {:g}: are the file's "
-        "units SI?",
+        "units SI (import --units)?",
         sizes.diameter, kLeastDiameter, kMostDiameter);
   }
   return "";

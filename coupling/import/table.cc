@@ -85,6 +85,13 @@ std::vector<std::string> expanded(const std::string& list) {
   return out;
 }
 
+const OurColumn* our_column(const std::string& name) {
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
+    for (const OurColumn& column : our_columns(kind))
+      if (column.name == name) return &column;
+  return nullptr;
+}
+
 std::vector<std::string> all_our_names() {
   std::vector<std::string> names;
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
@@ -114,9 +121,9 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"radius", "m", "of a disk or sphere"},
       {"diameter", "m", "instead of radius"},
       {"mass", "kg", "2D: with an areal density"},
-      {"density", "kg/m3", "instead of mass; 2D: kg/m2"},
+      {"density", "kg/m3", "instead of mass; 2D: kg/m2", "kg/m2"},
       {"inertia", "kg m2", "about the centroid; default: of a disk, sphere or polygon"},
-      {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon"},
+      {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon", "m2"},
       {"fixed", "1", "1: part of the apparatus, default 0"},
       {"material", "", "name; default: the only one, without a name"},
       {"outline", "m", "x1 y1;x2 y2;... of a convex polygon about (x, y), turned by angle"},
@@ -215,27 +222,69 @@ void ColumnNames::require_all_used() const {
                       ours, theirs));
 }
 
+Heading heading_of(const std::string& text, int index) {
+  const std::size_t open = text.find_last_of("([");
+  if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
+  const std::size_t close = text.find_first_of(")]", open);
+  const std::string_view all = text;
+  const std::string_view inner = trimmed(all.substr(open + 1, close - open - 1));
+  const bool whole = inner.find_first_not_of("0123456789") == std::string_view::npos;
+  if (whole && text[open] == '[' && open > 0 && text[open - 1] != ' ')
+    return {std::string(trimmed(text)), "", index};
+  return {std::string(trimmed(all.substr(0, open))), std::string(inner), index};
+}
+
 TableColumns::TableColumns(const ForeignTable& table, ColumnNames& names)
-    : table_(table), names_(names) {}
+    : table_(table), names_(names) {
+  for (const std::string& column : *table.columns) {
+    const int index = static_cast<int>(headings_.size());
+    headings_.push_back(table.units_in_header ? heading_of(column, index)
+                                              : Heading{column, "", index});
+  }
+}
+
+std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading& heading) const {
+  const OurColumn* known = our_column(ours);
+  if (known == nullptr || known->unit.empty()) return std::nullopt;
+  if (heading.unit.empty()) {
+    const bool scaled = known->unit == "m" || known->unit == "m/s";
+    return scaled ? table_.length : std::nullopt;
+  }
+  const std::optional<Unit> unit = parse_unit(heading.unit == "-" ? "1" : heading.unit);
+  for (const std::string& allowed : {known->unit, known->plane_unit})
+    if (unit && unit->kind == parse_unit(allowed)->kind) return unit;
+  throw std::invalid_argument(fmt::format(
+      "{}:{}: column {}: found the unit \"{}\", allowed: {}", table_.file, table_.header_line,
+      heading.name == ours ? ours : fmt::format("{} ({})", heading.name, ours), heading.unit,
+      known->unit == "1"
+          ? "none, a number without a unit"
+          : fmt::format("{}{} or another unit of that kind, of {}", known->unit,
+                        known->plane_unit == known->unit ? "" : " (2D: " + known->plane_unit + ")",
+                        known_symbols())));
+}
 
 ForeignColumn TableColumns::find(const std::string& ours) const {
   for (const auto& candidate : names_.candidates(ours)) {
     const auto& columns = *table_.columns;
-    const auto at = std::find(columns.begin(), columns.end(), candidate.theirs);
+    const auto is_theirs = [&](const Heading& heading) {
+      return heading.name == candidate.theirs ||
+             columns[static_cast<std::size_t>(heading.index)] == candidate.theirs;
+    };
+    const auto at = std::find_if(headings_.begin(), headings_.end(), is_theirs);
     std::optional<double> constant;
-    if (at == columns.end() && candidate.chosen) constant = dem::parse_number(candidate.theirs);
-    if (at == columns.end() && !constant) continue;
+    if (at == headings_.end() && candidate.chosen) constant = dem::parse_number(candidate.theirs);
+    if (at == headings_.end() && !constant) continue;
     if (constant && !std::isfinite(*constant))
       throw std::invalid_argument(fmt::format(
           "--column {}={}: expected a column or a finite number", ours, candidate.theirs));
-    if (at != columns.end() && std::count(at, columns.end(), candidate.theirs) > 1)
+    if (std::count_if(at, headings_.end(), is_theirs) > 1)
       throw std::invalid_argument(fmt::format("{}:{}: column \"{}\" is there twice, allowed: once",
                                               table_.file, table_.header_line, candidate.theirs));
     if (candidate.chosen) names_.mark_used(ours, candidate.theirs);
-    const int index = at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
-    return {ours, index, constant};
+    if (at == headings_.end()) return {ours, -1, constant, std::nullopt};
+    return {ours, at->index, std::nullopt, unit_of(ours, *at)};
   }
-  return {ours, -1, std::nullopt};
+  return {ours, -1, std::nullopt, std::nullopt};
 }
 
 void TableColumns::missing(const std::string& what, const std::string& option,
@@ -274,14 +323,16 @@ ForeignColumn TableColumns::need(const std::string& ours) const {
   return column;
 }
 
-ForeignColumn TableColumns::need_theirs(const std::string& theirs) const {
+ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::string& like) const {
   const auto& columns = *table_.columns;
-  const auto at = std::find(columns.begin(), columns.end(), theirs);
-  if (at == columns.end())
+  const auto at = std::find_if(headings_.begin(), headings_.end(), [&](const Heading& heading) {
+    return heading.name == theirs || columns[static_cast<std::size_t>(heading.index)] == theirs;
+  });
+  if (at == headings_.end())
     throw std::invalid_argument(fmt::format(
         "{}:{}: no column \"{}\"; found: {}; nearest: {}", table_.file, table_.header_line, theirs,
         fmt::join(columns, " "), continuum::nearest(theirs, columns)));
-  return {theirs, static_cast<int>(at - columns.begin()), std::nullopt};
+  return {theirs, at->index, std::nullopt, unit_of(like, *at)};
 }
 
 const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
@@ -319,9 +370,13 @@ void ForeignRow::refuse(const std::string& what) const {
 double ForeignRow::number(const ForeignColumn& column) const {
   if (column.constant) return *column.constant;
   const ArrayColumn* array = array_of(column);
-  const std::optional<double> value = array != nullptr && array->words.empty()
-                                          ? array->numbers[place]
-                                          : dem::parse_number(text(column));
+  std::optional<double> value;
+  if (array != nullptr && array->words.empty()) {
+    value = array->numbers[place];
+  } else {
+    value = column.unit ? in_si(std::string(text(column)), *column.unit)
+                        : dem::parse_number(text(column));
+  }
   if (!value || !std::isfinite(*value))
     refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
                        text(column)));

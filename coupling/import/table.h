@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coupling/import/lines.h"
+#include "coupling/unit.h"
 #include "dem/space/cell.h"
 
 namespace grainfield::coupling {
@@ -42,7 +43,10 @@ struct ForeignTable {
   Lines::Place first;                                       ///< of the rows
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
-  std::string broken;  ///< not empty: why the table cannot be read (truncated)
+  bool units_in_header = false;  ///< "x (mm)" is a column x in mm
+  std::string told_units;        ///< "FILE:LINE" where the file itself says that it is SI
+  std::optional<Unit> length;    ///< of places and velocities whose column tells no unit
+  std::string broken;            ///< not empty: why the table cannot be read (truncated)
   /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
   /// long as `rows`.
   std::shared_ptr<const std::vector<ArrayColumn>> arrays;
@@ -51,6 +55,7 @@ struct ForeignTable {
 /// Our column names and what they mean; the first list is of grains, then contacts, then walls.
 struct OurColumn {
   std::string name, unit, meaning;
+  std::string plane_unit = unit;  ///< in 2D
 };
 const std::vector<OurColumn>& our_columns(TableKind kind);
 
@@ -77,11 +82,20 @@ class ColumnNames {
   std::set<std::string> used_;
 };
 
+/// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]". A whole number in
+/// square brackets, "c_p[1]", is part of the name.
+struct Heading {
+  std::string name, unit;
+  int index = -1;
+};
+Heading heading_of(const std::string& text, int index);
+
 /// A column of a table, or a constant for every row, or nothing.
 struct ForeignColumn {
   std::string name;  ///< ours
   int index = -1;
-  std::optional<double> constant;
+  std::optional<double> constant;  ///< SI
+  std::optional<Unit> unit;        ///< of the numbers; none: SI
   explicit operator bool() const { return index >= 0 || constant.has_value(); }
 };
 
@@ -90,19 +104,23 @@ class TableColumns {
  public:
   TableColumns(const ForeignTable& table, ColumnNames& names);
   /// Empty when the table has no such column. Throws std::invalid_argument "FILE:LINE: ..." for one
-  /// that is there twice, and for a constant that is not finite.
+  /// that is there twice, for a constant that is not finite, and for a unit that is unknown or of
+  /// another kind than ours.
   ForeignColumn find(const std::string& ours) const;
   /// Throws std::invalid_argument "FILE:LINE: no column ...; found: ...; nearest ...".
   ForeignColumn need(const std::string& ours) const;
-  /// By the file's own name; throws as need().
-  ForeignColumn need_theirs(const std::string& theirs) const;
+  /// By the file's own name, with numbers such as our column `like` has; throws as need().
+  ForeignColumn need_theirs(const std::string& theirs, const std::string& like = "") const;
   /// What else would do: as an option of the program; as an argument, for a table in memory.
   [[noreturn]] void missing(const std::string& what, const std::string& option = "",
                             const std::string& argument = "") const;
 
  private:
+  std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
+
   const ForeignTable& table_;
   ColumnNames& names_;
+  std::vector<Heading> headings_;
 };
 
 /// A row of a table being read.
@@ -118,7 +136,7 @@ class ForeignRow {
   /// "" for a constant. Valid until the next call or row.
   std::string_view text(const ForeignColumn& column) const;
   bool empty(const ForeignColumn& column) const;
-  /// Throws std::invalid_argument naming file, line and column unless it is a finite number.
+  /// In SI. Throws std::invalid_argument naming file, line and column unless it is a finite number.
   double number(const ForeignColumn& column) const;
   /// The same for whole numbers ("7", "7.0", "1e3").
   long long whole(const ForeignColumn& column) const;

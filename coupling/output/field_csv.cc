@@ -16,7 +16,8 @@ bool on_rings(const Field& field) {
 }
 
 bool has_error(const Field& field, const Column& column) {
-  return column.error.size() > 0 && field.realizations > 1;
+  return column.error.size() > 0 &&
+         (field.realizations > 1 || column.error.array().isFinite().any());
 }
 
 }  // namespace

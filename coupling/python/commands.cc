@@ -304,6 +304,7 @@ py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& 
   out["warnings"] = outcome.warnings;
   out["verdict"] = outcome.verdict;
   out["coverage"] = outcome.coverage;
+  out["measured"] = outcome.measured;
   return out;
 }
 
@@ -330,6 +331,7 @@ py::dict compare(const std::string& file,
   out["verdict"] = outcome.verdict;
   out["note"] = outcome.note;
   out["lacks"] = outcome.lacks;
+  out["measured"] = outcome.measured;
   return out;
 }
 

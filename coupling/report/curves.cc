@@ -28,11 +28,13 @@ bool has_band(const Series& s) {
 }
 
 // Of a series with a colour of its own.
+const char* own_colour(const Series& s) {
+  return style::model[static_cast<std::size_t>(s.colour) % style::models];
+}
 std::string own_look(const Series& s) {
-  const std::size_t at = static_cast<std::size_t>(s.colour) % style::models;
   return fmt::format("with {} lc rgb '{}' title {}",
                      s.points ? "linespoints lw 1 pt 7 ps 0.45" : "lines lw 1.8 dt 2",
-                     style::model[at], style::quoted(s.label));
+                     own_colour(s), style::quoted(s.label));
 }
 
 std::string data_block(const std::string& name, const Series& s) {
@@ -70,6 +72,12 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
         }
       const auto part = [&](const std::string& text) { plot += (plot.empty() ? "" : ", ") + text; };
       if (series.colour >= 0) {
+        // Vectors: gnuplot clears what lies under the points of its error bars.
+        if (series.bars && has_band(series)) {
+          part(fmt::format(
+              "${} using 1:($2-$3):(0):(2*$3) with vectors nohead lw 1.4 lc rgb '{}' notitle", name,
+              own_colour(series)));
+        }
         part(fmt::format("${} using 1:2 {}", name, own_look(series)));
       } else if (series.simulation) {
         if (has_band(series))

@@ -24,6 +24,7 @@ struct Series {
   bool banded = false;          ///< its band is drawn as well where it is no simulation
   int colour = -1;              ///< of the models' ones; below 0: black, or the next one
   bool points = false;          ///< with a colour: points on a thin line, else a dashed line
+  bool bars = false;            ///< with a colour: its errors as bars
 };
 
 /// One frame of curves; `frames` stand in a grid under a common legend.

@@ -22,7 +22,7 @@ Frame radial_frame(const Comparison& c, std::size_t k) {
   Frame out;
   out.title = p.name;
   Series grains;
-  grains.label = c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
+  grains.label = c.label();
   grains.simulation = true;
   grains.x = p.x / c.depth;
   grains.y = p.mean / c.unit();
@@ -57,13 +57,15 @@ Picture radial_profiles(const std::string& title, const std::string& x_label,
 }
 
 void add_radial_tables(Report& report, const Comparison& c, const std::string& unit) {
-  Table distances{"Distance of the models from the grains",
-                  "Relative L2: root of the sum of squared differences over that of the grains, "
+  Table distances{
+      fmt::format("Distance of the models from the {}", c.subject()),
+      fmt::format("Relative L2: root of the sum of squared differences over that of the {}, "
                   "points evenly spaced in the radius. chi2/dof: squared differences over squared "
                   "standard errors, corrected for the number of realizations.",
-                  {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h",
-                   "in", "chi2/dof"},
-                  {}};
+                  c.subject()),
+      {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h", "in",
+       "chi2/dof"},
+      {}};
   for (const ModelComparison& r : c.results) {
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                               shown_or_dash(r.overall.largest / c.unit()),
@@ -88,7 +90,8 @@ void add_radial_tables(Report& report, const Comparison& c, const std::string& u
                            fmt::format("{}", s.peaks)});
   };
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k].peak, c.shape_errors[k].fwhm);
+    row(c.profiles[k].name, c.subject(), c.shapes[k], c.shape_errors[k].peak,
+        c.shape_errors[k].fwhm);
     for (const ModelComparison& r : c.results) {
       row("", r.label, r.shapes[k], std::nan(""), std::nan(""));
     }

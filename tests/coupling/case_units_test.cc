@@ -58,6 +58,15 @@ TEST(CaseUnits, ACaseInMillimetresIsTheOneInMetres) {
   EXPECT_EQ(value_text(*find_key("packing.width"), set), "0.6");
 }
 
+TEST(CaseUnits, ThereIsNoUnitOfTheWholeCase) {
+  const std::string words =
+      ": unknown: numbers are in SI units, and a value in another carries it, as in radius = "
+      "\"3.6 mm\"";
+  EXPECT_EQ(complaint("units = \"mm\"\n"), "x.toml:1: units" + words);
+  EXPECT_EQ(complaint("study = \"point-load\"\n[units]\nlength = \"mm\"\n"),
+            "x.toml:3: units" + words);
+}
+
 TEST(CaseUnits, AnotherKindIsRefused) {
   const std::string head = "study = \"point-load\"\n[packing]\n";
   EXPECT_THAT(complaint(head + "width = \"3 kPa\"\n"),

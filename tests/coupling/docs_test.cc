@@ -130,20 +130,49 @@ TEST(Docs, EveryPictureNamesItsCommand) {
        at != std::sregex_iterator(); ++at) {
     EXPECT_TRUE(listed.insert((*at)[1]).second) << (*at)[1] << " twice";
   }
-  for (const auto& entry : testing::fs::directory_iterator(kRoot / "docs/images")) {
+  // From where the list lies.
+  const path folder = kRoot / "docs/images";
+  const auto name_of = [&](const path& picture) {
+    return picture.lexically_normal().lexically_relative(folder).string();
+  };
+  for (const auto& entry : testing::fs::recursive_directory_iterator(kRoot / "docs")) {
     const std::string kind = entry.path().extension();
-    if (kind == ".svg" || kind == ".png") there.insert(entry.path().filename());
+    if (kind == ".svg" || kind == ".png") there.insert(name_of(entry.path()));
   }
   for (const path& page : pages()) {
     const std::string text = read_text(page.string());
-    const std::regex picture(R"(images/([A-Za-z0-9_.-]+\.(svg|png)))");
+    const std::regex picture(R"re((\]\(|src=")([^()"\s]+\.(svg|png)))re");
     for (auto at = std::sregex_iterator(text.begin(), text.end(), picture);
          at != std::sregex_iterator(); ++at) {
-      shown.insert((*at)[1]);
+      if (const std::string target = (*at)[2]; target.find("://") == std::string::npos) {
+        shown.insert(name_of(page.parent_path() / target));
+      }
     }
   }
   EXPECT_EQ(listed, there);
   EXPECT_EQ(shown, there) << "pictures that no page shows, or that are not there";
+}
+
+// The list has the settings with which the summary beside a recorded picture was made.
+TEST(Docs, RecordedPicturesNameTheCommandOfTheirSummary) {
+  const std::string list = read_text((kRoot / "docs/images/pictures.toml").string());
+  const std::regex table(
+      R"re(\["\.\./reproduction/results/([a-z-]+)\.([a-z-]+\.[a-z]+)"\]\nrun = \[([^\n]*(\n[^\n]*){0,3})\]\npicture)re");
+  int recorded = 0;
+  for (auto at = std::sregex_iterator(list.begin(), list.end(), table);
+       at != std::sregex_iterator(); ++at, ++recorded) {
+    const std::string name = (*at)[1], runs = (*at)[3];
+    const std::string summary =
+        read_text((kRoot / "docs/reproduction/results" / (name + ".json")).string());
+    std::smatch command;
+    ASSERT_TRUE(std::regex_search(
+        summary, command,
+        std::regex(
+            R"re("case\.command": "grainfield run cases/([a-z-]+)\.toml(([^"\\]|\\.)*)")re")))
+        << name;
+    EXPECT_THAT(runs, ::testing::EndsWith(command[1].str() + command[2].str() + "\"")) << name;
+  }
+  EXPECT_EQ(recorded, 12);
 }
 
 TEST(Docs, VersionsAgree) {

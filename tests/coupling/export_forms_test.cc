@@ -137,6 +137,55 @@ TEST(ExportForms, AFieldBecomesAGridATableAndAMap) {
   EXPECT_THAT(refusal(field + " --to html"), HasSubstr("holds fields"));
 }
 
+// Pressures and shears below a heap: no grid, but a line, with the errors that were told.
+TEST(ExportForms, AMeasuredFieldBecomesProfilesWithBars) {
+  const Folder folder;
+  const std::string field = folder / "f.h5", options = " --height 0.08 --slope 30 --rho-g 15000 ";
+  ASSERT_EQ(program("import-field " + kSamples + "measured.csv" + options + "-o " + field).code, 0);
+  exported(field + " --to svg -o " + (folder / "svg"));
+  const std::string both = read_text(folder / "svg/base.svg");
+  for (const char* words : {"-sigma_yy (N/m)", "sigma_xy (N/m)", "x (m); bars: standard error",
+                            "measured, y = -0.08 m"}) {
+    EXPECT_THAT(both, HasSubstr(words));
+  }
+  exported(field + " --to svg --column sigma_xy -o " + (folder / "one"));
+  EXPECT_THAT(read_text(folder / "one/base.svg"), ::testing::Not(HasSubstr("sigma_yy")));
+  exported(field + " --to png -o " + (folder / "png"));
+  EXPECT_THAT(read_text(folder / "png/base.png"), StartsWith("\x89PNG"));
+  // One realization with errors of its own.
+  exported(field + " --to csv -o " + (folder / "csv"));
+  EXPECT_THAT(read_text(folder / "csv/base.csv"),
+              StartsWith("x,y,sigma_yy,sigma_yy_error,sigma_xy,sigma_xy_error\n"));
+}
+
+TEST(ExportForms, AFieldThatIsNoPictureIsLeftOut) {
+  const Folder folder;
+  const std::string file = folder / "f.h5";
+  const auto scattered = [](int dim) {
+    Field field;
+    field.points = Eigen::MatrixXd::Zero(30, dim);
+    for (int k = 0; k < 30; ++k) {
+      for (int a = 0; a < dim; ++a) field.points(k, a) = std::fmod(0.618 * (k + 1) * (a + 1), 1.0);
+    }
+    field.add("sigma_yy", "N/m").value = Eigen::VectorXd::Ones(30);
+    return field;
+  };
+  Field line = scattered(2);
+  line.points.col(1).setConstant(-0.5);
+  write_fields(file, {{"line", line}, {"clouds", scattered(2)}, {"space", scattered(3)}});
+  const Output some = program("export " + file + " --to svg -o " + (folder / "svg"));
+  EXPECT_EQ(some.code, 0) << some.err;
+  EXPECT_THAT(some.out, HasSubstr("line of "));
+  EXPECT_TRUE(testing::fs::exists(folder / "svg/line.svg"));
+  EXPECT_FALSE(testing::fs::exists(folder / "svg/clouds.svg"));
+  EXPECT_EQ(std::count(some.err.begin(), some.err.end(), '\n'), 2) << some.err;
+  EXPECT_THAT(some.err, HasSubstr("left out: f.h5, clouds: 30 points on 30 lines along x, drawn "
+                                  "are a grid in the plane, as a map, and up to 8 lines"));
+  EXPECT_THAT(refusal(file + ":clouds --to svg"), HasSubstr("30 points on 30 lines along x"));
+  EXPECT_THAT(refusal(file + " --to svg --column none"),
+              HasSubstr("--column: found \"none\", allowed: sigma_yy"));
+}
+
 TEST(ExportForms, ThePageHoldsEveryGrainAndTheMeanStressOfTheAveraging) {
   const dem::Snapshot packing = dem::read_snapshot(kLayer, first_of(kLayer));
   const std::string page = packing_page(packing, "a </script> \"title\"");

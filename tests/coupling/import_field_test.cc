@@ -56,6 +56,38 @@ double figure(const Summary& s, const std::string& key) {
   return std::get<double>(at->second);
 }
 
+// What was measured is not called grains: verdicts, tables and pictures know where it is from.
+TEST(ImportField, TextsSpeakOfTheMeasurement) {
+  const Folder folder;
+  const std::string field = folder / "f.h5";
+  ASSERT_EQ(program("import-field " + folder.write("m.csv", measured(7)) + heap_options() + " -o " +
+                    field)
+                .code,
+            0);
+  const auto page_of = [&](const std::string& command, const char* name, Output* said = nullptr) {
+    const Output out = program(command + " -o " + (folder / name));
+    EXPECT_EQ(out.code, 0) << out.err;
+    if (said != nullptr) *said = out;
+    return testing::read_text(folder / name + "/report.html");
+  };
+  Output apart, near, none;
+  const std::string page =
+      page_of("compare " + field + " --model osl:eta=0.74,mu=-0.31 --model bcc", "a", &apart);
+  EXPECT_THAT(apart.out, HasSubstr("The measurement supports the osl, not the bcc"));
+  EXPECT_THAT(apart.out, HasSubstr("(1) it stands at "));
+  EXPECT_THAT(page, HasSubstr("Distance of the models from the measurement"));
+  page_of("compare " + field + " --model hydrostatic:rho_g=90000 --model bcc:rho_g=60000", "n",
+          &none);
+  EXPECT_THAT(none.out, HasSubstr("None of the models describes this measurement: "));
+  page_of("compare " + field + " --model bcc", "one", &near);
+  EXPECT_THAT(near.out, HasSubstr("the measurement is nearest to bcc"));
+  const std::string fit = page_of("fit " + field + " --model osl --model bcc", "f");
+  EXPECT_THAT(fit, HasSubstr("Measurement and the best models: sigma_yy"));
+  for (const std::string& text : {page, fit, apart.out, near.out, none.out}) {
+    EXPECT_THAT(text, ::testing::Not(::testing::ContainsRegex("[gG]rains")));
+  }
+}
+
 TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   const Folder folder;
   const std::string file = folder / "field.h5";

@@ -115,7 +115,17 @@ TEST(Completion, OffersCommandsOptionsCasesModelsAndFiles) {
   EXPECT_EQ(offered(folder, "run osl-w"), "osl-wedge\n");
   EXPECT_EQ(offered(folder, "model flam"), "flamant\n");
   EXPECT_EQ(offered(folder, "compare x.h5 --model boussi"), "boussinesq\n");
+  EXPECT_EQ(offered(folder, "keys pile"), "pile\npile-fields\npile-fit\n");
+  EXPECT_EQ(offered(folder, "export x.h5 --to v"), "vtu\n");
+  EXPECT_EQ(offered(folder, "export x.h5 --to "), "lammps\nvtu\ncsv\nhtml\nsvg\npng\n");
+  EXPECT_EQ(offered(folder, "import --from "), "lammps\nliggghts\nyade\ncsv\n");
+  EXPECT_EQ(offered(folder, "import --units "), "m\ncm\nmm\num\n");
+  EXPECT_EQ(offered(folder, "average --frame "), "layer\nheap\npacking\n");
+  EXPECT_EQ(offered(folder, "average --kernel "), "lucy\ngaussian\nheaviside\ncircle\nsquare\n");
+  EXPECT_EQ(offered(folder, "import-field --geometry l"), "layer\n");
+  EXPECT_EQ(offered(folder, "import-field --dim "), "2\n3\n");
   folder.write("mine.h5", "");
+  EXPECT_EQ(offered(folder, "export --group mi"), "mine.h5\n");
   EXPECT_EQ(offered(folder, "info min"), "mine.h5\n");
 }
 

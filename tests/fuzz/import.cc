@@ -31,6 +31,7 @@ void choose(const std::string& line, coupling::ImportOptions& options) {
     options.fixed_column = value.substr(0, equals);
     options.fixed_values = {value.substr(std::min(equals + 1, value.size()))};
   }
+  if (name == "units") options.units = value;
   if (name == "all") options.all_steps = true;
   if (name == "alone") options.without_contacts = true;
   if (name == "flip") options.flip_forces = true;

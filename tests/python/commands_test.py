@@ -236,6 +236,7 @@ def test_measured_fields(tmp_path):
     assert here.name == "base"
     np.testing.assert_allclose(here.sigma_yy, stress[:, 1], rtol=1e-12)
     fit = gf.fit(here, ["osl", "bcc"], heights=[0], components=["sigma_yy", "sigma_xy"])
+    assert fit._of == gf.compare(here, "bcc")._of == "measured"
     for name, true in (("eta", ETA), ("mu", MU)):
         value, error = fit.constants["osl"][name]
         assert abs(value - true) < 0.1 * error  # without noise: only the cells' width is left

@@ -42,6 +42,15 @@ def test_fields_and_profiles_show_bands_and_models():
         gf.compare(cut, "ife").plot(profile="top")
 
 
+def test_what_was_measured_is_not_called_grains(tmp_path):
+    table = tmp_path / "m.csv"
+    table.write_text("x (mm),component,value (Pa),error (Pa)\n"
+                     + "".join(f"{x},pressure,{900 - 5 * abs(x)},20\n" for x in range(-120, 121, 10)))
+    field = gf.import_field(table, height=0.08, slope=30, rho_g=15000)
+    for result in (gf.compare(field, "bcc"), gf.fit(field, ["bcc"])):
+        assert [line.get_label() for line in result.plot().lines] == ["measured", "bcc"]
+
+
 def test_without_matplotlib_the_error_says_what_to_install():
     done = python("""
 import sys

@@ -100,7 +100,7 @@ def _band(ax: Any, x: np.ndarray, mean: np.ndarray, error: np.ndarray | None, ro
         ax.fill_between(x, mean - error[row], mean + error[row], alpha=0.3, color=line.get_color())
 
 
-def plot_profiles(profiles: Table, ax: Any, profile: str | None) -> Any:
+def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str) -> Any:
     if "profile" not in profiles:
         raise ValueError("these profiles are no grains beside models; their columns, to plot by hand: "
                          + ", ".join(profiles))
@@ -112,7 +112,7 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None) -> Any:
     ax = _axes(ax)
     here = profiles["profile"] == profile
     x = profiles["x"][here]
-    _band(ax, x, profiles["simulation"][here], profiles["standard_error"], here, "grains")
+    _band(ax, x, profiles["simulation"][here], profiles["standard_error"], here, of)
     for model in models_in(profiles):
         ax.plot(x, profiles[model][here], "--", label=model)
     quantity = _quantity(profiles, profile)

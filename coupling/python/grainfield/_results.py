@@ -54,17 +54,18 @@ class Structure:
 
 class _Profiles:
     profiles: Table | None
+    _of = "grains"  # or "measured"
 
     def plot(self, ax: Any = None, profile: str | None = None) -> Any:
-        """Draws a profile of the grains with a band of one standard error, and the models beside;
-        by default the first. Returns the axes."""
+        """Draws a profile of the grains, or of what was measured, with a band of one standard error,
+        and the models beside; by default the first. Returns the axes."""
         from ._plots import plot_profiles
 
         if self.profiles is None:
             members = getattr(self, "members", None)
             where = "; those of its members: .members[...].plot()" if members else ""
             raise ValueError("there are no profiles to draw" + where)
-        return plot_profiles(self.profiles, ax, profile)
+        return plot_profiles(self.profiles, ax, profile, self._of)
 
 
 class CompareResult(_Profiles):
@@ -77,6 +78,7 @@ class CompareResult(_Profiles):
         self.folder = kept
         self.summary = Summary(_core.read_summary(os.path.join(folder, "summary.json")))
         self.profiles = read_table(os.path.join(folder, "profiles.csv"))
+        self._of = "measured" if found["measured"] else "grains"
         self.measures: dict[str, dict[str, float]] = {}
         for key, value in self.summary.under("compare.").items():
             label, _, name = key.partition(".")
@@ -101,6 +103,7 @@ class FitResult(_Profiles):
         self.folder = kept
         self.summary = Summary(_core.read_summary(os.path.join(folder, "summary.json")))
         self.profiles = read_table(os.path.join(folder, "profiles.csv"))
+        self._of = "measured" if found["measured"] else "grains"
         fits = self.summary.under("fit.")
         self.constants: dict[str, dict[str, tuple[float, float]]] = {}
         for key, error in fits.items():

@@ -16,10 +16,6 @@ Series series_of(const Comparison& c, const Profile& p, const std::string& label
   return out;
 }
 
-std::string grains_label(const Comparison& c) {
-  return c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
-}
-
 void add_models(const Comparison& c, std::size_t profile, Frame& frame) {
   for (const ModelProfiles& m : c.models) {
     frame.series.push_back(
@@ -40,7 +36,7 @@ void add_base(Report& report, const PileReport& in) {
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     if (c.profiles[k].key != "base") continue;
     Frame frame;
-    frame.series.push_back(series_of(c, c.profiles[k], grains_label(c) + ", base forces", true));
+    frame.series.push_back(series_of(c, c.profiles[k], c.label() + ", base forces", true));
     for (const Profile& p : c.beside) {
       if (p.key.compare(0, 5, "base_") != 0) continue;
       Series s = series_of(c, p, p.name, false);
@@ -50,10 +46,13 @@ void add_base(Report& report, const PileReport& in) {
     add_models(c, k, frame);
     Picture picture = curves("Vertical pressure on the base", "x / h (apex at 0)",
                              "-σ_{yy}  (ρ g h)", {std::move(frame)});
-    picture.caption =
-        "Forces of the grains on the floor, smeared along x with the kernel of the first averaging "
-        "(" +
-        in.averaged + "). " + scale_note(c);
+    picture.caption = fmt::format(
+        "{} ({}). {}",
+        c.measured() ? "Pressures that were measured on the floor, the models smeared along x "
+                       "over the width of the cells"
+                     : "Forces of the grains on the floor, smeared along x with the kernel of the "
+                       "first averaging",
+        in.averaged, scale_note(c));
     report.sections.emplace_back(std::move(picture));
   }
 }
@@ -69,7 +68,7 @@ void add_cuts(Report& report, const PileReport& in) {
       if (c.profiles[k].key == "base" || c.profiles[k].quantity != quantity) continue;
       Frame frame;
       frame.title = c.profiles[k].name;
-      frame.series.push_back(series_of(c, c.profiles[k], grains_label(c), true));
+      frame.series.push_back(series_of(c, c.profiles[k], c.label(), true));
       add_models(c, k, frame);
       frames.push_back(std::move(frame));
     }
@@ -126,12 +125,14 @@ std::string error_note(int realizations) {
 void add_tables(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   if (!c.results.empty()) {
-    Table distances{"Distance of the models from the grains",
-                    "Relative L2: root of the sum of squared differences over that of the grains. "
+    Table distances{
+        fmt::format("Distance of the models from the {}", c.subject()),
+        fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
                     "chi2/dof: squared differences over squared standard errors.",
-                    {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress),
-                     "in", "chi2/dof"},
-                    {}};
+                    c.subject()),
+        {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress), "in",
+         "chi2/dof"},
+        {}};
     for (const ModelComparison& r : c.results) {
       distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                                 fmt::format("{:.3g}", r.overall.largest / c.unit()),

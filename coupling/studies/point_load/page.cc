@@ -23,8 +23,7 @@ Frame frame(const Comparison& c, std::size_t k) {
                      ? fmt::format("{} ({:.2g} h)", p.name, p.depth / c.depth)
                      : p.name;
   Series simulation;
-  simulation.label =
-      c.realizations > 1 ? fmt::format("grains, mean of {}", c.realizations) : "grains";
+  simulation.label = c.label();
   simulation.simulation = true;
   simulation.x = p.x / c.depth;
   simulation.y = p.mean / unit;
@@ -96,12 +95,14 @@ void add_base_before(Report& report, const PointLoadReport& in) {
 
 void add_tables(Report& report, const PointLoadReport& in) {
   const Comparison& c = in.comparison;
-  Table distances{"Distance of the models from the grains",
-                  "Relative L2: root of the sum of squared differences over that of the grains. "
+  Table distances{
+      fmt::format("Distance of the models from the {}", c.subject()),
+      fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
                   "chi2/dof: squared differences over squared standard errors, corrected for the "
                   "number of realizations; about 1 for a model within the spread.",
-                  {"model", "relative L2", "largest difference (F/h)", "at x/h", "in", "chi2/dof"},
-                  {}};
+                  c.subject()),
+      {"model", "relative L2", "largest difference (F/h)", "at x/h", "in", "chi2/dof"},
+      {}};
   for (const ModelComparison& r : c.results)
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                               shown(r.overall.largest * c.depth / c.load),
@@ -128,7 +129,7 @@ void add_tables(Report& report, const PointLoadReport& in) {
   };
   const ProfileShape exact{kNan, kNan, kNan, kNan, 0, kNan};
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    row(c.profiles[k].name, "grains", c.shapes[k], c.shape_errors[k]);
+    row(c.profiles[k].name, c.subject(), c.shapes[k], c.shape_errors[k]);
     for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k], exact);
   }
   report.sections.emplace_back(std::move(shapes));
