@@ -158,8 +158,8 @@ void add_compare(CLI::App& app, Action& action) {
                              "sigma_rr", "sigma_tt", "sigma_rz"}));
   command
       ->add_option("--heights", request->lines.heights,
-                   "rows of a map: shares of the height; default 0.1,0.25,0.4 (layers "
-                   "0.75,0.5,0.25)")
+                   "rows of a map: shares of the height, 0 (the base) to 1; default 0.1,0.25,0.4 "
+                   "(layers 0.75,0.5,0.25)")
       ->delimiter(',');
   command
       ->add_option("--origin", request->lines.origin,

@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "continuum/constants.h"
 #include "coupling/statistics/agreement.h"
@@ -34,9 +36,31 @@ struct Projection {
   double position = kNan, error = kNan;
 };
 
+// A field with errors of its own, whose realizations are not at hand: a measurement, or a mean.
+bool has_own_errors(const Comparison& c) {
+  return std::all_of(c.profiles.begin(), c.profiles.end(), [](const Profile& p) {
+    return p.samples.cols() < 2 && p.error.size() == p.x.size() && (p.error.array() > 0).any();
+  });
+}
+
+// How many values count as one there: the components of a place may be tied, and so are places
+// nearer than the independent length.
+double tied_values(const Comparison& c) {
+  double values = 0, independent = 0;
+  std::set<std::string> components;
+  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
+    components.insert(c.profiles[k].quantity);
+    values += static_cast<double>(c.profiles[k].x.size());
+    independent += c.results.front().per_profile[k].dof;
+  }
+  const double near = independent > 0 ? std::max(1.0, values / independent) : 1;
+  return near * static_cast<double>(components.size());
+}
+
 Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfiles& b) {
   const auto realizations = static_cast<Eigen::Index>(c.realizations);
-  double norm = 0, sum = 0;
+  const bool own_errors = has_own_errors(c);
+  double norm = 0, sum = 0, variance = 0;
   Eigen::VectorXd each = Eigen::VectorXd::Zero(realizations);
   bool sampled = realizations > 1;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
@@ -48,13 +72,16 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
       if (!std::isfinite(step) || !std::isfinite(p.mean[i])) continue;
       norm += step * step;
       sum += (p.mean[i] - from) * step;
+      if (own_errors) variance += step * step * p.error[i] * p.error[i];
       if (here)
         for (Eigen::Index r = 0; r < realizations; ++r) each[r] += (p.samples(i, r) - from) * step;
     }
   }
   if (!(norm > 0)) return {};
   Projection result{sum / norm, kNan};
-  if (sampled) {
+  if (own_errors) {
+    result.error = std::sqrt(tied_values(c) * variance) / norm;
+  } else if (sampled) {
     each /= norm;
     const double n = static_cast<double>(realizations);
     result.error = std::sqrt((each.array() - each.mean()).square().sum() / (n - 1) / n);
@@ -62,12 +89,16 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
   return result;
 }
 
-// Beyond the middle between A and B by more than the spread (Student's t, 95 %, two-sided), which
-// is itself less than their distance: nearer than the spread the two curves are one.
+// Beyond the middle between A and B by more than the spread (95 %, two-sided: Student's t over
+// realizations, the normal distribution of a single field's errors), which is itself less than
+// their distance: nearer than the spread the two curves are one.
 bool beyond_spread(const Projection& p, int realizations) {
-  if (realizations < 2 || !std::isfinite(p.error)) return false;
-  const boost::math::students_t t(realizations - 1);
-  const double spread = quantile(t, (1 + confidence) / 2) * p.error;
+  if (!std::isfinite(p.error)) return false;
+  const double level = (1 + confidence) / 2;
+  const double errors = realizations < 2
+                            ? quantile(boost::math::normal(), level)
+                            : quantile(boost::math::students_t(realizations - 1), level);
+  const double spread = errors * p.error;
   return p.position - 0.5 > spread && spread < 1;
 }
 
@@ -109,13 +140,15 @@ std::string describe(const ModelComparison& result, bool by_chi2) {
 bool misses(const ModelComparison& best) { return best.overall.rel_l2 > most_rel_l2; }
 
 // The model against the realizations, as fits have it (statistics/agreement.h): every profile in
-// units of its own root mean square. nan without single values of every realization.
+// units of its own root mean square. Without single values of every realization by the field's own
+// errors; nan without these.
 Agreement agreement_of(const Comparison& c, std::size_t model) {
-  std::vector<double> off;
+  const bool own_errors = has_own_errors(c);
+  std::vector<double> off, errors;
   std::vector<Eigen::VectorXd> samples;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     const Profile& p = c.profiles[k];
-    if (p.samples.cols() != c.realizations || p.samples.rows() != p.x.size())
+    if (!own_errors && (p.samples.cols() != c.realizations || p.samples.rows() != p.x.size()))
       return {kNan, kNan, kNan, kNan};
     double square = 0;
     int count = 0;
@@ -127,10 +160,23 @@ Agreement agreement_of(const Comparison& c, std::size_t model) {
     const double unit = std::sqrt(square / std::max(count, 1));
     for (Eigen::Index i = 0; unit > 0 && i < p.x.size(); ++i) {
       const double d = p.mean[i] - c.models[model].values[k][i];
-      if (!std::isfinite(d) || !p.samples.row(i).allFinite()) continue;
+      if (!std::isfinite(d)) continue;
+      if (own_errors) {
+        if (!std::isfinite(p.error[i])) continue;
+        off.push_back(d / unit);
+        errors.push_back(p.error[i] / unit);
+        continue;
+      }
+      if (!p.samples.row(i).allFinite()) continue;
       off.push_back(d / unit);
       samples.emplace_back((p.samples.row(i).array() - p.samples.row(i).mean()) / unit);
     }
+  }
+  if (own_errors) {
+    const auto count = static_cast<Eigen::Index>(off.size());
+    return agreement(Eigen::Map<const Eigen::VectorXd>(off.data(), count),
+                     Eigen::Map<const Eigen::VectorXd>(errors.data(), count),
+                     static_cast<int>(std::lround(tied_values(c))));
   }
   Eigen::MatrixXd deviations(static_cast<Eigen::Index>(off.size()), c.realizations);
   for (std::size_t k = 0; k < off.size(); ++k) {
@@ -142,7 +188,8 @@ Agreement agreement_of(const Comparison& c, std::size_t model) {
 }
 
 // Says so when even the nearest model is not within the errors, or describes nothing.
-void add_misfit(const ModelComparison& best, const Agreement& found, std::string& sentence) {
+void add_misfit(const Comparison& c, const ModelComparison& best, const Agreement& found,
+                std::string& sentence) {
   if (misses(best)) {
     sentence = fmt::format(
         "None of the models describes these grains: even the nearest misses by {:.0f} % (relative "
@@ -152,9 +199,9 @@ void add_misfit(const ModelComparison& best, const Agreement& found, std::string
   }
   if (found.ratio > found.chance) {
     sentence += fmt::format(
-        " No model agrees within the errors: the nearest misses by {:.3g} times what the spread "
+        " No model agrees within the errors: the nearest misses by {:.3g} times what the {} "
         "explains, where up to {:.3g} would be chance.",
-        found.ratio, found.chance);
+        found.ratio, c.realizations < 2 ? "error" : "spread", found.chance);
   }
 }
 
@@ -163,7 +210,8 @@ void add_misfit(const ModelComparison& best, const Agreement& found, std::string
 Verdict judge(const Comparison& c) {
   Verdict v;
   const bool spread = has_spread(c);
-  const bool by_chi2 = spread && c.realizations >= least_for_chi2 &&
+  const bool single = c.realizations < 2;
+  const bool by_chi2 = spread && (single ? has_own_errors(c) : c.realizations >= least_for_chi2) &&
                        std::all_of(c.results.begin(), c.results.end(), [](const auto& r) {
                          return std::isfinite(r.overall.chi2_per_dof);
                        });
@@ -195,7 +243,7 @@ Verdict judge(const Comparison& c) {
   if (other == order.end()) {
     v.sentence = fmt::format("Of the {} models, the grains are nearest to {}{}.", best.family,
                              describe(best, by_chi2), runner_up);
-    add_misfit(best, found, v.sentence);
+    add_misfit(c, best, found, v.sentence);
     return v;
   }
   Projection p = project(c, c.models[*other], c.models[order.front()]);
@@ -215,11 +263,13 @@ Verdict judge(const Comparison& c) {
         runner_up);
   } else if (std::isfinite(p.error)) {
     v.sentence = fmt::format(
-        "{} and {} are not distinguishable within the spread of {} realizations: nearest is {}, "
+        "{} and {} are not distinguishable within {}: nearest is {}, "
         "against {}; on the line from {} (0) to {} (1) the grains stand at {:.2f} +- {:.2f}{}{}.",
-        best.family, loser.family, c.realizations, describe(best, by_chi2),
-        describe(loser, by_chi2), loser.family, best.family, p.position, p.error, beyond_both(p),
-        runner_up);
+        best.family, loser.family,
+        single ? std::string("the errors of this field")
+               : fmt::format("the spread of {} realizations", c.realizations),
+        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position,
+        p.error, beyond_both(p), runner_up);
     v.sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(v.sentence[0])));
   } else {
     v.sentence = fmt::format(
@@ -234,7 +284,7 @@ Verdict judge(const Comparison& c) {
         describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family, p.position,
         beyond_both(p));
   }
-  add_misfit(best, found, v.sentence);
+  add_misfit(c, best, found, v.sentence);
   return v;
 }
 

@@ -213,9 +213,9 @@ std::vector<FieldLine> lines_of(const SceneField& scene, const LineOptions& opti
   } else {
     std::vector<double> heights = options.heights;
     for (const double share : heights) {
-      if (share > 0 && share <= 1) continue;
+      if (share >= 0 && share <= 1) continue;
       throw std::invalid_argument(fmt::format(
-          "--heights: found {:g}, allowed: above 0, up to 1, shares of the height", share));
+          "--heights: found {:g}, allowed: 0 (the base) to 1, shares of the height", share));
     }
     if (heights.empty()) {
       heights = scene.scene == Scene::heap ? std::vector<double>{0.1, 0.25, 0.4}

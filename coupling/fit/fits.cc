@@ -209,9 +209,13 @@ Comparison profiles_of(const EnsembleFits& fits) {
       p.samples = sign * unit * part.samples;
       p.mean = p.samples.rowwise().mean();
       p.error.resize(p.mean.size());
-      for (Eigen::Index k = 0; k < p.mean.size(); ++k) {
-        const Eigen::VectorXd row = p.samples.row(k);
-        p.error[k] = spread_of({row.begin(), row.end()}).standard_error;
+      if (fits.weights.errors_from == ErrorsFrom::data) {
+        p.error = unit * fits.weights.error(rows);
+      } else {
+        for (Eigen::Index k = 0; k < p.mean.size(); ++k) {
+          const Eigen::VectorXd row = p.samples.row(k);
+          p.error[k] = spread_of({row.begin(), row.end()}).standard_error;
+        }
       }
       p.independent_length = fits.observed.kernel->independent_length() * h;
       for (std::size_t m = 0; m < models.size(); ++m) {

@@ -92,8 +92,8 @@ std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> se
   List list(seeing);
   const ObservationOperator* at = seeing.get();  // the models hold it
   const FitParameter nu{"nu", "-", "Poisson's ratio", 0, kMostPoisson};
-  const FitParameter rho{"rho", "-", "r/sqrt(t): below 0 two peaks, -1 the hyperbolic limit",
-                         kLeastRho, kMostRho, -1};
+  const FitParameter rho{
+      "rho", "-", "r/sqrt(t): below 0 two peaks, -1 the hyperbolic limit", kLeastRho, kMostRho, -1};
   const FitParameter t{"t", "-", "E_x/E_y", 0.02, 50, 0};
   // On a rough base Hooke's law itself counts, and must be of a solid: both bounds say so.
   const FitParameter shear{"shear", "-", "E_x/(2 G sqrt t) = rho + nu_ratio; isotropic: 1 + nu",

@@ -123,6 +123,10 @@ double least_errors(int realizations) {
 }
 
 std::string evidence(const Score& s) {
+  if (std::fabs(s.behind) < kSame && !(std::fabs(s.heights_behind) >= kSame) &&
+      !(std::fabs(s.aic_behind) >= 0.05)) {
+    return "the same stress here";
+  }
   if (std::isfinite(s.aic_behind)) {
     return fmt::format("behind by {:.1f} in chi2 + 2 x free numbers (more than {:g} counts)",
                        s.aic_behind, kNoSupport);
@@ -150,8 +154,8 @@ std::string sign_warnings(const std::vector<Fit>& fits, const std::vector<std::s
 
 void mark_supported(std::vector<Score>& ranking, double least_errors) {
   for (Score& s : ranking) {
-    const bool clearly_behind = s.behind > least_errors * s.behind_error &&
-                                !(s.heights_behind < 0) &&  // false for nan
+    const bool clearly_behind = s.behind > kSame && s.behind > least_errors * s.behind_error &&
+                                !(s.heights_behind < -kSame) &&  // false for nan
                                 !(s.aic_behind <= kNoSupport);
     s.supported = &s == &ranking.front() || !clearly_behind;
   }
@@ -159,8 +163,8 @@ void mark_supported(std::vector<Score>& ranking, double least_errors) {
   const std::vector<Score> judged = ranking;
   for (std::size_t k = 1; k < ranking.size(); ++k) {
     for (const Score& other : judged) {
-      if (!other.supported && ranking[k].behind >= other.behind &&
-          !(ranking[k].heights_behind < other.heights_behind)) {
+      if (!other.supported && ranking[k].behind > other.behind - kSame &&
+          !(ranking[k].heights_behind < other.heights_behind - kSame)) {
         ranking[k].supported = false;
       }
     }

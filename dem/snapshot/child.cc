@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 
 namespace grainfield::dem {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 constexpr double kWallShare = 30;
 constexpr std::array<int, 4> kStopping{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 // What the child says at its end.
-constexpr char kTrue = 't', kFalse = 'f';
+constexpr char kTrue = 't', kFalse = 'f', kRefused = 'r';
 
 // Whether the address sanitizer is there, as GCC and clang say it: it needs terabytes of addresses.
 #ifdef __SANITIZE_ADDRESS__
@@ -88,6 +89,8 @@ void lower(decltype(RLIMIT_CPU) what, double to) {
   char letter = kFalse;
   try {
     if (work()) letter = kTrue;
+  } catch (const std::invalid_argument&) {
+    letter = kRefused;
   } catch (...) {
   }
   if (write(answer, &letter, 1) != 1) _exit(1);
@@ -120,6 +123,7 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<bool()>&
   }
   if (letter == kTrue) return {ChildEnd::ok, ""};
   if (letter == kFalse) return {ChildEnd::failed, ""};
+  if (letter == kRefused) return {ChildEnd::refused, ""};
   // Who ignores SIGCHLD is not told how it ended.
   if (ended != child || !WIFSIGNALED(status)) return {ChildEnd::crashed, ""};
   const int number = WTERMSIG(status);

@@ -62,24 +62,32 @@ std::set<State>& known_structures() {
   return states;
 }
 
+AddressFormat format_of(hid_t file) {
+  const Handle properties(H5Fget_create_plist(file), H5Pclose);
+  hsize_t base = 0;
+  std::size_t address = 0, length = 0;
+  if (H5Pget_userblock(properties, &base) < 0 || H5Pget_sizes(properties, &address, &length) < 0) {
+    return {};
+  }
+  return {base, static_cast<unsigned>(address), static_cast<unsigned>(length)};
+}
+
 // All of a file, as the readers of this folder would read it. What cannot be read is no matter
-// here: they say it.
+// here: they say it. It ends at an object whose attributes HDF5 must not touch.
 class Walk {
  public:
-  Walk(bool contents, const std::string& file)
-      : contents_(contents), file_(file, std::ios::binary) {}
+  explicit Walk(bool contents) : contents_(contents) {}
 
-  void group(hid_t id, int depth) {
-    H5O_info_t info;
-    if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return failed();
-    attributes(id, info.addr);
-    if (depth > kDeepest || !seen_.emplace(info.fileno, info.addr).second) return;
-    Below below{*this, depth};
-    if (H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, link, &below) < 0) failed();
+  void all(hid_t file, const std::string& name) {
+    const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+    if (!root.valid()) return;
+    bytes_of_file_.open(name, std::ios::binary);
+    format_ = format_of(file);
+    group(root, 0);
   }
   bool out_of_memory() const { return out_of_memory_; }
-  /// An attribute's name, type and space do not end within it.
-  bool reaches_beyond() const { return reaches_beyond_; }
+  /// An attribute is larger than its place.
+  bool damaged() const { return damaged_; }
   /// Of all datasets met, as they claim.
   double bytes() const { return bytes_; }
 
@@ -88,6 +96,16 @@ class Walk {
     Walk& walk;
     int depth;
   };
+
+  void group(hid_t id, int depth) {
+    attributes(id);
+    if (damaged_) return;
+    H5O_info_t info;
+    if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return failed();
+    if (depth > kDeepest || !seen_.emplace(info.fileno, info.addr).second) return;
+    Below below{*this, depth};
+    if (H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, link, &below) < 0) failed();
+  }
 
   static herr_t link(hid_t group, const char* name, const H5L_info_t* info, void* data) {
     const auto [walk, depth] = *static_cast<Below*>(data);
@@ -100,7 +118,7 @@ class Walk {
     } else if (H5Iget_type(object) == H5I_DATASET) {
       walk.dataset(object);
     }
-    return 0;
+    return walk.damaged_ ? 1 : 0;
   }
 
   static herr_t attribute(hid_t object, const char* name, const H5A_info_t*, void* data) {
@@ -124,30 +142,17 @@ class Walk {
     return 0;
   }
 
-  // Of a file without a block of its user's before it, as all of ours are.
-  std::string bytes_at(std::uint64_t offset, std::uint64_t count) {
-    std::string out(count, '\0');
-    file_.clear();
-    file_.seekg(static_cast<std::streamoff>(offset));
-    file_.read(out.data(), static_cast<std::streamsize>(count));
-    out.resize(static_cast<std::size_t>(std::max<std::streamsize>(file_.gcount(), 0)));
-    return out;
-  }
-
-  void attributes(hid_t id, haddr_t header) {
-    const auto read = [this](std::uint64_t at, std::uint64_t n) { return bytes_at(at, n); };
-    if (!attributes_end_within(read, header)) {
-      reaches_beyond_ = true;
-      return;
-    }
+  void attributes(hid_t id) {
+    H5O_info_t info;
+    if (H5Oget_info2(id, &info, H5O_INFO_BASIC) < 0) return failed();
+    damaged_ = damaged_ || !attributes_fit(bytes_of_file_, format_, info.addr);
+    if (damaged_) return;
     if (H5Aiterate2(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, attribute, this) < 0) failed();
   }
 
   void dataset(hid_t set) {
-    H5O_info_t info;
-    if (H5Oget_info2(set, &info, H5O_INFO_BASIC) < 0) return failed();
-    attributes(set, info.addr);
-    if (reaches_beyond_) return;
+    attributes(set);
+    if (damaged_) return;
     const Handle claimed(H5Dget_space(set), H5Sclose);
     bytes_ += kNumber * static_cast<double>(std::max<hssize_t>(
                             0, claimed.valid() ? H5Sget_simple_extent_npoints(claimed) : 0));
@@ -179,18 +184,20 @@ class Walk {
   void failed() { out_of_memory_ = out_of_memory_ || hdf5::out_of_memory(); }
 
   std::set<std::pair<unsigned long, haddr_t>> seen_;
-  bool contents_, out_of_memory_ = false, reaches_beyond_ = false;
-  std::ifstream file_;
+  std::ifstream bytes_of_file_;
+  AddressFormat format_;
+  bool contents_, out_of_memory_ = false, damaged_ = false;
   double bytes_ = 0;
 };
 
-// False when it takes more memory than allowed, or an attribute reaches beyond its message.
+// False when it takes more memory than allowed. Throws std::invalid_argument when HDF5 must not
+// touch the file.
 bool go_through(const std::string& file, Walk& walk) {
   const Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) return true;
-  const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
-  if (root.valid()) walk.group(root, 0);
-  return !walk.out_of_memory() && !walk.reaches_beyond();
+  walk.all(handle, file);
+  if (walk.damaged()) throw std::invalid_argument(file);
+  return !walk.out_of_memory();
 }
 
 // Whether the user has limited our memory, so that want of it says nothing about the file.
@@ -202,7 +209,9 @@ bool memory_is_limited() {
 std::string why(const ChildResult& result) {
   switch (result.end) {
     case ChildEnd::failed:
-      return "reading it takes more memory than the file can need, or bytes beyond an attribute";
+      return "reading it takes more memory than the file can need";
+    case ChildEnd::refused:
+      return "an attribute is larger than its place";
     case ChildEnd::endless:
       return "reading it does not come to an end";
     case ChildEnd::crashed:
@@ -223,9 +232,8 @@ int StructureOnly::depth_ = 0;
 double content_bytes(const std::string& file) {
   const StructureOnly alone;
   const Handle handle = open_for_reading(file);
-  const Handle root(H5Gopen2(handle, "/", H5P_DEFAULT), H5Gclose);
-  Walk walk(false, file);
-  if (root.valid()) walk.group(root, 0);
+  Walk walk(false);
+  walk.all(handle, file);
   return walk.bytes();
 }
 
@@ -244,7 +252,7 @@ void probe(const std::string& file) {
       alone ? ChildLimits{kStructureSeconds, kStructureMemory, kStructureClock}
             : ChildLimits{kSeconds + size / kBytesPerSecond, kMemory + kMemoryShare * size};
   const ChildResult result = run_in_child(limits, [&] {
-    Walk walk(!alone, file);
+    Walk walk(!alone);
     return go_through(file, walk);
   });
   if (alone && (result.end == ChildEnd::endless || result.end == ChildEnd::failed)) {

@@ -1,6 +1,7 @@
 #include "dem/study/hard_to_soft.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/archive.h"
 #include "dem/study/fingerprint.h"
+#include "dem/study/soft_snapshot.h"
 #include "dem/switching/switching_disks.h"
 
 namespace grainfield::dem {
@@ -180,23 +182,8 @@ class HardToSoftRun final : public ArchivedRun {
     Snapshot out;
     out.time = disks_.time();
     out.gravity = {0, -setup_.gravity, 0};
-    const std::vector<Body<2>>& bodies = disks_.bodies();
-    std::string soft;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const Body<2>& b = bodies[k];
-      Grain g;
-      g.id = static_cast<std::int64_t>(k);
-      g.position = {b.position.x(), b.position.y(), 0};
-      g.velocity = {b.velocity.x(), b.velocity.y(), 0};
-      g.angle = disks_.angles()[k];
-      g.spin = b.spin;
-      g.radius = b.radius;
-      g.mass = 1 / b.inverse_mass;
-      g.inertia = 1 / b.inverse_inertia;
-      g.volume = std::numbers::pi * b.radius * b.radius;
-      out.grains.push_back(g);
-      soft += disks_.soft()[k] ? (k == 0 ? "1" : " 1") : (k == 0 ? "0" : " 0");
-    }
+    out.grains = grains_of(disks_.bodies(), disks_.angles());
+    const std::vector<char>& soft = disks_.soft();
     const double half = 0.5 * setup_.width();
     const auto wall = [](const char* name, const Vec3& point, const Vec3& normal) {
       Wall w;
@@ -208,31 +195,17 @@ class HardToSoftRun final : public ArchivedRun {
     out.walls = {wall("floor", {0, 0, 0}, {0, 1, 0}), wall("left", {-half, 0, 0}, {1, 0, 0}),
                  wall("right", {half, 0, 0}, {-1, 0, 0})};
     for (const SoftTouch& t : disks_.touches()) {
-      Contact c;
-      c.i = t.i;
-      c.j = t.j;
-      c.normal = {t.normal.x(), t.normal.y(), 0};
-      const double arm = bodies[t.i].radius - (t.j < 0 ? t.overlap : 0.5 * t.overlap);
-      c.point = out.grains[t.i].position + arm * c.normal;
-      c.normal_force = t.repulsion;
-      c.tangential_force = c.spring = t.tangential;
+      Contact c = contact_of(t, out.grains);
       c.friction = setup_.coulomb;
-      c.force = Vec3(-t.repulsion * t.normal.x() - t.tangential * t.normal.y(),
-                     -t.repulsion * t.normal.y() + t.tangential * t.normal.x(), 0);
       if (t.j < 0) out.walls[static_cast<std::size_t>(-1 - t.j)].force -= c.force;
       out.contacts.push_back(c);
     }
     out.attributes["state"] = state;
     out.attributes["seed"] = fmt::format("{}", seed_);
     out.attributes["packing"] = "rain";
-    out.attributes["switch:soft_grains"] = soft;
-    for (std::size_t c = 0; c < std::size(kSwitchColumns); ++c) {
-      std::string text;
-      for (const SwitchRecord& r : records_) {
-        text += fmt::format("{}{:.12g}", text.empty() ? "" : " ", r[c]);
-      }
-      out.attributes[std::string("switch:") + kSwitchColumns[c]] = text;
-    }
+    out.attributes["switch:soft_grains"] =
+        fmt::format("{:d}", fmt::join(soft.begin(), soft.end(), " "));
+    keep_columns("switch", kSwitchColumns, records_, out);
     return out;
   }
 

@@ -12,6 +12,7 @@
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/archive.h"
 #include "dem/study/fingerprint.h"
+#include "dem/study/soft_snapshot.h"
 
 namespace grainfield::dem {
 
@@ -183,40 +184,16 @@ class ImplicitSettlingRun final : public ArchivedRun {
     Snapshot out;
     out.time = disks_.time();
     out.gravity = {0, -setup_.gravity, 0};
-    const std::vector<Body<2>>& bodies = disks_.bodies();
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const Body<2>& b = bodies[k];
-      Grain g;
-      g.id = static_cast<std::int64_t>(k);
-      g.position = {b.position.x(), b.position.y(), 0};
-      g.velocity = {b.velocity.x(), b.velocity.y(), 0};
-      g.angle = disks_.angles()[k];
-      g.spin = b.spin;
-      g.radius = b.radius;
-      g.mass = 1 / b.inverse_mass;
-      g.inertia = 0.5 * g.mass * b.radius * b.radius;
-      g.volume = std::numbers::pi * b.radius * b.radius;
-      g.rotates = b.inverse_inertia > 0;
-      out.grains.push_back(g);
-    }
+    out.grains = grains_of(disks_.bodies(), disks_.angles());
     Wall floor;
     floor.name = "floor";
     for (const SoftTouch& t : disks_.touches()) {
-      Contact c;
-      c.i = t.i;
-      c.j = t.j;
-      c.normal = {t.normal.x(), t.normal.y(), 0};
-      const double arm = bodies[t.i].radius - (t.j < 0 ? t.overlap : 0.5 * t.overlap);
-      c.point = out.grains[t.i].position + arm * c.normal;
-      c.normal_force = t.repulsion;
-      c.tangential_force = c.spring = t.tangential;
+      Contact c = contact_of(t, out.grains);
       // What they hold at most at rest: the ground's wells beside Coulomb's friction.
       c.friction = setup_.friction == "coulomb" ? setup_.coulomb : 0;
       if (t.j < 0) c.friction += setup_.static_friction;
       c.sliding = c.friction > 0 &&
                   std::fabs(t.tangential) >= c.friction * t.repulsion * (1 - kSlidingMargin);
-      c.force = Vec3(-t.repulsion * t.normal.x() - t.tangential * t.normal.y(),
-                     -t.repulsion * t.normal.y() + t.tangential * t.normal.x(), 0);
       if (t.j < 0) floor.force -= c.force;
       out.contacts.push_back(c);
     }
@@ -224,13 +201,7 @@ class ImplicitSettlingRun final : public ArchivedRun {
     out.attributes["state"] = "pile";
     out.attributes["seed"] = fmt::format("{}", seed_);
     out.attributes["packing"] = "lattice";
-    for (std::size_t c = 0; c < std::size(kSettlingColumns); ++c) {
-      std::string text;
-      for (const SettlingRecord& r : records_) {
-        text += fmt::format("{}{:.12g}", text.empty() ? "" : " ", r[c]);
-      }
-      out.attributes[std::string("settling:") + kSettlingColumns[c]] = text;
-    }
+    keep_columns("settling", kSettlingColumns, records_, out);
     return out;
   }
 

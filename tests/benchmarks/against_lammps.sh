@@ -1,11 +1,16 @@
 #!/usr/bin/env bash
-# Grain-steps per second on the 10,000-disk packing: this engine (1 and 2 threads) against LAMMPS
-# gran/hooke/history (Debian package lammps, serial), five interleaved rounds, medians; and this
-# engine's 5,000 settled heptagons, all awake, beside LAMMPS' disks; and 10,000 settled spheres of this
-# engine against LAMMPS' spheres, the same packing and law, linear and Hertz-Mindlin; and 1,609 packed superellipsoids (Hertz'
-# elliptic law) beside LAMMPS' disks.
-# Usage: tests/benchmarks/against_lammps.sh [build/release [ROUNDS]]      needs: apt-get install lammps
+# Grain-steps per second, five interleaved rounds, medians, one and two threads:
+#   disks            10,000 settled ones beside LAMMPS gran/hooke/history, the same packing and law
+#   heptagons        5,000 settled ones, all awake, beside LAMMPS' disks
+#   spheres, hertz   10,000 settled ones beside LAMMPS' own, linear and Hertz-Mindlin
+#   superellipsoids  1,609 packed ones, Hertz' elliptic law, beside LAMMPS' disks
+# The ratios are held against those of this processor in figures/PROCESSOR.csv: one that is more than
+# 10 % lower is named, and the exit code is 1. --keep writes them there instead.
+# Usage: tests/benchmarks/against_lammps.sh [--keep] [build/release [ROUNDS]]
+# Needs: apt-get install lammps; a machine that does nothing else.
 set -euo pipefail
+keep=no
+if [ "${1:-}" = --keep ]; then keep=yes; shift; fi
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../../build/release}
 program=$build/tests/benchmarks/dem_benchmark
@@ -96,13 +101,28 @@ for round in $(seq "$rounds"); do
   own superellipsoids_hertz 2 "$shapes" >> "$work/super_two"
   echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two"); LAMMPS' spheres $(tail -1 "$work/lammps_spheres"), spheres 1 thread $(tail -1 "$work/spheres_one"), 2 threads $(tail -1 "$work/spheres_two"); LAMMPS' Hertz spheres $(tail -1 "$work/lammps_hertz"), Hertz spheres 1 thread $(tail -1 "$work/hertz_one"), 2 threads $(tail -1 "$work/hertz_two"); superellipsoids 1 thread $(tail -1 "$work/super_one"), 2 threads $(tail -1 "$work/super_two") million grain-steps/s"
 done
-l=$(median < "$work/lammps") a=$(median < "$work/one") b=$(median < "$work/two")
-awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "median: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
-h=$(median < "$work/seven") t=$(median < "$work/seven_two")
-awk -v l="$l" -v h="$h" -v t="$t" 'BEGIN {printf "heptagons: 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 disks %.2f; two threads over one %.2f\n", h, t, h/l, t/h}'
-l=$(median < "$work/lammps_spheres") a=$(median < "$work/spheres_one") b=$(median < "$work/spheres_two")
-awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "spheres: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 spheres %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
-l=$(median < "$work/lammps_hertz") a=$(median < "$work/hertz_one") b=$(median < "$work/hertz_two")
-awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "Hertz spheres: LAMMPS %.2f, 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 %.2f; two threads over one %.2f\n", l, a, b, a/l, b/a}'
-l=$(median < "$work/lammps") a=$(median < "$work/super_one") b=$(median < "$work/super_two")
-awk -v l="$l" -v a="$a" -v b="$b" 'BEGIN {printf "superellipsoids: 1 thread %.2f, 2 threads %.2f million grain-steps/s\nratio to LAMMPS\047 disks %.3f; two threads over one %.2f\n", a, b, a/l, b/a}'
+ratios=$work/ratios.csv
+echo "scene,beside,million_grain_steps_per_s,ratio,two_threads_over_one" > "$ratios"
+line() { # scene, LAMMPS' scene, files of: LAMMPS, one thread, two threads
+  awk -v scene="$1" -v beside="$2" -v l="$(median < "$work/$3")" -v a="$(median < "$work/$4")" \
+    -v b="$(median < "$work/$5")" 'BEGIN {printf "%s,%s,%.3f,%.3f,%.2f\n", scene, beside, a, a/l, b/a}' >> "$ratios"
+}
+line disks disks lammps one two
+line heptagons disks lammps seven seven_two
+line spheres spheres lammps_spheres spheres_one spheres_two
+line hertz hertz lammps_hertz hertz_one hertz_two
+line superellipsoids disks lammps super_one super_two
+column -s, -t < "$ratios" 2>/dev/null || cat "$ratios"
+processor=$(awk -F': ' '/^model name/ {print $2; exit}' /proc/cpuinfo | tr -cs 'A-Za-z0-9.\n' '_')
+stored=$here/figures/$processor.csv
+if [ $keep = yes ]; then
+  mkdir -p "$here/figures"
+  cp "$ratios" "$stored"
+  echo "kept: $stored"
+elif [ -f "$stored" ]; then
+  awk -F, 'FNR == 1 {next} NR == FNR {was[$1] = $4; next}
+    $1 in was && $4 < 0.9*was[$1] {printf "slower: %s, ratio %.3f, stored %.3f\n", $1, $4, was[$1]; bad = 1}
+    END {if (!bad) print "no scene is more than 10 % slower than stored"; exit bad}' "$stored" "$ratios"
+else
+  echo "no figures of this processor are stored yet ($stored): --keep writes them"
+fi

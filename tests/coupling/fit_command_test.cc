@@ -127,6 +127,15 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
                 HasSubstr("o2=osl (eta=0.74, mu=-0.31)"))
         << file;
   }
+  // The base itself is a height like any other, as it is for fit; what lies outside is refused.
+  const Output base =
+      program("compare " + (folder / "field.h5") +
+              " --heights 0,0.2 --model hydrostatic --model ife -o " + (folder / "base"));
+  ASSERT_EQ(base.code, 0) << base.err;
+  EXPECT_THAT(testing::read_text(folder / "base/profiles.csv"), HasSubstr("sigma_yy"));
+  expect_refusal(program("compare " + (folder / "field.h5") + " --heights=-0.1 --model ife -o " +
+                         (folder / "none")),
+                 "--heights: found -0.1, allowed: 0 (the base) to 1, shares of the height");
 }
 
 TEST(FitCommand, MapsAreOfTheBestModelWhereverItIsNamed) {

@@ -1,5 +1,6 @@
 // Which models count as supported: the rule on made-up scores, and errors that a field brings.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,6 +90,41 @@ TEST(Support, NoSupportedModelIsFurtherBehindInBothThanOneThatIsNot) {
   }
   EXPECT_GT(refused, 1000);
   EXPECT_GT(kept, 1000);
+}
+
+// bcc and cantelaube_zero are one field, osl_yield and cantelaube_continuous one family: what is
+// left of their difference is rounding, of whatever grains.
+TEST(Support, ModelsThatAreOneFieldShareTheirMark) {
+  const auto all = heap_models({kSlope, kRhoG, kHeight});
+  const std::vector<std::string> names{"bcc", "cantelaube_zero", "osl_yield",
+                                       "cantelaube_continuous", "hydrostatic"};
+  std::vector<FitModel> models;
+  for (const std::string& name : names) models.push_back(find_fit_model(all, name));
+  int refused = 0, kept = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    dem::Random random(seed);
+    FitData data = places(9);
+    const Eigen::VectorXd truth =
+        random.uniform(0, 1) * predict(data, models[0], Eigen::VectorXd(0)) +
+        random.uniform(0, 1) * predict(data, models[4], Eigen::VectorXd(0));
+    fill(data, truth, 8, 0.05, 0.03, random);
+    const Weights w = weights_of(data);
+    const std::vector<FitModel> two{models[0], models[1]};
+    const Selection alone = select(data, w, two, fits_of(data, w, two));
+    EXPECT_FALSE(alone.distinguishable) << alone.sentence;
+    EXPECT_THAT(alone.sentence, testing::HasSubstr(" is the same stress here;"));
+    const Selection s = select(data, w, models, fits_of(data, w, models));
+    const auto supported = [&](const std::string& name) {
+      return std::find_if(s.ranking.begin(), s.ranking.end(),
+                          [&](const Score& score) { return score.name == name; })
+          ->supported;
+    };
+    EXPECT_EQ(supported("bcc"), supported("cantelaube_zero")) << s.sentence;
+    EXPECT_EQ(supported("osl_yield"), supported("cantelaube_continuous")) << s.sentence;
+    for (const Score& score : s.ranking) (score.supported ? kept : refused) += 1;
+  }
+  EXPECT_GT(refused, 20);
+  EXPECT_GT(kept, 20);
 }
 
 // One field alone, whose errors are known: a model far off is excluded, one within them is not.

@@ -83,6 +83,20 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   EXPECT_EQ(std::get<std::string>(fit.at("fit.osl.supported")), "yes");
   EXPECT_EQ(std::get<std::string>(fit.at("fit.bcc.supported")), "no");
   EXPECT_EQ(std::get<std::string>(fit.at("fit.warnings")), "");
+  // The errors that came in go out with the profiles, and so into every plot.
+  std::istringstream profiles(testing::read_text(folder / "fit/profiles.csv"));
+  int rows = 0;
+  for (std::string line; std::getline(profiles, line);) {
+    if (!line.starts_with("sigma_")) continue;
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    ASSERT_GT(cells.size(), 7U);
+    EXPECT_GT(std::stod(cells[4]), 0) << line;
+    EXPECT_LT(std::fabs(std::stod(cells[7])), 6) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 50);
 
   out = program(fmt::format("compare {} --model osl:eta={},mu={} --model bcc -o {}", file, kEta,
                             kMu, folder / "compare"));
@@ -91,6 +105,8 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   EXPECT_LT(figure(compare, "compare.osl.chi2_per_dof"), 2);
   // Of 25 values 1.3 is as far from 1 as one standard deviation of a true model's.
   EXPECT_GT(figure(compare, "compare.bcc.chi2_per_dof"), 2.5);
+  EXPECT_THAT(std::get<std::string>(compare.at("verdict.sentence")), HasSubstr("chi2/dof"));
+  EXPECT_GT(figure(compare, "verdict.position_error"), 0) << "by the errors that came with it";
 }
 
 TEST(ImportField, TakesResponsesInTheirOwnUnits) {

@@ -231,6 +231,7 @@ TEST(DamagedFile, AChildTellsHowItEnded) {
   EXPECT_EQ(end([] { return true; }).end, ChildEnd::ok);
   EXPECT_EQ(end([] { return false; }).end, ChildEnd::failed);
   EXPECT_EQ(end([]() -> bool { throw std::bad_alloc(); }).end, ChildEnd::failed);
+  EXPECT_EQ(end([]() -> bool { throw std::invalid_argument("no"); }).end, ChildEnd::refused);
   const ChildResult crash = end([] { return std::raise(SIGSEGV) == 0; });
   EXPECT_EQ(crash.end, ChildEnd::crashed);
   EXPECT_EQ(crash.signal, "SIGSEGV");
