@@ -184,6 +184,31 @@ Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
   return out;
 }
 
+namespace {
+
+// Over all constants of one size: every draw that counts counts once.
+ConstantCoverage pooled(const std::vector<ConstantCoverage>& constants, int size) {
+  ConstantCoverage out;
+  out.size = size;
+  double covariance = 0, bootstrap = 0, jackknife = 0, profile = 0;
+  for (const ConstantCoverage& c : constants) {
+    if (c.size != size || c.draws == 0) continue;
+    out.draws += c.draws;
+    covariance += c.draws * c.by_covariance;
+    bootstrap += c.draws * c.by_bootstrap;
+    jackknife += c.draws * c.by_jackknife;
+    profile += c.draws * c.by_profile;
+  }
+  const double n = out.draws;  // 0: nan
+  out.by_covariance = covariance / n;
+  out.by_bootstrap = bootstrap / n;
+  out.by_jackknife = jackknife / n;
+  out.by_profile = profile / n;
+  return out;
+}
+
+}  // namespace
+
 std::string coverage_text(const Coverage& coverage, int realizations) {
   std::string out = fmt::format(
       "Drawn out of {} realizations; truth: the constants of the rest.\n\n", realizations);
@@ -196,6 +221,13 @@ std::string coverage_text(const Coverage& coverage, int realizations) {
                     share(c.by_covariance), share(c.by_bootstrap), share(c.by_jackknife),
                     share(c.by_profile), number(c.spread), number(c.covariance_error),
                     number(c.jackknife_error)});
+  }
+  for (const VerdictCoverage& v : coverage.verdicts) {
+    const ConstantCoverage all = pooled(coverage.constants, v.size);
+    if (all.draws == 0) continue;
+    rows.push_back({"all", "", fmt::format("{}", all.size), fmt::format("{}", all.draws),
+                    share(all.by_covariance), share(all.by_bootstrap), share(all.by_jackknife),
+                    share(all.by_profile), "", "", ""});
   }
   out +=
       markdown_table({"model", "constant", "drawn", "draws", "covariance", "bootstrap", "jackknife",

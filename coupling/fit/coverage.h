@@ -52,7 +52,7 @@ struct Coverage {
 Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
                      const CoverageOptions& options);
 
-/// Markdown tables.
+/// Markdown tables; below the constants a row of each size over all of them.
 std::string coverage_text(const Coverage& coverage, int realizations);
 
 }  // namespace grainfield::coupling

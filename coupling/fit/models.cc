@@ -119,7 +119,9 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
                  [=](const MatrixXd& points, const VectorXd& p) {
                    return cantelaube_free(points, p, phi, rho_g, facts.blend);
                  },
-                 ""});
+                 starts.empty() ? fmt::format("flanks of {:.1f} degrees leave no room for a core",
+                                              facts.slope_deg)
+                                : ""});
   // c1 < cot(phi) and eta > 0, nan elsewhere.
   const auto osl = [=](const MatrixXd& points, double eta, double mu) {
     const Closure closure{eta, mu};

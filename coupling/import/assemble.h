@@ -74,8 +74,8 @@ class Assembly {
   void check_vectors() const;
   /// Throws for a wall whose normal does not point to the grains that touch it.
   void check_sides();
-  void look_at_side(const dem::Contact& contact, bool has_point);
-  void look_at_given(const dem::Contact& contact);
+  void check_wall_side(const dem::Contact& contact, bool has_point);
+  void check_given_normal(const dem::Contact& contact);
   void warn_of_normals();
   void complete(GrainRow& row) const;
   void place(GrainRow& row) const;

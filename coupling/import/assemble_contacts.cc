@@ -159,7 +159,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   // The file's point is near some image of the grain.
   if (has_point) c.point += dem::shift_to(s.cell, nearest(c.point - at(c.i).position));
   const dem::Grain& a = at(c.i);
-  if (has_normal) look_at_given(c);
+  if (has_normal) check_given_normal(c);
   if (c.j < 0) {
     const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
     c.normal = -wall.normal;
@@ -180,7 +180,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
           "grain {} of radius {:g} m in contact with wall {} at a distance of {:g} m: is the wall "
           "where it says?",
           a.id, a.radius, wall.name, arm));
-    look_at_side(c, has_point);
+    check_wall_side(c, has_point);
   } else {
     const dem::Grain& b = at(c.j);
     c.image = nearest(b.position - a.position);
@@ -234,7 +234,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   contacts_.push_back(std::move(row));
 }
 
-void Assembly::look_at_given(const dem::Contact& c) {
+void Assembly::check_given_normal(const dem::Contact& c) {
   const double length = c.normal.norm();
   if (!(length > 0 && std::isfinite(length))) return;
   const auto names = [&] {
@@ -253,7 +253,7 @@ void Assembly::look_at_given(const dem::Contact& c) {
     given_.first_across = names();
 }
 
-void Assembly::look_at_side(const dem::Contact& c, bool has_point) {
+void Assembly::check_wall_side(const dem::Contact& c, bool has_point) {
   const dem::Snapshot& s = out_.snapshot;
   const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
   const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];

@@ -302,7 +302,7 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
 
 namespace {
 
-void look_at_friction(const dem::Contact& c, PackingCheck& check) {
+void check_coulomb_limit(const dem::Contact& c, PackingCheck& check) {
   if (!std::isfinite(c.friction)) return;
   ++check.known_friction;
   const double most = c.friction * std::max(c.normal_force, 0.0) * (1 + kBeyondFriction);
@@ -312,7 +312,7 @@ void look_at_friction(const dem::Contact& c, PackingCheck& check) {
 
 // Counts a contact of two disks or spheres, whose normal is along the line of centres, or of
 // polygons, whose normal is less than a right angle off it.
-void look_at_normal(const dem::Snapshot& s, const dem::Contact& c, PackingCheck& check) {
+void check_contact_normal(const dem::Snapshot& s, const dem::Contact& c, PackingCheck& check) {
   const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
   const dem::Grain& j = s.grains[static_cast<std::size_t>(c.j)];
   const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
@@ -355,8 +355,8 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     Eigen::Matrix3d& sum = c.j >= 0 ? check.pairs : check.walls;
     add(sum, c.i, c.point - s.grains[static_cast<std::size_t>(c.i)].position, c.force);
     if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
-    if (c.j >= 0) look_at_normal(s, c, check);
-    look_at_friction(c, check);
+    if (c.j >= 0) check_contact_normal(s, c, check);
+    check_coulomb_limit(c, check);
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
     if (c.j < 0) {

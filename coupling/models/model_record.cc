@@ -1,12 +1,13 @@
 #include "coupling/models/model_record.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <vector>
+
+#include "coupling/output/key_pattern.h"
 
 namespace grainfield::coupling {
 
@@ -36,9 +37,8 @@ void add_model(Summary& summary, const ModelChoice& choice,
   summary[prefix + "name"] = choice.name;
   const auto& declared = continuum::find_model(choice.name).figures;
   for (const auto& [name, figure] : figures) {
-    if (std::none_of(declared.begin(), declared.end(), [&name = name](const auto& f) {
-          return fnmatch(f.name.c_str(), name.c_str(), 0) == 0;
-        })) {
+    if (std::none_of(declared.begin(), declared.end(),
+                     [&name = name](const auto& f) { return matches(f.name, name); })) {
       throw std::logic_error(fmt::format("model {}: the figure {} is not declared in its ModelInfo",
                                          choice.name, name));
     }

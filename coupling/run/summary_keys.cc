@@ -5,34 +5,14 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
-#include <cctype>
 #include <stdexcept>
 
 #include "continuum/model.h"
 #include "coupling/case/study.h"
+#include "coupling/output/key_pattern.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// '*' matches a name: text that is not empty, whose only dots are those of numbers (0.98). At an
-// end of the pattern it is another figure's key, which is looked up, and has its dots.
-bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0,
-             std::size_t t = 0) {
-  if (p == pattern.size()) return t == text.size();
-  if (pattern[p] != '*') {
-    return t < text.size() && pattern[p] == text[t] && matches(pattern, text, p + 1, t + 1);
-  }
-  const auto digit = [&](std::size_t k) {
-    return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
-  };
-  const bool end = p == 0 || p + 1 == pattern.size();
-  for (std::size_t k = t; k < text.size(); ++k) {
-    const bool of_a_number = k > t && digit(k - 1) && digit(k + 1);
-    if (text[k] == '.' && !end && !of_a_number) return false;
-    if (matches(pattern, text, p + 1, k + 1)) return true;
-  }
-  return false;
-}
 
 // Whether the text is the key of a declared figure and, behind a dot, a member of a sweep.
 bool of_a_member(const std::string& text) {

@@ -9,6 +9,7 @@
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/output/field_io.h"
+#include "dem/snapshot/hdf5_file.h"
 #include "program.h"
 
 namespace grainfield::coupling {
@@ -26,6 +27,12 @@ std::string written(const Folder& folder, const dem::Snapshot& snapshot, const s
 }
 
 Field field_of(const std::string& file) { return read_field(file, "average"); }
+
+std::string unit_of_points(const std::string& file) {
+  const dem::hdf5::Handle in = dem::hdf5::open_for_reading(file);
+  const dem::hdf5::Handle points(H5Dopen2(in, "average/points", H5P_DEFAULT), H5Dclose);
+  return dem::hdf5::read_text_attribute(points, "unit");
+}
 
 void expect_refusal(const Output& output, const std::string& words) {
   EXPECT_EQ(output.code, 2) << output.err;
@@ -103,6 +110,10 @@ TEST(Average, HeapsAverageInScaledCoordinates) {
   EXPECT_EQ(field.nx, 21);
   EXPECT_EQ(field.points(0, 1), -1);
   EXPECT_THAT(field.attributes.at("frame"), HasSubstr("heap"));
+  EXPECT_EQ(unit_of_points(folder / "f.h5"), "h");
+  ASSERT_EQ(program("average" + files + " --grid 21x11 --width 0.02 -o " + (folder / "p.h5")).code,
+            0);
+  EXPECT_EQ(unit_of_points(folder / "p.h5"), "m");
   // Full below, empty beside the slopes.
   EXPECT_GT(field.find("volume_fraction")->value[10 + 21 * 3], 0.7);
   EXPECT_TRUE(std::isnan(field.find("volume_fraction")->value[21 * 10]));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 
@@ -93,6 +94,7 @@ TEST(Compare, Chi2OfTheTruthIsOne) {
 }
 
 // A true model on three depths whose noise is tied: chance alone seldom says that none agrees.
+// Prints rows of docs/statistics.md.
 TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
   for (const int n : {4, 8, 16}) {
     int alarms = 0, found = 0;
@@ -123,10 +125,12 @@ TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
       for (auto& values : s.models[0].values) values *= 1.4;
       found += says(s) ? 1 : 0;
     }
+    std::printf("| compare, true model: \"No model agrees\" | %d | %.1f %% |\n", n,
+                100.0 * alarms / trials);
+    std::printf("| compare, model 1.4 times the truth: \"No model agrees\" | %d | %.1f %% |\n", n,
+                100.0 * found / trials);
     EXPECT_LE(alarms, trials * 4 / 100) << n;
-    if (n > 4) {
-      EXPECT_GE(found, trials * 9 / 10) << n;
-    }
+    EXPECT_GE(found, trials * (n > 4 ? 90 : 50) / 100) << n;
   }
 }
 

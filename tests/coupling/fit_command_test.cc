@@ -108,18 +108,25 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
   expect_osl(read_summary(folder / "fit2/summary.json"));
 
   // Any models against the field: what the heap knows is filled in.
-  const Output compare =
-      program("compare " + (folder / "field.h5") +
-              " --model hydrostatic --model osl:eta=0.74,mu=-0.31 --model peak=cantelaube:branch="
-              "plus --model ife --components sigma_xx,sigma_yy,sigma_xy -o " +
-              (folder / "compare"));
+  const Output compare = program(
+      "compare " + (folder / "field.h5") +
+      " --model hydrostatic --model o2=osl:eta=0.74,mu=-0.31 --model peak=cantelaube:branch="
+      "plus --model ife --components sigma_xx,sigma_yy,sigma_xy -o " +
+      (folder / "compare"));
   ASSERT_EQ(compare.code, 0) << compare.err;
   EXPECT_THAT(compare.out, HasSubstr("The grains support the osl"));
   const Summary compared = read_summary(folder / "compare/summary.json");
-  EXPECT_LT(value(compared, "compare.osl.rel_l2"), 0.05);
-  EXPECT_GT(value(compared, "compare.peak.rel_l2"), value(compared, "compare.osl.rel_l2"));
+  EXPECT_LT(value(compared, "compare.o2.rel_l2"), 0.05);
+  EXPECT_GT(value(compared, "compare.peak.rel_l2"), value(compared, "compare.o2.rel_l2"));
   EXPECT_TRUE(std::isfinite(value(compared, "verdict.position_error")));
   EXPECT_THAT(testing::read_text(folder / "compare/profiles.csv"), Not(HasSubstr("-nan")));
+  // A name that a user has given stands with the model's own in every table.
+  EXPECT_THAT(testing::read_text(folder / "compare/profiles.csv"), HasSubstr(",o2_N/m,"));
+  for (const char* file : {"profiles.md", "profiles.tex", "report.html"}) {
+    EXPECT_THAT(testing::read_text(folder / (std::string("compare/") + file)),
+                HasSubstr("o2=osl (eta=0.74, mu=-0.31)"))
+        << file;
+  }
   // The base itself is a height like any other, as it is for fit; what lies outside is refused.
   const Output base =
       program("compare " + (folder / "field.h5") +
@@ -129,6 +136,17 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
   expect_refusal(program("compare " + (folder / "field.h5") + " --heights=-0.1 --model ife -o " +
                          (folder / "none")),
                  "--heights: found -0.1, allowed: 0 (the base) to 1, shares of the height");
+}
+
+TEST(FitCommand, MapsAreOfTheBestModelWhereverItIsNamed) {
+  const Folder folder;
+  const Output fit =
+      program("fit " + imported(folder) +
+              " --model hydrostatic --model osl --set fit.bootstrap=0 -o " + (folder / "fit"));
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  const std::string page = testing::read_text(folder / "fit/report.html");
+  EXPECT_THAT(page, HasSubstr("Where osl fails"));
+  EXPECT_THAT(page, Not(HasSubstr("Where hydrostatic fails")));
 }
 
 TEST(FitCommand, TooFewHeapsFallBackAndSaySo) {

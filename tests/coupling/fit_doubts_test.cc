@@ -7,6 +7,7 @@
 #include <map>
 
 #include "continuum/closed/osl.h"
+#include "coupling/fit/models.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/output/tables.h"
 #include "import_scene.h"
@@ -293,6 +294,79 @@ TEST(FitDoubts, HeightsBelowTheAveragingWidthAreNamed) {
 }
 
 double value(const Summary& s, const std::string& key) { return std::get<double>(s.at(key)); }
+
+// Far off the heaps' 28 degrees constants may end at a bound or be the same for all heaps.
+TEST(FitDoubts, SlopesSetFarOffMakeNoErrorOfZero) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5";
+  for (const int k : {1, 2, 3}) {
+    dem::write_snapshot(file, "/" + std::to_string(k) + "/pile",
+                        heap(static_cast<std::uint64_t>(k)));
+  }
+  for (const std::string slope : {"8", "65"}) {
+    const Output out = program("fit " + file + " --heights 0.2,0.3 --set fit.left_deg=" + slope +
+                               " --set fit.right_deg=" + slope +
+                               " --model cantelaube --model osl_yield --set fit.bootstrap=20 -o " +
+                               (folder / slope));
+    ASSERT_EQ(out.code, 0) << out.err;
+    EXPECT_THAT(out.err, HasSubstr("fit.left_deg: set to "));
+    int errors = 0;
+    const Summary s = read_summary(folder / (slope + "/summary.json"));
+    for (const auto& [key, figure] : s) {
+      const double* error = std::get_if<double>(&figure);
+      if (error == nullptr || !key.ends_with(".error")) continue;
+      ++errors;
+      EXPECT_FALSE(*error <= 1e-9) << slope << " " << key << " " << *error;
+      // Without one, the note of the model says why.
+      const std::string note = key.substr(0, key.find('.', 4)) + ".note";
+      EXPECT_TRUE(std::isfinite(*error) || std::get<std::string>(s.at(note)) != "")
+          << slope << " " << key;
+    }
+    EXPECT_GE(errors, 9) << slope;
+  }
+  ASSERT_EQ(
+      program("fit " + file + " --heights 0.2,0.3 --set fit.left_deg=75 --set fit.right_deg=75" +
+              " --model cantelaube -o " + (folder / "none"))
+          .code,
+      0);
+  EXPECT_THAT(testing::read_text(folder / "none/fits.md"), HasSubstr("leave no room for a core"));
+}
+
+// Flanks of cantelaube that are out of balance, a_yy = 1.6 where 1 + a_xy tan(slope) is 1.2: a
+// description, beside which stands the fit that is bound to equilibrium and yield.
+TEST(FitDoubts, ConstantsThatAreNoStressFieldAreADescription) {
+  const Folder folder;
+  const std::string file = folder / "heap.h5";
+  const auto models = heap_models({kSlope, test::lattice_rho_g(), 1});
+  const FitModel& cantelaube = find_fit_model(models, "cantelaube");
+  const double tangent = std::tan(kSlope * std::numbers::pi / 180);
+  const auto field = [&](double x, double y) {
+    return Eigen::Vector3d(
+        cantelaube
+            .stress(Eigen::RowVector2d(x, y), numbers({0.34, 0.49, -0.2, 0.78, 1.6, 0.38, 35}))
+            .row(0));
+  };
+  for (const int k : {1, 2, 3, 4}) {
+    dem::write_snapshot(
+        file, "/" + std::to_string(k) + "/pile",
+        test::stressed_heap(
+            {kSlope, kSlope, 0.01, 35, 0.3, 1.7, 0.05, static_cast<std::uint64_t>(k)}, field));
+  }
+  const Output out = program("fit " + file +
+                             " --heights 0.2,0.3,0.4 --model cantelaube --set fit.bootstrap=0 -o " +
+                             (folder / "fit"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary s = read_summary(folder / "fit/summary.json");
+  EXPECT_NEAR(value(s, "fit.cantelaube.flank_balance_y"), 0.6 - 0.38 * tangent, 0.05);
+  const auto named =
+      ::testing::AllOf(HasSubstr("a description, no stress field: its flanks are out of balance, "),
+                       HasSubstr("a_yy - 1 - a_xy tan(slope) = 0.4"),
+                       HasSubstr("cantelaube_continuous is the fit within equilibrium and yield"));
+  EXPECT_THAT(std::get<std::string>(s.at("fit.cantelaube.note")), named);
+  EXPECT_THAT(std::get<std::string>(s.at("verdict.sentence")), named);
+  EXPECT_TRUE(std::isfinite(value(s, "fit.cantelaube_continuous.beta_hat_deg")));
+  EXPECT_EQ(std::get<std::string>(s.at("fit.cantelaube_continuous.note")), "");
+}
 
 // Column `name` of profiles.csv by component, depth and x as they are written there.
 std::map<std::string, double> column(const std::string& file, const std::string& name) {

@@ -1,12 +1,19 @@
 // Fits of stress models: known constants come back, weights, errors, bad data.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "coupling/fit/coverage.h"
 #include "coupling/fit/intervals.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 TEST(Fit, WithoutNoiseTheConstantsComeBack) {
   const auto models = heap_models({kSlope, kRhoG, kHeight});
@@ -76,6 +83,8 @@ TEST(Fit, ModelsThatDoNotExistSayWhy) {
     EXPECT_NE(model.absent.find("between flanks of 31.0 and 8.0 degrees"), std::string::npos);
   }
   EXPECT_LE(absent, 2);
+  EXPECT_EQ(find_fit_model(heap_models({75, kRhoG, kHeight}), "cantelaube").absent,
+            "flanks of 75.0 degrees leave no room for a core");
 }
 
 // The weights are fixed: other realizations, more of them, or louder ones change nothing.
@@ -138,6 +147,83 @@ TEST(Fit, IntervalOfARatioIsThatOfItsReciprocal) {
   const Interval far = interval_above(-1e6, 2.2, left_out, 2.776);
   EXPECT_NEAR(far.low, 2.2 - 2.776 * error, 1e-4);
   EXPECT_NEAR(far.high, 2.2 + 2.776 * error, 1e-4);
+}
+
+// One constant a and stresses of it alone, the same everywhere; -2 to 2.
+FitModel of_one(const std::function<Eigen::RowVector3d(double)>& stress) {
+  FitModel out;
+  out.name = out.label = "one";
+  out.parameters = {{"a", "-", "", -2, 2}};
+  out.starts = {vector({0.5}), vector({-0.5})};
+  out.stress = [stress](const Eigen::MatrixXd& points, const Eigen::VectorXd& p) {
+    return Eigen::MatrixXd(stress(p[0]).replicate(points.rows(), 1));
+  };
+  return out;
+}
+
+// xx = a^2 is as good with -a; yy = 0.01 a, for 0.01 there, hardly tells them apart.
+TEST(Fit, ASecondMinimumWithinTheNoiseIsReportedWithItsConstants) {
+  const FitModel square = of_one([](double a) { return Eigen::RowVector3d(a * a, 0.01 * a, 0); });
+  FitData data = places(9);
+  const Eigen::VectorXd exact = predict(data, square, vector({1}));
+  const auto fitted = [&](double noise) {
+    dem::Random random(3);
+    fill(data, exact, 6, noise / (kRhoG * kHeight), 0.03, random);
+    FitOptions options;
+    options.bootstrap = 0;
+    return fit(data, weights_of(data), square, options);
+  };
+  const Fit loud = fitted(0.3), still = fitted(1e-4);
+  ASSERT_EQ(loud.other_minima.size(), 1U);
+  const double best = loud.parameters[0].value, other = loud.other_minima[0][0];
+  EXPECT_NEAR(std::fabs(best), 1, 0.1);
+  EXPECT_NEAR(other, -best, 0.1);
+  EXPECT_THAT(loud.note,
+              HasSubstr(fmt::format("as likely within the noise: a = {:.3g} (misfit ", other)));
+  EXPECT_NEAR(still.parameters[0].value, 1, 1e-3);
+  EXPECT_TRUE(still.other_minima.empty());
+  EXPECT_EQ(still.note, "");
+}
+
+// All realizations agree on a, and differ only where a has no say: no error of 0, and it is said.
+TEST(Fit, AConstantThatAllRealizationsShareHasNoError) {
+  const FitModel level = of_one([](double a) { return Eigen::RowVector3d(a, 0, 0); });
+  FitData data = places(9);
+  dem::Random random(4);
+  fill(data, Eigen::VectorXd::Zero(data.values()), 5, 0.1 / (kRhoG * kHeight), 0.03, random);
+  for (int k = 0; k < data.values(); ++k) {
+    if (data.component[static_cast<std::size_t>(k)] == 0) data.samples.row(k).setConstant(0.7);
+  }
+  const Fit f = fit(data, weights_of(data), level);
+  const FittedParameter& a = f.parameters[0];
+  EXPECT_NEAR(a.value, 0.7, 1e-6);
+  for (const double error : {a.error, a.covariance_error, a.jackknife_error, a.bootstrap_error}) {
+    EXPECT_TRUE(std::isnan(error)) << error;
+  }
+  EXPECT_TRUE(std::isnan(a.low) && std::isnan(a.high));
+  EXPECT_THAT(f.note, HasSubstr("a is the same for all realizations: no error"));
+}
+
+// Every draw that counts counts once, and those of other sizes not at all.
+TEST(Fit, CoverageIsPooledOverTheConstants) {
+  const auto constant = [](const char* name, int size, int draws, double share) {
+    ConstantCoverage out;
+    out.model = "osl";
+    out.parameter = name;
+    out.size = size;
+    out.draws = draws;
+    out.by_covariance = out.by_jackknife = share;
+    out.by_bootstrap = out.by_profile = std::nan("");
+    return out;
+  };
+  Coverage coverage;
+  coverage.constants = {constant("eta", 4, 10, 0.8), constant("mu", 4, 30, 1),
+                        constant("nu", 4, 0, std::nan("")), constant("eta", 8, 20, 0.5)};
+  coverage.verdicts = {{4, 30}, {8, 20}, {16, 20}};
+  const std::string text = coverage_text(coverage, 16);
+  EXPECT_THAT(text, HasSubstr("| all |  | 4 | 40 | 95.0 % | - | 95.0 % | - |"));
+  EXPECT_THAT(text, HasSubstr("| all |  | 8 | 20 | 50.0 % | - | 50.0 % | - |"));
+  EXPECT_THAT(text, Not(HasSubstr("| all |  | 16 |")));
 }
 
 TEST(Fit, BadData) {

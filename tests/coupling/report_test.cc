@@ -100,6 +100,34 @@ TEST_F(ReportTest, HasEveryPictureAndTable) {
   EXPECT_THAT(html, Not(HasSubstr("src=\"http")));
 }
 
+// The map of what is left is of the model that the verdict names, not of the first on the list.
+TEST_F(ReportTest, TheResidualMapIsOfTheNearestModel) {
+  const dem::Snapshot before = test::layer(1), after = test::layer(1, 12, 6, false, 2);
+  PointLoadReport in = input(before, after);
+  const auto values = [&](double share) {
+    std::vector<Eigen::VectorXd> out;
+    for (const Profile& p : in.comparison.profiles) out.push_back(share * p.mean);
+    return out;
+  };
+  in.comparison = compare(in.comparison.profiles,
+                          {{"far", "far=flamant", "half plane", values(0.3)},
+                           {"near", "near=layer", "finite layer", values(0.99)}},
+                          2, 0.06);
+  in.models = {{"far=flamant", Eigen::VectorXd::Constant(66, -1)},
+               {"near=layer", Eigen::VectorXd::Constant(66, -2)}};
+  ASSERT_EQ(in.comparison.verdict.best_model, "near");
+  const Report report = point_load_report(in);
+  int maps = 0;
+  for (const Section& section : report.sections) {
+    const auto* picture = std::get_if<Picture>(&section);
+    if (picture == nullptr || picture->title != "Maps of the response") continue;
+    ++maps;
+    EXPECT_THAT(picture->program, HasSubstr("grains - near=layer"));
+    EXPECT_THAT(picture->program, Not(HasSubstr("flamant")));
+  }
+  EXPECT_EQ(maps, 1);
+}
+
 TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   need_gnuplot();
   const dem::Snapshot heap = test::lattice_heap(12);

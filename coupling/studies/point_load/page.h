@@ -19,7 +19,7 @@ struct PointLoadReport {
   Comparison comparison;         ///< profiles at depths; the one with key "base" is drawn apart
   Field base_unloaded;           ///< mean base_profile before loading; may be empty
   Field map;                     ///< mean response on a grid in the models' frame; may be empty
-  std::vector<ModelMap> models;  ///< on map.points; the first one's residual is drawn
+  std::vector<ModelMap> models;  ///< on map.points; the nearest one's residual is drawn
   ReportRows figures;            ///< results worth a table
   ReportRows made;               ///< case, seed, version, times
 };
