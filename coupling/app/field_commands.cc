@@ -69,8 +69,8 @@ void add_average(CLI::App& app, Action& action) {
   auto* kernel = command->add_option(
       "--kernel", options.kernel,
       "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
-  auto* width = command->add_option(
-      "--width", options.width,
+  auto* width = add_length(
+      *command, "--width", options.width,
       "m; w of the kernel (lucy ends at 2 w, gaussian at 3 w, heaviside at w), of particle_centre "
       "and area_exact the circle's radius or half the square's side; default one mean diameter "
       "(particle_centre, area_exact: 2.5)");

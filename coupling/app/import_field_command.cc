@@ -32,14 +32,14 @@ void add_import_field(CLI::App& app, Action& action) {
   add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
   command->add_option("--dim", r.dim, "2 (default, where 1 Pa counts as 1 N/m) | 3");
-  command->add_option("--height", r.height, "of the heap or layer, m");
+  add_length(*command, "--height", r.height, "of the heap or layer, m or \"80 mm\"");
   auto* slope = command->add_option("--slope", given->slope, "of both sides of a heap, degrees");
   command->add_option("--left-deg", r.left_deg, "of the left side");
   command->add_option("--right-deg", r.right_deg, "of the right side");
   command->add_option("--rho-g", r.rho_g, "weight per volume of a heap, N/m3 (2D: N/m2)");
   command->add_option("--load", r.load, "on a layer, down, N: the values are its response");
-  command->add_option("--width", r.width,
-                      "radius of the measuring cells, m: models are averaged over it");
+  add_length(*command, "--width", r.width,
+             "radius of the measuring cells, m or \"2 mm\": models are averaged over it");
   command->add_option("--name", given->name,
                       "of the field; default base, or measured where not all is there");
   command->callback([=, &action] {

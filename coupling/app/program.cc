@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/system/failure.h"
 #include "coupling/system/signals.h"
+#include "coupling/unit.h"
 #include "coupling/version.h"
 
 namespace grainfield::coupling {
@@ -22,6 +24,23 @@ int complain(int code, const std::string& what) {
   wait_if_stopping();
   note("{}", what);
   return code;
+}
+
+// Of a command line that could not be read: the option that no command has; may be empty.
+std::string unknown_option(const CLI::App& app) {
+  for (const auto* chosen : app.get_subcommands()) {
+    std::vector<std::string> names;
+    for (const auto* option : chosen->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    for (const std::string& extra : chosen->remaining()) {
+      const std::string word = extra.substr(0, extra.find('='));
+      if (!word.starts_with("--") || names.empty()) continue;
+      return fmt::format("unknown option \"{}\"; nearest: {}", word,
+                         continuum::nearest(word, names));
+    }
+  }
+  return "";
 }
 
 int parse_and_act(int argc, char** argv) {
@@ -67,8 +86,10 @@ int parse_and_act(int argc, char** argv) {
     }
     std::string who;
     for (const auto* chosen : app.get_subcommands()) who = chosen->get_name() + ": ";
-    return complain(2, fmt::format("{}{} (grainfield {}--help)", who, e.what(),
-                                   who.empty() ? "" : who.substr(0, who.size() - 2) + " "));
+    const std::string stranger = unknown_option(app);
+    return complain(
+        2, fmt::format("{}{} (grainfield {}--help)", who, stranger.empty() ? e.what() : stranger,
+                       who.empty() ? "" : who.substr(0, who.size() - 2) + " "));
   }
   return action();
 }
@@ -83,6 +104,19 @@ int act(int argc, char** argv) {
 }
 
 }  // namespace
+
+CLI::Option* add_length(CLI::App& command, const std::string& name, double& to,
+                        const std::string& meaning) {
+  const auto in_metres = [](std::string& text) -> std::string {
+    const std::optional<double> length = parse_length(text);
+    if (!length) {
+      return fmt::format("found \"{}\", expected a length in m, or with its unit, \"80 mm\"", text);
+    }
+    text = fmt::format("{}", *length);
+    return "";
+  };
+  return command.add_option(name, to, meaning)->transform(CLI::Validator(in_metres, ""));
+}
 
 CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning) {
   const auto complaint = [](const std::string& name) {

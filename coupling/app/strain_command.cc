@@ -42,8 +42,8 @@ void add_strain(CLI::App& app, Action& action) {
   add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--measure", options.measure,
                       fmt::format("{} (docs/strain.md)", fmt::join(strain_measures(), " | ")));
-  auto* width = command->add_option(
-      "--width", options.width,
+  auto* width = add_length(
+      *command, "--width", options.width,
       "m; radius of the support or half its side, w of a kernel; default three mean diameters");
   auto* support = command->add_option("--support", options.support,
                                       "circle | square; of measure kernel: lucy | gaussian");

@@ -24,9 +24,13 @@ namespace {
 // base's pressures carrying such a share of the weight.
 constexpr double kOutside = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
 constexpr double kDegree = 3.14159265358979323846 / 180;
-// A wrong unit, or another heap's size: no arching carries so much.
-constexpr double kImpossible = 5;
+// A wrong unit, or another heap's size: no arching carries so much, or leaves so little of the
+// weight above the places.
+constexpr double kImpossible = 5, kTooLight = 0.05;
+// Of the height.
+constexpr double kWidestCell = 0.25;
 constexpr std::size_t kEnoughToCarry = 5;
+constexpr Eigen::Index kLeastToFit = 10;
 
 constexpr double kSamePlace = 1e-9;   // of h
 constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
@@ -82,8 +86,10 @@ class Reader {
     if (const Heading* found = find(name)) return {name, found->index, std::nullopt, std::nullopt};
     std::vector<std::string> there;
     for (const Heading& h : headings_) there.push_back(h.name);
-    refuse(fmt::format("no column \"{}\"; found: {}; nearest: {}", name, fmt::join(there, ", "),
-                       continuum::nearest(name, there)));
+    refuse(fmt::format(
+        "no column \"{}\"; found: {}; nearest: {}; expected are x (UNIT), component, value (UNIT), "
+        "error (UNIT), with empty cells where an error is unknown",
+        name, fmt::join(there, ", "), continuum::nearest(name, there)));
   }
   Measure length(const std::string& name, bool needed) const {
     return measure(name, needed, lengths(), request_.height);
@@ -166,9 +172,10 @@ void check(const MeasuredRequest& r) {
   if (r.dim != 2 && r.dim != 3)
     throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", r.dim));
   require_above_zero("--height", r.height, "the height of the heap or layer, m");
-  if (!(r.width >= 0 && r.width <= dem::kMostNumber))
-    throw std::invalid_argument(fmt::format("--width: found {:g}, allowed: above 0, up to {:g}",
-                                            r.width, dem::kMostNumber));
+  if (!(r.width >= 0 && r.width <= kWidestCell * r.height))
+    throw std::invalid_argument(fmt::format(
+        "--width: found {:g}, allowed: above 0, up to {:g} (a quarter of --height), in m", r.width,
+        kWidestCell * r.height));
   if (r.geometry == "layer") {
     if (!std::isnan(r.load)) require_above_zero("--load", r.load, "");
     return;
@@ -217,6 +224,16 @@ namespace {
 struct MeasuredHeap {
   double left, right;  ///< from the apex to the feet, m
   double weight;       ///< of the wedge, N/m
+
+  /// Of what stands above [from, to], N/m.
+  double weight_above(double from, double to) const {
+    const auto until = [&](double x) {  // from the left foot, of a wedge of weight 1
+      const double length = left + right;
+      if (x <= 0) return std::pow(std::max(0.0, x + left), 2) / (left * length);
+      return 1 - std::pow(std::max(0.0, right - x), 2) / (right * length);
+    };
+    return weight * (until(to) - until(from));
+  }
 };
 
 std::optional<MeasuredHeap> heap_of(const Field& field) {
@@ -251,29 +268,54 @@ std::vector<std::pair<double, double>> base_pressures(const Field& field) {
   return base;
 }
 
-// What the pressures on the base carry of the weight; nan: too few of them.
-double carried_share(const Field& field, const MeasuredHeap& heap) {
+// What the pressures on the base carry of the weight, N/m; nan: too few of them.
+double carried(const Field& field, const MeasuredHeap& heap) {
   const std::vector<std::pair<double, double>> base = base_pressures(field);
   if (base.size() < kEnoughToCarry || places_outside(field, heap) > 0) return kNan;
-  double carried = 0;
+  double sum = 0;
   for (std::size_t k = 1; k < base.size(); ++k) {
-    carried += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
+    sum += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
   }
-  return carried / heap.weight;
+  return sum;
+}
+double carried_share(const Field& field, const MeasuredHeap& heap) {
+  return carried(field, heap) / heap.weight;
+}
+
+std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Index outside) {
+  return fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and {:.3g} m",
+                     outside, field.points.rows(), -heap.left, heap.right);
 }
 
 std::string of_share(double share) {
   return fmt::format("the pressures on the base carry {:.3g} of the heap's weight", share);
 }
 
-void refuse_impossible_weight(const Field& field) {
+void refuse_impossible(const Field& field) {
   const std::optional<MeasuredHeap> heap = heap_of(field);
-  const double share = heap ? carried_share(field, *heap) : kNan;
-  if (!(share > kImpossible)) return;
-  throw std::invalid_argument(
-      fmt::format("{}, allowed: up to {:g}; correct the unit of the values, or --height, --slope, "
-                  "--rho-g",
-                  of_share(share), kImpossible));
+  if (!heap) return;
+  if (const Eigen::Index outside = places_outside(field, *heap);
+      2 * outside > field.points.rows()) {
+    throw std::invalid_argument(
+        of_outside(field, *heap, outside) +
+        ", allowed: less than half of them; correct the unit of x, or its origin: 0 is below the "
+        "apex");
+  }
+  constexpr const char* correct = "correct the unit of the values, or --height, --slope, --rho-g";
+  if (const double share = carried_share(field, *heap); share > kImpossible) {
+    throw std::invalid_argument(
+        fmt::format("{}, allowed: up to {:g}; {}", of_share(share), kImpossible, correct));
+  }
+  const std::vector<std::pair<double, double>> base = base_pressures(field);
+  if (base.size() < kEnoughToCarry) return;
+  const double above =
+      carried(field, *heap) / heap->weight_above(base.front().first, base.back().first);
+  if (above > 0 && above < kTooLight) {
+    throw std::invalid_argument(fmt::format(
+        "the pressures on the base carry {:.3g} of the weight above them, allowed: {:g} "
+        "or more; {}",
+        above, kTooLight, correct));
+  }
 }
 
 }  // namespace
@@ -353,7 +395,7 @@ Field measured_field(const MeasuredRequest& request) {
   about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
   about["left_deg"] = fmt::format("{}", request.left_deg);
   about["right_deg"] = fmt::format("{}", request.right_deg);
-  refuse_impossible_weight(out);
+  refuse_impossible(out);
   return out;
 }
 
@@ -362,10 +404,8 @@ std::vector<std::string> measured_doubts(const Field& field) {
   if (!heap) return {};
   std::vector<std::string> out;
   if (const Eigen::Index outside = places_outside(field, *heap); outside > 0) {
-    out.push_back(
-        fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and "
-                    "{:.3g} m: is the unit of x right?",
-                    outside, field.points.rows(), -heap->left, heap->right));
+    out.push_back(of_outside(field, *heap, outside) +
+                  ": is the unit of x right, and its origin, 0 below the apex?");
   }
   const std::vector<std::pair<double, double>> base = base_pressures(field);
   const auto pulls = std::count_if(base.begin(), base.end(), [](auto p) { return p.second < 0; });
@@ -374,6 +414,11 @@ std::vector<std::string> measured_doubts(const Field& field) {
         fmt::format("{} of {} pressures are negative: a pressure is positive where the "
                     "heap presses; turn their signs",
                     pulls, base.size()));
+  }
+  Eigen::Index values = 0;
+  for (const Column& column : field.columns) values += column.value.array().isFinite().count();
+  if (values < kLeastToFit) {
+    out.push_back(fmt::format("holds {} values; fit needs {} or more", values, kLeastToFit));
   }
   const double share = carried_share(field, *heap);
   if (share < kLeastCarried || share > kMostCarried) {

@@ -31,8 +31,10 @@ std::vector<FitModel> through(const std::shared_ptr<const ObservationOperator>& 
 }  // namespace
 
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
+  const Eigen::MatrixXd places = places_of(heaps.data);
   const auto seeing = std::make_shared<const ObservationOperator>(
-      ObservationOperator::of_heap(places_of(heaps.data), *heaps.kernel));
+      heaps.measured ? ObservationOperator::of_cells(places, *heaps.kernel)
+                     : ObservationOperator::of_heap(places, *heaps.kernel));
   std::vector<FitModel> out = through(seeing, heap_models(heaps.facts));
   if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
   const auto of_part = [setup, seeing, frames = heaps.frames, all = heaps.facts](

@@ -58,6 +58,40 @@ Field without_realizations(const Field& whole, const std::vector<double>& number
   return out;
 }
 
+// Of one field: values that have no error are left out, said with their places, unless none has
+// one. Whether errors are left, finite where `all` is. Rows: components x places.
+bool pair_with_errors(const FitSetup& setup, const Eigen::MatrixXd& places, Eigen::MatrixXd& all,
+                      Eigen::MatrixXd& errors, Observations& out) {
+  constexpr std::size_t most_named = 5;
+  const Eigen::Index n = places.rows();
+  std::vector<Eigen::Index> with, without;
+  for (Eigen::Index row = 0; row < all.rows(); ++row) {
+    const std::string& name = kPlaneStress[static_cast<std::size_t>(row / n)];
+    const bool wanted =
+        std::find(setup.components.begin(), setup.components.end(), name) != setup.components.end();
+    if (!std::isfinite(all(row, 0))) errors(row, 0) = std::nan("");
+    if (!wanted || !std::isfinite(all(row, 0))) continue;
+    (errors(row, 0) > 0 ? with : without).push_back(row);
+  }
+  if (with.empty()) return false;
+  std::vector<std::string> names;
+  for (const Eigen::Index row : without) {
+    all(row, 0) = errors(row, 0) = std::nan("");
+    if (names.size() < most_named) {
+      names.push_back(fmt::format("{} at x = {:.3g} h",
+                                  kPlaneStress[static_cast<std::size_t>(row / n)],
+                                  places(row % n, 0)));
+    }
+  }
+  if (!without.empty()) {
+    out.warnings.push_back(fmt::format("{} of {} values have no error and are left out: {}{}",
+                                       without.size(), with.size() + without.size(),
+                                       fmt::join(names, ", "),
+                                       without.size() > names.size() ? ", ..." : ""));
+  }
+  return true;
+}
+
 }  // namespace
 
 Observations observe_heap_field(const FitSetup& setup, const Field& whole,
@@ -114,7 +148,10 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
 
   std::vector<Eigen::Index> chosen;
   std::vector<int> level;
-  const double reach = kernel->range() / height, apart = (single ? 0.5 : 1) * length / height;
+  // Cells in the floor are flat and have measured each by itself.
+  out.measured = field_attribute(field, "method", where) == "measured";
+  const double reach = out.measured ? 0 : kernel->range() / height;
+  const double apart = out.measured ? 0 : (single ? 0.5 : 1) * length / height;
   std::vector<double> used;
   for (const double share : setup.heights) {
     const FieldRow& row = row_at(rows, share, where);
@@ -174,24 +211,21 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
   std::vector<double> shares;
   for (const double y : used) shares.push_back(1 + y);
   // Cells in the floor feel what is above them, whatever their width.
-  out.measured = field_attribute(field, "method", where) == "measured";
   if (!out.measured) warn_of_low_heights(shares, height, out.width, out);
   warn_of_set_slopes(setup, out);
   warn_of_unlike_heaps(
       [&](std::size_t r) { return fmt::format("realization {} of {}", r + 1, where); }, out);
   set_mean_heap(out);
+  const bool with_errors = count == 1 && pair_with_errors(setup, places, all, errors, out);
   keep_rows(setup, places, level, all, out);
-  if (count == 1) {
+  if (with_errors) {
     Observations beside;
     beside.data.levels = out.data.levels;
-    // Errors of the same rows: those that have a value but no error end the use of errors.
-    for (Eigen::Index row = 0; row < errors.rows(); ++row) {
-      if (!std::isfinite(all(row, 0))) errors(row, 0) = std::nan("");
-    }
+    beside.measured = out.measured;
     keep_rows(setup, places, level, errors, beside);
-    if (beside.data.values() == out.data.values() && (beside.data.samples.array() > 0).all()) {
-      out.data.error = beside.data.samples.col(0);
-    }
+    out.data.error = beside.data.samples.col(0);
+  }
+  if (count == 1) {
     if (field.realizations > 1)
       out.note = fmt::format(
           "{} holds the mean of {} realizations without their single values (average them anew "

@@ -283,7 +283,10 @@ void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::
     chosen.level.insert(chosen.level.end(), level.begin(), level.end());
   }
   keep_complete_rows(chosen, "fit.heights",
-                     "choose lower heights, a smaller fit.width_diameters or larger piles", out);
+                     out.measured
+                         ? "a fit takes places between the feet of the heap, at these heights"
+                         : "choose lower heights, a smaller fit.width_diameters or larger piles",
+                     out);
 }
 
 }  // namespace grainfield::coupling

@@ -32,8 +32,8 @@ Eigen::VectorXd leave_out(const FitData& data, const Weights& weights, const Fit
                           const Eigen::VectorXd& best, const std::vector<Eigen::VectorXd>& others,
                           const FitOptions& options, Fit& out);
 
-/// Interval of a constant whose limit is `floor`: (value - floor) times or divided by exp(t e), e the
-/// jackknife's error of log(value - floor) by the fits without each realization.
+/// Interval of a constant whose limit is `floor`: (value - floor) times or divided by exp(t e), e
+/// the jackknife's error of log(value - floor) by the fits without each realization.
 Interval interval_above(double floor, double value, const Eigen::VectorXd& left_out, double t);
 
 /// Standard deviations over draws of the realizations, times sqrt(R / (R - 1)); nan without.

@@ -17,8 +17,9 @@ struct FitParameter {
   std::string meaning;  ///< one line
   double least = 0;     ///< open bounds of the search; infinite: none
   double most = 0;
-  /// A limit that no material passes, of ratios of moduli: the interval over realizations is even in
-  /// log(value - floor), so the same for a ratio and its reciprocal. -infinite: even in the value.
+  /// A limit that no material passes, of ratios of moduli: the interval over realizations is even
+  /// in log(value - floor), so the same for a ratio and its reciprocal. -infinite: even in the
+  /// value.
   double floor = -std::numeric_limits<double>::infinity();
 };
 

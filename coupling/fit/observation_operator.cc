@@ -51,6 +51,15 @@ ObservationOperator ObservationOperator::of_heap(const Eigen::MatrixXd& points,
   return out;
 }
 
+ObservationOperator ObservationOperator::of_cells(const Eigen::MatrixXd& points,
+                                                  const Kernel& kernel) {
+  ObservationOperator out(points);
+  out.layer_ = out.nodes_of([&](const StressFunction& stress, const Eigen::MatrixXd& here) {
+    return smooth_along_x(stress, here, kernel);
+  });
+  return out;
+}
+
 ObservationOperator::Nodes ObservationOperator::layer_nodes(const Kernel& kernel,
                                                             double depth) const {
   return nodes_of([&](const StressFunction& stress, const Eigen::MatrixXd& here) {

@@ -29,6 +29,9 @@ class ObservationOperator {
   static ObservationOperator of_heap(const Eigen::MatrixXd& points, const Kernel& kernel,
                                      double depth = 1);
 
+  /// Of a heap that was measured: cells are flat, each as long as the kernel is wide.
+  static ObservationOperator of_cells(const Eigen::MatrixXd& points, const Kernel& kernel);
+
   /// The model smoothed at the points, n x 3. `half_plane`: a layer's model goes on below the base;
   /// otherwise nodes below the base take its value at the base. One call of `stress`.
   Eigen::MatrixXd seen(const StressFunction& stress, bool half_plane) const;

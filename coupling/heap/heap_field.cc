@@ -95,6 +95,12 @@ void require_compression(const Field& field, const std::string& where) {
   double sum = 0;
   for (const double v : column->value) sum += std::isfinite(v) ? v : 0;
   if (!(sum > 0)) return;
+  const auto method = field.attributes.find("method");
+  if (method != field.attributes.end() && method->second == "measured") {
+    refuse_field(where,
+                 "the measured pressures are negative in the mean: a pressure is positive where "
+                 "the heap presses; turn their signs");
+  }
   refuse_field(
       where,
       "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "

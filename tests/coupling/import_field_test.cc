@@ -56,6 +56,59 @@ double figure(const Summary& s, const std::string& key) {
   return std::get<double>(at->second);
 }
 
+// Cells are flat and lie in the floor: how long they are changes nothing where the stress is
+// straight along them, and no place is lost.
+TEST(ImportField, ConstantsDoNotHangOnTheCells) {
+  const Folder folder;
+  const auto field = continuum::osl_field(kSlope * std::numbers::pi / 180, {kEta, kMu}, kRhoG);
+  std::string text = "x (mm),component,value (Pa),error (Pa)\n";
+  const double foot = kHeight / std::tan(kSlope * std::numbers::pi / 180);
+  for (int k = -12; k <= 12; ++k) {
+    const double x = 0.9 * foot * k / 12;
+    const Eigen::Vector3d stress = field.stress(x, -kHeight);
+    text += fmt::format("{},pressure,{},{}\n", 1000 * x, -stress[1], -0.02 * stress[1]);
+    // One shear is without an error, and so has no weight.
+    text += fmt::format("{},shear,{},{}\n", 1000 * x, stress[2], k == 3 ? "" : "10");
+  }
+  const std::string file = folder.write("m.csv", text);
+  for (const char* width : {"0.1 mm", "2 mm", "4 mm"}) {
+    const Output in =
+        program("import-field " + file +
+                fmt::format(" --height '80 mm' --slope {} --rho-g {} --width '{}' -o ", kSlope,
+                            kRhoG, width) +
+                (folder / "f.h5"));
+    ASSERT_EQ(in.code, 0) << in.err;
+    const Output out = program("fit " + (folder / "f.h5") + " --model osl -o " + (folder / "fit"));
+    ASSERT_EQ(out.code, 0) << out.err;
+    EXPECT_THAT(out.out, HasSubstr("49 values"));
+    EXPECT_THAT(out.err, HasSubstr("1 of 50 values have no error and are left out: sigma_xy at x"));
+    const Summary fit = read_summary(folder / "fit/summary.json");
+    EXPECT_NEAR(figure(fit, "fit.osl.eta"), kEta, 0.003) << width;
+    EXPECT_NEAR(figure(fit, "fit.osl.mu"), kMu, 0.005) << width;
+    EXPECT_LT(figure(fit, "fit.osl.chi2_per_dof"), 0.05) << width;
+  }
+}
+
+// A measurement whose errors are unknown has constants all the same.
+TEST(ImportField, WithoutErrorsThereAreConstantsWithoutErrors) {
+  const Folder folder;
+  std::string text;
+  std::istringstream given(measured(7));
+  for (std::string line; std::getline(given, line);) {
+    const bool value = line.find("pressure") != line.npos || line.find("shear") != line.npos;
+    text += (value ? line.substr(0, line.rfind(',') + 1) : line) + "\n";
+  }
+  ASSERT_EQ(program("import-field " + folder.write("m.csv", text) + heap_options() + " -o " +
+                    (folder / "f.h5"))
+                .code,
+            0);
+  const Output out =
+      program("fit " + (folder / "f.h5") + " --model osl --model bcc -o " + (folder / "fit"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("no errors, nothing is distinguishable"));
+  EXPECT_NEAR(figure(read_summary(folder / "fit/summary.json"), "fit.osl.eta"), kEta, 0.05);
+}
+
 // What was measured is not called grains: verdicts, tables and pictures know where it is from.
 TEST(ImportField, TextsSpeakOfTheMeasurement) {
   const Folder folder;
@@ -195,9 +248,9 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
     return out.err;
   };
   EXPECT_EQ(told("x (mm)", 1, heap_options()), "");
-  EXPECT_THAT(told("x (m)", 1, heap_options()),
-              HasSubstr("warning: base: 12 of 13 places lie outside the heap, whose feet are at "
-                        "-0.139 and 0.139 m: is the unit of x right?"));
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.04 --slope 30 --rho-g 30000"),
+              HasSubstr("warning: base: 6 of 13 places lie outside the heap, whose feet are at "
+                        "-0.0693 and 0.0693 m: is the unit of x right, and its origin"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
@@ -225,6 +278,19 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   std::string heavy = head;
   for (int k = -3; k <= 3; ++k) heavy += fmt::format("{},pressure,20,0.1\n", 40 * k);
   refused(heavy, good, "allowed: up to 5; correct the unit of the values, or --height");
+  std::string light = "x (mm),component,value (Pa),error (kPa)\n";
+  for (int k = -3; k <= 3; ++k) light += fmt::format("{},pressure,0.5,0.1\n", 40 * k);
+  refused(light, good, "of the weight above them, allowed: 0.05 or more; correct the unit");
+  std::string toe = head;
+  for (int k = 0; k <= 12; ++k) toe += fmt::format("{},pressure,1,0.1\n", 40 * k);
+  refused(toe, good,
+          "9 of 13 places lie outside the heap, whose feet are at -0.139 and 0.139 m, allowed: "
+          "less than half of them; correct the unit of x, or its origin: 0 is below the apex");
+  refused(head + "0,pressure,1,0.1\n", " --height '80 mm' --slope 30 --rho-g 15000 --width 2",
+          "--width: found 2, allowed: above 0, up to 0.02 (a quarter of --height), in m");
+  refused("position (mm),pressure (kPa)\n", good,
+          "no column \"x\"; found: position, pressure; nearest: position; expected are x (UNIT), "
+          "component, value (UNIT), error (UNIT)");
   refused(head + "0,pressure,1e299,1\n", good, "m.csv:2: column value: found 1e299");
   refused(head + "0,pressure,1,1e299\n", good, "m.csv:2: column error: found 1e299");
   refused(
@@ -250,6 +316,9 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   refused(head, " --height 0.1 --slope 30", "--rho-g: is missing");
   refused(head, " --height 0.1 --rho-g 15000", "--left-deg: is missing; --slope sets both");
   refused(head, " --rho-g 15000 --slope 30", "--height: is missing");
+  refused(head, " --rho-g 15000 --slope 30 --height 80mm",
+          "--height: found \"80mm\", expected a length in m, or with its unit, \"80 mm\"");
+  refused(head, good + " --hight 3", "unknown option \"--hight\"; nearest: --height");
   refused(head, good + " --geometry wege", "--geometry: found \"wege\", allowed: heap, layer");
   refused("x (mm),component,value (F/h),error (F/h)\n", good,
           "m.csv:1: found the unit \"F/h\", which needs --load");
