@@ -283,8 +283,17 @@ void finish(Draft& draft) {
     draft.value.without_effect.push_back(
         fmt::format("{}: {}: {}", a.origin, path, without_effect_text(key, draft.value)));
   }
-  // Its members differ in nothing but their names.
   const Key* swept = find_key(draft.value.sweep.key);
+  if (swept != nullptr) {
+    const auto set = draft.last.find(swept->path());
+    if (set != draft.last.end() && set->second.from_command_line()) {
+      reject(set->second, swept->path(),
+             fmt::format("this case sweeps it ({}), so that the value would count nowhere; set "
+                         "sweep.values=[...] instead",
+                         fmt::join(draft.value.sweep.values, ", ")));
+    }
+  }
+  // Its members differ in nothing but their names.
   if (swept != nullptr && is_without_effect(*swept, draft.value)) {
     draft.value.without_effect.push_back(
         fmt::format("{}: sweep.key: {} {}", written(draft, "sweep.key").origin, swept->path(),

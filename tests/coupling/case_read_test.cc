@@ -129,6 +129,17 @@ TEST(ReadCase, SweepMembers) {
   EXPECT_EQ(members[1].value.get<dem::PointLoadSetup>().material.friction, 0.6);
   EXPECT_TRUE(members[1].value.sweep.key.empty());
   EXPECT_EQ(members[1].value.models.size(), value.models.size());
+  // A value of the swept key from the command line would count nowhere.
+  const Folder swept;
+  const std::string file = swept.write(
+      "s.toml",
+      "study = \"point-load\"\n[sweep]\nkey = \"material.friction\"\nvalues = [0.3, 0.6]\n");
+  EXPECT_THAT(
+      [&] { read_case(file, false, {"material.friction=0.1"}); },
+      ::testing::ThrowsMessage<std::invalid_argument>(HasSubstr(
+          "--set: material.friction: this case sweeps it (0.3, 0.6), so that the value would "
+          "count nowhere; set sweep.values=[...] instead")));
+  EXPECT_EQ(sweep_cases(read_case(file, false, {"sweep.values=[0.1]"})).size(), 1U);
   // The written-out case has the sweep.
   const Folder folder;
   EXPECT_EQ(sweep_cases(read_case(folder.write("x.toml", write_case(value)), false, {})).size(),
