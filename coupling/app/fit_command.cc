@@ -56,7 +56,7 @@ void add_fit(CLI::App& app, Action& action) {
       command
           ->add_option("--coverage", request.coverage,
                        "sizes N: how often intervals from N of the heaps hold the constants of the "
-                       "rest (coverage.md); takes long")
+                       "rest (in the output folder: coverage.md); takes long")
           ->delimiter(',');
   command->add_option("--draws", request.draws, "of --coverage, of each size; default 100")
       ->needs(coverage);

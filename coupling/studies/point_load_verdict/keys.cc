@@ -29,7 +29,7 @@ void declare_verdict_keys(SectionKeys s) {
   s.flag("base", IN(base), "the forces on the base are fitted as well");
   s.number("coverage", "-", IN(coverage), {3, 1e6},
            "sizes N: how often intervals from N of the packings hold the constants of the rest "
-           "(coverage.md); takes long");
+           "(in the output folder: coverage.md); takes long");
   s.or_none();
   s.number("coverage_draws", "-", IN(coverage_draws), {1, 1e6},
            "draws of every size of verdict.coverage");
