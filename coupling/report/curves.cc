@@ -196,7 +196,8 @@ std::vector<Picture> side_by_side(const std::vector<std::string>& members,
       for (const Frame& frame : chart.frames) {
         Frame& place = named(shared.frames, frame.title);
         for (Series s : frame.series) {
-          s.label = s.points ? members[m] : members[m] + ": " + s.label;
+          const bool alone = s.points || frame.series.size() == 1;
+          s.label = alone ? members[m] : members[m] + ": " + s.label;
           s.colour = static_cast<int>(m);
           place.series.push_back(std::move(s));
         }

@@ -19,6 +19,7 @@ Picture marked_grains(const std::string& title, const dem::Snapshot& snapshot,
   });
   scene.set_axes();
   scene.plot_grains("#666666");
+  scene.plot_cell();
   picture.program += "\n";
   picture.caption = caption + scene.strays();
   return picture;

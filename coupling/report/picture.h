@@ -46,7 +46,8 @@ struct Chart {
   Picture picture() const;
 };
 /// Every title once, in the order of the first that has it; the curves of frames of one title are
-/// in one frame in the member's colour: points with its name, lines with it before their label.
+/// in one frame in the member's colour: points and lines that are alone with its name, other lines
+/// with it before their label.
 std::vector<Picture> side_by_side(const std::vector<std::string>& members,
                                   const std::vector<std::vector<Chart>>& charts);
 

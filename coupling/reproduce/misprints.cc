@@ -20,6 +20,12 @@ const std::vector<Misprint>& misprints() {
       {"Wellmann 11", "(1/κ)² E − K", "κ² E − K"},
       {"Wellmann 6", "\"c_end = 0.4\"", "0.04"},
       {"Liffman 30", "(x_{k+1} − x_k)/2", "(x_{k+1} + x_k)/2"},
+      {"Liffman 7, 19", "P_t = μ P_n, signed comparison",
+       "magnitudes, with the sign of the no-slip impulse"},
+      {"Liffman 14", "ω2* = ω2 − r2×P/I2", "ω2 + r2×P/I2"},
+      {"Liffman 29", "−μ F_k t̂", "with the sign of the slip"},
+      {"Liffman 36", "τ = σ F_slip/2", "−(σ/2) F_t, F_t the tangential force that acts"},
+      {"Roul 2.39", "the viscous part accumulates in the spring", "beside the spring"},
   };
   return all;
 }

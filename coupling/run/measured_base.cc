@@ -15,6 +15,9 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr double kMiddleHalf = 0.25, kCentreHalf = 0.05;  // of the base
+// The lines at 60 degrees through the apex meet the base where the line model's shear bends. The
+// straight part is taken up to this share of the way: grains bend a fifth earlier at most.
+constexpr double kBeforeBend = 0.8;
 // Places so far beyond the grains' outermost, over the base, still have a value of theirs.
 constexpr double kBeyond = 1e-3;
 // Places this share of the height off the base, and in space off the plane y = 0, are on it.
@@ -111,9 +114,8 @@ std::vector<SummaryKey> measured_figures() {
       {"measured.normal_centre", "-",
        "measured: mean normal force within 1/20 of the base of its middle over the largest"},
       {"measured.shear_slope_ratio", "-",
-       "slope of the grains' shear in the middle half of the base over that measured, each over "
-       "its "
-       "largest shear"},
+       "slope of the grains' shear in the middle of the base over that measured, each over its "
+       "largest shear; each middle is that of liffman.horizontal_slope for its own heap"},
       {"measured.shear_explained", "-",
        "share of the measured shear's variance there that the line explains"},
   };
@@ -166,6 +168,7 @@ BaseProfile measured_base(const MeasuredSetup& setup) {
         setup.field, n, kFewestPlaces));
   }
   BaseProfile out;
+  out.height = h / (left + right);
   out.x = out.normal = out.shear = out.normal_error = out.shear_error = Eigen::VectorXd(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto [x, k] = places[static_cast<std::size_t>(i)];
@@ -179,9 +182,14 @@ BaseProfile measured_base(const MeasuredSetup& setup) {
 }
 
 MiddleShear middle_shear(const BaseProfile& base) {
+  Eigen::VectorXd away = base.x.cwiseAbs();
+  std::sort(away.data(), away.data() + away.size());
+  const double fewest = away[std::min(kFewestPlaces, away.size()) - 1] + kBeyond;
+  const double straight = std::min(kMiddleHalf, kBeforeBend * base.height / std::numbers::sqrt3);
+  const double half = std::max(straight, fewest);
   double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   for (Eigen::Index k = 0; k < base.x.size(); ++k) {
-    if (std::fabs(base.x[k]) > kMiddleHalf) continue;
+    if (std::fabs(base.x[k]) > half) continue;
     n += 1;
     x += base.x[k];
     y += base.shear[k];

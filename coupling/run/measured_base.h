@@ -26,6 +26,7 @@ std::vector<SummaryKey> measured_figures();
 struct BaseProfile {
   Eigen::VectorXd x, normal, shear;           ///< normal: down; shear: to the right, on the ground
   Eigen::VectorXd normal_error, shear_error;  ///< standard errors; nan or empty: unknown
+  double height = 1;                          ///< of the heap, over its base
 
   /// The same over the largest normal and the largest shear.
   BaseProfile normalized() const;
@@ -36,8 +37,9 @@ struct BaseProfile {
 /// on the base.
 BaseProfile measured_base(const MeasuredSetup& setup);
 
-/// The straight part of the shear, |x| < 1/4 of the base: its slope, over the largest shear and per
-/// base, and the share of its variance that the line explains.
+/// The shear in the middle, where it is straight in the line model: before the model's bend, within
+/// 1/4 of the base, and five places or more. Its slope, over the largest shear and per base, and
+/// the share of its variance that the line explains.
 struct MiddleShear {
   double slope = 0, explained = 0;
 };

@@ -94,12 +94,20 @@ void add_differences(Summary& summary, const std::vector<SweepDifference>& diffe
   }
 }
 
+// A variant's name as words.
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 // Every member's own frames, grains beside models.
 Picture side_by_side(const Case& value, const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
   for (std::size_t m = 0; m < results.size(); ++m) {
     for (Frame frame : results[m].sweep_frames) {
-      if (value.sweep.key == "variant") frame.title = value.sweep.values[m] + ", " + frame.title;
+      if (value.sweep.key == "variant") {
+        frame.title = in_words(value.sweep.values[m]) + ", " + frame.title;
+      }
       frames.push_back(std::move(frame));
     }
   }
@@ -209,8 +217,12 @@ std::string write_sweep(const std::string& folder, const Case& value,
         Text{names[m], results[m].comparison.verdict.sentence, m == 0 && sentence.empty()});
   }
   std::vector<std::vector<Chart>> charts;
-  for (const StudyResult& result : results) charts.push_back(result.sweep_charts);
-  for (Picture& picture : coupling::side_by_side(names, charts)) {
+  std::vector<std::string> legends;
+  for (std::size_t m = 0; m < results.size(); ++m) {
+    charts.push_back(results[m].sweep_charts);
+    legends.push_back(value.sweep.key == "variant" ? in_words(names[m]) : names[m]);
+  }
+  for (Picture& picture : coupling::side_by_side(legends, charts)) {
     report.sections.emplace_back(std::move(picture));
   }
   if (auto picture = beside_each_other(value, members, results)) {

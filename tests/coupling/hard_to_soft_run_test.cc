@@ -51,12 +51,28 @@ TEST(HardToSoftRun, RestsSoftAndClosesItsBalance) {
   const std::string page = testing::read_text(folder / "out/report.html");
   EXPECT_THAT(page, HasSubstr("Soft grains, t = "));
   EXPECT_THAT(page, HasSubstr("Network of forces"));
-  // The same figures on two threads.
-  ASSERT_EQ(program("run " + file + " -o " + (folder / "two") + " --threads 2").code, 0);
-  const Summary two = read_summary(folder / "two/summary.json");
-  for (const char* key : {"switch.time", "switch.lost_impulses", "switch.lost_soft"}) {
-    EXPECT_EQ(number(s, key), number(two, key)) << key;
+}
+
+// Contents of all outputs: on one thread and on three, and after stops.
+TEST(HardToSoftRun, SameBitsOnAnyThreadsAndAfterStops) {
+  const Folder folder;
+  const std::string file =
+      folder.write("x.toml", std::string(kRain) + "[output]\nreport = false\n");
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "one") + " --threads 1").code, 0);
+  const auto one = testing::contents(folder / "one");
+  EXPECT_GT(one.size(), 4U);
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "three") + " --threads 3").code, 0);
+  EXPECT_EQ(testing::contents(folder / "three"), one);
+  const std::string run = "run " + file + " -o " + (folder / "k") + " ";
+  int stops = 0, code = 130;
+  for (long at = 40; code == 130 && stops < 60; at += 61, ++stops) {
+    code =
+        program(run + (stops > 0 ? "--resume" : "") + " --stop-after-steps " + std::to_string(at))
+            .code;
   }
+  EXPECT_EQ(code, 0);
+  EXPECT_GT(stops, 2);
+  EXPECT_EQ(testing::contents(folder / "k"), one);
 }
 
 TEST(HardToSoftRun, MistakesAreNamed) {

@@ -151,6 +151,30 @@ TEST(MeasuredBase, MistakesAreNamed) {
       HasSubstr("has 1 places on the base with a pressure and a shear, allowed: 5 or more"));
 }
 
+// Of the line model at 32.6 degrees the shear is straight up to its bend at 0.184 of the base; a
+// window that ends before it sees nothing but a line, whatever comes after.
+TEST(MeasuredBase, TheMiddleOfTheShearEndsBeforeItsBend) {
+  BaseProfile base;
+  const double tangent = std::tan(32.6 * std::numbers::pi / 180);
+  const double bend = tangent / 2 / std::numbers::sqrt3;
+  base.height = tangent / 2;
+  base.x = Eigen::VectorXd::LinSpaced(181, -0.5, 0.5);
+  base.normal = Eigen::VectorXd::Ones(181);
+  base.shear = base.x.unaryExpr([&](double x) {
+    return std::fabs(x) < bend ? x / bend : std::copysign((0.5 - std::fabs(x)) / (0.5 - bend), x);
+  });
+  EXPECT_NEAR(middle_shear(base).explained, 1, 1e-12);
+  EXPECT_NEAR(middle_shear(base).slope * base.shear.maxCoeff(), 1 / bend, 1e-9);
+  base.height = 1;
+  EXPECT_LT(middle_shear(base).explained, 0.97);
+  // A low heap of few places: five of them, all on the line but the outermost two.
+  base.height = 0.05;
+  base.x = Eigen::VectorXd::LinSpaced(9, -0.5, 0.5);
+  base.shear = base.x;
+  base.shear[0] = base.shear[8] = 0;
+  EXPECT_NEAR(middle_shear(base).slope * base.shear.maxCoeff(), 1, 1e-12);
+}
+
 // Three grains in a row on two walls' worth of forces: of 3 > 2 > 1 N the first is the strongest of
 // two grains, the last the weakest of two.
 TEST(ForceLines, AreTheStrongestAndWeakestContactsOfEachGrain) {

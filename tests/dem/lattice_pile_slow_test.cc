@@ -41,5 +41,17 @@ TEST(LatticePileFullSize, TouchingRowsCarryForceBelowSixtyDegrees) {
   EXPECT_LT(equilateral.horizontal, 1e-3);
 }
 
+// The source's own softness, at the slopes of its figures 13 to 16.
+TEST(LatticePileFullSize, SoRowsDoAtTheSourcesSoftness) {
+  for (const double slope : {30.0, 50.0, 55.0}) {
+    LatticePileSetup s = pile_of(45, slope, 1e-4, "linear");
+    s.lattice.gap = 0;
+    const BaseErrors touching = base_errors(s, at_rest(s));
+    EXPECT_GT(touching.row_contacts, 100) << slope;
+    EXPECT_GT(touching.horizontal, 0.2) << slope;
+    EXPECT_NEAR(touching.weight_ratio, 1, 1e-6) << slope;
+  }
+}
+
 }  // namespace
 }  // namespace grainfield::dem

@@ -159,11 +159,14 @@ class GasAnalysis {
     const std::string last = dem::name_of_fraction(results.setup.fractions.back());
     const dem::Snapshot* snapshot = first != nullptr ? first->find(last) : nullptr;
     if (snapshot != nullptr) {
-      Picture grains = results.setup.in_space() ? slice("At the end", *snapshot)
-                                                : packing("At the end", *snapshot);
-      grains.caption =
+      const std::string caption =
           fmt::format("Grains of the first realization in their periodic box, at {:g}.",
                       results.setup.fractions.back());
+      Picture grains = results.setup.in_space()
+                           ? slice("At the end", *snapshot)
+                           : marked_grains("At the end", *snapshot,
+                                           std::vector<char>(snapshot->grains.size(), 1), caption);
+      grains.caption = caption;
       out.sections.emplace_back(std::move(grains));
     }
     add_rows(

@@ -20,7 +20,9 @@ std::vector<SummaryKey> lattice_pile_figures() {
        "mean N of the base disks within 1/20 of the base of its middle over the largest N"},
       {"liffman.line_normal_centre", "-", "the same of the line model: below 1 is a dip"},
       {"liffman.horizontal_slope", "-",
-       "slope of H in the middle half of the base over the line model's, each over its largest H"},
+       "slope of H in the middle of the base over the line model's, each over its largest H; up to "
+       "0.8 of the way to where the lines through the apex meet the base, where the model's H "
+       "bends; to a quarter of the base at most, and over five disks or more"},
       {"liffman.horizontal_explained", "-",
        "share of the variance of H there that a straight line explains"},
       {"liffman.maximum_lines_level", "-",

@@ -16,7 +16,11 @@ std::vector<Frame> base_frames(const Comparison& c, double weight, double width,
     const double unit = weight / spacing;
     frame.series.push_back({"grains", p.x / width, p.mean / unit, {}, true});
     for (const ModelProfiles& m : c.models) {
-      frame.series.push_back({m.label, p.x / width, m.values[k] / unit, {}, false});
+      frame.series.push_back({m.label == "liffman" ? "line model" : m.label,
+                              p.x / width,
+                              m.values[k] / unit,
+                              {},
+                              false});
     }
     frames.push_back(std::move(frame));
   }

@@ -130,7 +130,7 @@ class LatticePileAnalysis {
   }
 
   BaseProfile profile_of(const Eigen::VectorXd& normal, const Eigen::VectorXd& horizontal) const {
-    return {points_.col(0) / heap_.width, normal, horizontal, {}, {}};
+    return {points_.col(0) / heap_.width, normal, horizontal, {}, {}, heap_.height() / heap_.width};
   }
 
   Eigen::VectorXd normal() const { return normal_.rowwise().mean(); }

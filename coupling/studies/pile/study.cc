@@ -71,6 +71,7 @@ class PileAnalysis {
     const double unit = piles_.pressure();
     const Column *down = base.find("sigma_yy"), *along = base.find("sigma_xy");
     BaseProfile out;
+    out.height = piles_.height() / (left + right);
     out.x = (piles_.height() * piles_.x().array() - 0.5 * (right - left)) / (left + right);
     out.normal = -unit * down->value;
     out.shear = unit * along->value;
