@@ -19,6 +19,7 @@ def test_members_are_arrays_with_units():
     assert contacts.forces.shape == contacts.normals.shape == contacts.branches.shape == (len(contacts), 2)
     assert packing.units["positions"] == "m" and packing.units["volumes"] == "m2"
     assert contacts.units["forces"] == "N" and contacts.units["branches"] == "m"
+    assert repr(contacts).startswith(f"<Contacts: {len(contacts)}, with points, ")
     assert packing.walls.names == ["floor"] and packing.walls.units["forces"] == "N"
     np.testing.assert_allclose(packing.masses, GRAIN_DENSITY * packing.volumes, rtol=1e-15)
     at_floor = contacts.pairs[:, 1] < 0
@@ -131,7 +132,10 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
     assert "in contact at a distance of 0.1 m" in both(good, x=[0.0, 0.1])
     wrong = error_of(lambda: gf.packing([0], [0], 1, mass=1, colour=[3]))
     assert wrong.startswith('grains: unknown column "colour"; nearest: ')
-    assert error_of(lambda: gf.packing([0, 1], [0], 1, mass=1)) == "grains: y has 1 values, id has 2"
+    assert error_of(lambda: gf.packing([0, 1], [0], 1, mass=1)) == (
+        "packing: found 1 values of y and 2 of x, allowed: as many")
+    assert error_of(lambda: gf.packing([0], [0], 1, mass=1, contact=good)) == (
+        "packing: unknown argument contact; nearest: contacts")
     assert "expected a finite number" in error_of(lambda: gf.packing([np.nan], [0], 1, mass=1))
     assert error_of(lambda: gf.packing([0], [0], 1)) == (
         "grains: no \"mass\"; found: id x y radius; mass (kg) or density (kg/m2) tells it")

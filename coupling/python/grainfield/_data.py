@@ -78,6 +78,9 @@ class Contacts(_Rows):
     def __len__(self) -> int:
         return self._core.counts()[1]
 
+    def __repr__(self) -> str:
+        return f"<Contacts: {len(self)}, with {', '.join(self.units)}>"
+
     def _more_units(self) -> dict[str, str]:
         return {"pairs": "1", "branches": "m"}
 

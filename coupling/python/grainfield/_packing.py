@@ -11,6 +11,8 @@ import numpy as np
 from . import _core
 from ._data import Packing
 
+_ARGUMENTS = ("contacts", "walls", "ids", "density", "velocities", "fixed", "outlines", "friction", "gravity",
+              "periodic")
 _SHORT = {"velocities": ("vx", "vy", "vz"), "forces": ("fx", "fy", "fz"), "points": ("px", "py", "pz"),
           "normals": ("nx", "ny", "nz")}
 
@@ -79,6 +81,14 @@ def packing(
     dim = 2 if z is None else 3
     x = np.atleast_1d(np.asarray(x, float))
     n = len(x)
+
+    for name in columns:
+        near = difflib.get_close_matches(name, _ARGUMENTS, 1, 0.85)
+        if near:
+            raise ValueError(f"packing: unknown argument {name}; nearest: {near[0]}")
+    for name, value in (("y", y), ("z", z), ("radius", radius)):
+        if value is not None and np.ndim(value) > 0 and len(value) != n:
+            raise ValueError(f"packing: found {len(value)} values of {name} and {n} of x, allowed: as many")
 
     def each(value: Any) -> Any:
         return np.full(n, value) if np.ndim(value) == 0 else value
