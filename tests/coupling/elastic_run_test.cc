@@ -11,8 +11,9 @@ using grainfield::coupling::testing::shipped;
 TEST(ElasticRun, OrthotropicLayerGoesFromOnePeakToTwo) {
   for (const auto& [r, peaks] : {std::pair{"1", 1}, {"-0.6", 2}}) {
     const StudyResult result =
-        shipped("orthotropic-layer.toml", {std::string("problem.r=") + r, "model.fe.tolerance=2e-3",
-                                           "model.fe_rough.tolerance=2e-3"});
+        shipped("orthotropic-layer.toml",
+                {"sweep.key=\"\"", "sweep.values=[]", std::string("problem.r=") + r,
+                 "model.fe.tolerance=2e-3", "model.fe_rough.tolerance=2e-3"});
     EXPECT_EQ(number(result, "response.peaks"), peaks) << r;
     EXPECT_EQ(number(result, "model.half_plane.peaks"), peaks) << r;
     // A quarter of the depth below the load the base is hardly felt.
