@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -31,6 +32,8 @@ constexpr double kImpossible = 5, kTooLight = 0.05;
 constexpr double kWidestCell = 0.25;
 constexpr std::size_t kEnoughToCarry = 5;
 constexpr Eigen::Index kLeastToFit = 10;
+// Of the values, in the median.
+constexpr double kLeastError = 1e-3, kMostError = 1;
 
 constexpr double kSamePlace = 1e-9;   // of h
 constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
@@ -295,11 +298,10 @@ void refuse_impossible(const Field& field) {
   const std::optional<MeasuredHeap> heap = heap_of(field);
   if (!heap) return;
   if (const Eigen::Index outside = places_outside(field, *heap);
-      2 * outside > field.points.rows()) {
+      4 * outside > field.points.rows()) {
     throw std::invalid_argument(
         of_outside(field, *heap, outside) +
-        ", allowed: less than half of them; correct the unit of x, or its origin: 0 is below the "
-        "apex");
+        ", allowed: a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   }
   constexpr const char* correct = "correct the unit of the values, or --height, --slope, --rho-g";
   if (const double share = carried_share(field, *heap); share > kImpossible) {
@@ -419,6 +421,18 @@ std::vector<std::string> measured_doubts(const Field& field) {
   for (const Column& column : field.columns) values += column.value.array().isFinite().count();
   if (values < kLeastToFit) {
     out.push_back(fmt::format("holds {} values; fit needs {} or more", values, kLeastToFit));
+  }
+  std::vector<double> shares;
+  for (const Column& column : field.columns) {
+    for (Eigen::Index k = 0; k < column.error.size(); ++k) {
+      const double one = column.error[k] / std::fabs(column.value[k]);
+      if (std::isfinite(one)) shares.push_back(one);
+    }
+  }
+  const double error = shares.empty() ? kNan : boost::math::statistics::median(shares);
+  if (error < kLeastError || error > kMostError) {
+    out.push_back(fmt::format(
+        "errors are {:.2g} times their values in the median: is their unit right?", error));
   }
   const double share = carried_share(field, *heap);
   if (share < kLeastCarried || share > kMostCarried) {

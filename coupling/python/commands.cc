@@ -463,6 +463,8 @@ void add_commands(py::module_& module) {
              py::arg("support"), py::arg("width"), py::arg("least_grains"), py::arg("threads"));
   module.def("structure", structure);
   module.def("import_field", import_field);
+  module.def("measured_doubts",
+             [](const HeldField& field) { return coupling::measured_doubts(*field.field); });
   module.def("name_of_measured",
              [](const HeldField& field) { return coupling::name_of_measured(*field.field); });
   module.def("fit", fit, py::kw_only(), py::arg("files"), py::arg("packings"), py::arg("field"),

@@ -248,9 +248,9 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
     return out.err;
   };
   EXPECT_EQ(told("x (mm)", 1, heap_options()), "");
-  EXPECT_THAT(told("x (mm)", 1, " --height 0.04 --slope 30 --rho-g 30000"),
-              HasSubstr("warning: base: 6 of 13 places lie outside the heap, whose feet are at "
-                        "-0.0693 and 0.0693 m: is the unit of x right, and its origin"));
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.06 --slope 30 --rho-g 20000"),
+              HasSubstr("warning: base: 2 of 13 places lie outside the heap, whose feet are at "
+                        "-0.104 and 0.104 m: is the unit of x right, and its origin"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
@@ -285,7 +285,7 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   for (int k = 0; k <= 12; ++k) toe += fmt::format("{},pressure,1,0.1\n", 40 * k);
   refused(toe, good,
           "9 of 13 places lie outside the heap, whose feet are at -0.139 and 0.139 m, allowed: "
-          "less than half of them; correct the unit of x, or its origin: 0 is below the apex");
+          "a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   refused(head + "0,pressure,1,0.1\n", " --height '80 mm' --slope 30 --rho-g 15000 --width 2",
           "--width: found 2, allowed: above 0, up to 0.02 (a quarter of --height), in m");
   refused("position (mm),pressure (kPa)\n", good,

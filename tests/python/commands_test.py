@@ -240,6 +240,11 @@ def test_measured_fields(tmp_path):
     for name, true in (("eta", ETA), ("mu", MU)):
         value, error = fit.constants["osl"][name]
         assert abs(value - true) < 0.1 * error  # without noise: only the cells' width is left
+    with pytest.warns(UserWarning, match="base: errors are 1e-05 times their values .*: is their unit right?"):
+        small = tmp_path / "small.csv"
+        small.write_text("x (mm),component,value (kPa),error (Pa)\n" + "".join(
+            f"{place},pressure,1,0.01\n" for place in x))
+        gf.import_field(small, height=0.08, slope=30, rho_g=15000)
     assert error_of(lambda: gf.import_field(table, height=0.08, slope=30)) == program(
         "import-field", table, "--height", "0.08", "--slope", "30", "-o", tmp_path / "f.h5", code=2)
 

@@ -247,15 +247,18 @@ def import_field(
 
     file: CSV with columns x, component, value, error (and y, in 3D z, off the base), each number
     with its unit in brackets. height: m, of the heap or layer. Of heaps slope, degrees, one or (left,
-    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. width: radius of the cells, m. Raises
-    ValueError.
+    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. width: radius of the cells, m. What the
+    command warns of is given as Python warnings. Raises ValueError.
     """
     nan = float("nan")
     left, right = slope if isinstance(slope, tuple) else (slope, slope)
     core = _core.import_field(
         os.fspath(file), geometry, dim, float(height),
         *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
-    return Field(core, name=_core.name_of_measured(core))
+    name = _core.name_of_measured(core)
+    for line in _core.measured_doubts(core):
+        _warnings.warn(f"{name}: {line}", stacklevel=2)
+    return Field(core, name=name)
 
 
 def compare(
