@@ -9,9 +9,9 @@
 #include "dem/engine/contact_forces.h"
 #include "dem/engine/flatten.h"
 #include "dem/engine/outer_forces.h"
+#include "dem/engine/rows_of.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
-#include "dem/motion/round_lanes.h"
 
 namespace grainfield::dem {
 
@@ -35,6 +35,12 @@ class Sweep {
   /// So nothing looks at other grains while some begin their next step.
   static constexpr bool begins_in_lanes = (in_lanes || rows_in_lanes) && requires {
     World::Integrator::in_lanes;
+  };
+
+  /// Shapes of grains that have begun their next step are placed side by side.
+  static constexpr bool places_together =
+      requires(typename World::Shape & shapes, const Body* bodies, const double* rotations) {
+    shapes.place_all(static_cast<const int*>(nullptr), 0, bodies, rotations, 0);
   };
 
   explicit Sweep(World& world)
@@ -161,6 +167,7 @@ class Sweep {
     if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
       begins.moved |= begin_all(begins.list, begins.waiting);
     }
+    if constexpr (kind == SweepKind::move_on && places_together) place_waiting(begins);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
 
@@ -179,7 +186,7 @@ class Sweep {
     const auto& r = rule.rolling;
     const RollingNumbers rolling{r.stiffness,          r.damping,          r.friction,
                                  r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
-    const SphereRows rows = sphere_rows();
+    const SphereRows rows = sphere_rows_of(world_, sums_, rolls_);
     Begins begins;
     SphereBatch batch;
     int done = first;
@@ -217,17 +224,6 @@ class Sweep {
     begins.moved |= begin_all(begins.list, begins.waiting);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
-  SphereRows sphere_rows() {
-    using Pair = typename World::Pair;
-    constexpr SphereLawKind kind = World::Law::sphere_kind;
-    static_assert(sizeof(Body) == kSphereBody * sizeof(double));
-    static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
-    static_assert(sizeof(RollingMemory<dim>) == 4 * sizeof(double));
-    static_assert(sizeof(Pair) == pair_size(kind) && offsetof(Pair, j) == second_in_pair(kind));
-    return {world_.grains.bodies.data()->position.data(),
-            reinterpret_cast<unsigned char*>(&world_.contacts.pairs[0]), sums_.data()->force.data(),
-            rolls_ ? world_.rolling.pairs.data()->roll.data() : nullptr};
-  }
   /// The motion of rows [from, to), whose sums are complete.
   template <bool in_cell>
   void end_rows(int from, int to, const Vector& applied, double dt, Begins& begins) {
@@ -263,23 +259,9 @@ class Sweep {
   /// End of a step and beginning of the next of spheres that nothing else acts on.
   bool step_on(const int* list, int count) {
     if (count == 0) return false;
-    auto& grains = world_.grains;
     const auto& gravity = world_.around.gravity;
-    using Grip = typename World::Integrator::Memory;
-    RoundRows rows;
-    rows.bodies = grains.bodies.data()->position.data();
-    rows.memories = grains.memory.data()->rotation.coeffs().data();
-    rows.sums = sums_.data()->force.data();
-    rows.inertias = &grains.inertias.data()->mass;
-    rows.margins = world_.margins.data()->position.data();
-    rows.body_size = sizeof(Body) / sizeof(double);
-    rows.memory_size = sizeof(Grip) / sizeof(double);
-    rows.sum_size = sizeof(Sum) / sizeof(double);
-    rows.inertia_size = sizeof(Inertia<dim>) / sizeof(double);
-    rows.margin_size = sizeof(Margin<dim>) / sizeof(double);
-    rows.way = offsetof(Margin<dim>, way) / sizeof(double);
     return round_steps({world_.time_step, {gravity[0], gravity[1], gravity[2]}, world_.around.drag},
-                       rows, list, count);
+                       round_rows_of(world_, sums_), list, count);
   }
 
   /// What else acts on a grain that moves, the end of its step, and the beginning of the next.
@@ -318,6 +300,12 @@ class Sweep {
       } else if constexpr (kind == SweepKind::move_on) {
         if (flows) {
           begins.moved |= begin_in_flow(i);
+        } else if constexpr (places_together) {
+          auto& memory = grains.memory[i];
+          integrator_.begin(b, memory, grains.inertias[i]);
+          begins.moved |= is_left(i);
+          begins.list[begins.waiting++] = i;
+          if (begins.waiting == kBatch) place_waiting(begins);
         } else {
           begin(i, begins.moved);
         }
@@ -397,11 +385,24 @@ class Sweep {
   /// Of a grain that has moved: its shape is placed, too.
   bool has_left(int i) {
     auto& grains = world_.grains;
-    const auto& b = grains.bodies[i];
-    const auto& rotation = grains.memory[i].rotation;
-    constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
-    return world_.margins[i].template is_left<outlines>(b.position, rotation);
+    if constexpr (World::Shape::keeps_places) {
+      grains.shapes.place(i, grains.bodies[i], grains.memory[i].rotation);
+    }
+    return is_left(i);
+  }
+  bool is_left(int i) const {
+    const auto& grains = world_.grains;
+    return world_.margins[i].template is_left<World::Shape::outlines>(grains.bodies[i].position,
+                                                                      grains.memory[i].rotation);
+  }
+  /// Nobody looks at a grain that has begun its next step before all have.
+  void place_waiting(Begins& begins) {
+    auto& grains = world_.grains;
+    using Grip = typename World::Integrator::Memory;
+    static_assert(sizeof(Grip) % sizeof(double) == 0);
+    grains.shapes.place_all(begins.list, begins.waiting, grains.bodies.data(),
+                            &grains.memory.data()->rotation, sizeof(Grip) / sizeof(double));
+    begins.waiting = 0;
   }
   bool has_left_in_flow(int i) {
     auto& grains = world_.grains;

@@ -8,6 +8,7 @@
 
 #include "dem/image/image.h"
 #include "dem/shapes/bounding_rectangle.h"
+#include "dem/shapes/place_lanes.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
@@ -56,10 +57,26 @@ class PolygonStore {
     const double *bx = block, *by = block + stride_;
     double *x = block + 2 * stride_, *y = block + 3 * stride_;
     const double cx = b.position.x(), cy = b.position.y();
-    for (int k = 0; k <= n; ++k) {
+    for (std::size_t k = 0; k < stride_; ++k) {
       x[k] = cx + (c * bx[k] - s * by[k]);
       y[k] = cy + (s * bx[k] + c * by[k]);
     }
+  }
+
+  /// The same for bodies list[0] to list[count - 1], side by side. `rotations`: of the first body,
+  /// `step` numbers from one to the next.
+  void place_all(const int* list, int count, const Body<2>* bodies, const double* rotations,
+                 int step) {
+    static_assert(sizeof(Body<2>) % sizeof(double) == 0);
+    OutlineRows rows;
+    rows.blocks = corners_.data();
+    rows.block_size = kBlocks * stride_;
+    rows.stride = static_cast<int>(stride_);
+    rows.positions = bodies->position.data();
+    rows.angles = rotations;
+    rows.position_size = sizeof(Body<2>) / sizeof(double);
+    rows.angle_size = step;
+    place_outlines(rows, list, count);
   }
 
   void swap(int i, int j) {
