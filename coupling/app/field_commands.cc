@@ -174,6 +174,7 @@ void add_compare(CLI::App& app, Action& action) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
       const CompareOutcome outcome = compare_field(*request);
+      if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.note.empty()) say("{}\n", outcome.note);
       say("{}\n", outcome.verdict);

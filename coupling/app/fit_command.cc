@@ -78,6 +78,7 @@ void add_fit(CLI::App& app, Action& action) {
       for (const std::string& text : outcome.warnings) {
         note("warning: {}", text);
       }
+      if (!outcome.gone.empty()) note("{}", outcome.gone);
       say("fitted to {}\n", shown(outcome.packings));
       if (!outcome.coverage.empty()) say("{}", outcome.coverage);
       say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,

@@ -330,7 +330,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
 
-  CompareOutcome out{comparison.verdict.sentence, "", "", measured};
+  CompareOutcome out{comparison.verdict.sentence, "", "", "", measured};
   if (kernels.size() > 1) {
     out.note = fmt::format(
         "fields seen through different kernels, models through each one's own: "
@@ -345,7 +345,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
                            page_of(request, scene, comparison, map, model_maps, made))
                   .complaint();
   write_summary(results.staging("summary.json"), summary);
-  results.publish();
+  out.gone = told_of_gone(request.folder, results.publish());
   return out;
 }
 
