@@ -91,6 +91,8 @@ struct Comparison {
   bool measured() const { return !profiles.empty() && profiles.front().measured; }
   /// "measurement" or "grains".
   const char* subject() const { return measured() ? "measurement" : "grains"; }
+  /// What tables call the profiles' own column.
+  const char* column() const { return measured() ? "measured" : "simulation"; }
   /// What pictures call the profiles: "grains, mean of 8", "grains", "measured".
   std::string label() const;
   /// Unit of normalised profiles: F/h, N/m; in space F/h^2, Pa.

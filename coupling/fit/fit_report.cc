@@ -212,7 +212,7 @@ void add_figures(const EnsembleFits& fits, Summary& summary) {
       summary[prefix + "rho.error"] = rho.error;
     }
   }
-  add_ranking(summary, fits.selection);
+  add_ranking(summary, fits.fits, fits.selection);
   add_elements(summary, fits.elements);
   summary["verdict.best_model"] = fits.verdict.model;
   summary["verdict.distinguishable"] = fits.verdict.alone ? "yes" : "no";

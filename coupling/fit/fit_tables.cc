@@ -102,7 +102,7 @@ std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                     std::isnan(f.chance) ? "-" : fmt::format("{:.3g}", f.chance),
                     difference(s.behind, s.behind_error),
                     difference(s.heights_behind, s.heights_error),
-                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
+                    fmt::format("{:.1f} %", 100 * f.rel_l2), standing(s, f)});
   }
   return rows;
 }
@@ -112,7 +112,9 @@ const std::string& ranking_note() {
       "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
       "Behind: squared difference on realizations left out, from the best model, over the signal's "
       "square, with its paired error; heights: the same on heights left out. Supported: not behind "
-      "by more than chance.";
+      "by more than chance, and chi2/dof within what chance makes of it; where it is not, the "
+      "model is "
+      "nearest of those asked and no more.";
   return note;
 }
 
@@ -183,7 +185,7 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
   }
 }
 
-void add_ranking(Summary& summary, const Selection& selection) {
+void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection) {
   for (const Score& s : selection.ranking) {
     const std::string prefix = "fit." + s.name + ".";
     summary[prefix + "cv_behind"] = s.behind;
@@ -191,7 +193,7 @@ void add_ranking(Summary& summary, const Selection& selection) {
     summary[prefix + "heights_behind"] = s.heights_behind;
     summary[prefix + "heights_behind_error"] = s.heights_error;
     if (std::isfinite(s.aic_behind)) summary[prefix + "aic_behind"] = s.aic_behind;
-    summary[prefix + "supported"] = s.supported ? "yes" : "no";
+    summary[prefix + "supported"] = standing(s, fit_named(fits, s.name));
   }
 }
 

@@ -41,6 +41,6 @@ std::string parameters_csv(const std::vector<Fit>& fits);
 /// fit.MODEL.{chi2_per_dof,rel_l2,note}.
 void add_parameters(Summary& summary, const std::vector<Fit>& fits);
 /// fit.MODEL.{cv_behind,cv_behind_error,heights_behind,heights_behind_error,supported}.
-void add_ranking(Summary& summary, const Selection& selection);
+void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection);
 
 }  // namespace grainfield::coupling

@@ -209,6 +209,7 @@ Comparison profiles_of(const EnsembleFits& fits) {
       const FitData part = rows_of(data, rows);
       Profile p;
       p.name = fmt::format("{} at {} h", name, data.levels[static_cast<std::size_t>(level)]);
+      p.measured = fits.observed.measured;
       p.key = fmt::format("{}_{}", name, data.levels[static_cast<std::size_t>(level)]);
       p.quantity = (sign < 0 ? "-" : "") + name;
       p.depth = -part.points(0, 1) * h;

@@ -157,6 +157,23 @@ TEST(Compare, VerdictWhenNoModelFits) {
                              HasSubstr("nearer to the"), Not(HasSubstr("support"))));
 }
 
+// The nearer family is not called supported where it does not agree either.
+TEST(Compare, WhatDoesNotAgreeIsNearerAndNotSupported) {
+  Scene s = scene(8, 0.92, 0.05);
+  for (Profile& p : s.profiles) {
+    p.mean *= 1.4;
+    p.samples *= 1.4;
+  }
+  EXPECT_THAT(
+      compared(s).verdict.sentence,
+      testing::AllOf(
+          testing::StartsWith("The grains are nearer to the finite layer than to the half plane: "),
+          HasSubstr("No model agrees within the errors"), Not(HasSubstr("support"))));
+  for (Profile& p : s.profiles) p.measured = true;
+  EXPECT_THAT(compared(s).verdict.sentence,
+              testing::StartsWith("The measurement is nearer to the finite layer than to the"));
+}
+
 TEST(Compare, OneFamilyIsToldWhenItDoesNotFit) {
   Scene s = scene(8, 0.92, 0.05);
   s.models = {s.models[1]};

@@ -169,7 +169,9 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   EXPECT_EQ(std::get<std::string>(fit.at("fit.bcc.supported")), "no");
   EXPECT_EQ(std::get<std::string>(fit.at("fit.warnings")), "");
   // The errors that came in go out with the profiles, and so into every plot.
-  std::istringstream profiles(testing::read_text(folder / "fit/profiles.csv"));
+  const std::string table = testing::read_text(folder / "fit/profiles.csv");
+  EXPECT_THAT(table, HasSubstr(",x_m,measured_N/m,"));
+  std::istringstream profiles(table);
   int rows = 0;
   for (std::string line; std::getline(profiles, line);) {
     if (!line.starts_with("sigma_")) continue;

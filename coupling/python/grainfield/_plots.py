@@ -115,13 +115,14 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str) -> Any
     ax = _axes(ax)
     here = profiles["profile"] == profile
     x = profiles["x"][here]
-    _band(ax, x, profiles["simulation"][here], profiles["standard_error"], here, of)
+    data = "measured" if "measured" in profiles else "simulation"
+    _band(ax, x, profiles[data][here], profiles["standard_error"], here, of)
     for model in models_in(profiles):
         ax.plot(x, profiles[model][here], "--", label=model)
     quantity = _quantity(profiles, profile)
     ax.set_title("-" + profile if profile.startswith("sigma") and quantity.startswith("-") else profile)
     ax.set_xlabel(f"x ({profiles.units['x']})")
-    ax.set_ylabel(f"{quantity} ({profiles.units['simulation']})".strip())
+    ax.set_ylabel(f"{quantity} ({profiles.units[data]})".strip())
     ax.legend()
     return ax
 
