@@ -82,10 +82,22 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
   return rows;
 }
 
-const std::vector<std::string>& ranking_header() {
-  static const std::vector<std::string> header{"model",       "free numbers", "chi2/dof",
-                                               "chance to",   "behind",       "behind, heights",
-                                               "relative L2", "supported"};
+namespace {
+
+bool by_akaike(const Selection& selection) {
+  return std::any_of(selection.ranking.begin(), selection.ranking.end(),
+                     [](const Score& s) { return std::isfinite(s.aic_behind); });
+}
+
+// Before which column that of chi2 + 2 x free numbers stands.
+constexpr std::ptrdiff_t kAkaikeAt = 4;
+
+}  // namespace
+
+std::vector<std::string> ranking_header(const Selection& selection) {
+  std::vector<std::string> header{"model",  "free numbers",    "chi2/dof",    "chance to",
+                                  "behind", "behind, heights", "relative L2", "supported"};
+  if (by_akaike(selection)) header.insert(header.begin() + kAkaikeAt, "chi2 + 2k, behind");
   return header;
 }
 
@@ -103,18 +115,27 @@ std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                     difference(s.behind, s.behind_error),
                     difference(s.heights_behind, s.heights_error),
                     fmt::format("{:.1f} %", 100 * f.rel_l2), standing(s, f)});
+    if (by_akaike(selection)) {
+      auto& row = rows.back();
+      row.insert(row.begin() + kAkaikeAt, fmt::format("{:.1f}", s.aic_behind));
+    }
   }
   return rows;
 }
 
-const std::string& ranking_note() {
-  static const std::string note =
+std::string ranking_note(const Selection& selection) {
+  std::string note =
       "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
       "Behind: squared difference on realizations left out, from the best model, over the signal's "
       "square, with its paired error; heights: the same on heights left out. Supported: not behind "
       "by more than chance, and chi2/dof within what chance makes of it; where it is not, the "
-      "model is "
-      "nearest of those asked and no more.";
+      "model is nearest of those asked and no more.";
+  if (by_akaike(selection)) {
+    note += fmt::format(
+        " chi2 + 2k: with k free numbers, less the best's; more than {:g} counts, and a model that "
+        "is not so far behind is not excluded.",
+        kNoSupport);
+  }
   return note;
 }
 

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
@@ -52,14 +51,7 @@ struct Shown {
 };
 
 Shown shown_models(const Comparison& c) {
-  std::vector<std::size_t> order(c.models.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::vector<std::string>& ranking = c.verdict.ranking;
-  const auto place = [&](std::size_t m) {
-    return std::find(ranking.begin(), ranking.end(), c.models[m].key) - ranking.begin();
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  const std::vector<std::size_t> order = ranked(c);
   Shown out;
   std::vector<std::string> aside;
   for (std::size_t m = 0; m < order.size(); ++m) {

@@ -174,6 +174,25 @@ TEST(Compare, WhatDoesNotAgreeIsNearerAndNotSupported) {
               testing::StartsWith("The measurement is nearer to the finite layer than to the"));
 }
 
+TEST(Compare, ModelsAreListedInTheVerdictsOrderAndDrawnBetweenThePlaces) {
+  Scene s = scene(8, 0.92, 0.05);
+  Comparison c = compared(s);
+  EXPECT_EQ(c.models[ranked(c).front()].key, c.verdict.best_model);
+  EXPECT_EQ(ranking_note(c), "In order of chi2/dof, by which the verdict ranks.");
+  EXPECT_EQ(drawn_line(c, 0, 0).y, c.models[0].values[0]);
+  c.models[0].line_x = {Eigen::Vector2d(0, 1)};
+  c.models[0].line = {Eigen::Vector2d(2, 3)};
+  EXPECT_EQ(drawn_line(c, 0, 0).x, Eigen::VectorXd(Eigen::Vector2d(0, 1)));
+  c.models[0].line = {VectorXd()};
+  EXPECT_EQ(drawn_line(c, 0, 0).y, c.models[0].values[0]);
+  Eigen::MatrixXd points(3, 2);
+  points << -1, 5, 0, 5, 2, 5;
+  const Eigen::MatrixXd places = drawn_places(points);
+  EXPECT_EQ(places.rows(), kDrawnPlaces);
+  EXPECT_EQ(places.row(0), points.row(0));
+  EXPECT_EQ(places.row(kDrawnPlaces - 1), points.row(2));
+}
+
 TEST(Compare, OneFamilyIsToldWhenItDoesNotFit) {
   Scene s = scene(8, 0.92, 0.05);
   s.models = {s.models[1]};

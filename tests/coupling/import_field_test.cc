@@ -129,6 +129,7 @@ TEST(ImportField, TextsSpeakOfTheMeasurement) {
   EXPECT_THAT(apart.out, HasSubstr("The measurement supports the osl, not the bcc"));
   EXPECT_THAT(apart.out, HasSubstr("(1) it stands at "));
   EXPECT_THAT(page, HasSubstr("Distance of the models from the measurement"));
+  EXPECT_THAT(page, HasSubstr("In order of chi2/dof, by which the verdict ranks."));
   page_of("compare " + field + " --model hydrostatic:rho_g=90000 --model bcc:rho_g=60000", "n",
           &none);
   EXPECT_THAT(none.out, HasSubstr("None of the models describes this measurement: "));
@@ -136,6 +137,7 @@ TEST(ImportField, TextsSpeakOfTheMeasurement) {
   EXPECT_THAT(near.out, HasSubstr("the measurement is nearest to bcc"));
   const std::string fit = page_of("fit " + field + " --model osl --model bcc", "f");
   EXPECT_THAT(fit, HasSubstr("Measurement and the best models: sigma_yy"));
+  EXPECT_THAT(fit, HasSubstr("chi2 + 2k, behind"));
   for (const std::string& text : {page, fit, apart.out, near.out, none.out}) {
     EXPECT_THAT(text, ::testing::Not(::testing::ContainsRegex("[gG]rains")));
   }
