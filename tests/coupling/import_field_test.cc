@@ -89,6 +89,22 @@ TEST(ImportField, ConstantsDoNotHangOnTheCells) {
   }
 }
 
+// The same heap, with its numbers in SI and in units.
+TEST(ImportField, QuantitiesOfTheCommandLineMayHaveUnits) {
+  const Folder folder;
+  const std::string command = "import-field " + folder.write("m.csv", measured(7)) + " -o ";
+  const Output plain = program(command + (folder / "a.h5") +
+                               " --height 0.08 --slope 30 --rho-g 15000 --width 0.002");
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  const Output units =
+      program(command + (folder / "b.h5") +
+              " --height '80 mm' --slope '30 deg' --rho-g '15 kN/m3' --width '2 mm'");
+  ASSERT_EQ(units.code, 0) << units.err;
+  const Field a = read_field(folder / "a.h5", "base"), b = read_field(folder / "b.h5", "base");
+  EXPECT_EQ(a.attributes, b.attributes);
+  EXPECT_EQ(a.find("sigma_yy")->value, b.find("sigma_yy")->value);
+}
+
 // A measurement whose errors are unknown has constants all the same.
 TEST(ImportField, WithoutErrorsThereAreConstantsWithoutErrors) {
   const Folder folder;
@@ -322,6 +338,16 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   refused(head, " --rho-g 15000 --slope 30", "--height: is missing");
   refused(head, " --rho-g 15000 --slope 30 --height 80mm",
           "--height: found \"80mm\", expected a length in m, or with its unit, \"80 mm\"");
+  const std::string sloped = " --slope 30 --height '80 mm'";
+  refused(head, sloped + " --rho-g '15 kg/m3'",
+          "--rho-g: found \"15 kg/m3\", expected a weight per volume in N/m3 (2D: N/m2), or with "
+          "its unit, \"15 kN/m3\"");
+  refused(head, sloped + " --rho-g '15 kN/m2' --dim 3",
+          "--rho-g: found \"15 kN/m2\", expected a weight per volume in N/m3, or with");
+  refused(head, good + " --load '3 kg'",
+          "--load: found \"3 kg\", expected a force in N, or with its unit, \"2 kN\"");
+  refused(head, " --rho-g 15000 --height 0.1 --slope '30 m'",
+          "--slope: found \"30 m\", expected an angle in degrees, or with its unit, \"0.5 rad\"");
   refused(head, good + " --hight 3", "unknown option \"--hight\"; nearest: --height");
   refused(head, good + " --geometry wege", "--geometry: found \"wege\", allowed: heap, layer");
   refused("x (mm),component,value (F/h),error (F/h)\n", good,
