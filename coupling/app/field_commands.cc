@@ -8,6 +8,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/points_options.h"
+#include "coupling/app/progress_line.h"
 #include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
@@ -173,7 +174,10 @@ void add_compare(CLI::App& app, Action& action) {
       if (request->folder.empty()) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
-      const CompareOutcome outcome = compare_field(*request);
+      const CompareOutcome outcome = [&] {
+        const SolverProgress progress;
+        return compare_field(*request);
+      }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.note.empty()) say("{}\n", outcome.note);
