@@ -94,11 +94,10 @@ TEST(Compare, Chi2OfTheTruthIsOne) {
 }
 
 // A true model on three depths whose noise is tied: chance alone seldom says that none agrees.
-// Prints rows of docs/statistics.md.
-TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
-  for (const int n : {4, 8, 16}) {
+// Prints rows of docs/statistics.md. The floors are 5 points below what 2,000 trials find.
+void say_that_none_agrees(int trials) {
+  for (const auto& [n, least] : {std::pair{4, 0.7}, {8, 0.88}, {16, 0.93}}) {
     int alarms = 0, found = 0;
-    constexpr int trials = 200;
     for (int t = 0; t < trials; ++t) {
       Scene s = scene(n, 0.92, 0.15, static_cast<unsigned>(3000 + t));
       const Scene other = scene(n, 0.92, 0.15, static_cast<unsigned>(7000 + t));
@@ -127,12 +126,17 @@ TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
     }
     std::printf("| compare, true model: \"No model agrees\" | %d | %.1f %% |\n", n,
                 100.0 * alarms / trials);
-    std::printf("| compare, model 1.4 times the truth: \"No model agrees\" | %d | %.1f %% |\n", n,
-                100.0 * found / trials);
+    std::printf(
+        "| compare, model 1.4 times the truth: \"No model agrees\", floor %.0f %% | %d | "
+        "%.1f %% |\n",
+        100 * least, n, 100.0 * found / trials);
     EXPECT_LE(alarms, trials * 4 / 100) << n;
-    EXPECT_GE(found, trials * (n > 4 ? 90 : 50) / 100) << n;
+    EXPECT_GE(found, trials * least) << n;
   }
 }
+
+TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) { say_that_none_agrees(200); }
+TEST(Compare, DISABLED_ManyTrialsSayThatNoModelAgrees) { say_that_none_agrees(2000); }
 
 TEST(Compare, VerdictOfAClearCase) {
   const Comparison c = compared(scene(8, 0.92, 0.05));
