@@ -148,8 +148,8 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
   const std::string stress = one.dim == 3 && one.scale.stress == "F/h" ? "F/h^2" : one.scale.stress;
   Picture picture =
       scaled ? curves(title, fmt::format("x / {}", one.scale.length),
-                      fmt::format("{} ({})", normal, stress), frames)
-             : curves(title, "x (m)", fmt::format("{} ({})", normal, first.unit), frames);
+                      fmt::format("{}  ({})", normal, stress), frames)
+             : curves(title, "x (m)", fmt::format("{}  ({})", normal, first.unit), frames);
   picture.caption = "Mean over realizations; the band is the first member's standard error.";
   return picture;
 }
