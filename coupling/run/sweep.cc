@@ -120,10 +120,10 @@ Picture side_by_side(const Case& value, const std::vector<StudyResult>& results)
 // Whether a member has units of its own: F/h of its load, rho g h of its pile.
 bool has_scale(const Comparison& c) { return c.depth > 0 && c.unit() > 0; }
 
-// One frame per profile, one curve per member. Members differ in depth by a little: the profiles
-// are the same by number. Each is drawn in its own units: loads and heights may be what is swept.
-Picture profiles(const Case& value, const std::vector<SweepCase>& members,
-                 const std::vector<StudyResult>& results) {
+}  // namespace
+
+Picture member_profiles(const Case& value, const std::vector<SweepCase>& members,
+                        const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
   const Comparison& one = results.front().comparison;
   const bool scaled = std::all_of(results.begin(), results.end(),
@@ -154,6 +154,8 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
   return picture;
 }
 
+namespace {
+
 // One frame per quantity, one curve per member.
 Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
                       const std::vector<StudyResult>& results) {
@@ -183,7 +185,7 @@ std::optional<Picture> beside_each_other(const Case& value, const std::vector<Sw
   if (!one.member_curves.empty()) return member_curves(value, members, results);
   if (!one.sweep_frames.empty()) return side_by_side(value, results);
   if (one.comparison.profiles.empty()) return std::nullopt;
-  return profiles(value, members, results);
+  return member_profiles(value, members, results);
 }
 
 }  // namespace
