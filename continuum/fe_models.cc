@@ -222,6 +222,7 @@ void solve_on(Ranks ranks) { g_ranks = ranks; }
 
 std::unique_ptr<Model> make_in_fe_library(const char* name, const Settings& settings) {
   std::unique_ptr<Model> model;
+  reinterpret_cast<fe::WatchFunction>(function_of_library(fe::kWatchSymbol))(progress_watcher());
   plugin()(name, settings, g_ranks, model);
   return model;
 }

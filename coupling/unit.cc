@@ -125,11 +125,20 @@ std::optional<double> in_si(const std::string& number, const Unit& unit) {
   return value;
 }
 
-std::optional<double> parse_length(const std::string& text) {
+std::optional<double> parse_length(const std::string& text) { return parse_quantity(text, {"m"}); }
+
+std::optional<double> parse_quantity(const std::string& text,
+                                     const std::vector<std::string>& units) {
   const std::size_t blank = std::min(text.find(' '), text.size());
-  const std::optional<Unit> unit = parse_unit(blank < text.size() ? text.substr(blank) : "m");
-  if (!unit || unit->kind != parse_unit("m")->kind) return std::nullopt;
-  const std::optional<double> value = in_si(text.substr(0, blank), *unit);
+  const std::string number = text.substr(0, blank);
+  const std::optional<Unit> unit =
+      parse_unit(blank < text.size() ? text.substr(blank) : units.front());
+  const bool allowed = unit && std::any_of(units.begin(), units.end(), [&](const std::string& u) {
+                         return parse_unit(u)->kind == unit->kind;
+                       });
+  if (!allowed) return std::nullopt;
+  std::optional<double> value = times_ten(number, unit->ten);
+  if (value && unit->radians) *value *= 180 / std::numbers::pi;
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 

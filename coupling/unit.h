@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grainfield::coupling {
 
@@ -25,6 +26,11 @@ std::optional<double> in_si(const std::string& number, const Unit& unit);
 /// A length in m: "0.0036", or with its unit behind a blank, "3.6 mm". Nothing for any other text
 /// and for what is not finite.
 std::optional<double> parse_length(const std::string& text);
+
+/// The same of any quantity: without a unit a number in SI, of angles in degrees; with one that is
+/// of the kind of any of `units`.
+std::optional<double> parse_quantity(const std::string& text,
+                                     const std::vector<std::string>& units);
 
 /// "m g s N Pa J Hz rad deg, with n u m c d k M G before", for messages.
 std::string known_symbols();

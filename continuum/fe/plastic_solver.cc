@@ -194,6 +194,7 @@ struct PlasticSolver::Impl : PlasticBody {
       step = target - reached;
       if (report.converged && report.iterations <= kQuick) step *= 2;
       reached = target;
+      if (settings.progress) settings.progress(reached);
       restless = 0;
       record.stage = stage;
       record.load = reached;

@@ -61,6 +61,7 @@ struct PlasticSettings {
   /// body that neither rests nor clearly slides is given up.
   int work = 1000;
   double overstress = 1e-7;  ///< over the stress scale, at which the material is at rest
+  std::function<void(double)> progress = {};  ///< part of the stage's load, at every step
 };
 
 /// One converged load step.

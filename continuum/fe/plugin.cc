@@ -22,3 +22,7 @@ extern "C" void grainfield_fe_block(const grainfield::continuum::BlockMaterial& 
                                     std::vector<grainfield::continuum::BlockState>& states) {
   states = grainfield::continuum::fe::solve_block(material, initial_stress, path, cells);
 }
+
+extern "C" void grainfield_fe_watch(grainfield::continuum::ProgressFunction watcher) {
+  grainfield::continuum::watch_progress(watcher);
+}

@@ -5,6 +5,7 @@
 
 #include "continuum/fe/elastic.h"
 #include "continuum/model.h"
+#include "continuum/progress.h"
 
 namespace grainfield::continuum::fe {
 
@@ -19,6 +20,10 @@ std::unique_ptr<Model> make_osl_model(const std::string& name, const Settings& s
 
 /// Who solves from now on; see continuum::solve_on.
 void choose_ranks(Ranks ranks);
+
+/// Its own copy of what continuum/progress.h holds is set by this one.
+inline constexpr char kWatchSymbol[] = "grainfield_fe_watch";
+using WatchFunction = void (*)(ProgressFunction watcher);
 
 inline constexpr char kMakeSymbol[] = "grainfield_fe_make";
 using MakeFunction = void (*)(const char* name, const Settings& settings, Ranks ranks,

@@ -12,6 +12,7 @@
 #include "continuum/constants.h"
 #include "continuum/fe/triangle_refinement.h"
 #include "continuum/model.h"
+#include "continuum/progress.h"
 #include "continuum/size.h"
 
 namespace grainfield::continuum {
@@ -295,6 +296,11 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   settings.first_step = 1. / p.steps;
   settings.viscous_step = p.viscous_step;
   settings.work = p.work;
+  int stage = 0;
+  const int layers = p.history == WedgeHistory::at_once ? 1 : p.layers;
+  settings.progress = [&](double reached) {
+    tell_progress(settings.name, (stage + reached) / layers);
+  };
   fe::Ground ground{p.base_stiffness * p.young * scale / p.height,
                     std::tan(p.base_friction_deg * kDegree)};
   const double slack = kOnBorder * p.height;
@@ -324,7 +330,6 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
 
   const std::size_t triangles = out.mesh.triangles.size();
   std::vector<int> layer(triangles, 0);
-  const int layers = p.history == WedgeHistory::at_once ? 1 : p.layers;
   for (std::size_t c = 0; c < triangles; ++c) {
     Vector2d centre = Vector2d::Zero();
     for (const int corner : out.mesh.triangles[c])
@@ -333,11 +338,11 @@ WedgeResult solve_on(const WedgeProblem& p, const fe::TriangleMesh& mesh) {
   }
   std::vector<Vector2d> gravity(triangles, Vector2d::Zero());
   try {
-    for (int k = 0; k < layers; ++k) {
+    for (; stage < layers; ++stage) {
       std::vector<bool> active(triangles);
       for (std::size_t c = 0; c < triangles; ++c) {
-        active[c] = layer[c] <= k;
-        if (layer[c] == k) gravity[c] = {0, -p.rho_g};
+        active[c] = layer[c] <= stage;
+        if (layer[c] == stage) gravity[c] = {0, -p.rho_g};
       }
       solver.activate(active);
       solver.load(gravity);

@@ -30,10 +30,6 @@ void add_info(CLI::App& app, Action& action);
 void add_samples(CLI::App& app, Action& action);
 void add_manual(CLI::App& app, Action& action);
 
-/// An option that is a length: in m, or with its unit, "80 mm".
-CLI::Option* add_length(CLI::App& command, const std::string& name, double& to,
-                        const std::string& meaning);
-
 /// The option -o,--output of a command; an empty name is refused.
 CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning);
 

@@ -146,7 +146,7 @@ int export_file(const ExportRequest& given) {
   }
   if (done.empty()) throw std::invalid_argument(skipped.front());
   const auto written = folder.staged();
-  folder.publish();
+  note_gone(given.output, folder.publish());
   say("{} of {} as {} in {}\n{}\n",
       done.size() == 1 ? done.front() : fmt::format("{} states", done.size()), file, given.to,
       given.output, listed(written));
@@ -184,7 +184,7 @@ int export_deck(ExportRequest given) {
   write_text_file(folder.staging("packing.data"), deck.data);
   write_text_file(folder.staging("in.lammps"), deck.input);
   const auto written = folder.staged();
-  folder.publish();
+  note_gone(given.output, folder.publish());
   say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots, packing.grains.size(),
       packing.walls.size(),
       setup.loaded.empty() ? "" : fmt::format(", load on {}", setup.loaded.size()));

@@ -8,6 +8,8 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/points_options.h"
+#include "coupling/app/progress_line.h"
+#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
@@ -69,16 +71,16 @@ void add_average(CLI::App& app, Action& action) {
   auto* kernel = command->add_option(
       "--kernel", options.kernel,
       "lucy | gaussian | heaviside; of particle_centre and area_exact: circle | square");
-  auto* width = add_length(
-      *command, "--width", options.width,
+  auto* width = add_quantity(
+      *command, "--width", options.width, option_length(),
       "m; w of the kernel (lucy ends at 2 w, gaussian at 3 w, heaviside at w), of particle_centre "
       "and area_exact the circle's radius or half the square's side; default one mean diameter "
       "(particle_centre, area_exact: 2.5)");
   given->where.add_to(*command);
   command->add_flag("--rings", given->where.rings,
                     "3D: averages over rings about the frame's vertical axis; points are r,z");
-  command->add_option("--axis", wanted.axis, "X,Y of the rings' axis in frame packing, m")
-      ->delimiter(',')
+  add_quantities(*command, "--axis", wanted.axis, option_length(),
+                 "X,Y of the rings' axis in frame packing, m or \"80 mm\"")
       ->expected(2);
   command
       ->add_option("--cuts", wanted.cuts,
@@ -161,10 +163,9 @@ void add_compare(CLI::App& app, Action& action) {
                    "rows of a map: shares of the height, 0 (the base) to 1; default 0.1,0.25,0.4 "
                    "(layers 0.75,0.5,0.25)")
       ->delimiter(',');
-  command
-      ->add_option("--origin", request->lines.origin,
-                   "X,Y (3D: X,Y,Z) of the models' origin in a field of frame packing, m")
-      ->delimiter(',')
+  add_quantities(
+      *command, "--origin", request->lines.origin, option_length(),
+      "X,Y (3D: X,Y,Z) of the models' origin in a field of frame packing, m or \"80 mm\"")
       ->expected(2, 3);
   add_output(*command, request->folder, "folder; default results/compare-FIELD");
   command->callback([=, &action] {
@@ -173,7 +174,11 @@ void add_compare(CLI::App& app, Action& action) {
       if (request->folder.empty()) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
-      const CompareOutcome outcome = compare_field(*request);
+      const CompareOutcome outcome = [&] {
+        const SolverProgress progress;
+        return compare_field(*request);
+      }();
+      if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.note.empty()) say("{}\n", outcome.note);
       say("{}\n", outcome.verdict);

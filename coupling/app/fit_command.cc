@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/case/shipped_cases.h"
@@ -74,10 +75,14 @@ void add_fit(CLI::App& app, Action& action) {
         wanted.folder =
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
-      const FitOutcome outcome = fit_files(wanted);
+      const FitOutcome outcome = [&] {
+        const SolverProgress progress;
+        return fit_files(wanted);
+      }();
       for (const std::string& text : outcome.warnings) {
         note("warning: {}", text);
       }
+      if (!outcome.gone.empty()) note("{}", outcome.gone);
       say("fitted to {}\n", shown(outcome.packings));
       if (!outcome.coverage.empty()) say("{}", outcome.coverage);
       say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,

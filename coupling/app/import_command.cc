@@ -10,6 +10,7 @@
 
 #include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
+#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
@@ -177,8 +178,8 @@ void add_import(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--dim", o.dim, "2 | 3; default 2 where every z is the same");
   command->add_option("--gravity", given->gravity, "X,Y[,Z] in m/s2; default 9.81 down");
-  command->add_option("--density", o.density,
-                      "kg/m3 (2D: kg/m2), without a column mass or density");
+  add_quantity(*command, "--density", o.density, mass_per_volume(),
+               "kg/m3 (2D: kg/m2) or \"2.5 g/cm3\", without a column mass or density");
   command->add_option("--friction", given->friction,
                       "Coulomb coefficient, without a column friction");
   command
@@ -192,7 +193,8 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--fixed", given->fixed, "COLUMN=VALUE,...: those grains are apparatus");
   command->add_option("--step", given->steps, "last (default) | all | N | N=GROUP, repeatable")
       ->allow_extra_args(false);
-  command->add_option("--time-step", o.time_step, "s; time of a dump = step times this");
+  add_quantity(*command, "--time-step", o.time_step, option_time(),
+               "s or \"2 us\"; time of a dump = step times this");
   command->add_option("--group", o.group, "of the snapshot; default /step_N or /packing");
   command->add_option(
       "--load", given->load,

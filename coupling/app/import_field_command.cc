@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/output/field_io.h"
@@ -17,7 +18,7 @@ void add_import_field(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("import-field", "measured stresses as a field");
   struct Given {
     MeasuredRequest request;
-    std::string output, name;
+    std::string output, name, rho_g;
     double slope = 0;
   };
   auto given = std::make_shared<Given>();
@@ -32,14 +33,18 @@ void add_import_field(CLI::App& app, Action& action) {
   add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
   command->add_option("--dim", r.dim, "2 (default, where 1 Pa counts as 1 N/m) | 3");
-  add_length(*command, "--height", r.height, "of the heap or layer, m or \"80 mm\"");
-  auto* slope = command->add_option("--slope", given->slope, "of both sides of a heap, degrees");
-  command->add_option("--left-deg", r.left_deg, "of the left side");
-  command->add_option("--right-deg", r.right_deg, "of the right side");
-  command->add_option("--rho-g", r.rho_g, "weight per volume of a heap, N/m3 (2D: N/m2)");
-  command->add_option("--load", r.load, "on a layer, down, N: the values are its response");
-  add_length(*command, "--width", r.width,
-             "radius of the measuring cells, m or \"2 mm\": models are averaged over it");
+  add_quantity(*command, "--height", r.height, option_length(),
+               "of the heap or layer, m or \"80 mm\"");
+  auto* slope = add_quantity(*command, "--slope", given->slope, option_angle(),
+                             "of both sides of a heap, degrees or \"0.5 rad\"");
+  add_quantity(*command, "--left-deg", r.left_deg, option_angle(), "of the left side");
+  add_quantity(*command, "--right-deg", r.right_deg, option_angle(), "of the right side");
+  command->add_option("--rho-g", given->rho_g,
+                      "weight per volume of a heap, N/m3 (2D: N/m2) or \"15 kN/m3\"");
+  add_quantity(*command, "--load", r.load, option_force(),
+               "on a layer, down, N or \"2 kN\": the values are its response");
+  add_quantity(*command, "--width", r.width, option_length(),
+               "radius of the measuring cells, m or \"2 mm\": models are averaged over it");
   command->add_option("--name", given->name,
                       "of the field; default base, or measured where not all is there");
   command->callback([=, &action] {
@@ -48,6 +53,9 @@ void add_import_field(CLI::App& app, Action& action) {
       if (slope->count() > 0) {
         if (std::isnan(request.left_deg)) request.left_deg = given->slope;
         if (std::isnan(request.right_deg)) request.right_deg = given->slope;
+      }
+      if (!given->rho_g.empty()) {
+        request.rho_g = quantity_of("--rho-g", given->rho_g, weight_per_volume(request.dim));
       }
       require_other_file("-o", given->output, {request.file});
       const Field field = measured_field(request);

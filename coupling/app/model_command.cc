@@ -11,6 +11,7 @@
 #include "continuum/settings.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/points_csv.h"
+#include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
@@ -90,9 +91,11 @@ void add_model(CLI::App& app, Action& action) {
       if (given->points.empty()) throw std::invalid_argument("model: --points is missing");
       if (!given->output.empty()) require_other_file("-o", given->output, {given->points});
       const auto settings = parse_settings(given->sets, "--set");
+      auto progress = std::make_unique<SolverProgress>();
       const auto model = continuum::make_model(given->name, settings);
       const auto points = read_points_csv(given->points, continuum::dimension(info, settings));
       const auto stresses = model->stress(points);
+      progress.reset();
       Eigen::Index outside = 0;
       for (Eigen::Index k = 0; k < stresses.rows(); ++k) outside += stresses.row(k).hasNaN();
       if (outside > 0) {

@@ -14,7 +14,6 @@
 #include "coupling/app/terminal.h"
 #include "coupling/system/failure.h"
 #include "coupling/system/signals.h"
-#include "coupling/unit.h"
 #include "coupling/version.h"
 
 namespace grainfield::coupling {
@@ -104,19 +103,6 @@ int act(int argc, char** argv) {
 }
 
 }  // namespace
-
-CLI::Option* add_length(CLI::App& command, const std::string& name, double& to,
-                        const std::string& meaning) {
-  const auto in_metres = [](std::string& text) -> std::string {
-    const std::optional<double> length = parse_length(text);
-    if (!length) {
-      return fmt::format("found \"{}\", expected a length in m, or with its unit, \"80 mm\"", text);
-    }
-    text = fmt::format("{}", *length);
-    return "";
-  };
-  return command.add_option(name, to, meaning)->transform(CLI::Validator(in_metres, ""));
-}
 
 CLI::Option* add_output(CLI::App& command, std::string& output, const std::string& meaning) {
   const auto complaint = [](const std::string& name) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/progress_line.h"
 #include "coupling/app/progress_text.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
@@ -17,42 +18,6 @@
 
 namespace grainfield::coupling {
 namespace {
-
-/// One line that is rewritten on a terminal; elsewhere a line every few seconds.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
-
-  void show(const EnsembleProgress& p) {
-    if (quiet_) return;
-    const auto now = std::chrono::steady_clock::now();
-    constexpr auto kEvery = std::chrono::seconds(5);
-    if (!terminal_ && now - last_ < kEvery) return;
-    last_ = now;
-    const std::string line = progress_text(p);
-    if (terminal_) {
-      put_progress(line);
-      open_ = true;
-    } else {
-      put_log(line);
-    }
-  }
-
-  void note(const std::string& text) {
-    if (quiet_) return;
-    end();
-    put_log(text);
-  }
-
-  void end() {
-    if (open_) put_log("");
-    open_ = false;
-  }
-
- private:
-  bool quiet_, terminal_, open_ = false;
-  std::chrono::steady_clock::time_point last_;
-};
 
 void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
@@ -79,7 +44,9 @@ int run(const RunRequest& given) {
   options.threads = threads_for(given.threads, ranks);
   if (ranks.first()) warn_of_keys_without_effect(value);
   ProgressLine line(!ranks.first());
-  options.progress = [&](const EnsembleProgress& p) { line.show(p); };
+  options.progress = [&](const EnsembleProgress& p) {
+    line.show([&] { return progress_text(p); });
+  };
   options.note = [&](const std::string& text) { line.note(text); };
   options.warn = [&](const std::string& text) { line.note("grainfield: warning: " + text); };
   try {

@@ -34,7 +34,7 @@ void copy_samples(const std::vector<std::filesystem::path>& files, const std::st
     folder.require_other_than({file.string()});
     write_text_file(folder.staging(file.filename().string()), read_text_file(file.string()));
   }
-  folder.publish();
+  note_gone(to, folder.publish());
   say("{} files in {}\n", files.size(), printable_name(to));
 }
 

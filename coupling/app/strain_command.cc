@@ -7,6 +7,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/points_options.h"
+#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/files/strain_files.h"
@@ -42,8 +43,8 @@ void add_strain(CLI::App& app, Action& action) {
   add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
   command->add_option("--measure", options.measure,
                       fmt::format("{} (docs/strain.md)", fmt::join(strain_measures(), " | ")));
-  auto* width = add_length(
-      *command, "--width", options.width,
+  auto* width = add_quantity(
+      *command, "--width", options.width, option_length(),
       "m; radius of the support or half its side, w of a kernel; default three mean diameters");
   auto* support = command->add_option("--support", options.support,
                                       "circle | square; of measure kernel: lucy | gaussian");

@@ -117,7 +117,7 @@ void add_structure(CLI::App& app, Action& action) {
         show(name.file + ":" + name.group, dem::read_snapshot(name.file, name.group),
              results ? results->staging(inner) + (inner.empty() ? "/" : "") : "");
       }
-      if (results) results->publish();
+      if (results) note_gone(*folder, results->publish());
       return 0;
     };
   });

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "coupling/output/output_folder.h"
 #include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
@@ -88,6 +89,10 @@ void put(const std::string& text) {
 }
 
 void put_log(const std::string& line) { put_error(one_line(line, kLongestLine) + "\n"); }
+
+void note_gone(const std::string& folder, const std::vector<std::filesystem::path>& gone) {
+  if (!gone.empty()) note("{}", told_of_gone(folder, gone));
+}
 
 void put_progress(const std::string& line) { put_error("\r\033[K" + one_line(line, kLongestLine)); }
 

@@ -2,8 +2,10 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "coupling/system/failure.h"
 
@@ -31,6 +33,8 @@ template <class... Args>
 void note(fmt::format_string<Args...> form, Args&&... args) {
   put_log("grainfield: " + fmt::format(form, std::forward<Args>(args)...));
 }
+/// A note of told_of_gone (coupling/output/output_folder.h), where something is gone.
+void note_gone(const std::string& folder, const std::vector<std::filesystem::path>& gone);
 /// The same without end of line, over the line that stands there: progress on a terminal.
 void put_progress(const std::string& line);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "continuum/constants.h"
@@ -206,6 +207,39 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
 std::string Comparison::label() const {
   if (measured()) return "measured";
   return realizations > 1 ? fmt::format("grains, mean of {}", realizations) : "grains";
+}
+
+std::vector<std::size_t> ranked(const Comparison& c) {
+  std::vector<std::size_t> order(c.models.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<std::string>& ranking = c.verdict.ranking;
+  const auto place = [&](std::size_t m) {
+    return std::find(ranking.begin(), ranking.end(), c.models[m].key) - ranking.begin();
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  return order;
+}
+
+std::string ranking_note(const Comparison& c) {
+  if (c.verdict.ranked_by.empty()) return "";
+  return fmt::format("In order of {}, by which the verdict ranks.",
+                     c.verdict.ranked_by == "rel_l2" ? "relative L2" : "chi2/dof");
+}
+
+Eigen::MatrixXd drawn_places(const Eigen::MatrixXd& points) {
+  Eigen::MatrixXd out = points.row(0).replicate(kDrawnPlaces, 1);
+  out.col(0) =
+      Eigen::VectorXd::LinSpaced(kDrawnPlaces, points.col(0).minCoeff(), points.col(0).maxCoeff());
+  return out;
+}
+
+DrawnLine drawn_line(const Comparison& c, std::size_t model, std::size_t profile) {
+  const ModelProfiles& m = c.models[model];
+  if (profile < m.line.size() && m.line[profile].size() > 0) {
+    return {m.line_x[profile], m.line[profile]};
+  }
+  return {c.profiles[profile].x, m.values[profile]};
 }
 
 std::map<std::string, double> summary_figures(const Comparison& c, std::size_t main) {

@@ -31,7 +31,17 @@ struct ModelProfiles {
   std::string label;                    ///< for people, e.g. "elastic layer, smooth base"
   std::string family;                   ///< "half plane", "finite layer", ...; see family_of
   std::vector<Eigen::VectorXd> values;  ///< one per profile, same points; nan = no value there
+  /// The same between the points, for pictures of profiles with few: x, m, and values, one of each
+  /// per profile. Empty: nothing is known there.
+  std::vector<Eigen::VectorXd> line_x = {}, line = {};
 };
+
+/// A profile with fewer points than kFewPlaces is too coarse for a model's line, which is drawn
+/// through kDrawnPlaces of its own.
+inline constexpr Eigen::Index kFewPlaces = 60, kDrawnPlaces = 101;
+/// kDrawnPlaces points from the least to the largest first coordinate of these, which share the
+/// rest.
+Eigen::MatrixXd drawn_places(const Eigen::MatrixXd& points);
 
 /// What the verdict calls a registry model: flamant, orthotropic_half_plane, fe_elastic_half_space:
 /// "half plane"; boussinesq, transverse_half_space: "half space"; layer, fe_elastic_layer: "finite
@@ -91,6 +101,8 @@ struct Comparison {
   bool measured() const { return !profiles.empty() && profiles.front().measured; }
   /// "measurement" or "grains".
   const char* subject() const { return measured() ? "measurement" : "grains"; }
+  /// What tables call the profiles' own column.
+  const char* column() const { return measured() ? "measured" : "simulation"; }
   /// What pictures call the profiles: "grains, mean of 8", "grains", "measured".
   std::string label() const;
   /// Unit of normalised profiles: F/h, N/m; in space F/h^2, Pa.
@@ -107,6 +119,17 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
 /// everywhere, or no point that both it and a model have.
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
                    double depth, int realizations = 0);
+
+/// Indices of the models, nearest first; without a verdict in their own order.
+std::vector<std::size_t> ranked(const Comparison& comparison);
+/// For tables in that order: "In order of chi2/dof, by which the verdict ranks."
+std::string ranking_note(const Comparison& comparison);
+
+struct DrawnLine {
+  Eigen::VectorXd x, y;  ///< m, the profile's unit
+};
+/// A model on a profile, for pictures: at the points between where they are known, else at its own.
+DrawnLine drawn_line(const Comparison& comparison, std::size_t model, std::size_t profile);
 
 /// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,dof}, also per profile as
 /// compare.MODEL.PROFILE.*, verdict.position, verdict.position_error, and of the profile `main`

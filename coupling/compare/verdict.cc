@@ -189,6 +189,13 @@ Agreement agreement_of(const Comparison& c, std::size_t model) {
       deviations);
 }
 
+// How the verdict begins where two families are told apart: a family that does not agree with the
+// data is nearer than the other, and no more.
+std::string claim(const Comparison& c, bool agrees) {
+  if (agrees) return c.measured() ? "The measurement supports the" : "The grains support the";
+  return c.measured() ? "The measurement is nearer to the" : "The grains are nearer to the";
+}
+
 // Says so when even the nearest model is not within the errors, or describes nothing.
 void add_misfit(const Comparison& c, const ModelComparison& best, const Agreement& found,
                 std::string& sentence) {
@@ -254,15 +261,13 @@ Verdict judge(const Comparison& c) {
   v.position_error = p.error;
   v.distinguishable = beyond_spread(p, c.realizations);
   const ModelComparison& loser = c.results[*other];
-  const bool none = misses(best);
+  const bool agrees = !misses(best) && !(found.ratio > found.chance);
   if (v.distinguishable) {
     v.sentence = fmt::format(
         "{} {}{} the {}: nearest is {}, against {}; on the line from {} (0) to {} (1) {} at {:.2f} "
         "+- {:.2f}{}{}.",
-        c.measured() ? (none ? "It is nearer to the" : "The measurement supports the")
-                     : (none ? "They are nearer to the" : "The grains support the"),
-        best.family, none ? " than to" : ", not", loser.family, describe(best, by_chi2),
-        describe(loser, by_chi2), loser.family, best.family,
+        claim(c, agrees), best.family, agrees ? ", not" : " than to", loser.family,
+        describe(best, by_chi2), describe(loser, by_chi2), loser.family, best.family,
         c.measured() ? "it stands" : "they stand", p.position, p.error, beyond_both(c, p),
         runner_up);
   } else if (std::isfinite(p.error)) {

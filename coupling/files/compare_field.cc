@@ -253,6 +253,32 @@ Report page_of(const CompareRequest& request, const SceneField& scene, const Com
   return pile_report(page);
 }
 
+// Of the first `lines` sets those with few places again, through kDrawnPlaces: appended; their
+// numbers.
+std::vector<std::size_t> add_drawn_sets(std::size_t lines, std::vector<PointSet>& sets) {
+  std::vector<std::size_t> out;
+  for (std::size_t l = 0; l < lines; ++l) {
+    if (sets[l].points.rows() >= kFewPlaces) continue;
+    PointSet set = sets[l];
+    set.points = drawn_places(set.points);
+    sets.push_back(std::move(set));
+    out.push_back(l);
+  }
+  return out;
+}
+
+void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std::size_t>& drawn,
+                     std::size_t first, const std::vector<PointSet>& sets, const Evaluation& e,
+                     ModelProfiles& out) {
+  out.line_x.resize(lines.size());
+  out.line.resize(lines.size());
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    const FieldLine& line = lines[drawn[k]];
+    out.line_x[drawn[k]] = sets[first + k].points.col(0);
+    out.line[drawn[k]] = line.sign * e.stresses[first + k].col(line.component);
+  }
+}
+
 }  // namespace
 
 CompareOutcome compare_field(const CompareRequest& request) {
@@ -299,6 +325,8 @@ CompareOutcome compare_field(const CompareRequest& request) {
     points.rightCols<1>().array() -= scene.apex;
     sets.push_back({points, Smoothing::none, nullptr, heap});
   }
+  const std::size_t first_drawn = sets.size();
+  const std::vector<std::size_t> drawn = add_drawn_sets(lines.size(), sets);
 
   Summary summary;
   std::vector<ModelProfiles> models;
@@ -317,8 +345,11 @@ CompareOutcome compare_field(const CompareRequest& request) {
     for (std::size_t l = 0; l < lines.size(); ++l) {
       m.values.emplace_back(lines[l].sign * e.stresses[l].col(lines[l].component));
     }
+    add_drawn_lines(lines, drawn, first_drawn, sets, e, m);
     models.push_back(std::move(m));
-    if (map.nx > 0) model_maps.push_back({model_label(choice), e.stresses.back().col(1)});
+    if (map.nx > 0) {
+      model_maps.push_back({model_label(choice), e.stresses[first_drawn - 1].col(1)});
+    }
     summary["model." + choice.label + ".name"] = choice.name;
     for (const auto& [key, figure] : over_grains_height(e.figures, spanned)) {
       summary["model." + choice.label + "." + key] = figure;
@@ -330,7 +361,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
 
-  CompareOutcome out{comparison.verdict.sentence, "", "", measured};
+  CompareOutcome out{comparison.verdict.sentence, "", "", "", measured};
   if (kernels.size() > 1) {
     out.note = fmt::format(
         "fields seen through different kernels, models through each one's own: "
@@ -345,7 +376,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
                            page_of(request, scene, comparison, map, model_maps, made))
                   .complaint();
   write_summary(results.staging("summary.json"), summary);
-  results.publish();
+  out.gone = told_of_gone(request.folder, results.publish());
   return out;
 }
 

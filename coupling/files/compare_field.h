@@ -22,6 +22,7 @@ struct CompareOutcome {
   std::string verdict;
   std::string note;       ///< fields seen through different kernels; empty: all through one
   std::string lacks;      ///< of the report (ReportResult::complaint)
+  std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none
   bool measured = false;  ///< the field is of no grains (Field::is_measured)
 };
 

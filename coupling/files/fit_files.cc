@@ -283,7 +283,7 @@ FitOutcome fit_files(const FitRequest& request) {
       write_report(results.staging("report.html"), result.page(result, nullptr)).complaint();
   if (!lacks.empty()) out.warnings.push_back(lacks);
   write_summary(results.staging("summary.json"), result.summary);
-  results.publish();
+  out.gone = told_of_gone(request.folder, results.publish());
   return out;
 }
 

@@ -14,6 +14,7 @@
 
 #include "continuum/model.h"
 #include "coupling/files/placement.h"
+#include "coupling/heap/pile_frame.h"
 #include "coupling/import/format.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
@@ -21,9 +22,9 @@
 namespace grainfield::coupling {
 namespace {
 
-// What is plausible of measured heaps: places up to so many feet from the axis, and so many of the
-// base's pressures carrying such a share of the weight.
-constexpr double kOutside = 1.1, kLeastCarried = 0.5, kMostCarried = 1.5;
+// What is plausible of measured heaps: places up to so many feet from the axis, and the
+// base's pressures carrying such a share of the weight or more: places may leave out the feet.
+constexpr double kOutside = 1.1, kLeastCarried = 0.5;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 // A wrong unit, or another heap's size: no arching carries so much, or leaves so little of the
 // weight above the places.
@@ -435,7 +436,7 @@ std::vector<std::string> measured_doubts(const Field& field) {
         "errors are {:.2g} times their values in the median: is their unit right?", error));
   }
   const double share = carried_share(field, *heap);
-  if (share < kLeastCarried || share > kMostCarried) {
+  if (share < kLeastCarried || share > kMostOverWedge) {
     out.push_back(of_share(share) + ": are the units, --height, --slope and --rho-g right?");
   }
   return out;

@@ -242,7 +242,7 @@ std::string coverage_text(const Coverage& coverage, int realizations) {
   out += "\n" + markdown_table({"drawn", "draws", "one model named", "of these wrong",
                                 "disagrees with the rest by chance"},
                                rows);
-  return out + fmt::format("\nSupported by all realizations together: {}\n",
+  return out + fmt::format("\nNot behind, of all realizations together: {}\n",
                            fmt::join(coverage.supported, ", "));
 }
 

@@ -64,7 +64,9 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.*.aic_behind", "-",
        "of a single field with errors: chi2 + 2 x free numbers less the best model's; above 10 it "
        "counts"},
-      {"fit.*.supported", "text", "yes: not behind the best by more than chance; no"},
+      {"fit.*.supported", "text",
+       "yes; no: behind the best by more than chance; no, though not behind: it disagrees "
+       "with the data"},
       {"fit.*.branch", "text", "branch of Cantelaube's theory with the nearest core angle"},
       {"fit.*.flank_balance_x", "-",
        "flanks: a_xy - a_xx tan(slope), 0 in equilibrium along x; else a description, no field"},
@@ -79,7 +81,8 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fe.*.from_closed_form", "-", "|it - fitted closed form| / |closed form|"},
       {"verdict.equations", "text", "elliptic | hyperbolic | not distinguishable"},
       {"verdict.agrees", "text", "yes: chi2/dof of the best model is what chance allows; no"},
-      {"verdict.distinguishable", "text", "yes: one model is supported alone; no"},
+      {"verdict.distinguishable", "text",
+       "yes: all models but one are behind it by more than chance; no"},
   };
   for (SummaryKey& key : constants()) out.push_back(std::move(key));
   return out;

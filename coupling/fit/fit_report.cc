@@ -55,7 +55,7 @@ std::vector<std::vector<std::string>> constants_rows(const EnsembleFits& fits) {
 
 // The shared ranking, of layers with the type of the equations beside the name.
 std::vector<std::string> header_of_ranking(const EnsembleFits& fits) {
-  std::vector<std::string> header = ranking_header();
+  std::vector<std::string> header = ranking_header(fits.selection);
   if (!is_heap(fits)) header.insert(header.begin() + 1, "equations");
   return header;
 }
@@ -212,7 +212,7 @@ void add_figures(const EnsembleFits& fits, Summary& summary) {
       summary[prefix + "rho.error"] = rho.error;
     }
   }
-  add_ranking(summary, fits.selection);
+  add_ranking(summary, fits.fits, fits.selection);
   add_elements(summary, fits.elements);
   summary["verdict.best_model"] = fits.verdict.model;
   summary["verdict.distinguishable"] = fits.verdict.alone ? "yes" : "no";
@@ -256,6 +256,36 @@ void add_fits(StudyResult& result, const EnsembleFits& fits) {
                   {"fits.tex", fits_tex(fits)}};
 }
 
+namespace {
+
+// Models along one level; where the data have few places, between them too.
+void add_model_lines(const EnsembleFits& fits, const std::vector<Line>& lines,
+                     const std::vector<int>& rows, const std::string& component, Frame& frame) {
+  const Eigen::MatrixXd places = fits.observed.data.points(rows, Eigen::all);
+  const double sign = component == "sigma_xy" ? 1 : -1;
+  if (places.rows() >= kFewPlaces) {
+    for (const Line& line : lines) {
+      frame.series.push_back({line.label,
+                              places.col(0),
+                              sign * fit_named(fits.fits, line.name).model(rows),
+                              {},
+                              false});
+    }
+    return;
+  }
+  const std::vector<std::string> columns{"sigma_xx", "sigma_yy", "sigma_xy"};
+  const auto column = std::find(columns.begin(), columns.end(), component) - columns.begin();
+  const Eigen::MatrixXd between = drawn_places(places);
+  std::vector<std::string> names;
+  for (const Line& line : lines) names.push_back(line.name);
+  const std::vector<Eigen::MatrixXd> seen = models_at(fits, names, between);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    frame.series.push_back({lines[k].label, between.col(0), sign * seen[k].col(column), {}, false});
+  }
+}
+
+}  // namespace
+
 std::vector<Frame> profile_frames(const EnsembleFits& fits, const std::string& component,
                                   const std::vector<std::string>& only) {
   const FitData& data = fits.observed.data;
@@ -274,10 +304,7 @@ std::vector<Frame> profile_frames(const EnsembleFits& fits, const std::string& c
                   sign * mean(rows), fits.weights.error(rows), true};
     if (!fits.weights.known()) grains.error.resize(0);
     Frame frame{frame_title(fits, component, name), {grains}};
-    for (const Line& line : lines) {
-      frame.series.push_back(
-          {line.label, grains.x, sign * fit_named(fits.fits, line.name).model(rows), {}, false});
-    }
+    add_model_lines(fits, lines, rows, component, frame);
     out.push_back(std::move(frame));
   }
   return out;
@@ -373,7 +400,7 @@ std::vector<Section> fit_tables(const EnsembleFits& fits, const std::string& of)
   const auto titled = [&](const std::string& title) {
     return of.empty() ? title : of + static_cast<char>(std::tolower(title[0])) + title.substr(1);
   };
-  std::string ranking = ranking_note();
+  std::string ranking = ranking_note(fits.selection);
   if (!is_heap(fits)) ranking += " " + weights_note(fits) + ".";
   out.emplace_back(
       Table{titled("Ranking"), ranking, header_of_ranking(fits), rows_of_ranking(fits)});

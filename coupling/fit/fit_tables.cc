@@ -82,10 +82,22 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
   return rows;
 }
 
-const std::vector<std::string>& ranking_header() {
-  static const std::vector<std::string> header{"model",       "free numbers", "chi2/dof",
-                                               "chance to",   "behind",       "behind, heights",
-                                               "relative L2", "supported"};
+namespace {
+
+bool by_akaike(const Selection& selection) {
+  return std::any_of(selection.ranking.begin(), selection.ranking.end(),
+                     [](const Score& s) { return std::isfinite(s.aic_behind); });
+}
+
+// Before which column that of chi2 + 2 x free numbers stands.
+constexpr std::ptrdiff_t kAkaikeAt = 4;
+
+}  // namespace
+
+std::vector<std::string> ranking_header(const Selection& selection) {
+  std::vector<std::string> header{"model",  "free numbers",    "chi2/dof",    "chance to",
+                                  "behind", "behind, heights", "relative L2", "supported"};
+  if (by_akaike(selection)) header.insert(header.begin() + kAkaikeAt, "chi2 + 2k, behind");
   return header;
 }
 
@@ -102,17 +114,28 @@ std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                     std::isnan(f.chance) ? "-" : fmt::format("{:.3g}", f.chance),
                     difference(s.behind, s.behind_error),
                     difference(s.heights_behind, s.heights_error),
-                    fmt::format("{:.1f} %", 100 * f.rel_l2), s.supported ? "yes" : "no"});
+                    fmt::format("{:.1f} %", 100 * f.rel_l2), standing(s, f)});
+    if (by_akaike(selection)) {
+      auto& row = rows.back();
+      row.insert(row.begin() + kAkaikeAt, fmt::format("{:.1f}", s.aic_behind));
+    }
   }
   return rows;
 }
 
-const std::string& ranking_note() {
-  static const std::string note =
+std::string ranking_note(const Selection& selection) {
+  std::string note =
       "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
       "Behind: squared difference on realizations left out, from the best model, over the signal's "
       "square, with its paired error; heights: the same on heights left out. Supported: not behind "
-      "by more than chance.";
+      "by more than chance, and chi2/dof within what chance makes of it; where it is not, the "
+      "model is nearest of those asked and no more.";
+  if (by_akaike(selection)) {
+    note += fmt::format(
+        " chi2 + 2k: with k free numbers, less the best's; more than {:g} counts, and a model that "
+        "is not so far behind is not excluded.",
+        kNoSupport);
+  }
   return note;
 }
 
@@ -183,7 +206,7 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
   }
 }
 
-void add_ranking(Summary& summary, const Selection& selection) {
+void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection) {
   for (const Score& s : selection.ranking) {
     const std::string prefix = "fit." + s.name + ".";
     summary[prefix + "cv_behind"] = s.behind;
@@ -191,7 +214,7 @@ void add_ranking(Summary& summary, const Selection& selection) {
     summary[prefix + "heights_behind"] = s.heights_behind;
     summary[prefix + "heights_behind_error"] = s.heights_error;
     if (std::isfinite(s.aic_behind)) summary[prefix + "aic_behind"] = s.aic_behind;
-    summary[prefix + "supported"] = s.supported ? "yes" : "no";
+    summary[prefix + "supported"] = standing(s, fit_named(fits, s.name));
   }
 }
 

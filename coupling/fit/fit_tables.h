@@ -21,13 +21,14 @@ const std::vector<std::string>& parameter_header();
 /// One row per parameter of every fit, with its strongest correlation.
 std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fits);
 
-const std::vector<std::string>& ranking_header();
+/// Of one field with errors with a column of chi2 + 2 x free numbers, which judges it too.
+std::vector<std::string> ranking_header(const Selection& selection);
 /// One row per model of the ranking, best first.
 std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
                                                    const Selection& selection);
 
 /// What the columns of the two tables say, for captions.
-const std::string& ranking_note();
+std::string ranking_note(const Selection& selection);
 const std::string& constants_note();
 
 std::string markdown_table(const std::vector<std::string>& header,
@@ -41,6 +42,6 @@ std::string parameters_csv(const std::vector<Fit>& fits);
 /// fit.MODEL.{chi2_per_dof,rel_l2,note}.
 void add_parameters(Summary& summary, const std::vector<Fit>& fits);
 /// fit.MODEL.{cv_behind,cv_behind_error,heights_behind,heights_behind_error,supported}.
-void add_ranking(Summary& summary, const Selection& selection);
+void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection);
 
 }  // namespace grainfield::coupling

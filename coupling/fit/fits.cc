@@ -170,6 +170,26 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
   return out;
 }
 
+std::vector<Eigen::MatrixXd> models_at(const EnsembleFits& fits,
+                                       const std::vector<std::string>& names,
+                                       const Eigen::MatrixXd& points) {
+  const Observations& observed = fits.observed;
+  const Kernel& kernel = *observed.kernel;
+  const bool layer = observed.specimen == Specimen::layer;
+  const auto seeing = std::make_shared<const ObservationOperator>(
+      layer               ? ObservationOperator(points, kernel)
+      : observed.measured ? ObservationOperator::of_cells(points, kernel)
+                          : ObservationOperator::of_heap(points, kernel));
+  const std::vector<FitModel> models =
+      layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
+  std::vector<Eigen::MatrixXd> out;
+  for (const std::string& name : names) {
+    out.push_back(
+        find_fit_model(models, name).stress(points, parameters_of(fit_named(fits.fits, name))));
+  }
+  return out;
+}
+
 Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name) {
   const Observations& observed = fits.observed;
   const StressMaps& m = observed.maps;
@@ -179,15 +199,7 @@ Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name)
   }
   Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
   if (inside.empty()) return out;
-  const Eigen::MatrixXd points = m.points(inside, Eigen::all);
-  const bool layer = observed.specimen == Specimen::layer;
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      layer ? ObservationOperator(points, *observed.kernel)
-            : ObservationOperator::of_heap(points, *observed.kernel));
-  const std::vector<FitModel> models =
-      layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
-  const Eigen::MatrixXd seen =
-      find_fit_model(models, name).stress(points, parameters_of(fit_named(fits.fits, name)));
+  const Eigen::MatrixXd seen = models_at(fits, {name}, m.points(inside, Eigen::all)).front();
   for (std::size_t k = 0; k < inside.size(); ++k) {
     out.row(inside[k]) = seen.row(static_cast<Eigen::Index>(k));
   }
@@ -209,6 +221,7 @@ Comparison profiles_of(const EnsembleFits& fits) {
       const FitData part = rows_of(data, rows);
       Profile p;
       p.name = fmt::format("{} at {} h", name, data.levels[static_cast<std::size_t>(level)]);
+      p.measured = fits.observed.measured;
       p.key = fmt::format("{}_{}", name, data.levels[static_cast<std::size_t>(level)]);
       p.quantity = (sign < 0 ? "-" : "") + name;
       p.depth = -part.points(0, 1) * h;

@@ -43,6 +43,12 @@ std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps
 EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads);
 EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int threads);
 
+/// Fitted models at any points (n x 2, frame and units of the data), seen as at the data's own;
+/// n x 3 of each.
+std::vector<Eigen::MatrixXd> models_at(const EnsembleFits& fits,
+                                       const std::vector<std::string>& names,
+                                       const Eigen::MatrixXd& points);
+
 /// A fitted model on the maps' points seen through the averaging's kernel; n x 3, nan where the
 /// maps are.
 Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name);

@@ -14,8 +14,6 @@
 namespace grainfield::coupling {
 namespace {
 
-// Heaps that weigh so many times their wedge, or as much less, are none.
-constexpr double kRound = 1.2;
 constexpr int kMapColumns = 101, kMapRows = 33;
 constexpr double kRounding = 1e-9;  // of the largest value
 constexpr double kFarSlope = 5;     // degrees: more than any heap's flanks are in doubt by
@@ -179,7 +177,8 @@ void warn_of_round_tops(Observations& out) {
   double sum = 0;
   for (const PileFrame& frame : out.frames) sum += frame.weight_over_wedge();
   out.weight_over_wedge = sum / static_cast<double>(out.frames.size());
-  if (!(out.weight_over_wedge > kRound || out.weight_over_wedge < 1 / kRound)) return;
+  if (!(out.weight_over_wedge > kMostOverWedge || out.weight_over_wedge < 1 / kMostOverWedge))
+    return;
   out.no_heap = fmt::format(
       "the heaps weigh {:.2f} times the wedge of their height and slopes{}, and models of heaps "
       "are "

@@ -81,11 +81,12 @@ FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selectio
   out.equations = types.size() == 1 ? *types.begin() : "not distinguishable";
   out.alone = std::all_of(supported.begin(), supported.end(),
                           [&](const std::string& name) { return contains(name, out.model); });
-  out.agrees = simplest->chi2_per_dof <= simplest->chance;
+  out.agrees = !disagrees(*simplest);
   const std::string nearness = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
                                            simplest->chi2_per_dof, 100 * simplest->rel_l2);
   if (out.alone) {
-    out.sentence = fmt::format("Supported: {} ({})", out.model, nearness);
+    out.sentence = fmt::format("{}: {} ({})", out.agrees ? "Supported" : "Nearest of those asked",
+                               out.model, nearness);
     for (const Score& s : selection.ranking) {
       if (s.supported || contains(s.name, out.model)) continue;
       out.sentence +=

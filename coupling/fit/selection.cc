@@ -105,12 +105,14 @@ std::string judges(int count) {
   return count == 1 ? "one field with errors" : fmt::format("{} realizations", count);
 }
 
-// What the best fit says against every model; empty: nothing.
-std::string doubt(const Fit& best) {
-  if (!(best.chi2_per_dof > best.chance)) return "";
+// What the best fit says against it, or against every model where all disagree; empty: nothing.
+std::string doubt(const Fit& best, const std::vector<Fit>& fits) {
+  if (!disagrees(best)) return "";
+  const bool all = std::all_of(fits.begin(), fits.end(), disagrees);
   return fmt::format(
-      " No model agrees within the errors: the nearest misses by {:.3g} times what the spread "
+      " {} within the errors: {} misses by {:.3g} times what the spread "
       "explains, where up to {:.3g} would be chance (relative L2 {:.1f} %).",
+      all ? "No model agrees" : best.name + " does not agree", all ? "the nearest" : "it",
       best.chi2_per_dof, best.chance, 100 * best.rel_l2);
 }
 
@@ -120,6 +122,13 @@ double least_errors(int realizations) {
   if (realizations == 1) return 1.96;
   if (realizations < kLeastRealizations) return std::numeric_limits<double>::infinity();
   return boost::math::quantile(boost::math::students_t(realizations - 1.0), 0.975);
+}
+
+bool disagrees(const Fit& fit) { return fit.chi2_per_dof > fit.chance; }
+
+std::string standing(const Score& score, const Fit& fit) {
+  if (!score.supported) return "no";
+  return disagrees(fit) ? kOnlyNearest : "yes";
 }
 
 std::string evidence(const Score& s) {
@@ -229,7 +238,8 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
     out.sentence = fmt::format("{} is the only model.", names.front());
   } else if (out.distinguishable) {
     const Score& second = out.ranking[1];
-    out.sentence = fmt::format("{} is supported: the next, {}, is {}; {}.", names.front(),
+    out.sentence = fmt::format("{} is {}: the next, {}, is {}; {}.", names.front(),
+                               disagrees(fits[best]) ? "the nearest of those asked" : "supported",
                                second.name, evidence(second), judges(r));
   } else {
     out.sentence = fmt::format("Not distinguishable: {}", fmt::join(names, ", "));
@@ -249,7 +259,7 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
                       100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
     }
   }
-  out.sentence += doubt(fits[best]) + sign_warnings(fits, names);
+  out.sentence += doubt(fits[best], fits) + sign_warnings(fits, names);
   return out;
 }
 

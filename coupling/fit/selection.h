@@ -38,7 +38,7 @@ struct Score {
   double heights_behind = 0;  ///< second judge: difference to the best model's; nan below 2 heights
   double heights_error = 0;   ///< standard error of that
   double aic_behind = kNan;   ///< of a single field with errors: Akaike's difference to the best
-  bool supported = false;     ///< see above
+  bool supported = false;     ///< see above; what outputs say of the model is its standing()
 };
 
 /// What aic_behind counts as behind.
@@ -65,6 +65,14 @@ struct Selection {
   /// the errors, and constants whose sign hangs on one realization.
   std::string sentence;
 };
+
+/// Whether its misfit is beyond what chance makes of a true model's; false without errors.
+bool disagrees(const Fit& fit);
+
+/// What every output calls the model: "yes" (supported), "no" (behind the best by more than chance)
+/// or kOnlyNearest: not behind, but it disagrees with the data, which support none such.
+std::string standing(const Score& score, const Fit& fit);
+inline constexpr const char* kOnlyNearest = "no, though not behind";
 
 /// "behind by 1.2e-02 +- 3e-03 on realizations left out and by 2e-02 +- 1e-02 on heights left out";
 /// of differences below kSame "the same stress here".

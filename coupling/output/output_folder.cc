@@ -1,6 +1,7 @@
 #include "coupling/output/output_folder.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kList = ".results";
+constexpr std::size_t kNamed = 8;  // files, in a line for people
 
 // What versions without a list of results left at the top of the folder and were not to keep.
 bool left_by_older_version(const std::string& name) {
@@ -176,7 +178,7 @@ std::vector<fs::path> OutputFolder::staged() const {
   return results;
 }
 
-void OutputFolder::publish() {
+std::vector<fs::path> OutputFolder::publish() {
   const HeldSignals held(AfterHold::forget);
   std::vector<fs::path> results = staged();
   std::stable_partition(results.begin(), results.end(),
@@ -209,6 +211,7 @@ void OutputFolder::publish() {
     }
   };
   move(false);
+  std::vector<fs::path> gone;
   for (const fs::path& name : earlier) {
     if (fresh.contains(name)) continue;
     const fs::path file = folder_ / name;
@@ -220,6 +223,7 @@ void OutputFolder::publish() {
     }
     fs::remove(file, error);
     if (error) fail(file, error);
+    gone.push_back(name);
     for (fs::path up = file.parent_path(); up != folder_ && fs::is_empty(up, error) && !error;
          up = up.parent_path()) {
       fs::remove(up, error);
@@ -229,6 +233,18 @@ void OutputFolder::publish() {
   list(fresh);
   fs::remove_all(partial_, error);
   made_.clear();
+  std::sort(gone.begin(), gone.end());
+  return gone;
+}
+
+std::string told_of_gone(const std::string& folder, const std::vector<fs::path>& gone) {
+  if (gone.empty()) return "";
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < gone.size() && k < kNamed; ++k) names.push_back(gone[k].string());
+  if (gone.size() > kNamed) names.emplace_back("...");
+  return fmt::format("{}: {} of an earlier command {} gone: {}", folder,
+                     gone.size() == 1 ? "a result" : fmt::format("{} results", gone.size()),
+                     gone.size() == 1 ? "is" : "are", fmt::join(names, ", "));
 }
 
 void OutputFolder::abandon() noexcept {

@@ -40,8 +40,9 @@ class OutputFolder {
   std::vector<std::filesystem::path> staged() const;
   /// Removes the results of an earlier command, summary.json before all, and moves everything from
   /// the staging area to its place, summary.json last: a summary never stands beside another run's
-  /// data. Whatever else is in the folder stays. Throws dem::StorageFailed, and as require_free.
-  void publish();
+  /// data. Whatever else is in the folder stays. Returns the earlier results that are gone, sorted:
+  /// those in whose place no new one stands. Throws dem::StorageFailed, and as require_free.
+  std::vector<std::filesystem::path> publish();
 
  private:
   void abandon() noexcept;
@@ -53,5 +54,9 @@ class OutputFolder {
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<OnSignal> undo_;
 };
+
+/// "out: 3 results of an earlier command are gone: a.svg, b.svg, ..." of what publish() returned;
+/// empty: nothing is.
+std::string told_of_gone(const std::string& folder, const std::vector<std::filesystem::path>& gone);
 
 }  // namespace grainfield::coupling

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
@@ -52,14 +51,7 @@ struct Shown {
 };
 
 Shown shown_models(const Comparison& c) {
-  std::vector<std::size_t> order(c.models.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::vector<std::string>& ranking = c.verdict.ranking;
-  const auto place = [&](std::size_t m) {
-    return std::find(ranking.begin(), ranking.end(), c.models[m].key) - ranking.begin();
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  const std::vector<std::size_t> order = ranked(c);
   Shown out;
   std::vector<std::string> aside;
   for (std::size_t m = 0; m < order.size(); ++m) {
@@ -69,8 +61,8 @@ Shown shown_models(const Comparison& c) {
       aside.push_back(c.models[order[m]].label);
   }
   if (!aside.empty())
-    out.note = fmt::format("The {} nearest of {} models; in profiles.csv also: {}.", kModelsShown,
-                           order.size(), fmt::join(aside, "; "));
+    out.note = fmt::format("Of {} models the {} that rank first; in profiles.csv also: {}.",
+                           order.size(), kModelsShown, fmt::join(aside, "; "));
   return out;
 }
 
@@ -85,7 +77,7 @@ std::vector<std::vector<std::string>> normalised(
   const Profile& p = c.profiles[k];
   const double unit = c.unit();
   std::vector<std::vector<std::string>> table(1);
-  table[0] = {math(fmt::format("x/{}", c.scale.length)), "simulation", "standard error"};
+  table[0] = {math(fmt::format("x/{}", c.scale.length)), c.column(), "standard error"};
   for (std::size_t m : shown) {
     table[0].push_back(c.models[m].label);
     table[0].push_back("difference");
@@ -152,7 +144,7 @@ std::string profiles_csv(const Comparison& c) {
   std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
                      ": compression positive; x from the " + c.scale.x_from + "\n";
   const std::string unit = c.profiles.front().unit;
-  text += fmt::format("profile,depth_m,x_m,simulation_{0},standard_error_{0}", unit);
+  text += fmt::format("profile,depth_m,x_m,{1}_{0},standard_error_{0}", unit, c.column());
   for (const ModelProfiles& m : c.models)
     for (const std::string& name :
          {fmt::format("{}_{}", m.key, unit), fmt::format("{}_difference_{}", m.key, unit),
@@ -211,7 +203,7 @@ std::string profiles_latex(const Comparison& c, int rows) {
     for (std::size_t from = 0; from == 0 || from < shown.models.size(); from += kModelsAcross) {
       const std::size_t to = std::min(from + kModelsAcross, shown.models.size());
       std::vector<std::string> models{"", "", ""};
-      std::vector<std::string> heads{table[0][0], "simulation", "error"};
+      std::vector<std::string> heads{table[0][0], c.column(), "error"};
       for (std::size_t m = from; m < to; ++m) {
         models.push_back(fmt::format("\\multicolumn{{3}}{{p{{{}}}}}{{\\centering {}}}", kModelWidth,
                                      escape_latex(c.models[shown.models[m]].label)));

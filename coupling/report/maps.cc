@@ -31,6 +31,20 @@ std::pair<double, double> colour_range(const std::vector<Map>& maps, bool diverg
   return high > low ? std::pair(low, high) : std::pair(low - 0.5, low + 0.5);
 }
 
+// Half a cell beyond the first and the last points: each stands in the middle of its cell.
+struct Edges {
+  Eigen::RowVector2d low, high;
+};
+
+Edges edges_of(const Map& map) {
+  Edges out{map.points.colwise().minCoeff(), map.points.colwise().maxCoeff()};
+  const Eigen::RowVector2d cells(std::max(map.nx - 1, 1), std::max(map.ny - 1, 1));
+  const Eigen::RowVector2d half = 0.5 * (out.high - out.low).cwiseQuotient(cells);
+  out.low -= half;
+  out.high += half;
+  return out;
+}
+
 // Pixels: the y axis with its label, the space between maps, and the colour box with its label.
 constexpr double left_side = 96, between = 70, right_side = 85;
 
@@ -44,8 +58,8 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   picture.width = 980;
   double aspect = 0.3;  // height over width of a map
   if (!all.empty() && all.front().points.rows() > 1) {
-    const Eigen::RowVector2d size =
-        all.front().points.colwise().maxCoeff() - all.front().points.colwise().minCoeff();
+    const Edges edges = edges_of(all.front());
+    const Eigen::RowVector2d size = edges.high - edges.low;
     if (size.x() > 0 && size.y() > 0) aspect = std::clamp(size.y() / size.x(), 0.1, 1.2);
   }
   const int columns = aspect > 0.6 ? std::min<int>(3, static_cast<int>(all.size())) : 1;
@@ -99,10 +113,9 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
                     "0.76\n",
                     (left_side + columns * (plot_width + between) - 45) / w)
               : "unset colorbox\n";
-    const Eigen::RowVector2d low = all[k].points.colwise().minCoeff();
-    const Eigen::RowVector2d high = all[k].points.colwise().maxCoeff();
-    p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", low.x(), high.x(), low.y(),
-                     high.y());
+    const Edges edges = edges_of(all[k]);
+    p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", edges.low.x(), edges.high.x(),
+                     edges.low.y(), edges.high.y());
     p += fmt::format("plot $m{} using 1:2:3 with image", k);
     for (std::size_t l = 0; l < all[k].lines.size(); ++l)
       p += fmt::format(", $m{}_{} using 1:2 with lines {}", k, l, all[k].lines[l].look);

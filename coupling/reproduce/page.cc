@@ -69,7 +69,8 @@ std::string verdicts(const Results& results, const std::vector<std::string>& stu
   }
   if (out.empty()) return out;
   return "\n## Which theory the grains support\n\n"
-         "As each study said when it was run, by itself and by the rules of its version.\n\n" +
+         "As each study said when it was run, by itself and by the rules of its version. Where no "
+         "model agrees, \"supported\" meant the nearest of those asked.\n\n" +
          out +
          "\nLayers under a point load: [verdict over all "
          "packings](cases/point-load-verdict.md); lattice piles: "
@@ -86,7 +87,9 @@ std::string dips(const Results& results) {
       "of "
       "so large a difference either way if there were none (Student's t over realizations), and "
       "the "
-      "same corrected for all {} pours of this table (Holm). The last column counts.\n\n"
+      "same corrected for all {} pours of this table (Holm). The last column counts. Ensembles of "
+      "which only the states are kept are not in it ([which "
+      "they are](reproduction/results/README.md)).\n\n"
       "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
       "|---|---|---|---|---|---|\n",
       all.size());

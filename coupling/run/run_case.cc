@@ -127,9 +127,10 @@ class Workplace {
     return false;
   }
 
-  void publish() {
+  /// Returns the earlier results that are gone (OutputFolder::publish).
+  std::vector<fs::path> publish() {
     const HeldSignals held(AfterHold::forget);
-    results_->publish();
+    std::vector<fs::path> earlier = results_->publish();
     // Under another name first: half a checkpoint would be taken for an unfinished run.
     const fs::path gone = folder_ / ".checkpoint-gone";
     std::error_code error;
@@ -138,6 +139,7 @@ class Workplace {
     fs::remove_all(gone, error);
     close();
     say_when_stopped(fmt::format("stopped; the results in {} are complete", folder_.string()));
+    return earlier;
   }
 
   // What --resume needs stays.
@@ -414,7 +416,10 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
     });
     if (ranks.first()) say_when_stopped(how_to_go_on(options));
     compute(value, place, ranks, options);
-    on_first_rank(ranks, [&] { place.publish(); });
+    on_first_rank(ranks, [&] {
+      const std::string gone = told_of_gone(options.folder, place.publish());
+      if (!gone.empty()) options.note(gone);
+    });
   } catch (const Interrupted&) {
     if (opened) place.abandon(true);
     throw Interrupted(how_to_go_on(options));

@@ -139,7 +139,7 @@ const std::vector<SummaryKey>& summary_keys() {
       {"compare.*.*.dof", "-", "independent points there"},
       {"compare.*.peak", "N/m (3D: Pa)", "the model's peak on the last profile"},
       {"compare.*.peak_over_F_per_h", "-", "the same over F/h, 3D: over F/h^2"},
-      {"verdict.best_model", "text", "label of the model nearest to the simulation"},
+      {"verdict.best_model", "text", "label of the model nearest to the simulation or measurement"},
       {"verdict.sentence", "text", "the verdict for people"},
       {"verdict.position", "-", "0: the losing family's best model, 1: the winning family's"},
       {"verdict.position_error", "-", "its standard error over realizations"},

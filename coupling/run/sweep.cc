@@ -117,13 +117,17 @@ Picture side_by_side(const Case& value, const std::vector<StudyResult>& results)
   return picture;
 }
 
-// One frame per profile, one curve per member. Members differ in depth by a little: the profiles
-// are the same by number. Where their own scales are the point (piles), each is drawn in its own.
-Picture profiles(const Case& value, const std::vector<SweepCase>& members,
-                 const std::vector<StudyResult>& results) {
+// Whether a member has units of its own: F/h of its load, rho g h of its pile.
+bool has_scale(const Comparison& c) { return c.depth > 0 && c.unit() > 0; }
+
+}  // namespace
+
+Picture member_profiles(const Case& value, const std::vector<SweepCase>& members,
+                        const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
   const Comparison& one = results.front().comparison;
-  const bool scaled = !one.scale.note.empty();
+  const bool scaled = std::all_of(results.begin(), results.end(),
+                                  [](const StudyResult& r) { return has_scale(r.comparison); });
   for (std::size_t p = 0; p < one.profiles.size(); ++p) {
     Frame frame;
     frame.title = one.profiles[p].key == "base" ? "base" : one.profiles[p].name;
@@ -138,16 +142,19 @@ Picture profiles(const Case& value, const std::vector<SweepCase>& members,
     frames.push_back(std::move(frame));
   }
   const Profile& first = one.profiles.front();
+  const char* const title =
+      one.scale.x_from == "load" ? "Response of every member" : "Pressure of every member";
+  const std::string normal = first.quantity == "-sigma_yy" ? "-σ_{yy}" : "-σ_{zz}";
+  const std::string stress = one.dim == 3 && one.scale.stress == "F/h" ? "F/h^2" : one.scale.stress;
   Picture picture =
-      scaled
-          ? curves("Pressure of every member", fmt::format("x / {}", one.scale.length),
-                   fmt::format("-σ_{{yy}} ({})", one.scale.stress), frames)
-          : curves("Response of every member", "x from the load (m)",
-                   (first.quantity == "-sigma_yy" ? "-σ_{yy} (" : "-σ_{zz} (") + first.unit + ")",
-                   frames);
+      scaled ? curves(title, fmt::format("x / {}", one.scale.length),
+                      fmt::format("{}  ({})", normal, stress), frames)
+             : curves(title, "x (m)", fmt::format("{}  ({})", normal, first.unit), frames);
   picture.caption = "Mean over realizations; the band is the first member's standard error.";
   return picture;
 }
+
+namespace {
 
 // One frame per quantity, one curve per member.
 Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
@@ -178,7 +185,7 @@ std::optional<Picture> beside_each_other(const Case& value, const std::vector<Sw
   if (!one.member_curves.empty()) return member_curves(value, members, results);
   if (!one.sweep_frames.empty()) return side_by_side(value, results);
   if (one.comparison.profiles.empty()) return std::nullopt;
-  return profiles(value, members, results);
+  return member_profiles(value, members, results);
 }
 
 }  // namespace

@@ -14,4 +14,10 @@ std::string write_sweep(const std::string& folder, const Case& value,
                         const std::vector<SweepCase>& members,
                         const std::vector<StudyResult>& results);
 
+/// The members' profiles, a frame each and a curve per member. Members differ in depth by a little:
+/// the profiles are the same by number. Each is drawn in its own units, as loads and heights may be
+/// what is swept.
+Picture member_profiles(const Case& value, const std::vector<SweepCase>& members,
+                        const std::vector<StudyResult>& results);
+
 }  // namespace grainfield::coupling

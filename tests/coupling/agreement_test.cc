@@ -14,7 +14,9 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr int kPlaces = 30, kComponents = 3, kTrials = 1000;
+constexpr int kPlaces = 30, kComponents = 3;
+// Of the suite, and of the draws that docs/statistics.md tells powers of.
+constexpr int kTrials = 1000, kManyTrials = 20000;
 
 // Three components that are tied at a place (0.5), correlated over `length` places, and of a
 // variance that falls off from the middle.
@@ -43,15 +45,15 @@ struct Noise {
   }
 };
 
-double share_refused(Noise& noise, int realizations, double offset) {
+double share_refused(Noise& noise, int realizations, double offset, int trials = kTrials) {
   int refused = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const Eigen::MatrixXd y = noise.draw(realizations);
     const Eigen::VectorXd mean = y.rowwise().mean();
     refused +=
         agreement(mean.array() + offset, Eigen::MatrixXd(y.colwise() - mean)).holds() ? 0 : 1;
   }
-  return refused / static_cast<double>(kTrials);
+  return refused / static_cast<double>(trials);
 }
 
 // Nominal: 1 of 100. The bounds are three standard deviations of the count above 2 of 100. Prints
@@ -75,21 +77,24 @@ TEST(Agreement, ChanceRefusesATrueModelRarely) {
 }
 
 // An offset everywhere, in standard deviations of a single realization. Prints rows of
-// docs/statistics.md.
-TEST(Agreement, FindsWhatIsOff) {
+// docs/statistics.md. The floors are 5 points below what kManyTrials find.
+void find_what_is_off(int trials) {
   Noise noise(3, 0);
   struct Row {
     int realizations;
     double offset, least;
   };
-  for (const Row& row : {Row{4, 1, 0.05}, Row{8, 1, 0.6}, Row{16, 1, 0.95}, Row{4, 2, 0.3},
-                         Row{8, 2, 0.95}, Row{16, 2, 0.95}, Row{4, 3, 0.9}}) {
-    const double found = share_refused(noise, row.realizations, row.offset);
-    std::printf("| F: off by %g standard deviations | %d | %.1f %% |\n", row.offset,
-                row.realizations, 100 * found);
+  for (const Row& row : {Row{4, 1, 0.67}, Row{8, 1, 0.95}, Row{16, 1, 0.95}, Row{4, 2, 0.95},
+                         Row{8, 2, 0.95}, Row{16, 2, 0.95}}) {
+    const double found = share_refused(noise, row.realizations, row.offset, trials);
+    std::printf("| F: off by %g standard deviations, floor %.0f %% | %d | %.1f %% |\n", row.offset,
+                100 * row.least, row.realizations, 100 * found);
     EXPECT_GE(found, row.least) << row.realizations << " " << row.offset;
   }
 }
+
+TEST(Agreement, FindsWhatIsOff) { find_what_is_off(kTrials); }
+TEST(Agreement, DISABLED_ManyTrialsFindWhatIsOff) { find_what_is_off(kManyTrials); }
 
 TEST(Agreement, KnownErrors) {
   Eigen::VectorXd errors = Eigen::VectorXd::Constant(100, 2), off = errors;

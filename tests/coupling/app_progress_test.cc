@@ -1,6 +1,11 @@
 // The text of the progress line.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "continuum/model.h"
+#include "continuum/progress.h"
 #include "coupling/app/progress_text.h"
 
 namespace grainfield::coupling {
@@ -46,6 +51,23 @@ TEST(Progress, LineNamesEverything) {
   p.done = 4;
   p.fraction = 1;
   EXPECT_EQ(progress_text(p), "100 %  4/4 done");
+}
+
+std::vector<double> told;
+
+// A finite-element solve of steps tells how far it is, through the library that is loaded for it.
+TEST(Progress, SolversOfStepsTellTheirShareOfTheLoad) {
+  continuum::watch_progress([](const std::string& solver, double share) {
+    EXPECT_EQ(solver, "fe_cone");
+    told.push_back(share);
+  });
+  const auto model = continuum::make_model("fe_cone", {{"cells", "8"}, {"steps", "4"}});
+  model->stress(Eigen::RowVector3d(0, 0, -0.5));
+  continuum::watch_progress(nullptr);
+  ASSERT_GE(told.size(), 2U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.front(), 0);
+  EXPECT_EQ(told.back(), 1);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "coupling/averaging/cone.h"
 #include "coupling/averaging/region.h"
 #include "coupling/averaging/rings.h"
+#include "coupling/averaging/roof.h"
 #include "coupling/averaging/weights.h"
 #include "periodic_scene.h"
 #include "settled_spheres_scene.h"
@@ -172,7 +173,8 @@ TEST(Space, PressureOfAFaceCentredLattice) {
 // Many copies of a slanting cell side by side are the same as one cell with its images.
 TEST(Space, ImagesAreThoseOfATiledPacking) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
-    const dem::Snapshot s = test::periodic_packing(3, seed);
+    dem::Snapshot s = test::periodic_packing(3, seed);
+    s.cell.velocity_gradient << 0.3, 0.1, -0.2, 0, -0.4, 0.5, 0.7, 0, 0.2;
     dem::Snapshot tiled = s;
     tiled.cell = {};
     tiled.grains.clear();
@@ -186,6 +188,7 @@ TEST(Space, ImagesAreThoseOfATiledPacking) {
           const Vector3d shift = s.cell.edges * Vector3d(i - 2, j - 2, k - 2);
           for (dem::Grain g : s.grains) {
             g.position += shift;
+            g.velocity += s.cell.velocity_gradient * shift;
             g.id = static_cast<std::int64_t>(tiled.grains.size());
             tiled.grains.push_back(g);
           }
@@ -290,6 +293,36 @@ TEST(Space, NormalisedFieldsKeepTheirValuesUpToSurfaceAndWalls) {
   const Field balls = average(s, points, options("area_exact", "circle", 2.5 * d));
   for (Eigen::Index p = 0; p < points.rows(); ++p)
     EXPECT_NEAR(balls.find("volume_fraction")->value[p], full, 0.03) << points.row(p);
+}
+
+// Far from the walls grains and stress are divided by one share of the kernel.
+TEST(Space, NormalisedStressIsThatOfTheShareBelowTheSurface) {
+  const Region region(settled_spheres());
+  const double middle = test::kBoxSide / 2;
+  const MatrixXd points = box_points({middle, middle, region.highest() - 3 * d},
+                                     {middle, middle, region.highest() - d}, 1, 1, 5);
+  AverageOptions o = options("coarse_graining", "lucy", d);
+  const Field open = average(settled_spheres(), points, o);
+  o.free_surface = "normalised";
+  const Field whole = average(settled_spheres(), points, o);
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    const double share =
+        open.find("volume_fraction")->value[p] / whole.find("volume_fraction")->value[p];
+    EXPECT_LT(share, p == 4 ? 0.95 : 1 + 1e-12);
+    EXPECT_LT((share * stress_at(whole, p) - stress_at(open, p)).norm(),
+              1e-9 * stress_at(open, p).norm());
+  }
+}
+
+TEST(Roof, HasTheColumnsHeightsAboveTheirMiddles) {
+  const Roof roof(settled_spheres(), {0, 0, 0}, {test::kBoxSide, test::kBoxSide, 0}, 2 * d);
+  ASSERT_GT(roof.heights().rows(), 1);
+  for (Eigen::Index i = 0; i < roof.heights().rows(); ++i) {
+    for (Eigen::Index j = 0; j < roof.heights().cols(); ++j) {
+      const Eigen::Vector2d at = roof.middle(i, j);
+      EXPECT_NEAR(roof.height(at.x(), at.y()), roof.heights()(i, j), 1e-12);
+    }
+  }
 }
 
 // Spheres cut by spheres and cubes, against counting random places.

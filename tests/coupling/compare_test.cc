@@ -94,11 +94,10 @@ TEST(Compare, Chi2OfTheTruthIsOne) {
 }
 
 // A true model on three depths whose noise is tied: chance alone seldom says that none agrees.
-// Prints rows of docs/statistics.md.
-TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
-  for (const int n : {4, 8, 16}) {
+// Prints rows of docs/statistics.md. The floors are 5 points below what 2,000 trials find.
+void say_that_none_agrees(int trials) {
+  for (const auto& [n, least] : {std::pair{4, 0.7}, {8, 0.88}, {16, 0.93}}) {
     int alarms = 0, found = 0;
-    constexpr int trials = 200;
     for (int t = 0; t < trials; ++t) {
       Scene s = scene(n, 0.92, 0.15, static_cast<unsigned>(3000 + t));
       const Scene other = scene(n, 0.92, 0.15, static_cast<unsigned>(7000 + t));
@@ -127,12 +126,17 @@ TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) {
     }
     std::printf("| compare, true model: \"No model agrees\" | %d | %.1f %% |\n", n,
                 100.0 * alarms / trials);
-    std::printf("| compare, model 1.4 times the truth: \"No model agrees\" | %d | %.1f %% |\n", n,
-                100.0 * found / trials);
+    std::printf(
+        "| compare, model 1.4 times the truth: \"No model agrees\", floor %.0f %% | %d | "
+        "%.1f %% |\n",
+        100 * least, n, 100.0 * found / trials);
     EXPECT_LE(alarms, trials * 4 / 100) << n;
-    EXPECT_GE(found, trials * (n > 4 ? 90 : 50) / 100) << n;
+    EXPECT_GE(found, trials * least) << n;
   }
 }
+
+TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) { say_that_none_agrees(200); }
+TEST(Compare, DISABLED_ManyTrialsSayThatNoModelAgrees) { say_that_none_agrees(2000); }
 
 TEST(Compare, VerdictOfAClearCase) {
   const Comparison c = compared(scene(8, 0.92, 0.05));
@@ -155,6 +159,42 @@ TEST(Compare, VerdictWhenNoModelFits) {
   EXPECT_THAT(compared(s).verdict.sentence,
               testing::AllOf(testing::StartsWith("None of the models describes these grains"),
                              HasSubstr("nearer to the"), Not(HasSubstr("support"))));
+}
+
+// The nearer family is not called supported where it does not agree either.
+TEST(Compare, WhatDoesNotAgreeIsNearerAndNotSupported) {
+  Scene s = scene(8, 0.92, 0.05);
+  for (Profile& p : s.profiles) {
+    p.mean *= 1.4;
+    p.samples *= 1.4;
+  }
+  EXPECT_THAT(
+      compared(s).verdict.sentence,
+      testing::AllOf(
+          testing::StartsWith("The grains are nearer to the finite layer than to the half plane: "),
+          HasSubstr("No model agrees within the errors"), Not(HasSubstr("support"))));
+  for (Profile& p : s.profiles) p.measured = true;
+  EXPECT_THAT(compared(s).verdict.sentence,
+              testing::StartsWith("The measurement is nearer to the finite layer than to the"));
+}
+
+TEST(Compare, ModelsAreListedInTheVerdictsOrderAndDrawnBetweenThePlaces) {
+  Scene s = scene(8, 0.92, 0.05);
+  Comparison c = compared(s);
+  EXPECT_EQ(c.models[ranked(c).front()].key, c.verdict.best_model);
+  EXPECT_EQ(ranking_note(c), "In order of chi2/dof, by which the verdict ranks.");
+  EXPECT_EQ(drawn_line(c, 0, 0).y, c.models[0].values[0]);
+  c.models[0].line_x = {Eigen::Vector2d(0, 1)};
+  c.models[0].line = {Eigen::Vector2d(2, 3)};
+  EXPECT_EQ(drawn_line(c, 0, 0).x, Eigen::VectorXd(Eigen::Vector2d(0, 1)));
+  c.models[0].line = {VectorXd()};
+  EXPECT_EQ(drawn_line(c, 0, 0).y, c.models[0].values[0]);
+  Eigen::MatrixXd points(3, 2);
+  points << -1, 5, 0, 5, 2, 5;
+  const Eigen::MatrixXd places = drawn_places(points);
+  EXPECT_EQ(places.rows(), kDrawnPlaces);
+  EXPECT_EQ(places.row(0), points.row(0));
+  EXPECT_EQ(places.row(kDrawnPlaces - 1), points.row(2));
 }
 
 TEST(Compare, OneFamilyIsToldWhenItDoesNotFit) {

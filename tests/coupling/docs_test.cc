@@ -1,4 +1,5 @@
 // The documentation itself: links lead somewhere, pictures say how they were made, versions agree.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "coupling/heap/pile_frame.h"
 #include "coupling/version.h"
 #include "program.h"
 
@@ -119,6 +121,12 @@ TEST(Docs, BrokenLinksAreFound) {
   int links = 0;
   EXPECT_EQ(broken_links(page, &links).size(), 2U);
   EXPECT_EQ(links, 4);
+}
+
+TEST(Docs, NameTheThresholdOfHeapsThatAreNoWedges) {
+  const std::string page = read_text((kRoot / "docs/fits.md").string());
+  EXPECT_THAT(page, HasSubstr(fmt::format("weigh {:g} times their wedge", kMostOverWedge)));
+  EXPECT_THAT(page, HasSubstr(fmt::format("carry {:g} times the weight", kMostOverWedge)));
 }
 
 // docs/images/pictures.toml: a table for every picture with the command that makes it.

@@ -231,6 +231,27 @@ TEST(ExportForms, PicturesOfPackings) {
   }
 }
 
+// A folder keeps the results of one command: what goes is named, what is the user's stays.
+TEST(ExportForms, SaysWhatOfAnEarlierCommandIsGone) {
+  const Folder folder;
+  const std::string one = kLayer + ":" + first_of(kLayer) + " -o " + (folder / "out") + " --to ";
+  exported(one + "svg");
+  std::string picture;
+  for (const auto& entry : testing::fs::directory_iterator(folder / "out")) {
+    if (entry.path().extension() == ".svg") picture = entry.path().filename();
+  }
+  ASSERT_NE(picture, "");
+  folder.write("out/mine.svg", "mine");
+  const Output same = program("export " + one + "svg");
+  EXPECT_EQ(same.err, "");
+  const Output other = program("export " + one + "csv");
+  EXPECT_EQ(other.code, 0);
+  EXPECT_EQ(other.err, "grainfield: " + (folder / "out") +
+                           ": a result of an earlier command is gone: " + picture + "\n");
+  EXPECT_FALSE(testing::fs::exists(folder / "out/" + picture));
+  EXPECT_EQ(read_text(folder / "out/mine.svg"), "mine");
+}
+
 TEST(ExportForms, WhatIsNoFormOrNoNameIsSaid) {
   EXPECT_THAT(
       refusal(kLayer + " --to vtk"),

@@ -48,6 +48,20 @@ TEST(Support, WhatIsAheadInOneJudgeStays) {
   EXPECT_TRUE(ranking[1].supported);
 }
 
+TEST(Support, OutputsCallNoModelSupportedThatDisagrees) {
+  Score s = score(0, 0, 0);
+  Fit fit;
+  fit.chi2_per_dof = 3;
+  fit.chance = 2;
+  EXPECT_EQ(standing(s, fit), "no");
+  s.supported = true;
+  EXPECT_EQ(standing(s, fit), "no, though not behind");
+  fit.chi2_per_dof = 2;
+  EXPECT_EQ(standing(s, fit), "yes");
+  fit.chi2_per_dof = fit.chance = std::nan("");  // nothing is known of errors
+  EXPECT_EQ(standing(s, fit), "yes");
+}
+
 // The best of wrong models is not passed off as right.
 TEST(Support, SaysWhenNoModelAgrees) {
   const auto all = heap_models({kSlope, kRhoG, kHeight});

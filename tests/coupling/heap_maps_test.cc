@@ -45,6 +45,29 @@ std::vector<std::string> titles_of(const std::vector<Section>& sections) {
   return out;
 }
 
+// A model is a line between the few places of the data, and goes through its values there.
+TEST(HeapMaps, LinesOfModelsAreFinerThanTheData) {
+  const EnsembleFits fits = fits_of(2, {"osl", "cantelaube_plus"});
+  const FitData& data = fits.observed.data;
+  const std::vector<int> rows = rows_at(data, 0, 0);
+  ASSERT_LT(rows.size(), static_cast<std::size_t>(kFewPlaces));
+  const auto seen = models_at(fits, {"osl", "cantelaube_plus"}, data.points(rows, Eigen::all));
+  const auto column = data.components.front() == "sigma_xx" ? 0 : 1;
+  EXPECT_LT((seen[1].col(column) - fit_named(fits.fits, "cantelaube_plus").model(rows)).norm(),
+            1e-9 * seen[1].col(column).norm());
+  for (const Frame& frame : profile_frames(fits, "sigma_yy")) {
+    ASSERT_EQ(frame.series.size(), 3U);
+    const Series& grains = frame.series.front();
+    for (const std::size_t k : {1U, 2U}) {
+      const Series& line = frame.series[k];
+      ASSERT_EQ(line.x.size(), kDrawnPlaces);
+      EXPECT_EQ(line.x[0], grains.x.minCoeff());
+      EXPECT_EQ(line.x[kDrawnPlaces - 1], grains.x.maxCoeff());
+      EXPECT_GT(line.y.maxCoeff(), 0);
+    }
+  }
+}
+
 TEST(HeapMaps, TheTrueModelIsTheGrainsWithinTheNoise) {
   const EnsembleFits fits = fits_of(4, {"osl", "hydrostatic"});
   const StressMaps& m = fits.observed.maps;

@@ -89,6 +89,22 @@ TEST(ImportField, ConstantsDoNotHangOnTheCells) {
   }
 }
 
+// The same heap, with its numbers in SI and in units.
+TEST(ImportField, QuantitiesOfTheCommandLineMayHaveUnits) {
+  const Folder folder;
+  const std::string command = "import-field " + folder.write("m.csv", measured(7)) + " -o ";
+  const Output plain = program(command + (folder / "a.h5") +
+                               " --height 0.08 --slope 30 --rho-g 15000 --width 0.002");
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  const Output units =
+      program(command + (folder / "b.h5") +
+              " --height '80 mm' --slope '30 deg' --rho-g '15 kN/m3' --width '2 mm'");
+  ASSERT_EQ(units.code, 0) << units.err;
+  const Field a = read_field(folder / "a.h5", "base"), b = read_field(folder / "b.h5", "base");
+  EXPECT_EQ(a.attributes, b.attributes);
+  EXPECT_EQ(a.find("sigma_yy")->value, b.find("sigma_yy")->value);
+}
+
 // A measurement whose errors are unknown has constants all the same.
 TEST(ImportField, WithoutErrorsThereAreConstantsWithoutErrors) {
   const Folder folder;
@@ -129,6 +145,7 @@ TEST(ImportField, TextsSpeakOfTheMeasurement) {
   EXPECT_THAT(apart.out, HasSubstr("The measurement supports the osl, not the bcc"));
   EXPECT_THAT(apart.out, HasSubstr("(1) it stands at "));
   EXPECT_THAT(page, HasSubstr("Distance of the models from the measurement"));
+  EXPECT_THAT(page, HasSubstr("In order of chi2/dof, by which the verdict ranks."));
   page_of("compare " + field + " --model hydrostatic:rho_g=90000 --model bcc:rho_g=60000", "n",
           &none);
   EXPECT_THAT(none.out, HasSubstr("None of the models describes this measurement: "));
@@ -136,6 +153,7 @@ TEST(ImportField, TextsSpeakOfTheMeasurement) {
   EXPECT_THAT(near.out, HasSubstr("the measurement is nearest to bcc"));
   const std::string fit = page_of("fit " + field + " --model osl --model bcc", "f");
   EXPECT_THAT(fit, HasSubstr("Measurement and the best models: sigma_yy"));
+  EXPECT_THAT(fit, HasSubstr("chi2 + 2k, behind"));
   for (const std::string& text : {page, fit, apart.out, near.out, none.out}) {
     EXPECT_THAT(text, ::testing::Not(::testing::ContainsRegex("[gG]rains")));
   }
@@ -169,7 +187,9 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   EXPECT_EQ(std::get<std::string>(fit.at("fit.bcc.supported")), "no");
   EXPECT_EQ(std::get<std::string>(fit.at("fit.warnings")), "");
   // The errors that came in go out with the profiles, and so into every plot.
-  std::istringstream profiles(testing::read_text(folder / "fit/profiles.csv"));
+  const std::string table = testing::read_text(folder / "fit/profiles.csv");
+  EXPECT_THAT(table, HasSubstr(",x_m,measured_N/m,"));
+  std::istringstream profiles(table);
   int rows = 0;
   for (std::string line; std::getline(profiles, line);) {
     if (!line.starts_with("sigma_")) continue;
@@ -253,6 +273,10 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
                         "-0.104 and 0.104 m: is the unit of x right, and its origin"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
+  // From kMostOverWedge on, as heaps of grains: these carry 1.14 and 1.26 of it.
+  EXPECT_EQ(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 11000"), "");
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 10000"),
+              HasSubstr("carry 1.26 of the heap's weight"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
               HasSubstr("of the heap's weight: are the units"));
   // The verdict says it again.
@@ -318,6 +342,16 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   refused(head, " --rho-g 15000 --slope 30", "--height: is missing");
   refused(head, " --rho-g 15000 --slope 30 --height 80mm",
           "--height: found \"80mm\", expected a length in m, or with its unit, \"80 mm\"");
+  const std::string sloped = " --slope 30 --height '80 mm'";
+  refused(head, sloped + " --rho-g '15 kg/m3'",
+          "--rho-g: found \"15 kg/m3\", expected a weight per volume in N/m3 (2D: N/m2), or with "
+          "its unit, \"15 kN/m3\"");
+  refused(head, sloped + " --rho-g '15 kN/m2' --dim 3",
+          "--rho-g: found \"15 kN/m2\", expected a weight per volume in N/m3, or with");
+  refused(head, good + " --load '3 kg'",
+          "--load: found \"3 kg\", expected a force in N, or with its unit, \"2 kN\"");
+  refused(head, " --rho-g 15000 --height 0.1 --slope '30 m'",
+          "--slope: found \"30 m\", expected an angle in degrees, or with its unit, \"0.5 rad\"");
   refused(head, good + " --hight 3", "unknown option \"--hight\"; nearest: --height");
   refused(head, good + " --geometry wege", "--geometry: found \"wege\", allowed: heap, layer");
   refused("x (mm),component,value (F/h),error (F/h)\n", good,

@@ -164,6 +164,16 @@ TEST(LayerVerdict, RicherModelsDoNotOutbidTheirSpecialCase) {
                         "osl_layer_absorbing, is behind by 2 +- 0.01 on realizations left out"));
 }
 
+TEST(LayerVerdict, WhatDisagreesIsNotSupported) {
+  auto fits = fits_named({"layer_smooth", "osl_layer_absorbing"});
+  fits.front().chi2_per_dof = 4;
+  const FitVerdict v =
+      layer_verdict(fits, ranking({{"layer_smooth", true}, {"osl_layer_absorbing", false}}), 8);
+  EXPECT_FALSE(v.agrees);
+  EXPECT_THAT(v.sentence, HasSubstr("Nearest of those asked: layer_smooth (chi2/dof 4, "));
+  EXPECT_THAT(v.sentence, ::testing::Not(HasSubstr("upported")));
+}
+
 TEST(LayerVerdict, EllipticAndHyperbolicTogetherAreNotDistinguishable) {
   const auto fits = fits_named({"layer_smooth", "osl_layer_absorbing"});
   const FitVerdict v =

@@ -36,10 +36,11 @@ std::map<std::string, std::string> found(const testing::Folder& folder,
   return all;
 }
 
-void publish(const testing::Folder& folder, const std::map<std::string, std::string>& files) {
+std::vector<testing::fs::path> publish(const testing::Folder& folder,
+                                       const std::map<std::string, std::string>& files) {
   OutputFolder out(folder / "out", "grainfield test");
   for (const auto& [name, text] : files) write_text_file(out.staging(name), text);
-  out.publish();
+  return out.publish();
 }
 
 using Files = std::map<std::string, std::string>;
@@ -65,7 +66,11 @@ TEST(OutputFolder, ResultsOfAnotherStudyGo) {
   folder.write("out/heaps-of-mine.csv", "mine");
   testing::fs::create_directory(folder / "out/friction_0.3/mine");
   folder.write("out/friction_0.3/mine/note.txt", "mine");
-  publish(folder, {{"summary.json", "new"}, {"profiles.csv", "new"}});
+  const auto gone = publish(folder, {{"summary.json", "new"}, {"profiles.csv", "new"}});
+  EXPECT_EQ(told_of_gone("out", gone),
+            "out: 3 results of an earlier command are gone: friction_0.3/deep/x.csv, "
+            "friction_0.3/summary.json, heaps.csv");
+  EXPECT_EQ(told_of_gone("out", {}), "");
   EXPECT_EQ(found(folder), (Files{{"summary.json", "new\n"},
                                   {"profiles.csv", "new"},
                                   {"heaps-of-mine.csv", "mine"},

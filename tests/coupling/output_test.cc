@@ -385,7 +385,8 @@ TEST_F(Output, LatexTablesOfManyModelsFitAPage) {
   for (int m = 0; m < 3; ++m) {
     EXPECT_THAT(tex, HasSubstr("\\centering model " + std::to_string(m) + " (a\\_b)}"));
   }
-  EXPECT_THAT(tex, HasSubstr("% The 3 nearest of 10 models; in profiles.csv also: model 3 (a_b);"));
+  EXPECT_THAT(
+      tex, HasSubstr("% Of 10 models the 3 that rank first; in profiles.csv also: model 3 (a_b);"));
   EXPECT_THAT(tex, ::testing::Not(HasSubstr("centering model 3")));
   EXPECT_THAT(tex, HasSubstr("$F/h$, continued}"));
 }
@@ -402,7 +403,8 @@ TEST_F(Output, MarkdownShowsTheThreeNearestModels) {
   const std::string text = profiles_markdown(compare({p}, models, 2, 0.5));
   EXPECT_THAT(text, HasSubstr("| by 0 | difference | difference/error | by 1 | difference | "
                               "difference/error | by 2 | difference | difference/error |"));
-  EXPECT_THAT(text, HasSubstr("The 3 nearest of 5 models; in profiles.csv also: by 5; by 9."));
+  EXPECT_THAT(text,
+              HasSubstr("Of 5 models the 3 that rank first; in profiles.csv also: by 5; by 9."));
 }
 
 TEST_F(Output, LabelsAreNoCommandsOfLatex) {

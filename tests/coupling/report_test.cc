@@ -246,6 +246,13 @@ TEST_F(ReportTest, NanAndFlatDataStillDraw) {
   EXPECT_EQ(write_report(file(), report).why_missing, "");
 }
 
+// Points stand in the middle of their cells: the frame goes round the cells.
+TEST_F(ReportTest, CellsOfMapsEndAtTheFrame) {
+  const Map map{"m", 3, 2, grid_points(0, 1, 3, 0, 1, 2), Eigen::VectorXd::Constant(6, 1.0)};
+  EXPECT_THAT(maps("m", "x", "y", "v", {map}).program,
+              HasSubstr("set xrange [-0.25:1.25]\nset yrange [-0.5:1.5]\n"));
+}
+
 TEST_F(ReportTest, BrokenAndEndlessProgramsAreReported) {
   need_gnuplot();
   const std::string gnuplot = *find_gnuplot();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "coupling/run/sweep.h"
 #include "coupling/statistics/spread.h"
 #include "program.h"
 
@@ -27,6 +28,30 @@ Summary member(double repose, double repose_error, double dip, double dip_error,
           {"dip.standard_error", dip_error},
           {"verdict.best_model", std::string("bcc")},
           {"ensemble.realizations", static_cast<std::int64_t>(n)}};
+}
+
+// Of two layers under 3 and 300 N, whose responses are one in F/h.
+TEST(MemberProfiles, AreDrawnInEachMembersOwnUnits) {
+  Case value;
+  value.sweep.key = "load.force";
+  value.sweep.values = {"3", "300"};
+  std::vector<StudyResult> results;
+  for (const double load : {3.0, 300.0}) {
+    Profile p;
+    p.name = p.key = "base";
+    p.x = Eigen::Vector3d(-0.1, 0, 0.1);
+    p.mean = load / 0.2 * Eigen::Vector3d(0.25, 0.75, 0.25);
+    p.error = 0 * p.mean;
+    StudyResult one;
+    one.comparison = without_models({p}, load, 0.2);
+    results.push_back(std::move(one));
+  }
+  const Picture picture = member_profiles(value, {{"a", value}, {"b", value}}, results);
+  EXPECT_THAT(picture.program, HasSubstr("set xlabel \"x / h\""));
+  EXPECT_THAT(picture.program, HasSubstr("(F/h)\""));
+  const auto first = picture.program.find("0 0.75"), second = picture.program.rfind("0 0.75");
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_NE(first, second);
 }
 
 // Student's t with 4 degrees of freedom has a closed distribution.

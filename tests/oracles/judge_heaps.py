@@ -32,7 +32,7 @@ class Fit:
                 self.summary = json.load(file)
         self.sentence = self.summary.get("verdict.sentence", "")
         self.supported = [key.split(".")[1] for key, value in self.summary.items()
-                          if key.endswith(".supported") and value == "yes"]
+                          if key.endswith(".supported") and value != "no"]
         alone = self.summary.get("verdict.distinguishable") == "yes"
         self.alone = self.summary["verdict.best_model"] if alone else ""
 

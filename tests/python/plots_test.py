@@ -25,8 +25,11 @@ def test_fields_and_profiles_show_bands_and_models():
     cut = gf.average(heaps, frame="heap", cuts=[0.2])
     axes = cut.plot("sigma_yy")
     assert len(axes.lines) == 1 and len(axes.collections) == 1
-    np.testing.assert_array_equal(axes.lines[0].get_ydata(), cut.sigma_yy)
-    assert axes.get_xlabel() == "x/h" and axes.get_ylabel() == "sigma_yy (N/m)"
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), -cut.sigma_yy)
+    assert axes.get_xlabel() == "x/h" and axes.get_ylabel() == "-sigma_yy (N/m)"
+    shear = cut.plot("sigma_xy")
+    np.testing.assert_array_equal(shear.lines[0].get_ydata(), cut.sigma_xy)
+    assert shear.get_ylabel() == "sigma_xy (N/m)"
     assert gf.average(heaps, frame="heap", grid=(9, 5)).plot().get_ylabel() == "y/h"
     axes = gf.compare(cut, [f"osl:eta={ETA},mu={MU}", "ife"]).plot()
     assert [line.get_label() for line in axes.lines] == ["grains", "osl", "ife"]

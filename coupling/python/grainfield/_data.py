@@ -314,7 +314,8 @@ class Field:
 
     def plot(self, column: str | None = None, ax: Any = None) -> Any:
         """Draws a grid as a map, lines as profiles with bands of one error; returns the axes.
-        By default the vertical stress: sigma_yy in the plane, sigma_zz in space."""
+        By default the vertical stress: sigma_yy in the plane, sigma_zz in space. Normal stresses
+        are drawn as pressures, -sigma_yy."""
         from ._plots import plot_field
 
         if column is None:

@@ -70,6 +70,9 @@ def plot_packing(packing: Packing, ax: Any, *, forces: bool, change: Packing | N
 def plot_field(field: Field, column: str, ax: Any) -> Any:
     values, unit = field[column], field.units[column]
     ax = _axes(ax)
+    name = column
+    if re.fullmatch(r"sigma_(\w)\1", column):  # pressure upwards, as in reports
+        name, values = "-" + column, -values
     frame = field.attributes.get("frame", "")
     over = "/h" if frame.startswith("heap") and "= -h" not in frame else " (m)"
     shape = field.shape
@@ -78,7 +81,7 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
         grid = (shape[1], shape[0])
         drawn = ax.pcolormesh(points[:, 0].reshape(grid), points[:, 1].reshape(grid),
                               values.reshape(grid), shading="nearest", cmap="viridis")
-        ax.figure.colorbar(drawn, ax=ax, label=f"{column} ({unit})")
+        ax.figure.colorbar(drawn, ax=ax, label=f"{name} ({unit})")
         ax.set_aspect("equal")
         ax.set_xlabel("x" + over)
         ax.set_ylabel("y" + over)
@@ -89,7 +92,7 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
         row = row[np.argsort(points[row, 0])]
         _band(ax, points[row, 0], values[row], field.error(column), row, f"{height:g}")
     ax.set_xlabel("x" + over)
-    ax.set_ylabel(f"{column} ({unit})")
+    ax.set_ylabel(f"{name} ({unit})")
     ax.legend(title="y" + over if points.shape[1] == 2 else "z" + over)
     return ax
 
@@ -112,13 +115,14 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str) -> Any
     ax = _axes(ax)
     here = profiles["profile"] == profile
     x = profiles["x"][here]
-    _band(ax, x, profiles["simulation"][here], profiles["standard_error"], here, of)
+    data = "measured" if "measured" in profiles else "simulation"
+    _band(ax, x, profiles[data][here], profiles["standard_error"], here, of)
     for model in models_in(profiles):
         ax.plot(x, profiles[model][here], "--", label=model)
     quantity = _quantity(profiles, profile)
     ax.set_title("-" + profile if profile.startswith("sigma") and quantity.startswith("-") else profile)
     ax.set_xlabel(f"x ({profiles.units['x']})")
-    ax.set_ylabel(f"{quantity} ({profiles.units['simulation']})".strip())
+    ax.set_ylabel(f"{quantity} ({profiles.units[data]})".strip())
     ax.legend()
     return ax
 

@@ -17,9 +17,9 @@ Series series_of(const Comparison& c, const Profile& p, const std::string& label
 }
 
 void add_models(const Comparison& c, std::size_t profile, Frame& frame) {
-  for (const ModelProfiles& m : c.models) {
-    frame.series.push_back(
-        {m.label, c.profiles[profile].x / c.depth, m.values[profile] / c.unit(), {}, false});
+  for (std::size_t m = 0; m < c.models.size(); ++m) {
+    const DrawnLine line = drawn_line(c, m, profile);
+    frame.series.push_back({c.models[m].label, line.x / c.depth, line.y / c.unit(), {}, false});
   }
 }
 
@@ -128,12 +128,13 @@ void add_tables(Report& report, const PileReport& in) {
     Table distances{
         fmt::format("Distance of the models from the {}", c.subject()),
         fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
-                    "chi2/dof: squared differences over squared standard errors.",
-                    c.subject()),
+                    "chi2/dof: squared differences over squared standard errors. {}",
+                    c.subject(), ranking_note(c)),
         {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress), "in",
          "chi2/dof"},
         {}};
-    for (const ModelComparison& r : c.results) {
+    for (const std::size_t m : ranked(c)) {
+      const ModelComparison& r = c.results[m];
       distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                                 fmt::format("{:.3g}", r.overall.largest / c.unit()),
                                 r.overall.largest_in,

@@ -29,8 +29,10 @@ Frame frame(const Comparison& c, std::size_t k) {
   simulation.y = p.mean / unit;
   if (p.error.size()) simulation.error = p.error / unit;
   result.series.push_back(simulation);
-  for (const ModelProfiles& m : c.models)
-    result.series.push_back({m.label, p.x / c.depth, m.values[k] / unit, {}, false});
+  for (std::size_t m = 0; m < c.models.size(); ++m) {
+    const DrawnLine line = drawn_line(c, m, k);
+    result.series.push_back({c.models[m].label, line.x / c.depth, line.y / unit, {}, false});
+  }
   return result;
 }
 
@@ -99,15 +101,17 @@ void add_tables(Report& report, const PointLoadReport& in) {
       fmt::format("Distance of the models from the {}", c.subject()),
       fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
                   "chi2/dof: squared differences over squared standard errors, corrected for the "
-                  "number of realizations; about 1 for a model within the spread.",
-                  c.subject()),
+                  "number of realizations; about 1 for a model within the spread. {}",
+                  c.subject(), ranking_note(c)),
       {"model", "relative L2", "largest difference (F/h)", "at x/h", "in", "chi2/dof"},
       {}};
-  for (const ModelComparison& r : c.results)
+  for (const std::size_t m : ranked(c)) {
+    const ModelComparison& r = c.results[m];
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                               shown(r.overall.largest * c.depth / c.load),
                               shown(r.overall.largest_at / c.depth, 2), r.overall.largest_in,
                               shown(r.overall.chi2_per_dof)});
+  }
   report.sections.emplace_back(std::move(distances));
 
   Table shapes{"Shape of the profiles",
