@@ -27,6 +27,14 @@ std::vector<SummaryKey> point_load_figures() {
       {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
       {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions"},
       {"layer.mean_diameter", "m", "of the moving grains"},
+      {"response.ring_less_axis", "-",
+       "3D: pressure on the base on a ring about the load less that below the load, over F/h^2; "
+       "each realization's ring is where the others' mean is largest, beyond the averaging"},
+      {"response.ring_at", "-", "3D: radius of that ring over h"},
+      {"response.ring_p", "-",
+       "3D: two-sided chance of such a difference if there were none (Student's t over the "
+       "realizations)"},
+      {"response.ring", "word", "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more"},
       {"response.within_radius", "m", "3D: where the profiles by radius end"},
       {"response.within_over_load", "-",
        "3D: base response within that radius, from its profile, over F"},

@@ -13,6 +13,7 @@
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/rings.h"
+#include "coupling/compare/ring.h"
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
@@ -345,7 +346,21 @@ class SpaceLoadAnalysis {
     return sum / force_;
   }
 
+  // Elliptic models have a peak, hyperbolic ones a ring.
+  void add_ring(Summary& summary) const {
+    const double unit = force_ / (layer_.depth * layer_.depth);
+    const RingAgainstAxis found = ring_against_axis(
+        radii_.own(), -base_rings_.samples("sigma_zz") / unit, kernel_->independent_length());
+    if (found.word().empty()) return;
+    summary["response.ring_less_axis"] = found.difference;
+    summary["response.ring_less_axis.standard_error"] = found.error;
+    summary["response.ring_at"] = found.at / layer_.depth;
+    summary["response.ring_p"] = found.p;
+    summary["response.ring"] = found.word();
+  }
+
   void add_own_figures(Summary& summary) const {
+    add_ring(summary);
     add_figures(summary, figures_);
     add_figures(summary, predicted_.figures);
     if (!predicted_.refusal.empty()) summary["predicted.refusal"] = predicted_.refusal;

@@ -118,6 +118,10 @@ Report space_load_page(const StudyResult& result, const Realization* first,
                                                     "response.peak_over_F_per_h",
                                                     "response.width",
                                                     "response.peaks",
+                                                    "response.ring",
+                                                    "response.ring_less_axis",
+                                                    "response.ring_at",
+                                                    "response.ring_p",
                                                     "average.coarse_graining.balance_rms",
                                                     "average.width"});
   add_energy_rows(result.summary, figures);
