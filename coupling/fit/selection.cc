@@ -106,12 +106,13 @@ std::string judges(int count) {
 }
 
 // What the best fit says against every model; empty: nothing.
-std::string doubt(const Fit& best) {
+std::string doubt(const Fit& best, ErrorsFrom errors_from) {
   if (!(best.chi2_per_dof > best.chance)) return "";
   return fmt::format(
-      " No model agrees within the errors: the nearest misses by {:.3g} times what the spread "
+      " No model agrees within the errors: the nearest misses by {:.3g} times what the {} "
       "explains, where up to {:.3g} would be chance (relative L2 {:.1f} %).",
-      best.chi2_per_dof, best.chance, 100 * best.rel_l2);
+      best.chi2_per_dof, errors_from == ErrorsFrom::data ? "error" : "spread", best.chance,
+      100 * best.rel_l2);
 }
 
 }  // namespace
@@ -249,7 +250,7 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
                       100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
     }
   }
-  out.sentence += doubt(fits[best]) + sign_warnings(fits, names);
+  out.sentence += doubt(fits[best], weights.errors_from) + sign_warnings(fits, names);
   return out;
 }
 

@@ -1,4 +1,5 @@
-// `compare` and `fit` of measurements: one physics for both, errors that are unequal or missing.
+// `compare` and `fit` of measurements: one physics for both, errors that are unequal or missing,
+// and places in a wrong unit.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -169,6 +170,61 @@ TEST(MeasuredJudges, ValuesCountByTheirErrors) {
   // 1/sqrt(sum step^2/error^2), of which chi2 of the other model is the mean over seven places.
   EXPECT_NEAR(figure(s, "verdict.position_error"),
               1 / std::sqrt(7 * figure(s, "compare.flamant.chi2_per_dof")), 1e-6);
+}
+
+// One place astray takes no refusal and no doubt away.
+TEST(MeasuredJudges, AStrayPlaceHidesNothing) {
+  const Folder folder;
+  const auto scaled = [](const char* unit) {
+    return pressures(10, -80, ten)
+               .replace(0, kHead.size(),
+                        fmt::format("x (mm),y (mm),component,value ({}),"
+                                    "error (Pa)\n",
+                                    unit)) +
+           "500,-80,pressure,1,10\n";
+  };
+  const Output heavy = program("import-field " + folder.write("m.csv", scaled("kPa")) + kHeap +
+                               " -o " + (folder / "f.h5"));
+  EXPECT_EQ(heavy.code, 2);
+  EXPECT_THAT(heavy.err, HasSubstr("of the weight above them, allowed: up to 5"));
+  const Output said = program("import-field " + folder.write("m.csv", scaled("Pa")) +
+                              " --height 0.08 --slope 30 --rho-g 4000 -o " + (folder / "f.h5"));
+  EXPECT_THAT(said.err, HasSubstr("1 of 22 places lie outside the heap"));
+  EXPECT_THAT(said.err, HasSubstr("of the weight above them: are the units"));
+}
+
+// A measurement of the middle alone carries what stands above the middle.
+TEST(MeasuredJudges, TheDoubtIsOfTheWeightAboveThePlaces) {
+  const Folder folder;
+  std::string middle = kHead;
+  for (int k = -5; k <= 5; ++k)
+    middle += fmt::format("{},-80,pressure,{},10\n", 6 * k, 15 * (80 - 3.46 * std::abs(k)));
+  Output said;
+  imported(folder, middle, "", &said);
+  EXPECT_EQ(said.err, "");
+}
+
+TEST(MeasuredJudges, TooFewValuesWithErrorsAreCalledThat) {
+  const Folder folder;
+  const std::string field =
+      imported(folder, pressures(10, -80, [](int k) { return k > 7 ? "10" : ""; }), "");
+  const Output out = program("fit " + field + " --model bcc -o " + (folder / "fit"));
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("fit.heights: found 3 values in the heaps, needed: 10 or more; 18 "
+                                 "more have no error and are left out; give every value an error"));
+  EXPECT_THAT(out.err, Not(HasSubstr("between the feet")));
+}
+
+TEST(MeasuredJudges, PlacesAThousandTimesTooNarrowAreRefused) {
+  const Folder folder;
+  std::string text = pressures(10, -80, ten);
+  text.replace(text.find("x (mm)"), 6, "x (um)");
+  const Output out =
+      program("import-field " + folder.write("m.csv", text) + kHeap + " -o " + (folder / "f.h5"));
+  EXPECT_EQ(out.code, 2) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("all 21 places on the base lie within 0.000125 m of the axis, "
+                                 "where the feet are at -0.139 and 0.139 m, allowed: the "
+                                 "outermost 0.00415692 m or more away; correct the unit of x"));
 }
 
 }  // namespace
