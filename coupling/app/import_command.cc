@@ -173,8 +173,9 @@ void add_import(CLI::App& app, Action& action) {
                       "volumes; a column of a CSV table may name its own, \"x (mm)\"");
   command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
   command
-      ->add_option("--column", o.columns,
-                   "OURS=THEIRS, OURS=NUMBER, or lists such as \"i,j=c_id[1..2]\"")
+      ->add_option(
+          "--column", o.columns,
+          "OURS=THEIRS, OURS=NUMBER, OURS=\"NUMBER UNIT\", or lists such as \"i,j=c_id[1..2]\"")
       ->allow_extra_args(false);
   command->add_option("--dim", o.dim, "2 | 3; default 2 where every z is the same");
   command->add_option("--gravity", given->gravity, "X,Y[,Z] in m/s2; default 9.81 down");

@@ -33,6 +33,7 @@ std::string unknown_option(const CLI::App& app) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
     for (const std::string& extra : chosen->remaining()) {
+      if (extra == "--") break;  // behind it nothing is an option
       const std::string word = extra.substr(0, extra.find('='));
       if (!word.starts_with("--") || names.empty()) continue;
       return fmt::format("unknown option \"{}\"; nearest: {}", word,

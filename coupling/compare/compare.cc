@@ -76,7 +76,7 @@ Eigen::VectorXd variances(const Profile& p, int realizations, double& correction
 }
 
 struct Totals {
-  double difference = 0, simulation = 0, chi2 = 0, dof = 0;
+  double difference = 0, simulation = 0, chi2 = 0, dof = 0, judged = 0;  // judged: of dof, by chi2
 };
 
 Measures measure(const Profile& p, const Eigen::VectorXd& model, int realizations, Totals& totals) {
@@ -115,8 +115,11 @@ Measures measure(const Profile& p, const Eigen::VectorXd& model, int realization
   m.chi2_per_dof = weighted > 0 ? correction * squares / weighted : kNan;
   totals.difference += difference;
   totals.simulation += simulation;
-  totals.chi2 += m.dof * m.chi2_per_dof;
   totals.dof += m.dof;
+  // A line of a single field that has no errors is not judged by them.
+  if (weighted == 0 && realizations < 2) return m;
+  totals.chi2 += m.dof * m.chi2_per_dof;
+  totals.judged += m.dof;
   return m;
 }
 
@@ -188,7 +191,7 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
     }
     result.overall.rel_l2 = std::sqrt(totals.difference / totals.simulation);
     result.overall.dof = totals.dof;
-    result.overall.chi2_per_dof = totals.chi2 / totals.dof;
+    result.overall.chi2_per_dof = totals.chi2 / totals.judged;
     c.results.push_back(std::move(result));
   }
   if (std::none_of(c.results.begin(), c.results.end(),

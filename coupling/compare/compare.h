@@ -21,7 +21,7 @@ struct Profile {
   Eigen::VectorXd mean;           ///< over realizations
   Eigen::VectorXd error;          ///< standard error of the mean; nan or empty with one realization
   Eigen::MatrixXd samples;        ///< x.size() x realizations, or empty
-  double independent_length = 0;  ///< m: Kernel::independent_length of the averaging
+  double independent_length = 0;  ///< m: Kernel::independent_length; 0: every point counts
   bool measured = false;          ///< in a laboratory: texts speak of no grains
 };
 

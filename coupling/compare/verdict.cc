@@ -36,11 +36,41 @@ struct Projection {
   double position = kNan, error = kNan;
 };
 
+// The standard error that a value brings with it; nan: none.
+double own_error(const Profile& p, Eigen::Index i) {
+  const double error = i < p.error.size() ? p.error[i] : kNan;
+  return error > 0 && std::isfinite(error) ? error : kNan;
+}
+
+// Values of a profile, and those without an error.
+struct Count {
+  Eigen::Index values = 0, without = 0;
+};
+Count count_of(const Profile& p) {
+  Count out;
+  for (Eigen::Index i = 0; i < p.x.size(); ++i) {
+    if (!std::isfinite(p.mean[i])) continue;
+    ++out.values;
+    if (std::isnan(own_error(p, i))) ++out.without;
+  }
+  return out;
+}
+Count count_of(const Comparison& c) {
+  Count out;
+  for (const Profile& p : c.profiles) {
+    const Count one = count_of(p);
+    out.values += one.values;
+    out.without += one.without;
+  }
+  return out;
+}
+
 // A field with errors of its own, whose realizations are not at hand: a measurement, or a mean.
 bool has_own_errors(const Comparison& c) {
-  return std::all_of(c.profiles.begin(), c.profiles.end(), [](const Profile& p) {
-    return p.samples.cols() < 2 && p.error.size() == p.x.size() && (p.error.array() > 0).any();
-  });
+  const Count count = count_of(c);
+  return count.without < count.values &&
+         std::all_of(c.profiles.begin(), c.profiles.end(),
+                     [](const Profile& p) { return p.samples.cols() < 2; });
 }
 
 // How many values count as one there: the components of a place may be tied, and so are places
@@ -50,17 +80,19 @@ double tied_values(const Comparison& c) {
   std::set<std::string> components;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     components.insert(c.profiles[k].quantity);
-    values += static_cast<double>(c.profiles[k].x.size());
+    values += static_cast<double>(count_of(c.profiles[k]).values);
     independent += c.results.front().per_profile[k].dof;
   }
   const double near = independent > 0 ? std::max(1.0, values / independent) : 1;
   return near * static_cast<double>(components.size());
 }
 
+// Of a field with errors of its own each value counts by 1/error^2, as in the chi2 that ranks;
+// values without an error are left out. Its variance is tied / sum (B - A)^2/error^2.
 Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfiles& b) {
   const auto realizations = static_cast<Eigen::Index>(c.realizations);
   const bool own_errors = has_own_errors(c);
-  double norm = 0, sum = 0, variance = 0;
+  double norm = 0, sum = 0;
   Eigen::VectorXd each = Eigen::VectorXd::Zero(realizations);
   bool sampled = realizations > 1;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
@@ -70,9 +102,10 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
     for (Eigen::Index i = 0; i < p.x.size(); ++i) {
       const double from = a.values[k][i], step = b.values[k][i] - from;
       if (!std::isfinite(step) || !std::isfinite(p.mean[i])) continue;
-      norm += step * step;
-      sum += (p.mean[i] - from) * step;
-      if (own_errors) variance += step * step * p.error[i] * p.error[i];
+      const double weight = own_errors ? 1 / std::pow(own_error(p, i), 2) : 1;
+      if (std::isnan(weight)) continue;
+      norm += weight * step * step;
+      sum += weight * (p.mean[i] - from) * step;
       if (here)
         for (Eigen::Index r = 0; r < realizations; ++r) each[r] += (p.samples(i, r) - from) * step;
     }
@@ -80,7 +113,7 @@ Projection project(const Comparison& c, const ModelProfiles& a, const ModelProfi
   if (!(norm > 0)) return {};
   Projection result{sum / norm, kNan};
   if (own_errors) {
-    result.error = std::sqrt(tied_values(c) * variance) / norm;
+    result.error = std::sqrt(tied_values(c) / norm);
   } else if (sampled) {
     each /= norm;
     const double n = static_cast<double>(realizations);
@@ -164,9 +197,10 @@ Agreement agreement_of(const Comparison& c, std::size_t model) {
       const double d = p.mean[i] - c.models[model].values[k][i];
       if (!std::isfinite(d)) continue;
       if (own_errors) {
-        if (!std::isfinite(p.error[i])) continue;
+        const double error = own_error(p, i);
+        if (std::isnan(error)) continue;
         off.push_back(d / unit);
-        errors.push_back(p.error[i] / unit);
+        errors.push_back(error / unit);
         continue;
       }
       if (!p.samples.row(i).allFinite()) continue;
@@ -213,6 +247,14 @@ void add_misfit(const Comparison& c, const ModelComparison& best, const Agreemen
   }
 }
 
+// Of a field with errors of its own: how many values have none.
+void add_left_out(const Comparison& c, std::string& sentence) {
+  const Count count = count_of(c);
+  if (!has_own_errors(c) || count.without == 0) return;
+  sentence += fmt::format(" {} of {} values have no error and are left out of chi2 and position.",
+                          count.without, count.values);
+}
+
 }  // namespace
 
 Verdict judge(const Comparison& c) {
@@ -253,6 +295,7 @@ Verdict judge(const Comparison& c) {
         fmt::format("Of the {} models, the {} {} nearest to {}{}.", best.family, c.subject(),
                     c.measured() ? "is" : "are", describe(best, by_chi2), runner_up);
     add_misfit(c, best, found, v.sentence);
+    add_left_out(c, v.sentence);
     return v;
   }
   Projection p = project(c, c.models[*other], c.models[order.front()]);
@@ -294,6 +337,7 @@ Verdict judge(const Comparison& c) {
         c.measured() ? "it stands" : "they stand", p.position, beyond_both(c, p));
   }
   add_misfit(c, best, found, v.sentence);
+  add_left_out(c, v.sentence);
   return v;
 }
 

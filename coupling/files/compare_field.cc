@@ -312,11 +312,11 @@ CompareOutcome compare_field(const CompareRequest& request) {
     Eigen::MatrixXd points = line.points;
     points.rightCols<1>().array() -= scene.apex;
     sets.push_back(
-        {points, line.base ? Smoothing::marginal : Smoothing::kernel, line.kernel.get(), heap});
+        {points, line.flat ? Smoothing::marginal : Smoothing::kernel, line.kernel.get(), heap});
     facts.depth = std::min(facts.depth, line.profile.depth);
     profiles.push_back(line.profile);
     profiles.back().measured = measured;
-    if (line.base) main = l;
+    if (line.flat) main = l;
   }
   const double spanned = heap && facts.height > 0 ? 1 + scene.apex / facts.height : 1;
   if (heap) facts.depth = facts.height += scene.apex;

@@ -35,7 +35,11 @@ int component_of(std::string component, bool space) {
   return static_cast<int>(std::find(names.begin(), names.end(), component) - names.begin());
 }
 
-bool is_base(const std::string& name) { return name.compare(0, 4, "base") == 0; }
+// Forces on the base are smeared along it alone; cells that measured lie flat wherever they are, as
+// fits have them (ObservationOperator::of_cells).
+bool is_flat(const SceneField& scene, bool whole) {
+  return scene.field.is_measured() || (whole && scene.name.compare(0, 4, "base") == 0);
+}
 
 bool in_space(const SceneField& scene) { return scene.field.points.cols() == 3; }
 
@@ -69,7 +73,7 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
   out.sign = sign;
   out.component = component_of(component, in_space(scene));
   out.kernel = scene.kernel;
-  out.base = whole && is_base(scene.name);
+  out.flat = is_flat(scene, whole);
   const auto n = static_cast<Eigen::Index>(row.at.size());
   out.points.resize(n, scene.field.points.cols());
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -89,7 +93,8 @@ FieldLine line_of(const SceneField& scene, const FieldRow& row, const std::strin
       p.samples.row(k) = sign * column.samples.row(row.at[static_cast<std::size_t>(k)]);
     }
   }
-  p.independent_length = scene.kernel->independent_length();
+  // Cells have measured each by itself, as fits have it.
+  p.independent_length = scene.field.is_measured() ? 0 : scene.kernel->independent_length();
   return out;
 }
 

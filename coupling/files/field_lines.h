@@ -22,7 +22,7 @@ enum class Scene {
 struct FieldLine {
   Profile profile;
   Eigen::MatrixXd points;  ///< models' frame, m
-  bool base = false;       ///< seen along x
+  bool flat = false;       ///< seen along x, in space over the plane
   int component = 1;       ///< of the models' stresses: 0 xx, 1 yy, 2 xy; in space kSpaceStress
   double sign = -1;        ///< profile over stress: pressures are positive, shear keeps its sign
   std::shared_ptr<const Kernel> kernel;

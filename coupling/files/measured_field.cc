@@ -29,6 +29,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 // A wrong unit, or another heap's size: no arching carries so much, or leaves so little of the
 // weight above the places.
 constexpr double kImpossible = 5, kTooLight = 0.05;
+// Places that all lie within this share of the way to the nearer foot are in a wrong unit.
+constexpr double kNarrow = 0.03;
 // Of the height.
 constexpr double kWidestCell = 0.25;
 constexpr std::size_t kEnoughToCarry = 5;
@@ -257,33 +259,32 @@ Eigen::Index places_outside(const Field& field, const MeasuredHeap& heap) {
   return (x < -kOutside * heap.left || x > kOutside * heap.right).count();
 }
 
-// Places and pressures on the base, from left to right.
-std::vector<std::pair<double, double>> base_pressures(const Field& field) {
+// Places and pressures on the base between the feet, from left to right.
+std::vector<std::pair<double, double>> base_pressures(const Field& field,
+                                                      const MeasuredHeap& heap) {
   const Column& pressure = *field.find("sigma_yy");
   const double h = std::stod(field.attributes.at("h"));
   std::vector<std::pair<double, double>> base;
   for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
+    const double x = field.points(k, 0);
     const bool low = std::fabs(field.points(k, 1) + h) < 1e-6 * h;
-    if (low && std::isfinite(pressure.value[k])) {
-      base.emplace_back(field.points(k, 0), -pressure.value[k]);
+    if (low && x >= -heap.left && x <= heap.right && std::isfinite(pressure.value[k])) {
+      base.emplace_back(x, -pressure.value[k]);
     }
   }
   std::sort(base.begin(), base.end());
   return base;
 }
 
-// What the pressures on the base carry of the weight, N/m; nan: too few of them.
-double carried(const Field& field, const MeasuredHeap& heap) {
-  const std::vector<std::pair<double, double>> base = base_pressures(field);
-  if (base.size() < kEnoughToCarry || places_outside(field, heap) > 0) return kNan;
+// What the pressures on the base carry of the weight above them; nan: too few of them.
+double carried_share(const Field& field, const MeasuredHeap& heap) {
+  const std::vector<std::pair<double, double>> base = base_pressures(field, heap);
+  if (base.size() < kEnoughToCarry) return kNan;
   double sum = 0;
   for (std::size_t k = 1; k < base.size(); ++k) {
     sum += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
   }
-  return sum;
-}
-double carried_share(const Field& field, const MeasuredHeap& heap) {
-  return carried(field, heap) / heap.weight;
+  return sum / heap.weight_above(base.front().first, base.back().first);
 }
 
 std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Index outside) {
@@ -292,7 +293,19 @@ std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Inde
 }
 
 std::string of_share(double share) {
-  return fmt::format("the pressures on the base carry {:.3g} of the heap's weight", share);
+  return fmt::format("the pressures on the base carry {:.3g} of the weight above them", share);
+}
+
+void refuse_narrow(const Field& field, const MeasuredHeap& heap) {
+  const std::vector<std::pair<double, double>> base = base_pressures(field, heap);
+  if (base.size() < kEnoughToCarry) return;
+  const double outermost = std::max(-base.front().first, base.back().first);
+  const double foot = std::min(heap.left, heap.right);
+  if (outermost >= kNarrow * foot) return;
+  throw std::invalid_argument(fmt::format(
+      "all {} places on the base lie within {:.3g} m of the axis, where the feet are at {:.3g} and "
+      "{:.3g} m, allowed: the outermost {:g} m or more away; correct the unit of x",
+      base.size(), outermost, -heap.left, heap.right, kNarrow * foot));
 }
 
 void refuse_impossible(const Field& field) {
@@ -304,21 +317,14 @@ void refuse_impossible(const Field& field) {
         of_outside(field, *heap, outside) +
         ", allowed: a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   }
-  constexpr const char* correct = "correct the unit of the values, or --height, --slope, --rho-g";
-  if (const double share = carried_share(field, *heap); share > kImpossible) {
-    throw std::invalid_argument(
-        fmt::format("{}, allowed: up to {:g}; {}", of_share(share), kImpossible, correct));
-  }
-  const std::vector<std::pair<double, double>> base = base_pressures(field);
-  if (base.size() < kEnoughToCarry) return;
-  const double above =
-      carried(field, *heap) / heap->weight_above(base.front().first, base.back().first);
-  if (above > 0 && above < kTooLight) {
-    throw std::invalid_argument(fmt::format(
-        "the pressures on the base carry {:.3g} of the weight above them, allowed: {:g} "
-        "or more; {}",
-        above, kTooLight, correct));
-  }
+  refuse_narrow(field, *heap);
+  const double share = carried_share(field, *heap);
+  const bool heavy = share > kImpossible, light = share > 0 && share < kTooLight;
+  if (!heavy && !light) return;
+  throw std::invalid_argument(fmt::format(
+      "{}, allowed: {}; correct the unit of the values, or --height, --slope, --rho-g",
+      of_share(share),
+      heavy ? fmt::format("up to {:g}", kImpossible) : fmt::format("{:g} or more", kTooLight)));
 }
 
 }  // namespace
@@ -410,7 +416,7 @@ std::vector<std::string> measured_doubts(const Field& field) {
     out.push_back(of_outside(field, *heap, outside) +
                   ": is the unit of x right, and its origin, 0 below the apex?");
   }
-  const std::vector<std::pair<double, double>> base = base_pressures(field);
+  const std::vector<std::pair<double, double>> base = base_pressures(field, *heap);
   const auto pulls = std::count_if(base.begin(), base.end(), [](auto p) { return p.second < 0; });
   if (2 * pulls > static_cast<long>(base.size())) {
     out.push_back(

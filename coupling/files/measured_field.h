@@ -29,11 +29,12 @@ struct MeasuredRequest {
 /// errors, and what `compare` and `fit` ask for as attributes. Throws std::invalid_argument, one
 /// line naming file and line, what was found and what is allowed: a missing column, an unknown unit
 /// or component, no number, a negative error, a value twice, pressures that carry more than five
-/// times the heap's weight; and options that are missing or out of range.
+/// times the weight above them, or less than a twentieth; places that nearly all lie outside the
+/// heap or all below its apex; and options that are missing or out of range.
 Field measured_field(const MeasuredRequest& request);
 
 /// What is hardly so, a sentence each, of a heap in the plane: places outside it, pressures that
-/// pull, and a base that does not carry the heap's weight.
+/// pull, and a base that does not carry the weight above it.
 std::vector<std::string> measured_doubts(const Field& field);
 
 /// "base" where all of its points are there, else "measured".

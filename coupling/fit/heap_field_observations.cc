@@ -83,6 +83,7 @@ bool pair_with_errors(const FitSetup& setup, const Eigen::MatrixXd& places, Eige
                                   places(row % n, 0)));
     }
   }
+  out.without_error = without.size();
   if (!without.empty()) {
     out.warnings.push_back(fmt::format("{} of {} values have no error and are left out: {}{}",
                                        without.size(), with.size() + without.size(),
@@ -222,6 +223,7 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
     Observations beside;
     beside.data.levels = out.data.levels;
     beside.measured = out.measured;
+    beside.without_error = out.without_error;
     keep_rows(setup, places, level, errors, beside);
     out.data.error = beside.data.samples.col(0);
   }

@@ -264,6 +264,22 @@ void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
                   : fmt::format(" (likewise {} other{})", copies - 1, copies == 2 ? "" : "s")));
 }
 
+namespace {
+
+// What helps where too few values are left.
+std::string advice_on_rows(const Observations& out) {
+  if (out.without_error > 0) {
+    return fmt::format(
+        "{} more have no error and are left out; give every value an error, or none: then there "
+        "are constants without errors",
+        out.without_error);
+  }
+  return out.measured ? "a fit takes places between the feet of the heap, at these heights"
+                      : "choose lower heights, a smaller fit.width_diameters or larger piles";
+}
+
+}  // namespace
+
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
                const Eigen::MatrixXd& all, Observations& out) {
   const Eigen::Index n = points.rows();
@@ -281,11 +297,7 @@ void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::
                             static_cast<int>(c));
     chosen.level.insert(chosen.level.end(), level.begin(), level.end());
   }
-  keep_complete_rows(chosen, "fit.heights",
-                     out.measured
-                         ? "a fit takes places between the feet of the heap, at these heights"
-                         : "choose lower heights, a smaller fit.width_diameters or larger piles",
-                     out);
+  keep_complete_rows(chosen, "fit.heights", advice_on_rows(out), out);
 }
 
 }  // namespace grainfield::coupling

@@ -36,6 +36,7 @@ struct Observations {
   double width = 0;                      ///< of the averaging kernel, m
   bool measured = false;                 ///< in a laboratory: texts speak of no grains
   int left_out = 0;                      ///< values that some realization does not have
+  std::size_t without_error = 0;         ///< values left out of one field beside some with errors
   std::string note;                      ///< what the reader must know; may be empty
   std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each
   std::string

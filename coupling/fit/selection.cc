@@ -106,14 +106,15 @@ std::string judges(int count) {
 }
 
 // What the best fit says against it, or against every model where all disagree; empty: nothing.
-std::string doubt(const Fit& best, const std::vector<Fit>& fits) {
+std::string doubt(const Fit& best, const std::vector<Fit>& fits, ErrorsFrom errors_from) {
   if (!disagrees(best)) return "";
   const bool all = std::all_of(fits.begin(), fits.end(), disagrees);
   return fmt::format(
-      " {} within the errors: {} misses by {:.3g} times what the spread "
+      " {} within the errors: {} misses by {:.3g} times what the {} "
       "explains, where up to {:.3g} would be chance (relative L2 {:.1f} %).",
       all ? "No model agrees" : best.name + " does not agree", all ? "the nearest" : "it",
-      best.chi2_per_dof, best.chance, 100 * best.rel_l2);
+      best.chi2_per_dof, errors_from == ErrorsFrom::data ? "error" : "spread", best.chance,
+      100 * best.rel_l2);
 }
 
 }  // namespace
@@ -259,7 +260,7 @@ Selection select(const FitData& data, const Weights& weights, const std::vector<
                       100 * fits[order[0]].rel_l2, 100 * fits[order[1]].rel_l2);
     }
   }
-  out.sentence += doubt(fits[best], fits) + sign_warnings(fits, names);
+  out.sentence += doubt(fits[best], fits, weights.errors_from) + sign_warnings(fits, names);
   return out;
 }
 

@@ -88,7 +88,9 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
 // Of --units.
 Unit length_unit(const std::string& text) {
   const std::optional<Unit> unit = parse_unit(text);
-  if (unit && unit->kind == parse_unit("m")->kind) return *unit;
+  // One symbol: "mm2/m" is of the kind of a length too.
+  const bool single = text.find_first_of(" /^0123456789") == std::string::npos;
+  if (single && unit && unit->kind == parse_unit("m")->kind) return *unit;
   throw std::invalid_argument(
       fmt::format("--units: found \"{}\", allowed: a unit of length, such as m, cm, mm, um", text));
 }
@@ -139,6 +141,18 @@ void check_options(const ImportOptions& options) {
   for (const StepChoice& step : options.steps) require_name(step.group, "--step");
 }
 
+// A number without a unit; 0 needs none.
+bool is_bare(std::string_view length) { return dem::parse_number(length).value_or(0) != 0; }
+
+// Beside another unit of the files' lengths a bare one of an option is in doubt.
+void require_unit(bool bare, const std::string& option, const std::string& units) {
+  if (!bare) return;
+  throw std::invalid_argument(
+      fmt::format("{0}: found a length without a unit beside --units {1}, expected one behind a "
+                  "blank, \"... {1}\" or \"... m\"",
+                  option, units));
+}
+
 // The table's lengths are in `unit`, those of its cell too.
 void set_length(const Unit& unit, ForeignTable& table) {
   if (!table.told_units.empty())
@@ -170,6 +184,7 @@ WallChoice parse_wall(const std::string& text) {
     wall.axis = parts[1][0] - 'x';
     const std::optional<double> position = parse_length(std::string(parts[1].substr(2)));
     good = position.has_value();
+    wall.bare = is_bare(parts[1].substr(2));
     if (good) wall.position = *position;
   }
   for (std::size_t k = 2; good && k < parts.size(); ++k) {
@@ -201,7 +216,8 @@ PeriodicAxis parse_periodic(const std::string& text) {
       colon != std::string::npos) {
     const auto low = parse_length(text.substr(2, colon - 2));
     const auto high = parse_length(text.substr(colon + 1));
-    if (low && high && *low < *high) return {text[0] - 'x', *low, *high};
+    const bool bare = is_bare(text.substr(2, colon - 2)) || is_bare(text.substr(colon + 1));
+    if (low && high && *low < *high) return {text[0] - 'x', *low, *high, bare};
   }
   throw std::invalid_argument(fmt::format(
       "--periodic: found \"{}\", expected AXIS=LOW:HIGH with LOW below HIGH, such as x=0:0.1",
@@ -213,6 +229,12 @@ void import_snapshots(const ImportOptions& options,
   const ImportFormat& format = find_import_format(options.format);
   check_options(options);
   const Unit length = length_unit(options.units);
+  if (length.ten != 0) {
+    for (const WallChoice& wall : options.walls)
+      require_unit(wall.bare, "--wall " + wall.name, options.units);
+    for (const PeriodicAxis& axis : options.periodic)
+      require_unit(axis.bare, fmt::format("--periodic {}", "xyz"[axis.axis]), options.units);
+  }
   ColumnNames names(format.columns);
   for (const std::string& text : options.columns) names.choose(text);
   Steps steps;

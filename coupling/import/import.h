@@ -20,6 +20,7 @@ struct WallChoice {
   std::vector<std::string> ids;  ///< what contacts call it; its name always counts
   std::string material;          ///< "": that of each grain
   std::string fix;  ///< LAMMPS "fix wall/gran ... contacts": columns FIX[1..7] of the grains' dump
+  bool bare = false;  ///< the position was given without a unit, and is not 0
 };
 /// "NAME:AXIS=POSITION[:ids=3,4][:fix=f_floor][:material=M]". Throws std::invalid_argument.
 WallChoice parse_wall(const std::string& text);
@@ -29,6 +30,7 @@ WallChoice parse_wall(const std::string& text);
 struct PeriodicAxis {
   int axis = 0;
   double low = 0, high = 1;  ///< m
+  bool bare = false;         ///< one of them was given without a unit, and is not 0
 };
 PeriodicAxis parse_periodic(const std::string& text);
 
@@ -42,7 +44,7 @@ struct ImportOptions {
   std::string format;                ///< lammps | liggghts | yade | csv
   std::vector<std::string> files;    ///< told apart by what they hold
   std::string units = "m";           ///< of lengths, velocities and volumes without a unit there
-  std::vector<std::string> columns;  ///< "ours=theirs", "ours=number", "i,j=c_id[1..2]"
+  std::vector<std::string> columns;  ///< "ours=theirs", "ours=number unit", "i,j=c_id[1..2]"
   int dim = 0;                       ///< 0: 2 when there is no z or every z is the same, else 3
   std::optional<dem::Vec3> gravity;  ///< m/s2; default 9.81 down (2D: -y, 3D: -z)
   double density = 0;  ///< kg/m3 (2D: kg/m2), where there is no column mass or density
@@ -81,7 +83,7 @@ struct ImportedSnapshot {
 /// periods that are named twice, walls whose contacts are not on the side of their normal, grains
 /// at one place, flags other than 0 and 1, coefficients of friction outside 0 to kMostFriction,
 /// numbers beyond dem::kMostNumber, a radius and a diameter, or a mass and a density, that
-/// contradict.
+/// contradict; lengths of options without a unit where options.units is not m.
 void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take);
 

@@ -15,6 +15,8 @@ constexpr double kSupport = 0.1;      // of the weight: missing or too much at w
 constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
 constexpr double kLeastDiameter = 1e-7, kMostDiameter = 100;  // m
+// Moment of inertia over mass and radius squared: a ring's is 1, a needle's about its axis smaller.
+constexpr double kLeastInertia = 1e-4, kMostInertia = 2;
 
 std::string unbalanced(const PackingCheck& check) {
   if (!(check.unbalanced_force_ratio > kUnbalanced)) return "";
@@ -120,6 +122,19 @@ std::vector<std::string> warnings_of(const PackingCheck& check) {
   return out;
 }
 
+// Mean over the free grains that have one of their moment of inertia over mass and radius squared.
+double relative_inertia(const dem::Snapshot& packing) {
+  double sum = 0;
+  int count = 0;
+  for (const dem::Grain& g : packing.grains) {
+    const double disk = g.mass * g.radius * g.radius;
+    if (g.fixed || !(g.inertia > 0) || !(disk > 0)) continue;
+    sum += g.inertia / disk;
+    ++count;
+  }
+  return count > 0 ? sum / count : kNan;
+}
+
 std::string strange_units(const dem::Snapshot& packing) {
   const GrainSizes sizes = grain_sizes(packing);
   const char* unit = packing.dim == 2 ? "kg/m2" : "kg/m3";
@@ -134,6 +149,13 @@ std::string strange_units(const dem::Snapshot& packing) {
         "mean diameter {:.3g} m, where grains have {:g} to {:g}: are the file's "
         "units SI (import --units)?",
         sizes.diameter, kLeastDiameter, kMostDiameter);
+  }
+  const double inertia = relative_inertia(packing);
+  if (inertia < kLeastInertia || inertia > kMostInertia) {
+    return fmt::format(
+        "moments of inertia are {:.3g} times mass and radius squared in the mean, where grains "
+        "have {:g} to {:g}: are they in kg m2, whatever the unit of lengths?",
+        inertia, kLeastInertia, kMostInertia);
   }
   return "";
 }

@@ -28,8 +28,8 @@ struct GrainSizes {
 GrainSizes grain_sizes(const dem::Snapshot& packing);
 
 /// Why the units may not be SI: a mean density of the free grains (mass over volume) outside 10 to
-/// 30,000 kg/m3 (2D kg/m2) or a mean diameter outside 0.1 um to 100 m; one sentence. Empty:
-/// neither.
+/// 30,000 kg/m3 (2D kg/m2) or a mean diameter outside 0.1 um to 100 m, or moments of inertia
+/// that no mass within the radius has; one sentence. Empty: none of them.
 std::string strange_units(const dem::Snapshot& packing);
 
 /// The warnings of several packings as one list: of each kind the first packing that has it, and

@@ -92,6 +92,9 @@ const OurColumn* our_column(const std::string& name) {
   return nullptr;
 }
 
+// Whether another unit of a file's lengths is its unit too.
+bool is_scaled(const OurColumn& column) { return column.unit == "m" || column.unit == "m/s"; }
+
 std::vector<std::string> all_our_names() {
   std::vector<std::string> names;
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
@@ -247,8 +250,7 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
   const OurColumn* known = our_column(ours);
   if (known == nullptr || known->unit.empty()) return std::nullopt;
   if (heading.unit.empty()) {
-    const bool scaled = known->unit == "m" || known->unit == "m/s";
-    return scaled ? table_.length : std::nullopt;
+    return is_scaled(*known) ? table_.length : std::nullopt;
   }
   const std::optional<Unit> unit = parse_unit(heading.unit == "-" ? "1" : heading.unit);
   for (const std::string& allowed : {known->unit, known->plane_unit})
@@ -263,6 +265,27 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
                         known_symbols())));
 }
 
+// "3.6", or "3.6 mm" in a unit of our column's kind, in SI. Nothing for any other text.
+std::optional<double> TableColumns::constant_of(const std::string& ours,
+                                                const std::string& text) const {
+  const OurColumn* known = our_column(ours);
+  if (const auto number = dem::parse_number(text)) {
+    const bool length = known != nullptr && (is_scaled(*known) || known->unit == "m3");
+    if (table_.length && length && *number != 0)
+      throw std::invalid_argument(
+          fmt::format("--column {}={}: found a number without a unit beside --units, expected one "
+                      "behind a blank, such as \"{} {}\"",
+                      ours, text, text, known->unit));
+    return number;
+  }
+  const std::size_t blank = text.find(' ');
+  if (known == nullptr || known->unit.empty() || blank == std::string::npos) return std::nullopt;
+  const std::optional<Unit> unit = parse_unit(text.substr(blank + 1));
+  for (const std::string& allowed : {known->unit, known->plane_unit})
+    if (unit && unit->kind == parse_unit(allowed)->kind) return in_si(text.substr(0, blank), *unit);
+  return std::nullopt;
+}
+
 ForeignColumn TableColumns::find(const std::string& ours) const {
   for (const auto& candidate : names_.candidates(ours)) {
     const auto& columns = *table_.columns;
@@ -272,7 +295,7 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
     };
     const auto at = std::find_if(headings_.begin(), headings_.end(), is_theirs);
     std::optional<double> constant;
-    if (at == headings_.end() && candidate.chosen) constant = dem::parse_number(candidate.theirs);
+    if (at == headings_.end() && candidate.chosen) constant = constant_of(ours, candidate.theirs);
     if (at == headings_.end() && !constant) continue;
     if (constant && !std::isfinite(*constant))
       throw std::invalid_argument(fmt::format(

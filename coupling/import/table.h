@@ -64,8 +64,9 @@ class ColumnNames {
  public:
   /// `format`: ours to theirs, any number for one of ours.
   explicit ColumnNames(std::vector<std::pair<std::string, std::string>> format);
-  /// One --column: "ours=theirs", "ours=number", or lists "i,j=c_id[1..2]". Throws
-  /// std::invalid_argument: no "=", unknown name (with the nearest), lists of different length.
+  /// One --column: "ours=theirs", "ours=number", "ours=number unit", or lists "i,j=c_id[1..2]".
+  /// Throws std::invalid_argument: no "=", unknown name (with the nearest), lists of different
+  /// length.
   void choose(const std::string& text);
   /// Throws std::invalid_argument when a chosen name was met in no table at all.
   void require_all_used() const;
@@ -104,8 +105,8 @@ class TableColumns {
  public:
   TableColumns(const ForeignTable& table, ColumnNames& names);
   /// Empty when the table has no such column. Throws std::invalid_argument "FILE:LINE: ..." for one
-  /// that is there twice, for a constant that is not finite, and for a unit that is unknown or of
-  /// another kind than ours.
+  /// that is there twice, for a constant that is not finite, or without a unit where lengths are
+  /// not in m, and for a unit that is unknown or of another kind than ours.
   ForeignColumn find(const std::string& ours) const;
   /// Throws std::invalid_argument "FILE:LINE: no column ...; found: ...; nearest ...".
   ForeignColumn need(const std::string& ours) const;
@@ -117,6 +118,7 @@ class TableColumns {
 
  private:
   std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
+  std::optional<double> constant_of(const std::string& ours, const std::string& text) const;
 
   const ForeignTable& table_;
   ColumnNames& names_;

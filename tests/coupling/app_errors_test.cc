@@ -41,6 +41,10 @@ TEST(Errors, Usage) {
   expect_refusal(program("keys materiel"), 2, "nearest: material");
   expect_refusal(program("run fit-osl-point --checkpoint-seconds -1"), 2,
                  "--checkpoint-seconds: found -1, allowed: 0 to 1e+06");
+  expect_refusal(program("keys --sett"), 2, "unknown option \"--sett\"");
+  const Output ended = program("info -- a.h5 --modell");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_THAT(ended.err, ::testing::Not(HasSubstr("unknown option")));
   EXPECT_EQ(program("--help").code, 0);
   EXPECT_THAT(program("--version").out, StartsWith("grainfield "));
 }

@@ -79,6 +79,7 @@ TEST(Support, SaysWhenNoModelAgrees) {
                                  "errors: the nearest misses by "),
             0U)
       << sentence(wrong);
+  EXPECT_NE(sentence(wrong).find("times what the spread explains"), std::string::npos);
 }
 
 TEST(Support, NoSupportedModelIsFurtherBehindInBothThanOneThatIsNot) {
@@ -162,6 +163,9 @@ TEST(Support, OneFieldWithErrorsExcludesAModel) {
       (noise < 0.1 ? named : named_in_noise) += alone ? 1 : 0;
       alarms += s.sentence.find("No model agrees") != std::string::npos ? 1 : 0;
       if (noise < 0.1) {
+        // The best of wrong ones misses by the error: there is no spread.
+        const Selection wrong = select(data, w, {models[1]}, {fits[1]});
+        EXPECT_NE(wrong.sentence.find("times what the error explains"), std::string::npos);
         EXPECT_GT(fits[1].chi2_per_dof, fits[1].chance);
         EXPECT_TRUE(std::isfinite(fits[0].parameters[0].error));
       }

@@ -278,13 +278,14 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 10000"),
               HasSubstr("carry 1.26 of the heap's weight"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
-              HasSubstr("of the heap's weight: are the units"));
+              HasSubstr("of the weight above them: are the units"));
   // The verdict says it again.
   const std::string file = folder / "f";
   const Output out = program("fit " + file + " --model osl --model bcc -o " + (folder / "fit"));
   EXPECT_EQ(out.code, 0) << out.err;
-  EXPECT_THAT(out.err, HasSubstr("warning: the pressures on the base carry 3.14 of the heap's"));
-  EXPECT_THAT(out.out, HasSubstr(" But the pressures on the base carry 3.14 of the heap's"));
+  EXPECT_THAT(out.err,
+              HasSubstr("warning: the pressures on the base carry 3.2 of the weight above"));
+  EXPECT_THAT(out.out, HasSubstr(" But the pressures on the base carry 3.2 of the weight above"));
 }
 
 TEST(ImportField, SaysWhatIsWrongInOneLine) {

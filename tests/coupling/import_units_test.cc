@@ -124,6 +124,39 @@ TEST(ImportUnits, ADumpsPlacesWallsAndCell) {
   EXPECT_NEAR(cell.grains[0].position.x(), 0, 1e-15);
 }
 
+// Numbers of options: with their unit beside --units; 0 and what is no length need none.
+TEST(ImportUnits, NumbersOfOptionsNameTheirs) {
+  const Folder folder;
+  const std::string grains = "id,x,y\n1,0,1.8\n2,0,5.4\n";
+  const dem::Snapshot s =
+      imported(folder,
+               "--from csv --units mm --wall floor:y=0 --column 'radius=1.8 mm' --column mass=2 "
+               "--column vx=0 --column 'volume=10.2 mm2' --periodic 'x=-20 mm:20 mm' " +
+                   folder.write("g.csv", grains) + " " + folder.write("c.csv", kContacts));
+  EXPECT_EQ(s.grains[0].radius, 0.0018);
+  EXPECT_EQ(s.grains[0].mass, 2);
+  EXPECT_NEAR(s.grains[0].volume, 10.2e-6, 1e-20);
+  EXPECT_EQ(s.cell.edges(0, 0), 0.04);
+}
+
+// --units leaves moments of inertia in kg m2: those of a table in kg mm2 are doubted.
+TEST(ImportUnits, MomentsOfInertiaInAnotherUnitAreDoubted) {
+  const Folder folder;
+  const auto said = [&](const char* inertia) {
+    Output out;
+    imported(folder,
+             "--from csv --units mm --without-contacts " +
+                 folder.write("g.csv", std::string("id,x,y,radius,mass,inertia\n1,0,0,2,0.01,") +
+                                           inertia + "\n2,9,0,2,0.01,\n"),
+             &out);
+    return out.err;
+  };
+  EXPECT_THAT(said("0.02"), HasSubstr("moments of inertia are 2.5e+05 times mass and radius "
+                                      "squared in the mean, where grains have 0.0001 to 2: are "
+                                      "they in kg m2"));
+  EXPECT_EQ(said("2e-8"), "");
+}
+
 TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
   const std::string unknown = ", of m g s N Pa J Hz rad deg, with n u m c d k M G before\n";
   const auto head = [](const std::string& x, const std::string& more = "mass") {
@@ -152,6 +185,18 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
       {"id,x (km),y,radius,mass\n1,1e308,0,1,1\n", "", "found \"1e308\", expected a finite number"},
       {head("x"), "--units inch",
        "--units: found \"inch\", allowed: a unit of length, such as m, cm, mm, um\n"},
+      {head("x"), "--units mm2/m", "--units: found \"mm2/m\", allowed: a unit of length"},
+      {head("x"), "--units m2/m", "--units: found \"m2/m\", allowed: a unit of length"},
+      {head("x"), "--units mm --wall floor:y=-12",
+       "--wall floor: found a length without a unit beside --units mm, expected one behind a "
+       "blank"},
+      {head("x"), "--units mm --periodic x=0:9",
+       "--periodic x: found a length without a unit beside --units mm, expected one behind a"},
+      {"id,x,y,mass\n1,0,0,1\n", "--units mm --column radius=1.8",
+       "--column radius=1.8: found a number without a unit beside --units, expected one behind a "
+       "blank, such as \"1.8 m\""},
+      {head("x"), "--units mm --column volume=10", "--column volume=10: found a number without a"},
+      {"id,x,y,mass\n1,0,0,1\n", "--column 'radius=1.8 kg'", "no column \"radius\""},
       {head("x"), "--units kg", "--units: found \"kg\", allowed: a unit of length"},
       {head("x"), "--wall 'floor:y=1 s'", "--wall: found \"floor:y=1 s\", expected NAME:AXIS"},
   };
