@@ -15,14 +15,13 @@
 #include "coupling/fit/heap_rows.h"
 #include "coupling/fit/intervals.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/observation_operator.h"
 #include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 
 namespace {
 
-std::vector<FitModel> through(const std::shared_ptr<const ObservationOperator>& seeing,
+std::vector<FitModel> through(const std::shared_ptr<const HeapSight>& seeing,
                               std::vector<FitModel> models) {
   for (FitModel& model : models) model = seen_through(std::move(model), seeing);
   return models;
@@ -32,9 +31,12 @@ std::vector<FitModel> through(const std::shared_ptr<const ObservationOperator>& 
 
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
   const Eigen::MatrixXd places = places_of(heaps.data);
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      heaps.measured ? ObservationOperator::of_cells(places, *heaps.kernel)
-                     : ObservationOperator::of_heap(places, *heaps.kernel));
+  // A laboratory's cells are flat, each as long as the kernel is wide.
+  const auto seeing = std::make_shared<const HeapSight>(HeapSight{
+      Places(places),
+      heaps.measured
+          ? ObservationOperator({{places, Smoothing::marginal, heaps.kernel.get(), true}}, 0)
+          : ObservationOperator::of_heap(places, *heaps.kernel)});
   std::vector<FitModel> out = through(seeing, heap_models(heaps.facts));
   if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
   const auto of_part = [setup, seeing, frames = heaps.frames, all = heaps.facts](
@@ -159,14 +161,14 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
   FitOptions options;
   options.bootstrap = static_cast<int>(setup.bootstrap);
   options.threads = threads;
-  const auto seen =
-      std::make_shared<const ObservationOperator>(places_of(data), *out.observed.kernel);
+  const auto seen = std::make_shared<const LayerSight>(places_of(data), *out.observed.kernel);
   fit_all(layer_models(seen), setup.models, options, out);
   out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
-  out.elements = solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
-                                [&](const StressFunction& stress, bool half_plane) {
-                                  return seen->pick(seen->seen(stress, half_plane), data.points);
-                                });
+  out.elements =
+      solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
+                     [&](const StressFunction& stress, bool half_plane) {
+                       return seen->places().pick(seen->seen(stress, half_plane), data.points);
+                     });
   return out;
 }
 
@@ -180,12 +182,12 @@ Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name)
   Eigen::MatrixXd out = Eigen::MatrixXd::Constant(m.points.rows(), 3, kNan);
   if (inside.empty()) return out;
   const Eigen::MatrixXd points = m.points(inside, Eigen::all);
-  const bool layer = observed.specimen == Specimen::layer;
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      layer ? ObservationOperator(points, *observed.kernel)
-            : ObservationOperator::of_heap(points, *observed.kernel));
   const std::vector<FitModel> models =
-      layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
+      observed.specimen == Specimen::layer
+          ? layer_models(std::make_shared<const LayerSight>(points, *observed.kernel))
+          : through(std::make_shared<const HeapSight>(HeapSight{
+                        Places(points), ObservationOperator::of_heap(points, *observed.kernel)}),
+                    heap_models(observed.facts));
   const Eigen::MatrixXd seen =
       find_fit_model(models, name).stress(points, parameters_of(fit_named(fits.fits, name)));
   for (std::size_t k = 0; k < inside.size(); ++k) {

@@ -4,7 +4,8 @@
 //   observations.h          places, kernel, values per realization, maps: of grains or of a field
 //   model.h                 a model: parameters that may be free, stress, what the registry has of
 //                           it; models.h (heaps) and layer_models.h (layers) list them
-//   observation_operator.h  the model at the places, through the kernel that averaged the grains
+//   layer_sight.h           the model at the places, through the kernel that averaged the grains
+//                           (of heaps by coupling/models/observation_operator.h alone)
 //   fit.h, selection.h      constants with errors; which models the data support
 //   fits.h                  all of it for one ensemble, and finite elements (finite_elements.h)
 //   fit_report.h            figures, tables and pictures of the result

@@ -34,14 +34,14 @@ Settings medium_settings(double rho, double t) {
 
 class List {
  public:
-  explicit List(std::shared_ptr<const ObservationOperator> seeing) : seeing_(std::move(seeing)) {}
+  explicit List(std::shared_ptr<const LayerSight> seeing) : seeing_(std::move(seeing)) {}
 
   void add(const std::string& name, const std::string& label, std::vector<FitParameter> parameters,
            std::vector<VectorXd> starts, const Prediction& seen,
            std::vector<RegistryModel> in_registry, const std::string& equations = "elliptic") {
     models.push_back({name, label, std::move(parameters), std::move(starts),
                       [seeing = seeing_, seen](const MatrixXd& points, const VectorXd& p) {
-                        return seeing->pick(seen(p), points);
+                        return seeing->places().pick(seen(p), points);
                       },
                       ""});
     models.back().in_registry = std::move(in_registry);
@@ -61,7 +61,7 @@ class List {
   std::vector<FitModel> models;
 
  private:
-  std::shared_ptr<const ObservationOperator> seeing_;
+  std::shared_ptr<const LayerSight> seeing_;
 };
 
 // The names that have these settings.
@@ -88,9 +88,9 @@ MatrixXd flamant(const MatrixXd& nodes) {
 
 }  // namespace
 
-std::vector<FitModel> layer_models(std::shared_ptr<const ObservationOperator> seeing) {
+std::vector<FitModel> layer_models(std::shared_ptr<const LayerSight> seeing) {
   List list(seeing);
-  const ObservationOperator* at = seeing.get();  // the models hold it
+  const LayerSight* at = seeing.get();  // the models hold it
   const FitParameter nu{"nu", "-", "Poisson's ratio", 0, kMostPoisson};
   const FitParameter rho{
       "rho", "-", "r/sqrt(t): below 0 two peaks, -1 the hyperbolic limit", kLeastRho, kMostRho, -1};

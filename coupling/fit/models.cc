@@ -183,6 +183,16 @@ std::vector<FitModel> heap_models(const HeapFacts& facts) {
   return out;
 }
 
+FitModel seen_through(FitModel model, std::shared_ptr<const HeapSight> sight) {
+  model.stress = [exact = std::move(model.stress), sight = std::move(sight)](
+                     const Eigen::MatrixXd& points, const Eigen::VectorXd& parameters) {
+    const Eigen::MatrixXd seen =
+        sight->through.seen([&](const Eigen::MatrixXd& nodes) { return exact(nodes, parameters); });
+    return sight->places.pick(seen, points);
+  };
+  return model;
+}
+
 const FitModel& find_fit_model(const std::vector<FitModel>& models, const std::string& name) {
   std::vector<std::string> names;
   for (const FitModel& model : models) {

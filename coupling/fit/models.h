@@ -1,9 +1,12 @@
 // The models that are fitted to heaps and to layers under a point load.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "coupling/fit/data.h"
 #include "coupling/fit/model.h"
+#include "coupling/models/observation_operator.h"
 
 namespace grainfield::coupling {
 
@@ -36,6 +39,14 @@ struct HeapFacts {
 ///   fpa, bcc               members of the family, no parameter
 /// and those of heaps with two slopes (two_sided_models.h).
 std::vector<FitModel> heap_models(const HeapFacts& facts);
+
+/// What a heap is looked at with: places of the data through the operator made for them.
+struct HeapSight {
+  Places places;
+  ObservationOperator through;
+};
+/// The model as it is seen, at these places alone.
+FitModel seen_through(FitModel model, std::shared_ptr<const HeapSight> sight);
 
 /// The one of that name; throws std::invalid_argument with the names there are.
 const FitModel& find_fit_model(const std::vector<FitModel>& models, const std::string& name);
