@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -24,6 +25,11 @@ class BadParameter : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// Where a search for a constant keeps to, ends excluded; of lengths (unit m) over the height h.
+struct SearchRange {
+  double least = 0, most = 0;
+};
+
 /// A parameter of a model, declared once: checks, documentation and command line come from it.
 struct Parameter {
   std::string name;                  ///< as the user types it
@@ -34,6 +40,8 @@ struct Parameter {
   double least = 0, most = 0;        ///< allowed range, inclusive unless the meaning says otherwise
   std::vector<std::string> choices;  ///< not empty: a parameter of words; the first is the default
   bool whole = false;                ///< only whole numbers
+  std::optional<SearchRange> free = {};  ///< may be free in a fit: a constant of the material or an
+                                         ///< angle of the model
 };
 
 /// Values chosen by the user: numbers as text or words, by parameter name.

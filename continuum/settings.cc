@@ -36,6 +36,11 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 
 double parse(const ModelInfo& info, const Parameter& parameter, const std::string& text) {
+  if (text == "free")
+    throw BadParameter(
+        fmt::format("model {}: {} = free is for `grainfield fit` and for fit.models "
+                    "and verdict.models of a case; here give a number: {}",
+                    info.name, parameter.name, allowed(parameter)));
   const std::optional<double> value = parse_number(text);
   if (!value || !std::isfinite(*value))
     throw BadParameter(fmt::format("model {}: {} = '{}' is not a number; allowed: {}", info.name,
@@ -109,6 +114,11 @@ Parameter optional_number(std::string name, std::string unit, std::string meanin
                 std::numeric_limits<double>::quiet_NaN(), least, most);
 }
 
+Parameter may_be_free(Parameter parameter, double least, double most) {
+  parameter.free = SearchRange{least, most};
+  return parameter;
+}
+
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most) {
   Parameter parameter =
@@ -119,12 +129,11 @@ Parameter whole_number(std::string name, std::string meaning, std::string source
 
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices) {
-  return {std::move(name),    "-",  std::move(meaning), std::move(source), 0, 0, 0,
-          std::move(choices), false};
+  return {std::move(name), "-", std::move(meaning), std::move(source), 0, 0, 0, std::move(choices)};
 }
 
 Parameter text(std::string name, std::string meaning, std::string source) {
-  return {std::move(name), "text", std::move(meaning), std::move(source), 0, 0, 0, {}, false};
+  return {std::move(name), "text", std::move(meaning), std::move(source), 0, 0, 0, {}};
 }
 
 bool is_text(const Parameter& parameter) { return parameter.unit == "text"; }

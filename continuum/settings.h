@@ -19,6 +19,8 @@ Parameter number(std::string name, std::string unit, std::string meaning, std::s
 /// holds.
 Parameter optional_number(std::string name, std::string unit, std::string meaning,
                           std::string source, double least, double most);
+/// The same parameter, which may be free in a fit: the search keeps to least < value < most.
+Parameter may_be_free(Parameter parameter, double least, double most);
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);

@@ -39,13 +39,13 @@ std::unique_ptr<Model> make(const Settings& s) {
   const CoreConstants core = core_constants(phi, beta_hat);
   auto field =
       std::make_unique<SectorField>(cantelaube_field(phi, beta_hat, number_of(s, "rho_g")));
-  std::map<std::string, double> figures{
-      {"beta_hat_deg", beta_hat / kDegree},
-      {"a1", core.a1},
-      {"a2", core.a2},
-      {"b1", core.b1},
-      {"yield_residual", field->off_yield({0, 3}, yielding_rays)}};
-  return std::make_unique<HeapModel>(std::move(field), std::move(figures));
+  return std::make_unique<HeapModel>(std::move(field), [=](const HeapField& f) {
+    return std::map<std::string, double>{{"beta_hat_deg", beta_hat / kDegree},
+                                         {"a1", core.a1},
+                                         {"a2", core.a2},
+                                         {"b1", core.b1},
+                                         {"yield_residual", f.off_yield({0, 3}, yielding_rays)}};
+  });
 }
 
 }  // namespace
@@ -94,9 +94,11 @@ ModelInfo cantelaube_info() {
                   "minus: the axis yields, a dip; zero: no kink at the axis, a plateau; plus: the "
                   "axis yields, a peak",
                   "Roul, below 4.12", {"minus", "zero", "plus"}),
-           optional_number("beta_hat_deg", "deg",
+           may_be_free(optional_number(
+                           "beta_hat_deg", "deg",
                            "half tip angle of the core, instead of a branch; below 90 - phi_deg",
-                           "Roul 4.10", kNarrowest, 90)},
+                           "Roul 4.10", kNarrowest, 90),
+                       1, 89)},
           make,
           heap_figures(
               {{"beta_hat_deg", "deg", "half tip angle of the elastic core, from the vertical"},

@@ -230,12 +230,13 @@ std::unique_ptr<Model> make(const Settings& s) {
   const double ray = number_of(s, "yield_ray_deg") * kDegree;
   auto field =
       std::make_unique<SectorField>(asymmetric_field(heap, branch, ray, number_of(s, "rho_g")));
-  std::map<std::string, double> figures{{"core_left_deg", -field->regions()[1].from / kDegree},
-                                        {"core_right_deg", field->regions().back().from / kDegree}};
-  const std::size_t last = field->regions().size() - 1;
-  figures["yield_residual"] = field->off_yield(
-      {0, last}, last == 3 ? std::vector<std::size_t>{2} : std::vector<std::size_t>{});
-  return std::make_unique<HeapModel>(std::move(field), std::move(figures));
+  return std::make_unique<HeapModel>(std::move(field), [](const HeapField& f) {
+    const std::size_t last = f.regions().size() - 1;
+    const auto on = last == 3 ? std::vector<std::size_t>{2} : std::vector<std::size_t>{};
+    return std::map<std::string, double>{{"core_left_deg", -f.regions()[1].from / kDegree},
+                                         {"core_right_deg", f.regions().back().from / kDegree},
+                                         {"yield_residual", f.off_yield({0, last}, on)}};
+  });
 }
 
 }  // namespace
@@ -318,8 +319,9 @@ ModelInfo cantelaube_asymmetric_info() {
       "cantelaube_asymmetric",
       "heap with two slopes: plastic flanks, one linear core or one that yields on an inner ray",
       2,
-      {number("phi_deg", "deg", "friction angle, at least as large as the slopes", "Roul 4.2", 28,
-              1, 80),
+      {may_be_free(number("phi_deg", "deg", "friction angle, at least as large as the slopes",
+                          "Roul 4.2", 28, 1, 80),
+                   1, 75),
        optional_number("left_deg", "deg", "slope on the left; unset: phi_deg", "Roul 4.3",
                        kAboveZero, 80),
        optional_number("right_deg", "deg", "slope on the right; unset: phi_deg", "Roul 4.3",
@@ -329,11 +331,12 @@ ModelInfo cantelaube_asymmetric_info() {
               "zero: one linear core, which continuity determines; minus, plus: a core that yields "
               "on an inner ray, with a dip or a peak there",
               "Roul, below 4.12", {"zero", "minus", "plus"}),
-       number(
-           "yield_ray_deg", "deg",
-           "branches minus and plus: angle of the inner ray from the downward vertical, positive "
-           "to the right",
-           "Roul 4.3", 0, -89, 89),
+       may_be_free(
+           number("yield_ray_deg", "deg",
+                  "branches minus and plus: angle of the inner ray from the downward vertical, "
+                  "positive to the right",
+                  "Roul 4.3", 0, -89, 89),
+           -89, 89),
        choice("left_root",
               "which root of the yield condition the left flank takes; the same at "
               "slope phi_deg",

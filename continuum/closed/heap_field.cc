@@ -151,14 +151,18 @@ double mobilised_sine(const Eigen::Vector3d& s) {
   return std::hypot(s[0] - s[1], 2 * s[2]) / std::fabs(s[0] + s[1]);
 }
 
-HeapModel::HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures)
-    : field_(std::move(field)), figures_(std::move(figures)) {
-  figures_["equilibrium_residual"] = field_->largest_imbalance();
-  figures_["mobilised_sine_ratio"] = field_->largest_mobilised();
+HeapModel::HeapModel(std::unique_ptr<HeapField> field, std::function<Figures(const HeapField&)> own)
+    : field_(std::move(field)), own_(std::move(own)) {}
+
+HeapModel::Figures HeapModel::figures() const {
+  Figures out = own_(*field_);
+  out["equilibrium_residual"] = field_->largest_imbalance();
+  out["mobilised_sine_ratio"] = field_->largest_mobilised();
   const auto& regions = field_->regions();
   for (std::size_t k = 1; k < regions.size(); ++k) {
-    figures_[fmt::format("ray_{}_deg", k)] = regions[k].from * 180 / std::numbers::pi;
+    out[fmt::format("ray_{}_deg", k)] = regions[k].from * 180 / std::numbers::pi;
   }
+  return out;
 }
 
 Figure yield_figure(const std::string& where) {

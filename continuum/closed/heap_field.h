@@ -6,6 +6,8 @@
 // normal (cos theta, sin theta) points to larger theta. There is no base: the fields go on below.
 #pragma once
 #include <Eigen/Core>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -99,16 +101,18 @@ double mobilised_sine(const Eigen::Vector3d& stress);
 /// A model of the registry that is such a field.
 class HeapModel : public Model {
  public:
-  HeapModel(std::unique_ptr<HeapField> field, std::map<std::string, double> figures);
+  using Figures = std::map<std::string, double>;
+  /// `own`: figures besides those that all have, worked out when asked for.
+  HeapModel(std::unique_ptr<HeapField> field, std::function<Figures(const HeapField&)> own);
   Stresses stress(const Points& points) override { return field_->stress(points); }
-  /// Those given, `equilibrium_residual`, `mobilised_sine_ratio`, and `ray_K_deg` of the rays
+  /// Its own, `equilibrium_residual`, `mobilised_sine_ratio`, and `ray_K_deg` of the rays
   /// between regions, from the left.
-  std::map<std::string, double> figures() const override { return figures_; }
+  Figures figures() const override;
   const HeapField& field() const { return *field_; }
 
  private:
   std::unique_ptr<HeapField> field_;
-  std::map<std::string, double> figures_;
+  std::function<Figures(const HeapField&)> own_;
 };
 
 /// The declaration of `yield_residual`; `where` the field is to yield.

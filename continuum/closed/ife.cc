@@ -266,8 +266,9 @@ ModelInfo ife_info() {
           [](const Settings& s) -> std::unique_ptr<Model> {
             auto field = std::make_unique<IfeField>(number_of(s, "phi_deg") * pi / 180,
                                                     number_of(s, "rho_g"));
-            std::map<std::string, double> figures{{"yield_residual", field->off_yield({0, 1}, {})}};
-            return std::make_unique<HeapModel>(std::move(field), std::move(figures));
+            return std::make_unique<HeapModel>(std::move(field), [](const HeapField& f) {
+              return std::map<std::string, double>{{"yield_residual", f.off_yield({0, 1}, {})}};
+            });
           },
           heap_figures({yield_figure("everywhere")})};
 }

@@ -167,8 +167,10 @@ ModelInfo layer_info() {
       0,
       {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
-       number("nu", "-", "Poisson's ratio; sigma_yy over a smooth base does not depend on it",
-              "elasticity, plane strain", 0.3, 0, 0.5),
+       may_be_free(
+           number("nu", "-", "Poisson's ratio; sigma_yy over a smooth base does not depend on it",
+                  "elasticity, plane strain", 0.3, 0, 0.5),
+           0, 0.499),
        choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"}),
        choice("dim", "2: plane strain; 3: space", "elasticity", {"2", "3"})},
       [](const Settings& s) -> std::unique_ptr<Model> {

@@ -115,24 +115,28 @@ std::array<double, 2> orthotropic_displacement(double F, const PlaneModuli& modu
 
 ModelInfo orthotropic_half_plane_info() {
   const char* source = "Otto et al. 2003";
-  return {"orthotropic_half_plane",
-          "half plane with vertical and horizontal elastic axes under a line load",
-          2,
-          {number("F", "N", "load at the origin, down", "Roul 5.2", 1, 0, kUnbounded),
+  return {
+      "orthotropic_half_plane",
+      "half plane with vertical and horizontal elastic axes under a line load",
+      2,
+      {number("F", "N", "load at the origin, down", "Roul 5.2", 1, 0, kUnbounded),
+       may_be_free(
            number("r", "-", "(E_x/G - 2 nu_xy)/2, above -sqrt(t); below 0: two peaks; isotropic: 1",
                   source, 1, -kUnbounded, kUnbounded),
-           number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
-           optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source,
-                           kAboveZero, kUnbounded),
-           optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
-           optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
-           number("nu_xy", "-", "-eps_yy/eps_xx under sigma_xx; counts with E_x, E_y, G only",
-                  source, 0.3, -kUnbounded, kUnbounded)},
-          make,
-          {{"r", "-", "(E_x/G - 2 nu_xy)/2"},
-           {"t", "-", "E_x/E_y"},
-           {"peaks", "-", "peaks of the pressure at any depth"},
-           {"peak_at_over_depth", "-", "their distance from the axis over the depth"}}};
+           -5, 20),
+       may_be_free(number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+                   0.02, 50),
+       optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source, kAboveZero,
+                       kUnbounded),
+       optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
+       optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
+       number("nu_xy", "-", "-eps_yy/eps_xx under sigma_xx; counts with E_x, E_y, G only", source,
+              0.3, -kUnbounded, kUnbounded)},
+      make,
+      {{"r", "-", "(E_x/G - 2 nu_xy)/2"},
+       {"t", "-", "E_x/E_y"},
+       {"peaks", "-", "peaks of the pressure at any depth"},
+       {"peak_at_over_depth", "-", "their distance from the axis over the depth"}}};
 }
 
 }  // namespace grainfield::continuum

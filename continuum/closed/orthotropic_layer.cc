@@ -214,17 +214,21 @@ ModelInfo orthotropic_layer_info() {
       2,
       {number("F", "N", "load at the origin, down", "Roul 5.6", 1, 0, kUnbounded),
        number("h", "m", "depth of the layer", "Roul 5.6", 1, kAboveZero, kUnbounded),
-       number("r", "-", "(E_x/G - 2 nu_xy)/2, above -0.99 sqrt(t); isotropic: 1", source, 1,
-              -kUnbounded, kUnbounded),
-       number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+       may_be_free(number("r", "-", "(E_x/G - 2 nu_xy)/2, above -0.99 sqrt(t); isotropic: 1",
+                          source, 1, -kUnbounded, kUnbounded),
+                   -5, 20),
+       may_be_free(number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
+                   0.02, 50),
        optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source, kAboveZero,
                        kUnbounded),
        optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),
        optional_number("G", "Pa", "shear modulus", source, kAboveZero, kUnbounded),
-       number("nu_xy", "-",
-              "-eps_yy/eps_xx under sigma_xx in the plane; without E_x, E_y, G it counts on a "
-              "rough base only",
-              source, 0.3, -kUnbounded, kUnbounded),
+       may_be_free(
+           number("nu_xy", "-",
+                  "-eps_yy/eps_xx under sigma_xx in the plane; without E_x, E_y, G it counts on a "
+                  "rough base only",
+                  source, 0.3, -kUnbounded, kUnbounded),
+           -0.95, 0.95),
        choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
       make,
       {{"r", "-", "(E_x/G - 2 nu_xy)/2"}, {"t", "-", "E_x/E_y"}}};

@@ -52,7 +52,7 @@ void check(const std::string& model, const Settings& s, double phi, const Closur
 }
 
 // Largest |closure_residual| over rho g h, of samples at a depth h = 1.
-double off_closure(const SectorField& field, const Closure& closure) {
+double off_closure(const HeapField& field, const Closure& closure) {
   constexpr int kSamples = 64;
   const double half = std::tan(field.rays().back());
   double largest = 0;
@@ -64,15 +64,16 @@ double off_closure(const SectorField& field, const Closure& closure) {
 }
 
 std::unique_ptr<Model> model_of(double phi, const Closure& closure, double rho_g) {
-  const StressRatio ratio = ratio_of(closure);
   auto field = std::make_unique<SectorField>(osl_field(phi, closure, rho_g));
-  std::map<std::string, double> figures{{"eta", closure.eta},
-                                        {"mu", closure.mu},
-                                        {"K", ratio.K},
-                                        {"tau_deg", ratio.tau / kDegree},
-                                        {"eta_at_yield", eta_at_yield(phi, closure.mu)},
-                                        {"closure_residual", off_closure(*field, closure)}};
-  return std::make_unique<HeapModel>(std::move(field), std::move(figures));
+  return std::make_unique<HeapModel>(std::move(field), [=](const HeapField& f) {
+    const StressRatio ratio = ratio_of(closure);
+    return std::map<std::string, double>{{"eta", closure.eta},
+                                         {"mu", closure.mu},
+                                         {"K", ratio.K},
+                                         {"tau_deg", ratio.tau / kDegree},
+                                         {"eta_at_yield", eta_at_yield(phi, closure.mu)},
+                                         {"closure_residual", off_closure(f, closure)}};
+  });
 }
 
 std::vector<Figure> figures() {
@@ -101,18 +102,25 @@ Closure chosen_closure(const std::string& model, const Settings& s, double phi) 
 }
 
 std::vector<Parameter> closure_parameters() {
-  return {friction_angle(),
-          weight(),
+  return {
+      friction_angle(),
+      weight(),
+      may_be_free(
           optional_number("eta", "-",
                           "unset: as the yielding slope asks for with this mu; both unset: mu = "
                           "-tan(phi), half way between bcc and fpa",
                           "Roul 4.22, 4.24", kAboveZero, kUnbounded),
-          optional_number("mu", "-", "unset: as the yielding slope asks for with this eta",
-                          "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+          0.02, 3),
+      may_be_free(optional_number("mu", "-", "unset: as the yielding slope asks for with this eta",
+                                  "Roul 4.22, 4.24", -kUnbounded, kUnbounded),
+                  -2, 5),
+      may_be_free(
           optional_number("K", "-", "with tau_deg instead of eta and mu: sigma_nn = K sigma_mm",
                           "Roul 4.23", kAboveZero, kUnbounded),
-          optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n", "Roul 4.23",
-                          -180, 180)};
+          0.02, 20),
+      may_be_free(optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n",
+                                  "Roul 4.23", -180, 180),
+                  -90, 90)};
 }
 
 double Closure::c1() const {

@@ -43,7 +43,8 @@ void add_fit(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--model", given->models,
-                   "NAME, repeatable (grainfield keys fit); default all for symmetric heaps")
+                   "NAME (grainfield keys fit), or NAME:p=free,q=0.3 or LABEL=NAME:... of a model "
+                   "(grainfield model), repeatable; default all for symmetric heaps")
       ->allow_extra_args(false);
   command->add_option("--heights", given->heights, "fit.heights: shares of the heap's height")
       ->delimiter(',');

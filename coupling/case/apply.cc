@@ -55,6 +55,11 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
       std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
     return;
   }
+  if (key.beyond != nullptr) {
+    const std::optional<std::string> why = key.beyond(value);
+    if (why && why->empty()) return;
+    if (why) reject(a, key.path(), *why);
+  }
   if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
     reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, allowed(key), why));
   }

@@ -38,6 +38,10 @@ struct Key {
   bool may_repeat = false;           ///< lists: a value more than once
   std::vector<Need> needs;           ///< all of them, of the keys that the study has
 
+  /// Of words besides the choices: why one is refused, empty where it is not; nothing for a word
+  /// that is not meant so.
+  std::optional<std::string> (*beyond)(const std::string&) = nullptr;
+
   bool plane_shapes = false;  ///< its words are shapes of grains in the plane
 
   bool space = false;                    ///< only in three dimensions

@@ -15,22 +15,19 @@ std::vector<Node> gauss_points(int n, double a, double b) {
   return out;
 }
 
-void SmoothingPlan::add(Eigen::Index point, const Eigen::Ref<const Eigen::RowVectorXd>& at,
-                        double weight) {
+void NodeList::add(Eigen::Index point, const Eigen::Ref<const Eigen::RowVectorXd>& at,
+                   double weight) {
   for (const double x : at) where_.push_back(x);
-  owner_.push_back(point);
-  weight_.push_back(weight);
+  weight_.emplace_back(static_cast<int>(point), static_cast<int>(weight_.size()), weight);
 }
 
-Eigen::MatrixXd SmoothingPlan::evaluate(const StressFunction& stress, Eigen::Index points) const {
-  const Eigen::MatrixXd value =
-      stress(Eigen::Map<const Eigen::MatrixXd>(where_.data(), dim_,
-                                               static_cast<Eigen::Index>(owner_.size()))
-                 .transpose());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(points, value.cols());
-  for (std::size_t k = 0; k < owner_.size(); ++k)
-    result.row(owner_[k]) += weight_[k] * value.row(static_cast<Eigen::Index>(k));
-  return result;
+SmoothingNodes NodeList::of_points(Eigen::Index points) const {
+  const auto count = static_cast<Eigen::Index>(weight_.size());
+  SmoothingNodes out;
+  out.at = Eigen::Map<const Eigen::MatrixXd>(where_.data(), dim_, count).transpose();
+  out.weight.resize(points, count);
+  out.weight.setFromTriplets(weight_.begin(), weight_.end());
+  return out;
 }
 
 }  // namespace grainfield::coupling

@@ -19,20 +19,18 @@ struct Node {
 /// Gauss-Legendre of n nodes on [a, b].
 std::vector<Node> gauss_points(int n, double a = -1, double b = 1);
 
-/// Where the stress is asked for, with the weight it gives to which point.
-class SmoothingPlan {
+/// Collects nodes; those of one point one after the other, points in their order.
+class NodeList {
  public:
-  explicit SmoothingPlan(int dim) : dim_(dim) {}
+  explicit NodeList(int dim) : dim_(dim) {}
 
   void add(Eigen::Index point, const Eigen::Ref<const Eigen::RowVectorXd>& at, double weight);
-  /// Sums of weight * stress, one row per point. One call of `stress`.
-  Eigen::MatrixXd evaluate(const StressFunction& stress, Eigen::Index points) const;
+  SmoothingNodes of_points(Eigen::Index points) const;
 
  private:
   int dim_;
   std::vector<double> where_;  // node by node
-  std::vector<Eigen::Index> owner_;
-  std::vector<double> weight_;
+  std::vector<Eigen::Triplet<double>> weight_;
 };
 
 }  // namespace grainfield::coupling

@@ -28,7 +28,7 @@ void normalise(std::vector<PlaneNode>& nodes) {
 
 // Near the load the stress grows as 1/distance: polar coordinates about the load take the growth
 // away, and the kernel is what varies over the nodes.
-void add_around_load(SmoothingPlan& plan, Eigen::Index point, const Eigen::RowVector2d& at,
+void add_around_load(NodeList& plan, Eigen::Index point, const Eigen::RowVector2d& at,
                      const Kernel& kernel, double depth, int nodes_per_axis) {
   const double distance = at.norm(), range = kernel.range(), pi = std::numbers::pi;
   const double r0 = std::max(0.0, distance - range), r1 = distance + range;
@@ -54,8 +54,8 @@ void add_around_load(SmoothingPlan& plan, Eigen::Index point, const Eigen::RowVe
 
 }  // namespace
 
-Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                const Kernel& kernel, double depth, int rings) {
+SmoothingNodes nodes_in_plane(const Eigen::MatrixXd& points, const Kernel& kernel, double depth,
+                              int rings) {
   check(points, rings);
   const int directions = 2 * rings + 2;
   std::vector<PlaneNode> nodes;
@@ -68,7 +68,7 @@ Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::Matri
     }
   }
   normalise(nodes);
-  SmoothingPlan plan(2);
+  NodeList plan(2);
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     const Eigen::RowVector2d point = points.row(p);
     if (point.norm() < kNearLoad * kernel.range() && point.y() <= 0) {
@@ -82,11 +82,10 @@ Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::Matri
       plan.add(p, at, node.weight);
     }
   }
-  return plan.evaluate(stress, points.rows());
+  return plan.of_points(points.rows());
 }
 
-Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::MatrixXd& points,
-                               const Kernel& kernel, int count) {
+SmoothingNodes nodes_along_x(const Eigen::MatrixXd& points, const Kernel& kernel, int count) {
   check(points, count);
   std::vector<PlaneNode> nodes;
   // x = R sin(theta) keeps the integrand smooth where the marginal ends steeply.
@@ -95,11 +94,11 @@ Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::Matrix
     nodes.push_back({Eigen::RowVector2d(x, 0), node.weight * kernel.marginal(x) * std::cos(theta)});
   }
   normalise(nodes);
-  SmoothingPlan plan(2);
+  NodeList plan(2);
   for (Eigen::Index p = 0; p < points.rows(); ++p)
     for (const PlaneNode& node : nodes)
       plan.add(p, Eigen::RowVector2d(points.row(p) + node.offset), node.weight);
-  return plan.evaluate(stress, points.rows());
+  return plan.of_points(points.rows());
 }
 
 }  // namespace grainfield::coupling

@@ -2,6 +2,7 @@
 // that the kernel's broadening of a peak is not counted against the model.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <functional>
 
 #include "coupling/averaging/kernel.h"
@@ -11,16 +12,24 @@ namespace grainfield::coupling {
 /// n x 2 points in the models' frame to n x 3 stresses (xx, yy, xy), nan outside.
 using StressFunction = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
-/// Convolution over the plane at the points (models' frame, inside is -depth < y < 0); n x 3.
-/// Nodes below the base take the value at the base above (what extend_into_walls does to the data),
-/// nodes above the surface count zero stress (as empty space does). `rings` radial Gauss points
-/// times 2 rings + 2 directions; within 1.5 kernel ranges of the load (0, 0) 4 rings squared points
-/// in polar coordinates about it. One call of `stress`. depth <= 0: a half plane.
-Eigen::MatrixXd smooth_in_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                const Kernel& kernel, double depth, int rings = 6);
+/// A smoothing is linear: where it asks for the stress, and by how much every value counts.
+struct SmoothingNodes {
+  Eigen::MatrixXd at;                                   ///< nodes x dimension
+  Eigen::SparseMatrix<double, Eigen::RowMajor> weight;  ///< points x nodes
 
-/// Convolution along x with the kernel's marginal: what base_profile does to floor forces; n x 3.
-Eigen::MatrixXd smooth_along_x(const StressFunction& stress, const Eigen::MatrixXd& points,
-                               const Kernel& kernel, int nodes = 15);
+  /// The smoothed stress, one row per point. One call of `stress`.
+  Eigen::MatrixXd of(const StressFunction& stress) const { return weight * stress(at); }
+};
+
+/// Convolution over the plane at the points (models' frame, inside is -depth < y < 0). Nodes below
+/// the base take the value at the base above (what extend_into_walls does to the data), nodes above
+/// the surface count zero stress (as empty space does). `rings` radial Gauss points times 2 rings +
+/// 2 directions; within 1.5 kernel ranges of the load (0, 0) 4 rings squared points in polar
+/// coordinates about it. depth <= 0: a half plane.
+SmoothingNodes nodes_in_plane(const Eigen::MatrixXd& points, const Kernel& kernel, double depth,
+                              int rings = 6);
+
+/// Convolution along x with the kernel's marginal: what base_profile does to floor forces.
+SmoothingNodes nodes_along_x(const Eigen::MatrixXd& points, const Kernel& kernel, int count = 15);
 
 }  // namespace grainfield::coupling

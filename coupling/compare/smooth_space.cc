@@ -41,8 +41,8 @@ void each_in_cone(const Vector3d& axis, double angle, double r0, double r1, int 
 
 }  // namespace
 
-Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                const Kernel& kernel, double depth, int rings) {
+SmoothingNodes nodes_in_space(const Eigen::MatrixXd& points, const Kernel& kernel, double depth,
+                              int rings) {
   if (points.cols() != 3 || kernel.dim() != 3)
     throw std::invalid_argument("smoothing in space needs points and a kernel of space");
   if (rings < 1) throw std::invalid_argument("smoothing needs at least one node");
@@ -55,7 +55,7 @@ Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::Matri
                  total += ball.back().weight;
                });
   for (SpaceNode& node : ball) node.weight /= total;
-  SmoothingPlan plan(3);
+  NodeList plan(3);
   const auto add = [&](Index point, Vector3d at, double weight) {
     if (at.z() >= 0 || weight == 0) return;
     if (depth > 0) at.z() = std::max(at.z(), -depth * (1 - kInsideBase));
@@ -75,11 +75,10 @@ Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::Matri
     }
     for (const SpaceNode& node : ball) add(p, point + node.at, node.weight);
   }
-  return plan.evaluate(stress, points.rows());
+  return plan.of_points(points.rows());
 }
 
-Eigen::MatrixXd smooth_over_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                  const Kernel& kernel, int rings) {
+SmoothingNodes nodes_over_plane(const Eigen::MatrixXd& points, const Kernel& kernel, int rings) {
   if (points.cols() != 3 || kernel.dim() != 3)
     throw std::invalid_argument("smoothing in space needs points and a kernel of space");
   if (rings < 1) throw std::invalid_argument("smoothing needs at least one node");
@@ -94,13 +93,13 @@ Eigen::MatrixXd smooth_over_plane(const StressFunction& stress, const Eigen::Mat
       total += weight;
     }
   }
-  SmoothingPlan plan(3);
+  NodeList plan(3);
   for (Index p = 0; p < points.rows(); ++p) {
     for (const SpaceNode& node : disk) {
       plan.add(p, points.row(p) + node.at.transpose(), node.weight / total);
     }
   }
-  return plan.evaluate(stress, points.rows());
+  return plan.of_points(points.rows());
 }
 
 }  // namespace grainfield::coupling

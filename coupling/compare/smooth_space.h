@@ -8,18 +8,17 @@
 namespace grainfield::coupling {
 
 /// Convolution over space at the points (n x 3, models' frame: load at the origin, inside is
-/// -depth < z < 0); n x 6. Below the base and above the surface as smooth_in_plane. `rings` Gauss
+/// -depth < z < 0). Below the base and above the surface as nodes_in_plane. `rings` Gauss
 /// points along the radius and over the height of the sphere, 2 rings round it; within 1.5 kernel
 /// ranges of the load, where the stress grows as 1/distance^2, 3 rings of each in spherical
-/// coordinates about it. One call of `stress`. depth <= 0: a half space. Throws
+/// coordinates about it. depth <= 0: a half space. Throws
 /// std::invalid_argument for points or a kernel of the plane.
-Eigen::MatrixXd smooth_in_space(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                const Kernel& kernel, double depth, int rings = 6);
+SmoothingNodes nodes_in_space(const Eigen::MatrixXd& points, const Kernel& kernel, double depth,
+                              int rings = 6);
 
 /// Convolution over the horizontal plane at the points with the kernel as it is seen from above:
-/// what base_stress does to floor forces; n x 6. `rings` Gauss points along the radius times
-/// 2 rings + 2 directions. One call of `stress`. Throws as smooth_in_space.
-Eigen::MatrixXd smooth_over_plane(const StressFunction& stress, const Eigen::MatrixXd& points,
-                                  const Kernel& kernel, int rings = 8);
+/// what base_stress does to floor forces. `rings` Gauss points along the radius times
+/// 2 rings + 2 directions. Throws as nodes_in_space.
+SmoothingNodes nodes_over_plane(const Eigen::MatrixXd& points, const Kernel& kernel, int rings = 8);
 
 }  // namespace grainfield::coupling

@@ -151,9 +151,7 @@ std::string fit_text(const Case& value, const std::vector<std::string>& packings
 std::string coverage_of_heaps(const FitSetup& setup, const Observations& heaps,
                               const FitRequest& request) {
   std::vector<FitModel> models;
-  const std::vector<FitModel> known = models_of(setup, heaps);
-  for (const std::string& name : setup.models) {
-    const FitModel& model = find_fit_model(known, name);
+  for (const FitModel& model : models_of(setup, heaps)) {
     if (model.absent.empty()) models.push_back(model);
   }
   CoverageOptions options;

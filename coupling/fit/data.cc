@@ -86,4 +86,19 @@ Eigen::MatrixXd places_of(const FitData& data) {
   return data.points(once, Eigen::all);
 }
 
+Places::Places(const Eigen::MatrixXd& points) : points_(points) {
+  for (Eigen::Index k = 0; k < points.rows(); ++k) row_[{points(k, 0), points(k, 1)}] = k;
+}
+
+Eigen::MatrixXd Places::pick(const Eigen::MatrixXd& values, const Eigen::MatrixXd& points) const {
+  if (points.rows() == points_.rows() && points == points_) return values;
+  Eigen::MatrixXd out(points.rows(), values.cols());
+  for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    const auto at = row_.find({points(k, 0), points(k, 1)});
+    if (at == row_.end()) throw std::logic_error("Places: a point that it does not know");
+    out.row(k) = values.row(at->second);
+  }
+  return out;
+}
+
 }  // namespace grainfield::coupling

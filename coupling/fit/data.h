@@ -1,7 +1,9 @@
 // What is fitted: stress components on points, realization by realization.
 #pragma once
 #include <Eigen/Core>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainfield::coupling {
@@ -37,6 +39,20 @@ FitData rows_of(const FitData& data, const std::vector<int>& rows);
 
 /// Its points, each place once: components share them.
 Eigen::MatrixXd places_of(const FitData& data);
+
+/// Places that models are asked for at once, to be found again.
+class Places {
+ public:
+  explicit Places(const Eigen::MatrixXd& points);
+  /// The rows of `values` (one per place) that belong to these points, each of which must be one of
+  /// the places. Throws std::logic_error otherwise.
+  Eigen::MatrixXd pick(const Eigen::MatrixXd& values, const Eigen::MatrixXd& points) const;
+  const Eigen::MatrixXd& points() const { return points_; }
+
+ private:
+  Eigen::MatrixXd points_;
+  std::map<std::pair<double, double>, Eigen::Index> row_;
+};
 
 /// Throws std::invalid_argument when sizes differ, a component is none of sigma_xx, sigma_yy,
 /// sigma_xy, or a number is not finite.

@@ -71,9 +71,10 @@ std::vector<FittedParameter> derived_figures(const Fit& fit, double slope_deg) {
             derived("flank_balance_y", "-", fit,
                     [t](const Eigen::VectorXd& p) { return p[4] - 1 - p[5] * t; })};
   }
-  if (!has(fit, "mu")) return {};
-  const auto closure = [phi](const Eigen::VectorXd& p) {
-    if (p.size() == 2) return continuum::Closure{p[0], p[1]};
+  const bool both = fit.parameters.size() == 2 && has(fit, "eta") && has(fit, "mu");
+  if (!both && fit.name != "osl_yield") return {};
+  const auto closure = [phi, both](const Eigen::VectorXd& p) {
+    if (both) return continuum::Closure{p[0], p[1]};
     return continuum::Closure{continuum::eta_at_yield(phi, p[0]), p[0]};
   };
   std::vector<FittedParameter> out{
@@ -82,7 +83,7 @@ std::vector<FittedParameter> derived_figures(const Fit& fit, double slope_deg) {
       derived("tau_deg", "deg", fit, [&](const Eigen::VectorXd& p) {
         return continuum::ratio_of(closure(p)).tau / kDegree;
       })};
-  if (!has(fit, "eta")) {
+  if (!both) {
     out.push_back(
         derived("eta", "-", fit, [&](const Eigen::VectorXd& p) { return closure(p).eta; }));
   }

@@ -8,24 +8,35 @@
 namespace grainfield::coupling {
 namespace {
 
-// The constants of all models, each name once, with the models that have it.
-std::vector<SummaryKey> constants() {
-  std::vector<FitModel> models = heap_models({});
-  for (FitModel& model : layer_models(nullptr)) models.push_back(std::move(model));
-  std::vector<SummaryKey> out;
-  for (const FitModel& model : models) {
+// Each name once, with the models that have it.
+void add_constant(const std::string& name, const std::string& unit, const std::string& meaning,
+                  const std::string& model, std::vector<SummaryKey>& out) {
+  const std::string pattern = "fit.*." + name;
+  const auto known = std::find_if(out.begin(), out.end(),
+                                  [&](const SummaryKey& key) { return key.pattern == pattern; });
+  if (known != out.end()) {
+    known->meaning += ", " + model;
+  } else {
+    out.push_back({pattern, unit, meaning + "; of " + model});
+  }
+}
+
+void add_constants(std::vector<SummaryKey>& out) {
+  std::vector<RegistryEntry> models = heap_entries({});
+  for (RegistryEntry& model : layer_entries()) models.push_back(std::move(model));
+  for (const RegistryEntry& model : models) {
     for (const FitParameter& p : model.parameters) {
-      const std::string pattern = "fit.*." + p.name;
-      const auto known = std::find_if(
-          out.begin(), out.end(), [&](const SummaryKey& key) { return key.pattern == pattern; });
-      if (known != out.end()) {
-        known->meaning += ", " + model.name;
-      } else {
-        out.push_back({pattern, p.unit, p.meaning + "; of " + model.name});
-      }
+      add_constant(p.name, p.unit, p.meaning, model.name, out);
     }
   }
-  return out;
+  for (const continuum::ModelInfo& info : continuum::registry()) {
+    if (info.dim == 3) continue;
+    for (const continuum::Parameter& p : info.parameters) {
+      if (p.free)
+        add_constant(p.name, p.unit == "m" ? "h" : p.unit, p.meaning,
+                     info.name + ":" + p.name + "=free", out);
+    }
+  }
 }
 
 }  // namespace
@@ -84,7 +95,7 @@ std::vector<SummaryKey> figures_of_fits() {
       {"verdict.distinguishable", "text",
        "yes: all models but one are behind it by more than chance; no"},
   };
-  for (SummaryKey& key : constants()) out.push_back(std::move(key));
+  add_constants(out);
   return out;
 }
 

@@ -15,48 +15,83 @@
 #include "coupling/fit/heap_rows.h"
 #include "coupling/fit/intervals.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/observation_operator.h"
+#include "coupling/fit/models.h"
+#include "coupling/fit/open_models.h"
 #include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 
 namespace {
 
-std::vector<FitModel> through(const std::shared_ptr<const ObservationOperator>& seeing,
-                              std::vector<FitModel> models) {
-  for (FitModel& model : models) model = seen_through(std::move(model), seeing);
-  return models;
+std::vector<RegistryEntry> heap_entries_of(const std::vector<std::string>& texts,
+                                           const HeapFacts& facts, double height) {
+  return chosen_entries(
+      texts, heap_entries(facts),
+      [&](const std::string& registry) { return facts_of(facts, registry); }, height);
+}
+
+FitModel seen_entry(const RegistryEntry& entry, const HeapFacts& facts,
+                    const std::shared_ptr<const HeapSight>& sight) {
+  return seen_through(model_of_entry(entry, facts_of(facts, entry.registry)), sight);
+}
+
+// A laboratory's cells are flat, each as long as the kernel is wide.
+std::shared_ptr<const HeapSight> heap_sight(const Eigen::MatrixXd& places,
+                                            const Observations& heaps) {
+  return std::make_shared<const HeapSight>(HeapSight{
+      Places(places),
+      heaps.measured
+          ? ObservationOperator({{places, Smoothing::marginal, heaps.kernel.get(), true}}, 0)
+          : ObservationOperator::of_heap(places, *heaps.kernel)});
+}
+
+// The heaps' facts with the slopes that these alone have.
+HeapFacts facts_of_part(const FitSetup& setup, const HeapFacts& all,
+                        const std::vector<PileFrame>& part) {
+  HeapFacts facts = all;
+  const HeapSlopes slopes = slopes_of(setup, part);
+  facts.slope_deg = slopes.mean_deg;
+  if (all.left_deg > 0) {
+    facts.left_deg = slopes.left_deg;
+    facts.right_deg = slopes.right_deg;
+  }
+  if (facts.friction_deg > 0) {
+    facts.friction_deg = std::max({facts.friction_deg, facts.left(), facts.right()});
+  }
+  return facts;
 }
 
 }  // namespace
 
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
-  const Eigen::MatrixXd places = places_of(heaps.data);
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      heaps.measured ? ObservationOperator::of_cells(places, *heaps.kernel)
-                     : ObservationOperator::of_heap(places, *heaps.kernel));
-  std::vector<FitModel> out = through(seeing, heap_models(heaps.facts));
+  const auto sight = heap_sight(places_of(heaps.data), heaps);
+  std::vector<FitModel> out;
+  for (const RegistryEntry& entry : heap_entries_of(setup.models, heaps.facts, heaps.height)) {
+    out.push_back(seen_entry(entry, heaps.facts, sight));
+  }
   if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
-  const auto of_part = [setup, seeing, frames = heaps.frames, all = heaps.facts](
-                           const std::string& name, const std::vector<int>& chosen) {
+  const auto of_part = [setup, sight, frames = heaps.frames, all = heaps.facts, h = heaps.height](
+                           std::size_t model, const std::vector<int>& chosen) {
     std::vector<PileFrame> part;
     for (const int k : chosen) part.push_back(frames[static_cast<std::size_t>(k)]);
-    HeapFacts facts = all;
-    const HeapSlopes slopes = slopes_of(setup, part);
-    facts.slope_deg = slopes.mean_deg;
-    if (all.left_deg > 0) {
-      facts.left_deg = slopes.left_deg;
-      facts.right_deg = slopes.right_deg;
-    }
-    if (facts.friction_deg > 0) {
-      facts.friction_deg = std::max({facts.friction_deg, facts.left(), facts.right()});
-    }
-    return seen_through(find_fit_model(heap_models(facts), name), seeing);
+    const HeapFacts facts = facts_of_part(setup, all, part);
+    return seen_entry(heap_entries_of(setup.models, facts, h)[model], facts, sight);
   };
-  for (FitModel& model : out) {
-    model.measured_on = [of_part, name = model.name](const std::vector<int>& chosen) {
-      return of_part(name, chosen);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].measured_on = [of_part, k](const std::vector<int>& chosen) {
+      return of_part(k, chosen);
     };
+  }
+  return out;
+}
+
+std::vector<FitModel> models_of_layers(const std::vector<std::string>& texts,
+                                       const std::shared_ptr<const LayerSight>& sight,
+                                       double height) {
+  const auto facts = [](const std::string&) { return facts_of_layer(); };
+  std::vector<FitModel> out;
+  for (const RegistryEntry& entry : chosen_entries(texts, layer_entries(), facts, height)) {
+    out.push_back(model_of_entry(entry, facts_of_layer(), sight));
   }
   return out;
 }
@@ -91,12 +126,10 @@ std::string imbalance(const Fit& fit, double slope_deg, int realizations) {
 
 namespace {
 
-void fit_all(const std::vector<FitModel>& known, const std::vector<std::string>& names,
-             const FitOptions& options, EnsembleFits& out) {
+void fit_all(const std::vector<FitModel>& asked, const FitOptions& options, EnsembleFits& out) {
   const FitData& data = out.observed.data;
   out.weights = weights_of(data);
-  for (const std::string& name : names) {
-    const FitModel& model = find_fit_model(known, name);
+  for (const FitModel& model : asked) {
     if (!model.absent.empty()) {
       out.absent.push_back(model);
       continue;
@@ -122,7 +155,8 @@ EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
   options.huber = setup.huber;
   options.bootstrap = static_cast<int>(setup.bootstrap);
   options.threads = threads;
-  std::vector<std::string> names = setup.models;
+  FitSetup asked = setup;
+  std::vector<std::string>& names = asked.models;
   // Beside constants that are free of equilibrium and yield stands the fit that is bound to both.
   const auto named = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -130,7 +164,8 @@ EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
   if (named("cantelaube") && !named("cantelaube_continuous")) {
     names.push_back("cantelaube_continuous");
   }
-  fit_all(models_of(setup, out.observed), names, options, out);
+  out.asked = names;
+  fit_all(models_of(asked, out.observed), options, out);
   const Score& first = out.selection.ranking.front();
   for (Fit& f : out.fits) {
     const std::string off =
@@ -159,14 +194,15 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
   FitOptions options;
   options.bootstrap = static_cast<int>(setup.bootstrap);
   options.threads = threads;
-  const auto seen =
-      std::make_shared<const ObservationOperator>(places_of(data), *out.observed.kernel);
-  fit_all(layer_models(seen), setup.models, options, out);
+  const auto seen = std::make_shared<const LayerSight>(places_of(data), *out.observed.kernel);
+  out.asked = setup.models;
+  fit_all(models_of_layers(out.asked, seen, out.observed.height), options, out);
   out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
-  out.elements = solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
-                                [&](const StressFunction& stress, bool half_plane) {
-                                  return seen->pick(seen->seen(stress, half_plane), data.points);
-                                });
+  out.elements =
+      solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
+                     [&](const StressFunction& stress, bool half_plane) {
+                       return seen->places().pick(seen->seen(stress, half_plane), data.points);
+                     });
   return out;
 }
 
@@ -174,14 +210,17 @@ std::vector<Eigen::MatrixXd> models_at(const EnsembleFits& fits,
                                        const std::vector<std::string>& names,
                                        const Eigen::MatrixXd& points) {
   const Observations& observed = fits.observed;
-  const Kernel& kernel = *observed.kernel;
-  const bool layer = observed.specimen == Specimen::layer;
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      layer               ? ObservationOperator(points, kernel)
-      : observed.measured ? ObservationOperator::of_cells(points, kernel)
-                          : ObservationOperator::of_heap(points, kernel));
-  const std::vector<FitModel> models =
-      layer ? layer_models(seeing) : through(seeing, heap_models(observed.facts));
+  std::vector<FitModel> models;
+  if (observed.specimen == Specimen::layer) {
+    models = models_of_layers(
+        fits.asked, std::make_shared<const LayerSight>(points, *observed.kernel), observed.height);
+  } else {
+    const auto sight = heap_sight(points, observed);
+    for (const RegistryEntry& entry :
+         heap_entries_of(fits.asked, observed.facts, observed.height)) {
+      models.push_back(seen_entry(entry, observed.facts, sight));
+    }
+  }
   std::vector<Eigen::MatrixXd> out;
   for (const std::string& name : names) {
     out.push_back(

@@ -2,9 +2,13 @@
 // commands.
 //
 //   observations.h          places, kernel, values per realization, maps: of grains or of a field
-//   model.h                 a model: parameters that may be free, stress, what the registry has of
-//                           it; models.h (heaps) and layer_models.h (layers) list them
-//   observation_operator.h  the model at the places, through the kernel that averaged the grains
+//   registry_entry.h        a model of the registry (continuum/registry.cc) with some of its
+//   numbers
+//                           free; models.h (heaps) and layer_models.h (layers) list named ones,
+//                           open_models.h reads others
+//   model.h                 the same, ready to be fitted: parameters, starts, stress
+//   layer_sight.h           the model at the places, through the kernel that averaged the grains
+//                           (of heaps by coupling/models/observation_operator.h alone)
 //   fit.h, selection.h      constants with errors; which models the data support
 //   fits.h                  all of it for one ensemble, and finite elements (finite_elements.h)
 //   fit_report.h            figures, tables and pictures of the result
@@ -12,10 +16,13 @@
 // Heaps and layers differ in frame and units, in where they are looked at (heap_*.cc, layer_*.cc),
 // in their models, and in words (Specimen).
 #pragma once
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "coupling/compare/compare.h"
 #include "coupling/fit/finite_elements.h"
+#include "coupling/fit/layer_sight.h"
 #include "coupling/fit/layer_verdict.h"
 #include "coupling/fit/observations.h"
 #include "coupling/fit/selection.h"
@@ -24,6 +31,7 @@ namespace grainfield::coupling {
 
 struct EnsembleFits {
   Observations observed;
+  std::vector<std::string> asked;  ///< the models as they were named
   Weights weights;
   std::vector<FitModel> models;
   std::vector<Fit> fits;  ///< in the order of models
@@ -33,9 +41,14 @@ struct EnsembleFits {
   std::vector<FiniteElementFit> elements;
 };
 
-/// The models of the heaps, with slopes that a part of the realizations has alone where these are
+/// setup.models of the heaps, with slopes that a part of the realizations has alone where these are
 /// measured: their spread is part of the constants' errors.
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps);
+
+/// The models that these texts name, of layers of this height, m.
+std::vector<FitModel> models_of_layers(const std::vector<std::string>& texts,
+                                       const std::shared_ptr<const LayerSight>& sight,
+                                       double height);
 
 /// Weights, one fit per setup.models, their ranking, and the finite elements asked for. The bits do
 /// not depend on threads. Throws std::invalid_argument for unknown models and what data and models

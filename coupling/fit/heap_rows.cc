@@ -78,7 +78,7 @@ double HeapSlopes::right() const { return tangent(apart ? right_deg : mean_deg);
 
 bool takes_flanks_apart(const std::vector<std::string>& models) {
   return std::any_of(models.begin(), models.end(), [](const std::string& name) {
-    return name.compare(0, 21, "cantelaube_asymmetric") == 0;
+    return name.find("cantelaube_asymmetric") != std::string::npos;
   });
 }
 

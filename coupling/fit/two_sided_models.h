@@ -13,6 +13,6 @@ namespace grainfield::coupling {
 ///   cantelaube_asymmetric_friction  as _zero, the friction angle free
 ///   cantelaube_asymmetric_flanks    one linear core, flanks of free coefficients k_left, k_right
 ///   cantelaube_asymmetric           the same with a kink of free size on a free ray in the core
-std::vector<FitModel> two_sided_models(const HeapFacts& facts);
+std::vector<RegistryEntry> two_sided_entries(const HeapFacts& facts);
 
 }  // namespace grainfield::coupling

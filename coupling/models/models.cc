@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 
 #include "continuum/constants.h"
@@ -15,36 +14,8 @@
 #include "continuum/size.h"
 #include "continuum/without_effect.h"
 #include "coupling/compare/compare.h"
-#include "coupling/compare/smooth.h"
-#include "coupling/compare/smooth_space.h"
 
 namespace grainfield::coupling {
-namespace {
-
-// The smoothing asks for stresses at nodes of its own choice. A first pass notes the nodes, the
-// model is called once, and a second pass hands out what it gave.
-Eigen::MatrixXd seen_through(const PointSet& set, const StressFunction& stress, double depth) {
-  if (set.smoothing == Smoothing::none) return stress(set.points);
-  const StressFunction nodes = [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
-    if (!set.empty_outside) return stress(points);
-    return stress(points).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
-  };
-  Eigen::MatrixXd out =
-      set.points.cols() == 3               ? set.smoothing == Smoothing::marginal
-                                                 ? smooth_over_plane(nodes, set.points, *set.kernel)
-                                                 : smooth_in_space(nodes, set.points, *set.kernel, depth)
-                    : set.smoothing == Smoothing::kernel ? smooth_in_plane(nodes, set.points, *set.kernel, depth)
-                                           : smooth_along_x(nodes, set.points, *set.kernel);
-  if (set.empty_outside) {
-    const Eigen::MatrixXd here = stress(set.points);
-    for (Eigen::Index p = 0; p < here.rows(); ++p) {
-      if (here.row(p).hasNaN()) out.row(p).setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  return out;
-}
-
-}  // namespace
 
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts) {
   continuum::Settings out = choice.settings;
@@ -150,35 +121,15 @@ Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
   // A half plane or space knows no base: below it the stresses go on.
   const std::string family = family_of(choice.name);
   const double depth = family == "half plane" || family == "half space" ? 0 : facts.height;
-  std::vector<Eigen::MatrixXd> nodes;
-  Eigen::Index total = 0;
-  for (const auto& set : sets) {
-    seen_through(
-        set,
-        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
-          nodes.push_back(points);
-          total += points.rows();
-          return Eigen::MatrixXd::Zero(points.rows(), facts.dim == 3 ? 6 : 3);
-        },
-        depth);
-  }
-  Eigen::MatrixXd all(total, facts.dim);
-  Eigen::Index row = 0;
-  for (const auto& points : nodes) {
-    all.middleRows(row, points.rows()) = points;
-    row += points.rows();
-  }
-  const Eigen::MatrixXd stresses = model->stress(all);
+  const Eigen::MatrixXd stresses =
+      ObservationOperator(sets, depth).seen([&](const Eigen::MatrixXd& nodes) {
+        return model->stress(nodes);
+      });
   Evaluation out;
-  row = 0;
+  Eigen::Index row = 0;
   for (const auto& set : sets) {
-    out.stresses.push_back(seen_through(
-        set,
-        [&](const Eigen::MatrixXd& points) -> Eigen::MatrixXd {
-          row += points.rows();
-          return stresses.middleRows(row - points.rows(), points.rows());
-        },
-        depth));
+    out.stresses.emplace_back(stresses.middleRows(row, set.points.rows()));
+    row += set.points.rows();
   }
   out.figures = model->figures();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "coupling/averaging/kernel.h"
 #include "coupling/models/choice.h"
+#include "coupling/models/observation_operator.h"
 
 namespace grainfield::coupling {
 
@@ -33,33 +33,19 @@ void require_models(const std::vector<ModelChoice>& choices, int dim = 2);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
 
-/// How a model's stress is averaged at some points (models' frame), as the grains' is: not at all;
-/// with the kernel (over the plane, of points in space over space); along x with the kernel's
-/// marginal (of points in space: over the horizontal plane with the kernel as seen from above).
-enum class Smoothing { none, kernel, marginal };
-
-struct PointSet {
-  Eigen::MatrixXd points;
-  Smoothing smoothing = Smoothing::none;
-  const Kernel* kernel = nullptr;  ///< for kernel, marginal
-  /// There is nothing where the model gives nan (outside of a heap): the smoothing counts zero
-  /// stress there, and points that are themselves outside stay nan.
-  bool empty_outside = false;
-};
-
 struct Evaluation {
   std::vector<Eigen::MatrixXd> stresses;  ///< one per point set, tension positive
   std::map<std::string, double> figures;  ///< of the model
   double seconds = 0;                     ///< wall time
 };
 
-/// Stresses of one model on all point sets, with a single call of the model. Throws
-/// continuum::BadParameter and continuum::ComputationFailed.
 /// Figures of a heap's model that are over rho g h of its own height, over that of the grains,
 /// which is 1/spanned of it.
 std::map<std::string, double> over_grains_height(std::map<std::string, double> figures,
                                                  double spanned);
 
+/// Stresses of one model on all point sets, with a single call of the model. Throws
+/// continuum::BadParameter and continuum::ComputationFailed.
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets);
 

@@ -12,8 +12,10 @@ namespace {
 constexpr const char* kLabelLetters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
 
+}  // namespace
+
 // "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
-ModelChoice parse_choice(const std::string& text) {
+ModelChoice parse_choice(const std::string& text, const std::string& where) {
   const std::size_t colon = text.find(':');
   const std::string head = text.substr(0, colon);
   const std::size_t equals = head.find('=');
@@ -21,8 +23,8 @@ ModelChoice parse_choice(const std::string& text) {
   out.name = equals == std::string::npos ? head : head.substr(equals + 1);
   out.label = equals == std::string::npos ? head : head.substr(0, equals);
   if (out.label.empty() || out.label.find_first_not_of(kLabelLetters) != std::string::npos) {
-    throw std::invalid_argument(
-        fmt::format("--model: found the label '{}', allowed: letters, digits, _ and -", out.label));
+    throw std::invalid_argument(fmt::format(
+        "{}: found the label '{}', allowed: letters, digits, _ and -", where, out.label));
   }
   continuum::find_model(out.name);
   if (colon == std::string::npos) return out;
@@ -33,11 +35,15 @@ ModelChoice parse_choice(const std::string& text) {
     items.push_back(rest.substr(at, end - at));
     at = end + 1;
   }
-  out.settings = parse_settings(items, "--model " + out.name);
+  out.settings = parse_settings(items, where + " " + out.name);
   return out;
 }
 
-}  // namespace
+std::string label_beside(std::set<std::string>& taken, const std::string& label) {
+  std::string out = label;
+  for (int n = 2; !taken.insert(out).second; ++n) out = fmt::format("{}_{}", label, n);
+  return out;
+}
 
 continuum::Settings parse_settings(const std::vector<std::string>& texts,
                                    const std::string& where) {
@@ -62,10 +68,7 @@ std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
   std::set<std::string> seen;
   for (const auto& text : texts) {
     ModelChoice choice = parse_choice(text);
-    const std::string label = choice.label;
-    for (int n = 2; !seen.insert(choice.label).second; ++n) {
-      choice.label = fmt::format("{}_{}", label, n);
-    }
+    choice.label = label_beside(seen, choice.label);
     out.push_back(std::move(choice));
   }
   return out;

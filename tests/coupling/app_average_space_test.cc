@@ -214,8 +214,9 @@ Field half_space(bool rings, double factor) {
   const auto model = continuum::make_model("boussinesq", {{"F", "3"}});
   const auto kernel = make_kernel("lucy", 0.01, 3);
   const Eigen::MatrixXd stress =
-      smooth_in_space([&](const Eigen::MatrixXd& p) -> Eigen::MatrixXd { return model->stress(p); },
-                      at, *kernel, 0);
+      nodes_in_space(at, *kernel, 0).of([&](const Eigen::MatrixXd& p) -> Eigen::MatrixXd {
+        return model->stress(p);
+      });
   const std::vector<std::string> names =
       rings ? std::vector<std::string>{"sigma_rr", "sigma_tt", "sigma_zz", "", "sigma_rz", ""}
             : kSpaceStress;

@@ -151,8 +151,8 @@ TEST(Smooth, LeavesALinearFieldAsItIs) {
   points << 0.1, -0.5, -0.2, -0.4;
   for (const char* name : {"lucy", "gaussian", "heaviside"}) {
     const auto k = make_kernel(name, 0.05);
-    EXPECT_TRUE(smooth_in_plane(linear, points, *k, 1).isApprox(linear(points), 1e-12)) << name;
-    EXPECT_TRUE(smooth_along_x(linear, points, *k).isApprox(linear(points), 1e-12)) << name;
+    EXPECT_TRUE(nodes_in_plane(points, *k, 1).of(linear).isApprox(linear(points), 1e-12)) << name;
+    EXPECT_TRUE(nodes_along_x(points, *k).of(linear).isApprox(linear(points), 1e-12)) << name;
   }
 }
 
@@ -161,7 +161,7 @@ TEST(Smooth, IsTheConvolutionAlsoAroundTheLoad) {
   const auto k = make_kernel("lucy", 0.1);
   Eigen::MatrixXd points(4, 2);
   points << 0.2, -1.0, 0.0, -0.31, 0.05, -0.12, 0.1, -0.02;
-  const Eigen::MatrixXd smooth = smooth_in_plane(flamant, points, *k, 0);
+  const Eigen::MatrixXd smooth = nodes_in_plane(points, *k, 0).of(flamant);
   const int n = 600;
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     double sum = 0;
@@ -187,8 +187,8 @@ TEST(Smooth, KeepsTheLoadOfAHalfPlane) {
   points.col(0) = axis(n, 40);
   points.col(1).setConstant(-0.5);
   const double step = 80.0 / (n - 1);
-  EXPECT_NEAR(-smooth_in_plane(flamant, points, *k, 0).col(1).sum() * step, 1, 1e-3);
-  EXPECT_NEAR(-smooth_along_x(flamant, points, *k).col(1).sum() * step, 1, 1e-3);
+  EXPECT_NEAR(-nodes_in_plane(points, *k, 0).of(flamant).col(1).sum() * step, 1, 1e-3);
+  EXPECT_NEAR(-nodes_along_x(points, *k).of(flamant).col(1).sum() * step, 1, 1e-3);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/fit/coverage.h"
-#include "coupling/fit/observation_operator.h"
+#include "coupling/models/observation_operator.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
@@ -14,8 +14,9 @@ namespace {
 constexpr double kWidth = 0.018;
 
 std::vector<FitModel> seen(const std::vector<FitModel>& models, const FitData& data) {
-  const auto seeing = std::make_shared<const ObservationOperator>(
-      ObservationOperator::of_heap(places_of(data), *make_kernel("lucy", kWidth), kHeight));
+  const Eigen::MatrixXd places = places_of(data);
+  const auto seeing = std::make_shared<const HeapSight>(HeapSight{
+      Places(places), ObservationOperator::of_heap(places, *make_kernel("lucy", kWidth), kHeight)});
   std::vector<FitModel> out;
   for (const FitModel& model : models) out.push_back(seen_through(model, seeing));
   return out;

@@ -67,6 +67,7 @@ TEST(DerivedFigures, HaveTheSpreadOfDraws) {
 
 TEST(DerivedFigures, OfOneFreeNumberHoldEta) {
   Fit fit;
+  fit.name = "osl_yield";
   fit.parameters = {fitted("mu", 0.2, 0.03)};
   fit.correlation = Eigen::MatrixXd::Identity(1, 1);
   const auto figures = derived_figures(fit, 28);

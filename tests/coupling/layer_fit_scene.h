@@ -10,9 +10,9 @@
 
 #include "coupling/fit/finite_elements.h"
 #include "coupling/fit/layer_models.h"
+#include "coupling/fit/layer_sight.h"
 #include "coupling/fit/layer_verdict.h"
 #include "coupling/fit/models.h"
-#include "coupling/fit/observation_operator.h"
 #include "coupling/fit/selection.h"
 #include "dem/random/random.h"
 
@@ -27,7 +27,7 @@ inline Eigen::VectorXd vector(std::initializer_list<double> v) {
 // Three depths with all components, the base with two, `per` points each; the sight's points.
 struct LayerScene {
   FitData data;
-  std::shared_ptr<const ObservationOperator> sight;
+  std::shared_ptr<const LayerSight> sight;
   std::vector<FitModel> models;
   Eigen::MatrixXd root;  // of the noise's correlation
 };
@@ -55,7 +55,7 @@ inline LayerScene layer_scene(int per = 13, double width = 0.1, double length = 
   for (Eigen::Index k = 0; k < n; ++k) data.points.row(k) = points[k];
   Eigen::MatrixXd places(once.size(), 2);
   for (std::size_t k = 0; k < once.size(); ++k) places.row(k) = once[k];
-  out.sight = std::make_shared<const ObservationOperator>(places, *make_kernel("lucy", width));
+  out.sight = std::make_shared<const LayerSight>(places, *make_kernel("lucy", width));
   out.models = layer_models(out.sight);
   Eigen::MatrixXd correlation(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -29,9 +29,10 @@ Eigen::MatrixXd seen_directly(const ModelChoice& choice, const Eigen::MatrixXd& 
   Eigen::MatrixXd out(points.rows(), 3);
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Eigen::MatrixXd here = points.row(k);
-    out.row(k) = here(0, 1) == -1 ? smooth_along_x(stress, here, kernel)
-                                  : smooth_in_plane(stress, here, kernel,
-                                                    family_of(choice.name) == "half plane" ? 0 : 1);
+    const double depth = family_of(choice.name) == "half plane" ? 0 : 1;
+    out.row(k) =
+        (here(0, 1) == -1 ? nodes_along_x(here, kernel) : nodes_in_plane(here, kernel, depth))
+            .of(stress);
   }
   return out;
 }
@@ -53,9 +54,9 @@ Fit with_parameters(const std::string& name, const Eigen::VectorXd& p) {
 TEST(LayerFit, ModelsAreTheRegistrysSeenThroughTheKernel) {
   const auto kernel = make_kernel("lucy", 0.1);
   Eigen::MatrixXd points(6, 2);
-  points << scene().sight->points().row(6), scene().sight->points().row(8),
-      scene().sight->points().row(20), scene().sight->points().row(34),
-      scene().sight->points().row(45), scene().sight->points().row(47);
+  points << scene().sight->places().points().row(6), scene().sight->places().points().row(8),
+      scene().sight->places().points().row(20), scene().sight->places().points().row(34),
+      scene().sight->places().points().row(45), scene().sight->places().points().row(47);
   for (const LayerTruth& truth : layer_truths()) {
     const ModelChoice choice =
         registry_choice(find_fit_model(scene().models, truth.model), truth.parameters, 1);

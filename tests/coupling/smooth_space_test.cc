@@ -25,7 +25,8 @@ TEST(SmoothSpace, LeavesALinearFieldAsItIs) {
   };
   const Eigen::MatrixXd points = Eigen::RowVector3d(0.3, -0.2, -0.5);
   for (const char* name : {"lucy", "gaussian", "heaviside"})
-    EXPECT_TRUE(smooth_in_space(linear, points, *make_kernel(name, 0.05, 3), 1)
+    EXPECT_TRUE(nodes_in_space(points, *make_kernel(name, 0.05, 3), 1)
+                    .of(linear)
                     .isApprox(linear(points), 1e-12))
         << name;
 }
@@ -35,7 +36,7 @@ TEST(SmoothSpace, IsTheConvolutionAlsoAroundTheLoad) {
   const auto k = make_kernel("lucy", 0.1, 3);
   Eigen::MatrixXd points(4, 3);
   points << 0.2, 0.1, -1.0, 0.0, 0.0, -0.35, 0.1, 0.1, -0.22, 0.05, 0.02, -0.12;
-  const Eigen::MatrixXd smooth = smooth_in_space(boussinesq, points, *k, 0);
+  const Eigen::MatrixXd smooth = nodes_in_space(points, *k, 0).of(boussinesq);
   const int n = 120;
   const double step = 2 * k->range() / n;
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
@@ -63,17 +64,16 @@ TEST(SmoothSpace, KeepsTheLoad) {
   const double depth = 0.15, step = 40.0 / n;
   Eigen::MatrixXd points(n, 3);
   for (int i = 0; i < n; ++i) points.row(i) << (i + 0.5) * step, 0, -depth;
-  const Eigen::MatrixXd smooth = smooth_in_space(boussinesq, points, *k, 0, 4);
+  const Eigen::MatrixXd smooth = nodes_in_space(points, *k, 0, 4).of(boussinesq);
   double sum = 0;
   for (int i = 0; i < n; ++i) sum -= 2 * std::acos(-1.0) * points(i, 0) * step * smooth(i, 2);
   EXPECT_NEAR(sum, 1, 5e-3);
 }
 
 TEST(SmoothSpace, RefusesThePlane) {
-  EXPECT_THROW(
-      smooth_in_space(boussinesq, Eigen::MatrixXd::Zero(1, 2), *make_kernel("lucy", 1, 3), 0),
-      std::invalid_argument);
-  EXPECT_THROW(smooth_in_space(boussinesq, Eigen::MatrixXd::Zero(1, 3), *make_kernel("lucy", 1), 0),
+  EXPECT_THROW(nodes_in_space(Eigen::MatrixXd::Zero(1, 2), *make_kernel("lucy", 1, 3), 0),
+               std::invalid_argument);
+  EXPECT_THROW(nodes_in_space(Eigen::MatrixXd::Zero(1, 3), *make_kernel("lucy", 1), 0),
                std::invalid_argument);
 }
 

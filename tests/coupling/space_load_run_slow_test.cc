@@ -368,11 +368,12 @@ TEST(SmoothSpace, OverThePlaneLeavesALinearFieldAsItIs) {
   };
   const Eigen::MatrixXd points = Eigen::RowVector3d(0.3, -0.2, -0.5);
   for (const char* name : {"lucy", "gaussian", "heaviside"}) {
-    EXPECT_TRUE(smooth_over_plane(linear, points, *make_kernel(name, 0.05, 3))
+    EXPECT_TRUE(nodes_over_plane(points, *make_kernel(name, 0.05, 3))
+                    .of(linear)
                     .isApprox(linear(points), 1e-12))
         << name;
   }
-  EXPECT_THROW(smooth_over_plane(linear, points, *make_kernel("lucy", 1)), std::invalid_argument);
+  EXPECT_THROW(nodes_over_plane(points, *make_kernel("lucy", 1)), std::invalid_argument);
 }
 
 }  // namespace

@@ -316,9 +316,9 @@ def fit(
 ) -> FitResult:
     """Fits stress models to heaps and ranks them (docs/fits.md), as `grainfield fit`.
 
-    inputs: packings, one Field of frame heap, or names as of the command, or a list. models: names;
-    default all for symmetric heaps. heights: shares of the heap's height. set: {"fit.huber": 3}.
-    folder: as of compare(). Raises ValueError, RuntimeError.
+    inputs: packings, one Field of frame heap, or names as of the command, or a list. models: names,
+    also "NAME:p=free,q=0.3"; default all for symmetric heaps. heights: shares of the heap's height.
+    set: {"fit.huber": 3}. folder: as of compare(). Raises ValueError, RuntimeError.
     """
     if isinstance(inputs, Mapping):
         inputs = list(inputs.values())

@@ -3,6 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/fit/models.h"
+#include "coupling/fit/open_models.h"
 #include "coupling/fit/setup.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(FitSetup, MEMBER)
@@ -17,7 +18,7 @@ using std::string;
 void declare_fit_keys(SectionKeys s) {
   std::vector<string> names;
   string meaning = "models that are fitted and ranked";
-  for (const FitModel& model : heap_models({})) {
+  for (const RegistryEntry& model : heap_entries({})) {
     names.push_back(model.name);
     meaning += (names.size() == 1 ? ": " : "; ") + model.name;
     if (!model.parameters.empty()) {
@@ -28,7 +29,8 @@ void declare_fit_keys(SectionKeys s) {
       meaning += ")";
     }
   }
-  s.word("models", IN(models), names, meaning, "Roul 4.3, 4.4");
+  s.word("models", IN(models), names, meaning + "; or " + kOpenModels, "Roul 4.3, 4.4");
+  s.or_else(refused_heap_model);
   s.word(
       "finite_elements", IN(finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
       "finite-element models that are solved with the measured slope and the fitted constants and "

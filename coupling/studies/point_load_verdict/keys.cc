@@ -3,6 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/fit/layer_models.h"
+#include "coupling/fit/open_models.h"
 #include "coupling/fit/setup.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(VerdictSetup, MEMBER)
@@ -15,11 +16,15 @@ using std::string;
 }  // namespace
 
 void declare_verdict_keys(SectionKeys s) {
-  s.word("models", IN(models), layer_model_names(),
+  std::vector<string> names;
+  for (const RegistryEntry& model : layer_entries()) names.push_back(model.name);
+  s.word("models", IN(models), names,
          "models that are fitted to the response and ranked; free: layer_rough nu; "
          "orthotropic_half_plane, orthotropic_layer_smooth rho, t; orthotropic_layer_rough shear, "
-         "t, nu_ratio; osl_layer_* eta, mu, width",
+         "t, nu_ratio; osl_layer_* eta, mu, width; or " +
+             string(kOpenModels),
          "Otto et al. 2003; Roul 5.6");
+  s.or_else(refused_layer_model);
   s.word("finite_elements", IN(finite_elements),
          {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
          "finite-element models that are solved with the fitted constants and join the tables");

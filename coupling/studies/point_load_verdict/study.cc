@@ -14,7 +14,6 @@
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
-#include "coupling/fit/observation_operator.h"
 #include "coupling/fit/setup.h"
 #include "coupling/models/models.h"
 #include "coupling/run/ensemble.h"
@@ -89,8 +88,9 @@ ModelEvaluator evaluator_of(const std::shared_ptr<const EnsembleFits>& fits) {
         places->middleRows(rows, s.points.rows()) = s.points / facts.height;
         rows += s.points.rows();
       }
-      *known = layer_models(
-          std::make_shared<const ObservationOperator>(*places, *fits->observed.kernel));
+      *known = models_of_layers(fits->asked,
+                                std::make_shared<const LayerSight>(*places, *fits->observed.kernel),
+                                facts.height);
     }
     const Eigen::MatrixXd all =
         find_fit_model(*known, choice.label).stress(*places, parameters_of(*fitted)) *
