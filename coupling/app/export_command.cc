@@ -175,6 +175,7 @@ int export_deck(ExportRequest given) {
   LammpsSetup setup;
   setup.material = study.material(value);
   if (study.rest != nullptr) setup.background_damping = study.rest(value).background_damping;
+  setup.local_damping = study.motion(value).local_damping;
   constexpr std::int64_t kDraws = 1000;
   setup.time_step = study.foresee(value, kDraws).time_step;
   take_load(given.snapshots, group, packing, setup);

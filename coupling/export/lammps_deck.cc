@@ -256,6 +256,10 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
     out += "fix damp free addforce v_damp_x v_damp_y v_damp_z\n";
     deck.notes.push_back("rest.background_damping slows displacement alone, not rotation");
   }
+  if (setup.local_damping > 0) {
+    deck.notes.push_back(
+        "motion.local_damping is left out: LAMMPS has none, and comes to rest more slowly");
+  }
   if (has_fixed(s)) out += "fix hold fixed freeze\n";
   out += fmt::format(
       "compute ids all property/local patom1 patom2 cutoff radius\n"

@@ -14,6 +14,7 @@ namespace grainfield::coupling {
 struct LammpsSetup {
   dem::MaterialSetup material;
   double background_damping = 0;     ///< 1/s, of velocities
+  double local_damping = 0;          ///< Cundall's; LAMMPS has none: a note says so
   double time_step = 1e-5;           ///< s
   std::vector<std::int64_t> loaded;  ///< ids of the grains that share the load; empty: none
   dem::Vec3 force{0, 0, 0};          ///< on each of them, N

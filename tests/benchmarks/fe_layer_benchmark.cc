@@ -1,5 +1,5 @@
 // Time against unknowns of the finite-element layer in 2D: the same layer on ever finer uniform
-// meshes, one adaptive cycle on top. Run by hand; docs/benchmarks-fe.md keeps the figures.
+// meshes, one adaptive cycle on top. Run by hand; docs/benchmarks.md names it.
 #include <benchmark/benchmark.h>
 
 #include "continuum/model.h"

@@ -14,7 +14,9 @@ namespace grainfield::coupling {
 namespace {
 
 using testing::Folder;
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::program;
 
 dem::Snapshot two_spheres() {
@@ -56,6 +58,7 @@ TEST(Export, SaysLawWallsCellAndLoadInLammpsWords) {
   setup.force = dem::Vec3(0, 0, -0.5);
   setup.background_damping = 3;
   const LammpsDeck deck = lammps_deck(two_spheres(), setup);
+  EXPECT_THAT(deck.notes, Not(Contains(HasSubstr("local_damping"))));
   EXPECT_THAT(deck.data, HasSubstr("2 atoms\n2 atom types"));
   EXPECT_THAT(deck.data, HasSubstr("0 0.10000000000000001 xlo xhi"));
   EXPECT_THAT(deck.data, HasSubstr("\n1 2 0.01"));
@@ -69,6 +72,8 @@ TEST(Export, SaysLawWallsCellAndLoadInLammpsWords) {
   setup = setup_of("linear");
   setup.material.rolling_friction = 0.1;
   setup.material.rolling_stiffness = 500;
+  setup.local_damping = 0.2;
+  EXPECT_THAT(lammps_deck(two_spheres(), setup).notes, Contains(HasSubstr("motion.local_damping")));
   EXPECT_THAT(lammps_deck(two_spheres(), setup).input,
               HasSubstr("hooke 10000000 500 damping mass_velocity tangential linear_history "));
   EXPECT_THAT(lammps_deck(two_spheres(), setup).input, HasSubstr(" rolling sds 500 0 0.1"));
