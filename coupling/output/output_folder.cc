@@ -202,7 +202,11 @@ std::vector<fs::path> OutputFolder::publish() {
   both.insert(earlier.begin(), earlier.end());
   list(both);
 
+  // Also those of a sweep's members.
   fs::remove(folder_ / kSummary, error);
+  for (const fs::path& name : results) {
+    if (name.filename() == kSummary) fs::remove(folder_ / name, error);
+  }
   const std::set<fs::path> fresh(results.begin(), results.end());
   const auto move = [&](bool summaries) {
     for (const fs::path& name : results) {
