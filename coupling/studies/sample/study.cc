@@ -250,6 +250,14 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   if (setup.along == 0) return;
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   const RveTable rves = rve_table(files, setup, plan);
+void add_contraction(const Contraction& found, Summary& summary) {
+  if (found.figures.empty()) return;
+  add_figures(summary, found.figures);
+  summary["rve.contraction_strain"] = found.strain;
+  if (!std::isfinite(found.strain_error)) return;
+  summary["rve.contraction_strain.standard_error"] = found.strain_error;
+}
+
   add_figures(out.summary, rve_figures(rves, plan.deformation));
   out.texts.emplace_back("rve.csv", rve_csv(rves));
   if (const std::string hull = rve_vtu(rves); !hull.empty()) {
@@ -258,6 +266,7 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   report.rves = rve_sections(rves, plan.deformation);
   for (const std::string& line : rve_warnings(rves)) {
     report.rves.insert(report.rves.begin(), Text{"", line + ".", true});
+  if (plan.deformation == "simple_shear") add_contraction(rve_contraction(rves), out.summary);
   }
   out.sweep_sections = [sections = report.rves](const std::string& member) {
     std::vector<Section> own;
