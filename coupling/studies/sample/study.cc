@@ -19,13 +19,15 @@
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
 #include "dem/study/sample.h"
+#include "dem/study/sample_path.h"
 #include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kRounding = 1e-10;
+// Of inertial numbers (GDR MiDi 2004).
+constexpr double kQuasiStatic = 1e-3;
 
 const char* strain_name(const std::string& deformation) {
   return deformation == "simple_shear" ? "shear strain"
@@ -42,6 +44,12 @@ SampleCurve risen(const StateTable& table, const std::string& column, const std:
   SampleCurve out = curve(table, column, title);
   out.mean.array() -= out.mean[0];
   return out;
+}
+
+// It follows from the imposed strain then, or is rounding: nothing to be seen.
+bool imposes_volume(const dem::SamplePlan& plan) {
+  if (dem::shears(plan)) return plan.constant == "volume";
+  return plan.deformation == "uniaxial" || plan.deformation == "isotropic";
 }
 
 std::string label_of(const StateTable& table) {
@@ -65,13 +73,12 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   out.strain_name = strain_name(plan.deformation);
   out.label = label_of(table);
   out.strain = table.mean("strain");
-  out.main = {curve(table, "q_over_p", "q/p"),
-              curve(table, "volumetric_strain", "volumetric strain"),
-              curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"),
-              curve(table, "coordination", "contacts of a grain")};
-  // At constant volume it is rounding.
-  auto& volume = out.main[1].mean;
-  if (volume.cwiseAbs().maxCoeff() < kRounding) volume.setZero();
+  out.main = {curve(table, "q_over_p", "q/p")};
+  if (!imposes_volume(plan)) {
+    out.main.push_back(curve(table, "volumetric_strain", "volumetric strain"));
+  }
+  out.main.push_back(curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"));
+  out.main.push_back(curve(table, "coordination", "contacts of a grain"));
   const Driving driving = driving_of(plan.deformation, plan.dim);
   out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
   if (plan.deformation == "simple_shear") {
