@@ -250,13 +250,6 @@ std::map<std::string, std::vector<double>> engine_figures(const std::vector<std:
   return out;
 }
 
-// rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
-void add_rves(const Case& value, const std::vector<std::string>& files, SampleReport& report,
-              StudyResult& out) {
-  const RveSetup& setup = value.get<RveSetup>();
-  if (setup.along == 0) return;
-  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
-  const RveTable rves = rve_table(files, setup, plan);
 void add_contraction(const Contraction& found, Summary& summary) {
   if (found.figures.empty()) return;
   add_figures(summary, found.figures);
@@ -265,7 +258,15 @@ void add_contraction(const Contraction& found, Summary& summary) {
   summary["rve.contraction_strain.standard_error"] = found.strain_error;
 }
 
+// rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
+void add_rves(const Case& value, const std::vector<std::string>& files, SampleReport& report,
+              StudyResult& out) {
+  const RveSetup& setup = value.get<RveSetup>();
+  if (setup.along == 0) return;
+  const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  const RveTable rves = rve_table(files, setup, plan);
   add_figures(out.summary, rve_figures(rves, plan.deformation));
+  if (plan.deformation == "simple_shear") add_contraction(rve_contraction(rves), out.summary);
   out.texts.emplace_back("rve.csv", rve_csv(rves));
   if (const std::string hull = rve_vtu(rves); !hull.empty()) {
     out.texts.emplace_back("rve_hull.vtu", hull);
@@ -273,7 +274,6 @@ void add_contraction(const Contraction& found, Summary& summary) {
   report.rves = rve_sections(rves, plan.deformation);
   for (const std::string& line : rve_warnings(rves)) {
     report.rves.insert(report.rves.begin(), Text{"", line + ".", true});
-  if (plan.deformation == "simple_shear") add_contraction(rve_contraction(rves), out.summary);
   }
   out.sweep_sections = [sections = report.rves](const std::string& member) {
     std::vector<Section> own;
@@ -304,6 +304,19 @@ void add_moduli(const Case& value, const std::vector<std::string>& files, const 
   for (Section& section : block_sections(comparison)) report.moduli.push_back(std::move(section));
 }
 
+// Of a test too fast to be one of states at rest.
+void warn_of_inertia(StudyResult& out) {
+  const auto found = out.summary.find("sample.inertial_number");
+  if (found == out.summary.end()) return;
+  const double number = std::get<double>(found->second);
+  if (!(number > kQuasiStatic)) return;
+  out.warnings.push_back(fmt::format(
+      "The inertial number reaches {:.2g} (sample.inertial_number): above {:g} a test is "
+      "not quasi-static and its stresses depend on its speed; a lower "
+      "sample.strain_rate lessens it in proportion.",
+      number, kQuasiStatic));
+}
+
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
 // spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
@@ -314,6 +327,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
   add_figures(out.summary, path_figures(table, plan));
   add_figures(out.summary, strength_figures(strength_paths(table, plan)));
+  warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.verdict.sentence = sentence(value, table, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
