@@ -32,10 +32,10 @@ std::vector<SummaryKey> rve_summary_keys() {
        "sigma_zz of the RVEs from the forces on their boundary over that of the sample, at the end "
        "of the loading"},
       {"rve.r*.grain_stress_ratio", "-", "the same from all contacts of the RVEs' grains"},
+      {"rve.r*.field_ratio", "-", "the same of the coarse-grained field at their points"},
       {"rve.r*.axial_stress_ratio", "-",
        "q/p of the RVEs' mean stress from the forces on their boundary at the end of the loading, "
        "but for simple shear: q the stress along z less the mean along x and y (Wellmann 32)"},
-      {"rve.r*.field_ratio", "-", "the same of the coarse-grained field at their points"},
       {"rve.r*.strain_ratio", "-",
        "strain of the hulls over that of the sample's edges at the end of the loading: zz, of a "
        "simple shear xz"},
