@@ -12,6 +12,8 @@ constexpr int frame_height = 330, frame_width = 480, legend_row = 24, title_heig
 constexpr double kFlat = 1e-3;      // a curve that varies by less is level
 constexpr double kNearZero = 0.02;  // x that begins nearer to 0 begins at 0: plain tic labels
 
+constexpr const char* kOwnLegend = "set key top left noenhanced samplen 2 noopaque\n";
+
 struct Range {
   double low = 0, high = 0;
   bool any = false;
@@ -111,9 +113,12 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
     head += y.any ? fmt::format("set yrange [{}:{}]\n", flat ? -1 : y.low - room,
                                 flat ? 1 : y.high + room)
                   : std::string("set yrange [*:*]\n");
-    plots.push_back(head + "plot " + plot + "\n");
+    const bool own = frames[f].own_legend;
+    plots.push_back((own ? kOwnLegend : "") + head + "plot " + plot +
+                    (own ? "\nunset key\n" : "\n"));
   }
-  const std::size_t entries = frames.empty() ? 0 : frames.front().series.size() + 1;
+  const bool common = !frames.empty() && !frames.front().own_legend;
+  const std::size_t entries = common ? frames.front().series.size() + 1 : 0;
   const int per_row = columns == 1 ? 2 : 3;
   const int legend_rows = (static_cast<int>(entries) + per_row - 1) / per_row;
   picture.width = columns == 1 ? 760 : columns * frame_width;
@@ -135,7 +140,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
         fmt::format("set size {:.4f},{:.4f}\nset origin {:.4f},{:.4f}\n{}", 1.0 / columns, height,
                     static_cast<double>(column) / columns, 1 - height * (row + 1), plots[f]);
   }
-  if (!frames.empty()) {
+  if (common) {
     // The legend alone: the first frame's entries drawn on an empty, invisible frame.
     std::string entries_only;
     std::size_t model = 0;

@@ -27,10 +27,12 @@ struct Series {
   bool bars = false;            ///< with a colour: its errors as bars
 };
 
-/// One frame of curves; `frames` stand in a grid under a common legend.
+/// One frame of curves; `frames` stand in a grid under a common legend, which has the curves of the
+/// first one.
 struct Frame {
   std::string title;
   std::vector<Series> series;
+  bool own_legend = false;  ///< inside it, for curves that differ from the first frame's
 };
 /// `log_x`: x, above 0 then, on a logarithmic axis.
 Picture curves(const std::string& title, const std::string& x_label, const std::string& y_label,

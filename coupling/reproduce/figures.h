@@ -24,6 +24,8 @@ struct SourceFigure {
   std::function<std::optional<std::string>(const Results&)> word;
   /// Ratios: how far from 1 the source's lies, which is what it says; 0: the value itself counts.
   double effect = 0;
+  /// What must be known of ours, in the row's last words; "" where nothing.
+  std::function<std::string(const Results&)> note = nullptr;
 };
 
 /// In the order of the page.

@@ -62,9 +62,11 @@ void declare_material_keys(SectionKeys s) {
            "time step",
            kBoth);
   s.only("material.law", {"overlap_area", "energy", "hertz", "hertz_elliptic"});
-  s.number("poisson", "-", +MATERIAL(double, poisson), {-0.99, 0.5},
-           "Poisson's ratio of the grains; more: stiffer across the contact, softer along it",
-           "Thornton et al. 2013");
+  s.number(
+      "poisson", "-", +MATERIAL(double, poisson), {-0.999, 0.5},
+      "Poisson's ratio of the grains; more: stiffer across the contact, softer along it; at -1 "
+      "no shape would change",
+      "Thornton et al. 2013");
   s.space();
   s.only("material.law", {"hertz", "hertz_elliptic"});
   s.number("least_radius", "-", +MATERIAL(double, least_radius), {1e-6, 1},

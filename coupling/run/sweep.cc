@@ -156,16 +156,33 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
 
 namespace {
 
+// The member's curve of this title; without one an empty one, so that the next members keep their
+// colours.
+Series curve_of(const StudyResult& member, const std::string& title) {
+  for (const MemberCurve& curve : member.member_curves) {
+    if (curve.title == title) return curve.series;
+  }
+  return {};
+}
+
+std::vector<std::string> curve_titles(const std::vector<StudyResult>& results) {
+  std::vector<std::string> out;
+  for (const StudyResult& member : results) {
+    for (const MemberCurve& curve : member.member_curves) {
+      if (std::find(out.begin(), out.end(), curve.title) == out.end()) out.push_back(curve.title);
+    }
+  }
+  return out;
+}
+
 // One frame per quantity, one curve per member.
 Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
                       const std::vector<StudyResult>& results) {
-  const auto& one = results.front().member_curves;
   std::vector<Frame> frames;
-  for (std::size_t k = 0; k < one.size(); ++k) {
-    Frame frame{one[k].title, {}};
+  for (const std::string& title : curve_titles(results)) {
+    Frame frame{title, {}};
     for (std::size_t m = 0; m < members.size(); ++m) {
-      if (k >= results[m].member_curves.size()) continue;
-      Series series = results[m].member_curves[k].series;
+      Series series = curve_of(results[m], title);
       series.label = value.sweep.key == "variant"
                          ? value.sweep.values[m]
                          : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]);
@@ -173,7 +190,8 @@ Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
     }
     frames.push_back(std::move(frame));
   }
-  Picture picture = curves("All members", one.front().x_label, "", frames);
+  Picture picture =
+      curves("All members", results.front().member_curves.front().x_label, "", frames);
   picture.caption = "Means over realizations, with bands of one standard error.";
   return picture;
 }

@@ -258,15 +258,26 @@ void check_density(const SamplePlan& p) {
   share *= p.boundary == "walls" ? 1 - p.precompression : std::exp(-p.precompression);
   double least = p.dim == 2 ? kLoosest2 : kLoosest3;
   if (!compresses_to_pressure(p)) least = p.start_fraction / volume_share(p);
-  const auto judge = [&](const char* key, double found, double fraction) {
+  const bool walls = p.boundary == "walls";
+  // `power`: of the edge's share in the volume's.
+  const auto judge = [&](const char* key, double found, double fraction, int power, bool linear) {
     if (fraction <= kTooDense) return;
-    refuse(key, fmt::format("found {:g}: grains would be crushed, they would fill {:.3g} of the {} "
-                            "at least, allowed: up to {:g}",
-                            found, fraction, p.boundary == "walls" ? "box" : "cell", kTooDense));
+    const double edge =
+        (linear ? 1 - found : std::exp(-found)) * std::pow(fraction / kTooDense, 1.0 / power);
+    const double most = std::max(0.0, linear ? 1 - edge : -std::log(edge));
+    refuse(key, fmt::format("found {:g}, allowed: up to {:g}; grains would be crushed, they would "
+                            "fill {:.3g} of the {} at least, where {:g} is the most",
+                            found, round_down(most), fraction, walls ? "box" : "cell", kTooDense));
   };
-  if (p.compress_to == "strain") judge("compression_strain", p.compression_strain, least);
-  judge(share < 1 && p.precompression > p.strain ? "precompression" : "strain",
-        p.precompression > p.strain ? p.precompression : p.strain, least / share);
+  if (p.compress_to == "strain") {
+    judge("compression_strain", p.compression_strain, least,
+          p.compression == "isotropic" ? p.dim : 1, true);
+  }
+  if (share < 1 && p.precompression > p.strain) {
+    judge("precompression", p.precompression, least / share, 1, walls);
+  } else {
+    judge("strain", p.strain, least / share, both ? p.dim : 1, walls);
+  }
 }
 
 void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double time_step) {

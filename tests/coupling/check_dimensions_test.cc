@@ -19,7 +19,7 @@ TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
                 "in 2D"));
   EXPECT_THAT(
       complaint(layer, {"material.poisson=0.3"}),
-      HasSubstr("material.poisson: found 0.3, allowed: only in three dimensions: -0.99 to 0.5; "
+      HasSubstr("material.poisson: found 0.3, allowed: only in three dimensions: -0.999 to 0.5; "
                 "the grains of study = \"point-load\" are in 2D"));
   EXPECT_THAT(complaint(layer, {"material.damping_model=critical"}),
               HasSubstr("material.damping_model: found \"critical\", allowed: only in three "

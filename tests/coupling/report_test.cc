@@ -237,6 +237,27 @@ TEST_F(ReportTest, TextInDataCannotRunCommands) {
   EXPECT_FALSE(fs::exists(trap));
 }
 
+// Frames of different curves name their own; one that is empty in a frame keeps its colour.
+TEST_F(ReportTest, FramesMayHaveLegendsOfTheirOwn) {
+  need_gnuplot();
+  const auto series = [](const char* label) {
+    return Series{label, Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 1, 0), {}};
+  };
+  const Series none{"none", {}, {}, {}};
+  const auto drawn = [&](bool own) {
+    const Picture picture = curves(
+        "c", "x", "y", {{"f", {none, series("first")}, own}, {"g", {none, series("second")}, own}});
+    return draw(*find_gnuplot(), "svg", picture.program);
+  };
+  const auto own = drawn(true), common = drawn(false);
+  ASSERT_EQ(own.error + common.error, "");
+  // Curves have their titles in the file, too; what is written has an end of its own.
+  EXPECT_THAT(own.bytes, HasSubstr(">second</text>"));
+  EXPECT_THAT(own.bytes, HasSubstr(">first</text>"));
+  EXPECT_THAT(common.bytes, HasSubstr(">first</text>"));
+  EXPECT_THAT(common.bytes, Not(HasSubstr(">second</text>")));
+}
+
 TEST_F(ReportTest, NanAndFlatDataStillDraw) {
   need_gnuplot();
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(4, 0, 3);

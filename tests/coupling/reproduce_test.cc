@@ -134,6 +134,42 @@ TEST(Reproduce, ARatioIsJudgedByItsNumeratorWhereTheDenominatorIsUncertain) {
               HasSubstr("| about 2 | -0.800 ± 0.849 | differs by 2.3 (2.7 standard errors) |"));
 }
 
+// Fig. 11's other claims as differences, and what a reader must know of a row.
+TEST(Reproduce, SuperellipsoidsChangeInWordsWithNotesOnTheRun) {
+  const Folder folder;
+  const char* key = "\"sample.end_axial_stress_ratio.";
+  std::string laws = R"({"case.command": "grainfield run cases/contact-laws.toml --quick",
+ "dem.grains.least.ratio_1": 200, "dem.grains.least.ratio_025": 200)";
+  const auto put = [&](const char* member, double value) {
+    laws += fmt::format(", {0}{1}\": {2}, {0}standard_error.{1}\": 0.02", key, member, value);
+  };
+  put("ratio_025", 1.2);
+  put("ratio_1", 1.4);
+  put("ratio_1_friction_025", 1);
+  put("poisson_0", 1.4);
+  put("poisson_045", 1.45);
+  put("poisson_0_friction_025", 1.39);
+  folder.write("contact-laws.json", laws + "}");
+  folder.write("box-compression.json", R"({"sample.end_axial_stress_ratio.penalty_0": 0.1,
+ "sample.end_axial_stress_ratio.standard_error.penalty_0": 0.01,
+ "sample.kinetic_share.penalty_0": 15})");
+  folder.write("box-shear.json", R"({"rve.contraction.hertz_05": 0.0002,
+ "rve.contraction.standard_error.hertz_05": 0.0002, "rve.dilation.hertz_05": 0.001,
+ "rve.dilation.standard_error.hertz_05": 0.0001})");
+  const std::string page = reproduction_page(Results(folder.path()));
+  EXPECT_THAT(page, HasSubstr("penalty law | rises | rises: +0.400 ± 0.028 | agrees |  | "
+                              "`contact-laws` (quick, 200 grains) |"));
+  EXPECT_THAT(page, HasSubstr("Hertz law | rises | undecided: +0.010 ± 0.028 | too few"));
+  EXPECT_THAT(page, HasSubstr("0.25 to 1, mu = 0.5 | hardly changes | changes: +0.200 ± 0.028, "
+                              "+17 % | differs |"));
+  EXPECT_THAT(page, HasSubstr("0 to 0.45, mu = 0.5 | hardly changes | hardly changes: +0.050 ± "
+                              "0.028, +4 % | agrees |"));
+  EXPECT_THAT(page, HasSubstr("| 0.100 ± 0.010 | agrees; slow flow, not at rest: kinetic over "
+                              "elastic energy up to 15 |  | `box-compression` |"));
+  EXPECT_THAT(page, HasSubstr("| dilation: trace/3 falls by 0.00020 ± 0.00020, then rises by "
+                              "0.00100 ± 0.00010 | differs |"));
+}
+
 TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
   // A results file with every number gives every row: no key of the table is misspelt.
   const Folder folder;
@@ -201,8 +237,10 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "sample.kinetic_share.hertz_05",
                                    "sample.stiffening_late.hertz_05",
                                    "sample.stiffening_late.penalty_05",
-                                   "sample.end_stress_ratio.hertz_0",
-                                   "sample.end_stress_ratio.penalty_0",
+                                   "sample.end_axial_stress_ratio.hertz_0",
+                                   "sample.end_axial_stress_ratio.penalty_0",
+                                   "rve.contraction.hertz_05",
+                                   "rve.dilation.hertz_05",
                                    "sample.plastic_strain.hertz_0",
                                    "sample.plastic_strain.hertz_05",
                                    "sample.unloading_stiffness.hertz_05",
@@ -236,6 +274,11 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
     all.insert(std::string("dip.difference.") + others);
     all.insert(std::string("dip.standard_error.") + others);
   }
+  for (const char* constants : {"ratio_025", "ratio_1", "poisson_0", "poisson_045"}) {
+    const std::string key = std::string("sample.end_axial_stress_ratio.") + constants;
+    all.insert(key);
+    all.insert(key + "_friction_025");
+  }
   for (const char* fraction : {"0.2", "0.35", "0.5"}) {
     const std::string key =
         std::string("gas.fraction_") + fraction + ".compressibility_over_theory.";
@@ -253,8 +296,9 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
  "dip.verdict.coulomb": "dip", "dip.verdict.pentagons": "dip", "fit.cantelaube.branch": "zero")";
   for (const std::string& key : all) {
     std::string own = key;  // of a sweep's member
-    for (const char* member : {".slope_", ".large_", ".tent", ".equal", ".unlike", ".coulomb",
-                               ".pentagons", ".hertz_", ".penalty_", ".viscous_alone", ".wells"}) {
+    for (const char* member :
+         {".slope_", ".large_", ".tent", ".equal", ".unlike", ".coulomb", ".pentagons", ".hertz_",
+          ".penalty_", ".viscous_alone", ".wells", ".ratio_", ".poisson_"}) {
       own = own.substr(0, own.find(member));
     }
     const std::string gas = ".pressure";  // other keys have it as the beginning of a word

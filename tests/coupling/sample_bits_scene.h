@@ -14,7 +14,8 @@ namespace grainfield::coupling::testing {
 inline constexpr const char* kBare = " --set output.report=false --set output.vtu=false ";
 
 /// Runs the case on 1, 2 and 3 threads, and kills it twice and resumes it: the files are the same.
-inline void expect_same_bits(const std::string& text) {
+/// It is killed at a checkpoint that holds the text `inside`, such as the name of a recorded state.
+inline void expect_same_bits(const std::string& text, const std::string& inside = "") {
   const Folder folder;
   const std::string file = folder.write("x.toml", text);
   std::map<std::string, std::string> one;
@@ -50,7 +51,8 @@ inline void expect_same_bits(const std::string& text) {
     child.wait_until([&] {
       std::error_code error;
       const auto now = fs::last_write_time(checkpoint, error);
-      return !error && now > before && start < 2;
+      if (error || !(now > before) || start == 2) return false;
+      return inside.empty() || read_text(checkpoint).find(inside) != std::string::npos;
     });
     child.send(SIGKILL);
     ending = child.wait();

@@ -85,6 +85,18 @@ TEST(SampleBox, BitsOfAProbedAndDroppedSampleToo) {
           "friction = 0.3\nwall_friction = 0.3"));
 }
 
+// Sides that tilt and sides that servos hold, killed while they move.
+TEST(SampleBox, BitsOfMovingSidesToo) {
+  const std::string friction = "friction = 0.4\nwall_friction = 0.4";
+  testing::expect_same_bits(
+      box("deformation = \"simple_shear\"\nconstant = \"volume\"\nsides = \"tilting\"\n"
+          "strain = 0.1\nrecords = 4\n",
+          friction),
+      "state_000");
+  testing::expect_same_bits(box("deformation = \"axial\"\nstrain = 0.05\nrecords = 4\n", friction),
+                            "state_000");
+}
+
 TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
   const Folder folder;
   const Summary summary =

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -144,6 +145,50 @@ TEST(HertzElliptic, IsMoreCompliantAlongTheMajorAxis) {
       EXPECT_NEAR(law.compliances(c.shape.integrals, a).major / across, 1, 1e-12) << ratio;
     }
   }
+}
+
+/// kappa of B/A in doubles, by bracketing Johnson's ratio of integrals.
+double kappa_of(double ratio) {
+  boost::uintmax_t steps = 200;
+  const auto root = boost::math::tools::toms748_solve(
+      [&](double x) {
+        const double kappa = std::exp(x), e = std::sqrt(1 - 1 / (kappa * kappa));
+        const double k = boost::math::ellint_1(e), second = boost::math::ellint_2(e);
+        return std::log((kappa * kappa * second - k) / (k - second) / ratio);
+      },
+      1e-3, 9.0, boost::math::tools::eps_tolerance<double>(50), steps);
+  return std::exp(0.5 * (root.first + root.second));
+}
+/// Displacement of the middle of an ellipse with semi-axes a along x and b, over the force along x,
+/// of both bodies: Cerruti's (Johnson 1985, 3.75) of the traction that sticks, Q/(2 pi a b)
+/// (1 - r^2/R^2)^(-1/2) with R(phi) the ellipse's edge. Its integral along r is pi R/2.
+double compliance_by_quadrature(double a, double b, double young, double nu) {
+  const auto along = [&](double phi) {
+    const double c = std::cos(phi), s = std::sin(phi);
+    return a * b / std::hypot(b * c, a * s) * (1 - nu + nu * c * c);
+  };
+  const double quarter =
+      boost::math::quadrature::gauss_kronrod<double, 31>::integrate(along, 0, kPi / 2, 20, 1e-11);
+  const double shear = young / (2 * (1 + nu));
+  return quarter / (kPi * shear * a * b);
+}
+
+TEST(HertzElliptic, CompliancesAreCerrutisIntegralsOverTheContact) {
+  Random random(17);
+  double worst = 0, most_kappa = 1, unlike = 0;
+  for (int n = 0; n < 1000; ++n) {
+    const double ratio = std::pow(10, random.uniform(0.01, 5)), nu = random.uniform(0, 0.5);
+    const double a = 1e-3, kappa = kappa_of(ratio), b = a / kappa;
+    const auto found =
+        HertzEllipticLaw{1e7, nu, 1}.compliances(elliptic_contact(1, ratio).shape.integrals, a);
+    worst = std::max(worst, std::fabs(found.major / compliance_by_quadrature(a, b, 1e7, nu) - 1));
+    worst = std::max(worst, std::fabs(found.minor / compliance_by_quadrature(b, a, 1e7, nu) - 1));
+    most_kappa = std::max(most_kappa, kappa);
+    unlike = std::max(unlike, found.major / found.minor);
+  }
+  EXPECT_LT(worst, 1e-8);
+  EXPECT_GT(most_kappa, 100);
+  EXPECT_GT(unlike, 1.3);
 }
 
 Overlap3 overlap_of(double lesser, double greater, double depth) {

@@ -69,18 +69,21 @@ TEST(SampleRefusals, ALidThatWouldCrushItsGrains) {
   EXPECT_EQ(refusal(s), "none");
   s.plan.strain = 0.5;  // 0.7/0.5 = 1.4
   EXPECT_EQ(refusal(s),
-            "sample.strain: found 0.5: grains would be crushed, they would fill 1.4 of the box at "
-            "least, allowed: up to 1.3");
+            "sample.strain: found 0.5, allowed: up to 0.461; grains would be crushed, they would "
+            "fill 1.4 of the box at least, where 1.3 is the most");
+  s.plan.strain = 0.461;  // what it says is taken
+  EXPECT_EQ(refusal(s), "none");
   s.plan.strain = 0.1;
   s.plan.precompression = 0.6;
-  EXPECT_THAT(refusal(s), HasSubstr("sample.precompression: found 0.6: grains would be crushed"));
+  EXPECT_THAT(refusal(s), HasSubstr("sample.precompression: found 0.6, allowed: up to 0.4"));
   s = {};
   s.plan.grains = 4000;
   s.plan.compress_to = "strain";
   s.plan.compression_strain = 0.6;  // 0.3/0.16
-  EXPECT_THAT(refusal(s),
-              HasSubstr("sample.compression_strain: found 0.6: grains would be crushed, they would "
-                        "fill 1.87 of the cell"));
+  EXPECT_THAT(
+      refusal(s),
+      HasSubstr("sample.compression_strain: found 0.6, allowed: up to 0.519; grains would be "
+                "crushed, they would fill 1.87 of the cell"));
   // A servo gives way, and a shear keeps the volume.
   s = {};
   s.plan.grains = 4000;

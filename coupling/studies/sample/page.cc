@@ -59,7 +59,7 @@ Report sample_report(const SampleReport& in) {
   Picture main = frames_of(in, "Stress ratio and volume", in.main);
   main.caption =
       "Of the whole sample, mean over realizations; the band is one standard error on either side. "
-      "Volumetric strain: dilation positive.";
+      "Volumetric strain: dilation positive, left out where the test imposes it.";
   report.sections.emplace_back(std::move(main));
   if (in.first != nullptr && in.last != nullptr) add_grains(report, in);
   Picture structure = frames_of(in, "Contacts and fabric", in.structure);

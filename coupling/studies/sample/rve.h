@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "coupling/strain/hull.h"
 #include "dem/study/sample_setup.h"
 
@@ -66,6 +67,16 @@ std::string rve_csv(const RveTable& table);
 /// By summary key, a number for each realization.
 std::map<std::string, std::vector<double>> rve_figures(const RveTable& table,
                                                        const std::string& deformation);
+
+/// The largest RVEs of a simple shear where the mean of their trace/3 over the realizations is
+/// least after the first state. (The least of each realization by itself would tell of contraction
+/// wherever they scatter.)
+struct Contraction {
+  std::map<std::string, std::vector<double>> figures;  ///< by summary key, or empty
+  double strain = kNan;                                ///< shear strain xz of the samples there
+  double strain_error = kNan;  ///< by the bootstrap over realizations; nan of one
+};
+Contraction rve_contraction(const RveTable& table);
 
 /// Mean of a number over RVEs and its error bar s/sqrt(N), nan of one.
 struct RveMean {

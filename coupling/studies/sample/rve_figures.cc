@@ -68,6 +68,17 @@ double mean_of(const std::vector<double>& values) {
 }
 
 double boundary_zz(const RveValue& v) { return v.boundary(2, 2); }
+double grains_zz(const RveValue& v) { return v.grains(2, 2); }
+
+// s/sqrt(N) over the mean, mean of the second half of the loading.
+double late_bar(const RveStates& states, std::size_t loading, Of of) {
+  std::vector<double> bars;
+  for (std::size_t s = loading / 2 + 1; s <= loading; ++s) {
+    const RveMean one = mean_over(states[s], of);
+    bars.push_back(std::fabs(one.error_bar / one.mean));
+  }
+  return mean_of(bars);
+}
 
 // q/p of the mean over the RVEs as the source has it (Wellmann 29, 32, 33): s1 along z, s2 = s3 the
 // mean of x and y.
@@ -99,18 +110,13 @@ void add_of_radius(const RveTable& table, std::size_t r, const std::string& defo
     const RveStates& states = table.values[r][k];
     const std::vector<RveValue>& end = states[loading];
     put("grains", mean_over(end, [](const RveValue& v) { return v.count; }).mean);
-    std::vector<double> bars;
-    for (std::size_t s = loading / 2 + 1; s <= loading; ++s) {
-      const RveMean zz = mean_over(states[s], boundary_zz);
-      bars.push_back(std::fabs(zz.error_bar / zz.mean));
-    }
-    put("error_bar", mean_of(bars));
+    put("error_bar", late_bar(states, loading, boundary_zz));
+    put("grain_error_bar", late_bar(states, loading, grains_zz));
     put("closure", closure(states.front()));
     const double zz = table.stresses[k][loading](2, 2);
     put("stress_ratio", mean_over(end, boundary_zz).mean / zz);
     if (deformation != "simple_shear") put("axial_stress_ratio", axial_stress_ratio(end));
-    put("grain_stress_ratio",
-        mean_over(end, [](const RveValue& v) { return v.grains(2, 2); }).mean / zz);
+    put("grain_stress_ratio", mean_over(end, grains_zz).mean / zz);
     put("field_ratio", mean_over(end, [](const RveValue& v) { return v.field_zz; }).mean / zz);
     std::vector<double> hull, fit;
     for (const RveValue& v : end) {
@@ -185,23 +191,6 @@ std::map<std::string, std::vector<double>> rve_figures(const RveTable& table,
                                                        const std::string& deformation) {
   std::map<std::string, std::vector<double>> out;
   for (std::size_t r = 0; r < table.radii.size(); ++r) add_of_radius(table, r, deformation, out);
-  if (table.radii.empty() || deformation != "simple_shear") return out;
-  // Of the largest radius: how far the sample's inside contracts, and whether it dilates again.
-  for (std::size_t k = 0; k < table.gradients.size(); ++k) {
-    double least = 0, at = 0, now = 0;
-    for (std::size_t s = 0; s <= static_cast<std::size_t>(table.loading); ++s) {
-      now = mean_over(table.values.back()[k][s], [](const RveValue& v) {
-              return v.hull.trace() / 3;
-            }).mean;
-      if (now < least) {
-        least = now;
-        at = symmetric(table.gradients[k][s], 0, 2);
-      }
-    }
-    out["rve.contraction"].push_back(-least);
-    out["rve.contraction_strain"].push_back(at);
-    out["rve.dilation"].push_back(now - least);
-  }
   return out;
 }
 

@@ -19,13 +19,15 @@
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
 #include "dem/study/sample.h"
+#include "dem/study/sample_path.h"
 #include "dem/study/sample_setup.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kRounding = 1e-10;
+// Of inertial numbers (GDR MiDi 2004).
+constexpr double kQuasiStatic = 1e-3;
 
 const char* strain_name(const std::string& deformation) {
   return deformation == "simple_shear" ? "shear strain"
@@ -42,6 +44,12 @@ SampleCurve risen(const StateTable& table, const std::string& column, const std:
   SampleCurve out = curve(table, column, title);
   out.mean.array() -= out.mean[0];
   return out;
+}
+
+// It follows from the imposed strain then, or is rounding: nothing to be seen.
+bool imposes_volume(const dem::SamplePlan& plan) {
+  if (dem::shears(plan)) return plan.constant == "volume";
+  return plan.deformation == "uniaxial" || plan.deformation == "isotropic";
 }
 
 std::string label_of(const StateTable& table) {
@@ -65,13 +73,12 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   out.strain_name = strain_name(plan.deformation);
   out.label = label_of(table);
   out.strain = table.mean("strain");
-  out.main = {curve(table, "q_over_p", "q/p"),
-              curve(table, "volumetric_strain", "volumetric strain"),
-              curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"),
-              curve(table, "coordination", "contacts of a grain")};
-  // At constant volume it is rounding.
-  auto& volume = out.main[1].mean;
-  if (volume.cwiseAbs().maxCoeff() < kRounding) volume.setZero();
+  out.main = {curve(table, "q_over_p", "q/p")};
+  if (!imposes_volume(plan)) {
+    out.main.push_back(curve(table, "volumetric_strain", "volumetric strain"));
+  }
+  out.main.push_back(curve(table, "p", plan.dim == 2 ? "p (N/m)" : "p (Pa)"));
+  out.main.push_back(curve(table, "coordination", "contacts of a grain"));
   const Driving driving = driving_of(plan.deformation, plan.dim);
   out.stress_unit = plan.dim == 2 ? "N/m" : "Pa";
   if (plan.deformation == "simple_shear") {
@@ -243,6 +250,14 @@ std::map<std::string, std::vector<double>> engine_figures(const std::vector<std:
   return out;
 }
 
+void add_contraction(const Contraction& found, Summary& summary) {
+  if (found.figures.empty()) return;
+  add_figures(summary, found.figures);
+  summary["rve.contraction_strain"] = found.strain;
+  if (!std::isfinite(found.strain_error)) return;
+  summary["rve.contraction_strain.standard_error"] = found.strain_error;
+}
+
 // rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
 void add_rves(const Case& value, const std::vector<std::string>& files, SampleReport& report,
               StudyResult& out) {
@@ -251,6 +266,7 @@ void add_rves(const Case& value, const std::vector<std::string>& files, SampleRe
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   const RveTable rves = rve_table(files, setup, plan);
   add_figures(out.summary, rve_figures(rves, plan.deformation));
+  if (plan.deformation == "simple_shear") add_contraction(rve_contraction(rves), out.summary);
   out.texts.emplace_back("rve.csv", rve_csv(rves));
   if (const std::string hull = rve_vtu(rves); !hull.empty()) {
     out.texts.emplace_back("rve_hull.vtu", hull);
@@ -288,6 +304,19 @@ void add_moduli(const Case& value, const std::vector<std::string>& files, const 
   for (Section& section : block_sections(comparison)) report.moduli.push_back(std::move(section));
 }
 
+// Of a test too fast to be one of states at rest.
+void warn_of_inertia(StudyResult& out) {
+  const auto found = out.summary.find("sample.inertial_number");
+  if (found == out.summary.end()) return;
+  const double number = std::get<double>(found->second);
+  if (!(number > kQuasiStatic)) return;
+  out.warnings.push_back(fmt::format(
+      "The inertial number reaches {:.2g} (sample.inertial_number): above {:g} a test is "
+      "not quasi-static and its stresses depend on its speed; a lower "
+      "sample.strain_rate lessens it in proportion.",
+      number, kQuasiStatic));
+}
+
 // states.csv and states_of_realizations.csv (state_table.h), the figures sample.* with their
 // spread, the report. Throws what StateTable throws.
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
@@ -298,6 +327,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
   add_figures(out.summary, path_figures(table, plan));
   add_figures(out.summary, strength_figures(strength_paths(table, plan)));
+  warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.verdict.sentence = sentence(value, table, out.summary);
   out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
