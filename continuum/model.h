@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,6 +29,9 @@ class BadParameter : public std::invalid_argument {
 /// Where a search for a constant keeps to, ends excluded; of lengths (unit m) over the height h.
 struct SearchRange {
   double least = 0, most = 0;
+  /// Of ratios of moduli: a limit that no material passes; intervals are even in log(value -
+  /// floor), so the same for a ratio and its reciprocal. -infinite: even in the value.
+  double floor = -std::numeric_limits<double>::infinity();
 };
 
 /// A parameter of a model, declared once: checks, documentation and command line come from it.

@@ -114,8 +114,8 @@ Parameter optional_number(std::string name, std::string unit, std::string meanin
                 std::numeric_limits<double>::quiet_NaN(), least, most);
 }
 
-Parameter may_be_free(Parameter parameter, double least, double most) {
-  parameter.free = SearchRange{least, most};
+Parameter may_be_free(Parameter parameter, double least, double most, double floor) {
+  parameter.free = SearchRange{least, most, floor};
   return parameter;
 }
 

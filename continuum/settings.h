@@ -1,5 +1,6 @@
 // What a model's maker needs to read its settings and to declare its parameters.
 #pragma once
+#include <limits>
 #include <string>
 
 #include "continuum/model.h"
@@ -20,7 +21,8 @@ Parameter number(std::string name, std::string unit, std::string meaning, std::s
 Parameter optional_number(std::string name, std::string unit, std::string meaning,
                           std::string source, double least, double most);
 /// The same parameter, which may be free in a fit: the search keeps to least < value < most.
-Parameter may_be_free(Parameter parameter, double least, double most);
+Parameter may_be_free(Parameter parameter, double least, double most,
+                      double floor = -std::numeric_limits<double>::infinity());
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);

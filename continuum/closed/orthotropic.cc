@@ -125,7 +125,7 @@ ModelInfo orthotropic_half_plane_info() {
                   source, 1, -kUnbounded, kUnbounded),
            -5, 20),
        may_be_free(number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
-                   0.02, 50),
+                   0.02, 50, 0),
        optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source, kAboveZero,
                        kUnbounded),
        optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),

@@ -218,7 +218,7 @@ ModelInfo orthotropic_layer_info() {
                           source, 1, -kUnbounded, kUnbounded),
                    -5, 20),
        may_be_free(number("t", "-", "E_x/E_y; isotropic: 1", source, 1, kAboveZero, kUnbounded),
-                   0.02, 50),
+                   0.02, 50, 0),
        optional_number("E_x", "Pa", "with E_y, G and nu_xy instead of r and t", source, kAboveZero,
                        kUnbounded),
        optional_number("E_y", "Pa", "vertical modulus", source, kAboveZero, kUnbounded),

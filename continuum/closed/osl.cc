@@ -120,7 +120,7 @@ std::vector<Parameter> closure_parameters() {
           0.02, 20),
       may_be_free(optional_number("tau_deg", "deg", "with K instead of eta and mu: angle of n",
                                   "Roul 4.23", -180, 180),
-                  -90, 90)};
+                  45, 135)};  // as ratio_of has it: mu = 0 is in the middle
 }
 
 double Closure::c1() const {

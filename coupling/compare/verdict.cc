@@ -77,14 +77,19 @@ bool has_own_errors(const Comparison& c) {
 // nearer than the independent length.
 double tied_values(const Comparison& c) {
   double values = 0, independent = 0;
+  bool near = false;
   std::set<std::string> components;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    components.insert(c.profiles[k].quantity);
-    values += static_cast<double>(count_of(c.profiles[k]).values);
+    const Profile& p = c.profiles[k];
+    const Count count = count_of(p);
+    if (count.without == count.values) continue;
+    components.insert(p.quantity);
+    near |= p.independent_length > 0;
+    values += static_cast<double>(count.values);
     independent += c.results.front().per_profile[k].dof;
   }
-  const double near = independent > 0 ? std::max(1.0, values / independent) : 1;
-  return near * static_cast<double>(components.size());
+  const double tied = near && independent > 0 ? std::max(1.0, values / independent) : 1;
+  return tied * static_cast<double>(components.size());
 }
 
 // Of a field with errors of its own each value counts by 1/error^2, as in the chi2 that ranks;

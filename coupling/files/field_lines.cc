@@ -36,7 +36,7 @@ int component_of(std::string component, bool space) {
 }
 
 // Forces on the base are smeared along it alone; cells that measured lie flat wherever they are, as
-// fits have them (ObservationOperator::of_cells).
+// fits have them (Smoothing::marginal).
 bool is_flat(const SceneField& scene, bool whole) {
   return scene.field.is_measured() || (whole && scene.name.compare(0, 4, "base") == 0);
 }

@@ -8,6 +8,10 @@
 
 namespace grainfield::coupling {
 
+int FitData::tied() const {
+  return static_cast<int>(std::set<int>(component.begin(), component.end()).size());
+}
+
 FitData realizations_of(const FitData& data, const std::vector<int>& chosen) {
   FitData out = data;
   out.samples = data.samples(Eigen::all, chosen);

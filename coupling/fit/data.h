@@ -23,6 +23,8 @@ struct FitData {
   /// function of the place, never of the ensemble. Empty: 1.
   Eigen::VectorXd scale;
 
+  /// Components that have values; of a point they may be tied, and count as one then.
+  int tied() const;
   int values() const { return static_cast<int>(samples.rows()); }
   int realizations() const { return static_cast<int>(samples.cols()); }
   Eigen::VectorXd mean() const { return samples.rowwise().mean(); }

@@ -23,6 +23,27 @@ void add_note(Fit& out, const std::string& clause) {
   out.note += (out.note.empty() ? "" : "; ") + clause;
 }
 
+// A step of a constant for differences; no farther than half way to a bound.
+double step_of(const FitParameter& p, double value) {
+  const double h = 1e-6 * std::max(1.0, std::fabs(value));
+  if (!std::isfinite(p.least) || !std::isfinite(p.most)) return h;
+  return std::min({h, 0.5 * (value - p.least), 0.5 * (p.most - value)});
+}
+
+// Beside these constants there is no such model: the constant stands at a bound that is not stated.
+bool ends_beside(const FitData& data, const FitModel& model, const Eigen::VectorXd& best,
+                 Eigen::Index k) {
+  const double h = step_of(model.parameters[static_cast<std::size_t>(k)], best[k]);
+  for (const double step : {-h, h}) {
+    Eigen::VectorXd there = best;
+    there[k] += step;
+    int outside = 0;
+    predict(data, model, there, &outside);
+    if (outside == data.values()) return true;
+  }
+  return false;
+}
+
 // d model / d parameters in working units; of the parameters in `of`.
 Eigen::MatrixXd jacobian_at(const FitData& data, const Weights& weights, const FitModel& model,
                             const Eigen::VectorXd& parameters,
@@ -30,11 +51,7 @@ Eigen::MatrixXd jacobian_at(const FitData& data, const Weights& weights, const F
   Eigen::MatrixXd out(data.values(), static_cast<Eigen::Index>(of.size()));
   for (std::size_t c = 0; c < of.size(); ++c) {
     const Eigen::Index k = of[c];
-    const FitParameter& p = model.parameters[static_cast<std::size_t>(k)];
-    double h = 1e-6 * std::max(1.0, std::fabs(parameters[k]));
-    if (std::isfinite(p.least) && std::isfinite(p.most)) {
-      h = std::min({h, 0.5 * (parameters[k] - p.least), 0.5 * (p.most - parameters[k])});
-    }
+    const double h = step_of(model.parameters[static_cast<std::size_t>(k)], parameters[k]);
     Eigen::VectorXd more = parameters, less = parameters;
     more[k] += h;
     less[k] -= h;
@@ -69,7 +86,9 @@ Straightened straightened(const FitData& data, const Weights& weights, const Fit
     const auto at = static_cast<std::size_t>(p);
     const FitParameter& q = model.parameters[at];
     const double room = kNearBound * (q.most - q.least);
-    out.bound[at] = std::isfinite(room) && (best[p] - q.least < room || q.most - best[p] < room);
+    out.bound[at] =
+        (std::isfinite(room) && (best[p] - q.least < room || q.most - best[p] < room)) ||
+        ends_beside(data, model, best, p);
     // Those at a bound are held there: the others' errors are for it where it is. So are those
     // that no value depends on.
     if (out.bound[at]) continue;
@@ -119,8 +138,7 @@ void judge(const FitData& data, const Weights& weights, const Straightened& line
     }
     share = share.cwiseMax(0);
     taken = errors.cwiseAbs2().dot(Eigen::VectorXd::Ones(share.size()) - share);
-    found = agreement(difference, errors.cwiseProduct(share.cwiseSqrt()),
-                      static_cast<int>(data.components.size()));
+    found = agreement(difference, errors.cwiseProduct(share.cwiseSqrt()), data.tied());
   }
   out.expected += 2 * taken;
   out.dof = found.values;
@@ -143,7 +161,7 @@ Eigen::MatrixXd sandwich(const FitData& data, const Weights& weights, const Stra
     // The components of a point may be tied: they count as one.
     const Eigen::MatrixXd each =
         line.to_constants * weights.weight.cwiseProduct(weights.error).asDiagonal();
-    own = static_cast<double>(data.components.size()) * each * each.transpose();
+    own = static_cast<double>(data.tied()) * each * each.transpose();
   }
   for (std::size_t a = 0; a < line.free.size(); ++a) {
     for (std::size_t b = 0; b < line.free.size(); ++b) {
@@ -164,6 +182,7 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
   out.name = model.name;
   out.label = model.label;
   out.equations = model.equations;
+  out.kind = model.kind;
   std::vector<Eigen::VectorXd> ends;
   const Eigen::VectorXd best = best_parameters(data, mean, weights, model, model.starts,
                                                options.huber, &out.converged, &ends);

@@ -48,7 +48,7 @@ struct FittedParameter {
 };
 
 struct Fit {
-  std::string name, label, equations;  ///< of the model
+  std::string name, label, equations, kind;  ///< of the model
   std::vector<FittedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< of the parameters, from the covariance
   Eigen::VectorXd model;        ///< values at the best parameters, N/m

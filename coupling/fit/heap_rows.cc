@@ -10,6 +10,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/averaging/points.h"
+#include "coupling/models/parse_choices.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -77,8 +78,10 @@ double HeapSlopes::left() const { return tangent(apart ? left_deg : mean_deg); }
 double HeapSlopes::right() const { return tangent(apart ? right_deg : mean_deg); }
 
 bool takes_flanks_apart(const std::vector<std::string>& models) {
-  return std::any_of(models.begin(), models.end(), [](const std::string& name) {
-    return name.find("cantelaube_asymmetric") != std::string::npos;
+  return std::any_of(models.begin(), models.end(), [](const std::string& text) {
+    const bool chosen = text.find_first_of(":=") != std::string::npos;
+    const std::string name = chosen ? parse_choice(text, "fit: model").name : text;
+    return name.starts_with("cantelaube_asymmetric");
   });
 }
 

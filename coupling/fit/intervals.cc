@@ -53,8 +53,7 @@ double error_of_difference(const FitData& data, const Weights& weights, const Ei
                            const Eigen::VectorXd& other) {
   const Eigen::VectorXd slope = 2 * weights.weight.cwiseAbs2().cwiseProduct(other - one);
   if (weights.errors_from == ErrorsFrom::data) {
-    return std::sqrt(static_cast<double>(data.components.size())) *
-           slope.cwiseProduct(weights.error).norm();
+    return std::sqrt(static_cast<double>(data.tied())) * slope.cwiseProduct(weights.error).norm();
   }
   const double r = data.realizations();
   const Eigen::VectorXd each = (data.samples.colwise() - data.mean()).transpose() * slope;

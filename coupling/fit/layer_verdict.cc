@@ -50,12 +50,15 @@ FitVerdict without_spread(const std::vector<Fit>& fits, int realizations) {
 
 }  // namespace
 
-bool contains(const std::string& general, const std::string& special) {
-  if (general == special) return true;
-  // The smooth base is no special case of the rough one.
-  return (general == "orthotropic_half_plane" && special == "flamant") ||
-         (general == "orthotropic_layer_smooth" && special == "layer_smooth") ||
-         (general == "orthotropic_layer_rough" && special == "layer_rough");
+bool contains(const Fit& general, const Fit& special) {
+  if (general.name == special.name) return true;
+  if (general.kind.empty() || special.kind.empty()) return false;
+  if (general.kind == special.kind) return general.parameters.size() >= special.parameters.size();
+  // With both of its moduli's ratios free. The smooth base is no special case of the rough one.
+  if (general.parameters.size() < 2) return false;
+  return (general.kind == "orthotropic_half_plane" && special.kind == "flamant") ||
+         (general.kind == "orthotropic_layer smooth" && special.kind == "layer smooth") ||
+         (general.kind == "orthotropic_layer rough" && special.kind == "layer rough");
 }
 
 FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selection,
@@ -79,8 +82,9 @@ FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selectio
   }
   out.model = simplest->name;
   out.equations = types.size() == 1 ? *types.begin() : "not distinguishable";
-  out.alone = std::all_of(supported.begin(), supported.end(),
-                          [&](const std::string& name) { return contains(name, out.model); });
+  out.alone = std::all_of(supported.begin(), supported.end(), [&](const std::string& name) {
+    return contains(fit_named(fits, name), *simplest);
+  });
   out.agrees = !disagrees(*simplest);
   const std::string nearness = fmt::format("chi2/dof {:.3g}, relative L2 {:.1f} %",
                                            simplest->chi2_per_dof, 100 * simplest->rel_l2);
@@ -88,7 +92,7 @@ FitVerdict layer_verdict(const std::vector<Fit>& fits, const Selection& selectio
     out.sentence = fmt::format("{}: {} ({})", out.agrees ? "Supported" : "Nearest of those asked",
                                out.model, nearness);
     for (const Score& s : selection.ranking) {
-      if (s.supported || contains(s.name, out.model)) continue;
+      if (s.supported || contains(fit_named(fits, s.name), *simplest)) continue;
       out.sentence +=
           fmt::format("; {}, the next, is {}; {} realizations", s.name, evidence(s), realizations);
       break;

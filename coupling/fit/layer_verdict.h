@@ -19,8 +19,9 @@ struct FitVerdict {
   std::string sentence;   ///< for people, with the evidence
 };
 
-/// Whether `special` is a special case of the layer model `general`, or the same.
-bool contains(const std::string& general, const std::string& special);
+/// Whether `special` is a special case of the layer model `general`, or the same: what they are
+/// called says nothing of it.
+bool contains(const Fit& general, const Fit& special);
 
 /// `fits` and `selection` of the same data and models. Below 3 realizations nothing is
 /// distinguishable: `model` is then the nearest by relative L2.

@@ -43,6 +43,9 @@ struct FitModel {
   /// The model with what it takes from the packings (slopes) measured on these realizations alone,
   /// with repetitions; empty: it takes nothing from them.
   std::function<FitModel(const std::vector<int>&)> measured_on = {};
+  /// Its name in the registry and, where it has one, its base: models of one kind differ in what is
+  /// free. Empty: a description.
+  std::string kind = {};
   std::string equations = {};  ///< "elliptic" or "hyperbolic"; empty: nothing is said of it
   /// The same in the registry: the closed form first, where there is one, then finite elements.
   std::vector<RegistryModel> in_registry = {};

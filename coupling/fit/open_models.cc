@@ -123,7 +123,7 @@ std::optional<std::string> refused(const std::string& text, const std::vector<Re
 
 FitParameter constant_of(const continuum::Parameter& p) {
   const bool length = p.unit == "m";
-  return {p.name, length ? "h" : p.unit, p.meaning, p.free->least, p.free->most};
+  return {p.name, length ? "h" : p.unit, p.meaning, p.free->least, p.free->most, p.free->floor};
 }
 
 // The k-th of well spread numbers between 0 and 1, of several series.

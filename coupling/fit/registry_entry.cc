@@ -78,6 +78,14 @@ MatrixXd seen_by(const LayerSight& sight, const continuum::OpenModel& open, cons
                     family_of(name) == "half plane");
 }
 
+std::string kind_of(const RegistryEntry& entry) {
+  const continuum::Parameter* base = find_parameter(entry.registry, "base");
+  if (base == nullptr || base->choices.empty()) return entry.registry;
+  const auto given = entry.fixed.find("base");
+  return entry.registry + " " +
+         (given == entry.fixed.end() ? base->choices.front() : given->second);
+}
+
 // What is the same for all constants is worked out once.
 struct Kept {
   std::once_flag once;
@@ -121,6 +129,7 @@ FitModel model_of_entry(const RegistryEntry& entry, const RunFacts& facts,
                entry.starts, entry.description, entry.absent};
   if (facts.force > 0) out.equations = entry.registry == "osl_layer" ? "hyperbolic" : "elliptic";
   if (entry.description) return out;
+  out.kind = kind_of(entry);
   out.in_registry = in_registry(entry);
   try {
     const continuum::OpenModel open(

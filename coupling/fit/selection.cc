@@ -80,8 +80,8 @@ Difference paired(const FitData& data, const Weights& weights, const Forecast& o
   if (weights.errors_from == ErrorsFrom::data) {
     // Linear in the values; the components of a point may be tied and count as one.
     const Eigen::VectorXd slope = 2 * weights.weight.cwiseAbs2().cwiseProduct((best - one).col(0));
-    out.error = std::sqrt(static_cast<double>(data.components.size())) *
-                slope.cwiseProduct(weights.error).norm();
+    out.error =
+        std::sqrt(static_cast<double>(data.tied())) * slope.cwiseProduct(weights.error).norm();
   } else if (r >= kLeastRealizations) {
     out.error = std::sqrt((behind.array() - out.mean).square().sum() / (r - 1) / r);
   }
@@ -97,7 +97,7 @@ double akaike(const FitData& data, const Fit& fit) {
   }
   const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
                                   [](const FittedParameter& p) { return std::isfinite(p.error); });
-  return squares / static_cast<double>(data.components.size()) + 2 * static_cast<double>(free);
+  return squares / static_cast<double>(data.tied()) + 2 * static_cast<double>(free);
 }
 
 // How many have judged.

@@ -274,8 +274,8 @@ std::optional<double> TableColumns::constant_of(const std::string& ours,
     if (table_.length && length && *number != 0)
       throw std::invalid_argument(
           fmt::format("--column {}={}: found a number without a unit beside --units, expected one "
-                      "behind a blank, such as \"{} {}\"",
-                      ours, text, text, known->unit));
+                      "behind a blank, of the kind {}",
+                      ours, text, known->unit));
     return number;
   }
   const std::size_t blank = text.find(' ');

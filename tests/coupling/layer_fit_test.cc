@@ -41,6 +41,7 @@ Fit with_parameters(const std::string& name, const Eigen::VectorXd& p) {
   Fit out;
   out.name = name;
   out.equations = find_fit_model(scene().models, name).equations;
+  out.kind = find_fit_model(scene().models, name).kind;
   for (Eigen::Index k = 0; k < p.size(); ++k) {
     FittedParameter f;
     f.parameter = find_fit_model(scene().models, name).parameters[static_cast<std::size_t>(k)];
@@ -49,6 +50,24 @@ Fit with_parameters(const std::string& name, const Eigen::VectorXd& p) {
   }
   out.correlation = Eigen::MatrixXd::Identity(p.size(), p.size());
   return out;
+}
+
+TEST(LayerVerdict, ContainsByWhatModelsAreAndNotByTheirNames) {
+  const auto one = [](const char* name, const char* kind, int free) {
+    Fit out;
+    out.name = name;
+    out.kind = kind;
+    out.parameters.resize(static_cast<std::size_t>(free));
+    return out;
+  };
+  const Fit smooth = one("a", "layer smooth", 0), general = one("b", "orthotropic_layer smooth", 2);
+  EXPECT_TRUE(contains(general, smooth));
+  EXPECT_FALSE(contains(smooth, general));
+  EXPECT_TRUE(contains(one("c", "layer rough", 1), one("d", "layer rough", 0)));
+  EXPECT_FALSE(contains(one("c", "layer rough", 0), one("d", "layer rough", 1)));
+  EXPECT_FALSE(contains(general, one("e", "layer rough", 1)));
+  EXPECT_FALSE(contains(one("f", "orthotropic_layer smooth", 1), smooth));
+  EXPECT_FALSE(contains(one("g", "", 7), one("h", "", 1)));
 }
 
 TEST(LayerFit, ModelsAreTheRegistrysSeenThroughTheKernel) {

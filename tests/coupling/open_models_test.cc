@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coupling/fit/layer_models.h"
+#include "coupling/fit/observations.h"
 #include "coupling/output/tables.h"
 #include "fit_scene.h"
 #include "open_models_scene.h"
@@ -31,6 +33,8 @@ TEST(OpenModels, OfHeapsComeBackWithErrors) {
   for (const auto& [text, truth] : std::vector<std::pair<std::string, Eigen::VectorXd>>{
            {"held=osl:eta=0.74,mu=free", vector({-0.31})},
            {"angles=osl:K=free,tau_deg=80", vector({0.6})},
+           {"axis=osl:K=2.2,tau_deg=free", vector({91})},  // about mu = 0
+           {"both=osl:K=free,tau_deg=free", vector({1.8, 89})},
            {"osl:eta=free,mu=free", vector({0.7, -0.2})}}) {
     const FitModel model = heap_model(text);
     ASSERT_TRUE(model.absent.empty()) << model.absent;
@@ -41,6 +45,50 @@ TEST(OpenModels, OfHeapsComeBackWithErrors) {
     options.bootstrap = 0;
     expect_back(fit(data, weights_of(data), model, options), truth);
   }
+}
+
+// Beyond its window there is no core that yields on a ray: the end of the window is a bound.
+TEST(OpenModels, TheEndOfAModelIsABound) {
+  const FitModel model =
+      heap_model("cantelaube_asymmetric:yield_ray_deg=free,branch=minus,left_deg=30,right_deg=30");
+  ASSERT_TRUE(model.absent.empty()) << model.absent;
+  dem::Random random(3);
+  FitData data = places(9);
+  fill(data, predict(data, heap_model("cantelaube:beta_hat_deg=45"), Eigen::VectorXd(0)), 6, 0.01,
+       0.03, random);
+  FitOptions options;
+  options.bootstrap = 0;
+  const Fit found = fit(data, weights_of(data), model, options);
+  const double ray = found.parameters.front().value;
+  const auto exists = [&](double at) {
+    int outside = 0;
+    predict(data, model, vector({at}), &outside);
+    return outside < data.values();
+  };
+  ASSERT_TRUE(exists(ray));
+  if (!exists(ray + 1e-6 * std::max(1.0, std::fabs(ray))) ||
+      !exists(ray - 1e-6 * std::max(1.0, std::fabs(ray)))) {
+    EXPECT_TRUE(found.parameters.front().at_bound);
+    EXPECT_TRUE(std::isnan(found.parameters.front().error));
+  }
+}
+
+// A ratio's interval is even in its logarithm, whoever declares it.
+TEST(OpenModels, RatiosKeepTheirFloor) {
+  const auto facts = [](const std::string&) { return facts_of_layer(); };
+  const RegistryEntry entry =
+      chosen_entries({"orthotropic_layer:r=free,t=free,base=smooth"}, layer_entries(), facts, 1)
+          .front();
+  for (const FitParameter& p : entry.parameters) {
+    EXPECT_EQ(p.floor == 0, p.name == "t") << p.name;
+  }
+  EXPECT_EQ(model_of_entry(entry, facts_of_layer()).kind, "orthotropic_layer smooth");
+}
+
+TEST(OpenModels, LabelsDoNotChangeThePlaces) {
+  EXPECT_FALSE(takes_flanks_apart({"osl", "cantelaube_asymmetric_like=osl:eta=free,mu=free"}));
+  EXPECT_TRUE(takes_flanks_apart({"x=cantelaube_asymmetric:phi_deg=free"}));
+  EXPECT_TRUE(takes_flanks_apart({"cantelaube_asymmetric_flanks"}));
 }
 
 TEST(OpenModels, WithoutAFieldSayWhy) {
