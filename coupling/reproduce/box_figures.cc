@@ -139,16 +139,16 @@ SourceFigure rise(const char* what, const char* from, const char* to) {
 }
 
 SourceFigure steady(const char* what, const char* from, const char* to) {
-  return in_words(
-      "fig. 11", what, kLaws, "hardly changes", {"hardly changes"},
-      [=](const Results& r) -> std::optional<std::string> {
-        const auto c = change_of(r, from, to);
-        if (!c) return std::nullopt;
-        const double share = c->of / c->base;
-        const bool hardly = std::fabs(c->of) - 2 * c->error <= kHardly * std::fabs(c->base);
-        return fmt::format("{}: {:+.3f} ± {:.3f}, {:+.0f} %", hardly ? "hardly changes" : "changes",
-                           c->of, c->error, 100 * share);
-      });
+  return in_words("fig. 11", what, kLaws, "hardly changes", {"hardly changes"},
+                  [=](const Results& r) -> std::optional<std::string> {
+                    const auto c = change_of(r, from, to);
+                    if (!c) return std::nullopt;
+                    const bool hardly =
+                        std::fabs(c->of) - 2 * c->error <= kHardly * std::fabs(c->base);
+                    return fmt::format("{}: {:+.3f} ± {:.3f}, {:+.0f} ± {:.0f} %",
+                                       hardly ? "hardly changes" : "changes", c->of, c->error,
+                                       100 * c->of / c->base, 100 * c->error / c->base);
+                  });
 }
 
 std::vector<SourceFigure> law_figures() {
