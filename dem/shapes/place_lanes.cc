@@ -1,7 +1,7 @@
 // Compiled for every width (lanes.h): no function of it may be another file's, too.
 #include "dem/shapes/place_lanes.h"
 
-#include "dem/motion/lane_turn.h"
+#include "dem/space/lane_angle.h"
 
 namespace grainfield::dem {
 namespace {

@@ -273,10 +273,10 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
                         "-0.104 and 0.104 m: is the unit of x right, and its origin"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
-  // From kMostOverWedge on, as heaps of grains: these carry 1.14 and 1.26 of it.
+  // From kMostOverWedge on, as heaps of grains: these carry 1.16 and 1.28 of it.
   EXPECT_EQ(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 11000"), "");
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 10000"),
-              HasSubstr("carry 1.26 of the heap's weight"));
+              HasSubstr("carry 1.28 of the weight above them"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
               HasSubstr("of the weight above them: are the units"));
   // The verdict says it again.

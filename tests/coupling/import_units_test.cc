@@ -194,7 +194,7 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
        "--periodic x: found a length without a unit beside --units mm, expected one behind a"},
       {"id,x,y,mass\n1,0,0,1\n", "--units mm --column radius=1.8",
        "--column radius=1.8: found a number without a unit beside --units, expected one behind a "
-       "blank, such as \"1.8 m\""},
+       "blank, of the kind m"},
       {head("x"), "--units mm --column volume=10", "--column volume=10: found a number without a"},
       {"id,x,y,mass\n1,0,0,1\n", "--column 'radius=1.8 kg'", "no column \"radius\""},
       {head("x"), "--units kg", "--units: found \"kg\", allowed: a unit of length"},
