@@ -13,8 +13,8 @@
 namespace grainfield::coupling {
 namespace {
 
-using testing::Folder;
 using ::testing::Contains;
+using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::program;

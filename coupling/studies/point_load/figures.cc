@@ -34,7 +34,8 @@ std::vector<SummaryKey> point_load_figures() {
       {"response.ring_p", "-",
        "3D: two-sided chance of such a difference if there were none (Student's t over the "
        "realizations)"},
-      {"response.ring", "text", "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more"},
+      {"response.ring", "text",
+       "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more"},
       {"response.within_radius", "m", "3D: where the profiles by radius end"},
       {"response.within_over_load", "-",
        "3D: base response within that radius, from its profile, over F"},
