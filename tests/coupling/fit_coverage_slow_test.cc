@@ -84,7 +84,7 @@ TEST(Fit, CoverageOfModelsThatDoNotHold) {
   fill_as_grains(data, truth, 96, 0.1, random);
   CoverageOptions options;
   options.sizes = {4, 8};
-  options.draws = 60;
+  options.draws = 40;
   options.bootstrap = 0;
   options.profile = false;
   std::vector<FitModel> models;

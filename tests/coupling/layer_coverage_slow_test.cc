@@ -1,4 +1,4 @@
-// Synthetic truth: 100 ensembles of layers per model; coverage of the intervals, and the verdict.
+// Synthetic truth: dozens of ensembles of layers per model; coverage of the intervals, and the verdict.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -10,6 +10,7 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr int kTrials = 100, kRealizations = 8;
+constexpr int kCovered = 60;  // ensembles of which each interval must hold the truth in 90 %
 
 const LayerScene& scene() {
   static const LayerScene one = layer_scene(7);
@@ -27,7 +28,7 @@ TEST(LayerFit, IntervalsCoverTheTruth) {
     near.starts = {truth.parameters};  // the search is not what is tested here
     std::vector<int> inside(model.parameters.size(), 0);
     dem::Random random(1);
-    for (int trial = 0; trial < kTrials; ++trial) {
+    for (int trial = 0; trial < kCovered; ++trial) {
       const FitData data =
           with_noise(scene(), truth.model, truth.parameters, kRealizations, 0.1, random);
       const Fit f = fit(data, weights_of(data), near, options);
@@ -37,7 +38,7 @@ TEST(LayerFit, IntervalsCoverTheTruth) {
       }
     }
     for (std::size_t k = 0; k < inside.size(); ++k) {
-      EXPECT_GE(inside[k], 90) << truth.model << " " << model.parameters[k].name;
+      EXPECT_GE(inside[k], kCovered * 9 / 10) << truth.model << " " << model.parameters[k].name;
     }
   }
 }
@@ -102,7 +103,7 @@ TEST(LayerFit, VerdictNamesTheModelThatMadeTheResponse) {
 }
 
 // A trial in such noise takes ten seconds and more: the searches wander.
-TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) { expect_undecided(1, 3); }
+TEST(LayerFit, VerdictIsNotDistinguishableBelowTheNoise) { expect_undecided(1, 2); }
 
 // By hand: --gtest_also_run_disabled_tests --gtest_filter='*All*'
 TEST(LayerFit, DISABLED_AllTrialsNameTheModel) {

@@ -16,7 +16,7 @@ namespace {
 using testing::Folder;
 
 // Grains and bytes up to which a case is run; of larger ones reading is tested alone.
-constexpr double kGrains = 12000, kBytes = 1e9;
+constexpr double kGrains = 4000, kBytes = 1e9;
 constexpr double kSeconds = 10;
 
 std::vector<std::string> values_of(const Key& key) {
