@@ -31,6 +31,7 @@ struct ExportRequest {
   std::string to, case_file, snapshots, group, column, output;
   std::vector<std::string> sets;
   bool quick = false;
+  std::vector<int> copies{1, 1};
 };
 
 /// The group asked for, or the first one that ends with "unloaded", or the first.
@@ -174,7 +175,11 @@ int export_deck(ExportRequest given) {
   const dem::Snapshot packing = dem::read_snapshot(given.snapshots, group);
   LammpsSetup setup;
   setup.material = study.material(value);
-  if (study.rest != nullptr) setup.background_damping = study.rest(value).background_damping;
+  if (study.rest != nullptr) {
+    setup.background_damping = study.rest(value).background_damping;
+    setup.kinetic_to_elastic_energy = study.rest(value).kinetic_to_elastic_energy;
+  }
+  setup.copies = {given.copies.front(), given.copies.back()};
   setup.local_damping = study.motion(value).local_damping;
   constexpr std::int64_t kDraws = 1000;
   setup.time_step = study.foresee(value, kDraws).time_step;
@@ -186,7 +191,8 @@ int export_deck(ExportRequest given) {
   write_text_file(folder.staging("in.lammps"), deck.input);
   const auto written = folder.staged();
   note_gone(given.output, folder.publish());
-  say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots, packing.grains.size(),
+  say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots,
+      static_cast<std::size_t>(setup.copies[0] * setup.copies[1]) * packing.grains.size(),
       packing.walls.size(),
       setup.loaded.empty() ? "" : fmt::format(", load on {}", setup.loaded.size()));
   for (const std::string& line : deck.notes) note("note: {}", line);
@@ -217,6 +223,11 @@ void add_export(CLI::App& app, Action& action) {
   command->add_option("--set", given->sets, "lammps: override of the case: key.path=value")
       ->allow_extra_args(false);
   command->add_flag("--quick", given->quick, "lammps: with the case's quick setting");
+  command
+      ->add_option("--copies", given->copies,
+                   "lammps: NX NY, the packing that many times along x and y, where it repeats")
+      ->expected(2)
+      ->check(CLI::Range(1, 1000));
   add_output(*command, given->output, "folder")->required();
   command->callback([=, &action] {
     action = [=] { return given->to == "lammps" ? export_deck(*given) : export_file(*given); };

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dem/snapshot/images.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -38,6 +40,12 @@ void check(const dem::Snapshot& s, const LammpsSetup& setup) {
     require(
         g.material.empty(),
         fmt::format("grain {}: found the material {}, allowed: one material", g.id, g.material));
+  }
+  for (int a = 0; a < 2; ++a) {
+    require(setup.copies[a] == 1 || s.cell.periodic[a],
+            fmt::format("--copies: found {} along {}, allowed: 1, for the packing does not repeat "
+                        "there",
+                        setup.copies[a], kAxes[a]));
   }
   const dem::MaterialSetup& m = setup.material;
   require(m.law == "linear" || m.law == "hertz",
@@ -93,6 +101,20 @@ std::string data_of(const dem::Snapshot& s) {
     out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", g.id + 1, g.fixed ? 2 : 1,
                        2 * g.radius, g.mass / g.volume, g.position.x(), g.position.y(),
                        g.position.z());
+  }
+  return out;
+}
+
+/// Of the normal forces between spheres, J: what rest is measured by. 0 before they touch.
+double elastic_energy(const dem::Snapshot& s, const std::string& law) {
+  const double share = law == "hertz" ? 0.4 : 0.5;  // of force times depth
+  double out = 0;
+  for (const dem::Contact& c : s.contacts) {
+    if (c.j < 0) continue;
+    const dem::Grain& a = s.grains[static_cast<std::size_t>(c.i)];
+    const dem::Grain& b = s.grains[static_cast<std::size_t>(c.j)];
+    const Vec3 way = b.position + dem::shift_to(s.cell, c.image) - a.position;
+    out += share * c.normal_force * std::max(0., a.radius + b.radius - way.norm());
   }
   return out;
 }
@@ -206,7 +228,7 @@ std::string rest(const char* label) {
       "variable turn loop 400\n"
       "label {0}\n"
       "run 2500\n"
-      "if \"$(v_quiet) > 0\" then \"next turn\" \"jump SELF {0}\"\n"
+      "if \"$(v_quiet) > 0\" then \"set group free omega 0 0 0\" \"next turn\" \"jump SELF {0}\"\n"
       "if \"$(v_quiet) > 0\" then \"print 'not at rest: raise the loop of turns'\" \"quit 1\"\n"
       "variable turn delete\n",
       label);
@@ -216,15 +238,14 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   const dem::MaterialSetup& m = setup.material;
   const double gravity = s.gravity.norm();
   double largest = 0, weight = 0;
-  std::size_t free = 0;
   for (const dem::Grain& g : s.grains) {
     largest = std::max(largest, g.radius);
-    if (g.fixed) continue;
-    weight += g.mass * gravity;
-    ++free;
+    if (!g.fixed) weight += g.mass * gravity;
   }
-  // A grain's share of this energy lifts it by a ten-thousandth of the largest radius.
-  const double quiet = 1e-8 * weight * largest;
+  double elastic = elastic_energy(s, m.law);
+  if (!(elastic > 0)) elastic = 1e-4 * weight * largest;  // of spheres that do not touch yet
+  const int copies = setup.copies[0] * setup.copies[1];
+  const double quiet = setup.kinetic_to_elastic_energy * copies * elastic;
   std::string out =
       "# lmp -in in.lammps, or mpirun -n 8 lmp -in in.lammps. Back:\n"
       "# " +
@@ -237,11 +258,13 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   }
   out += fmt::format(
       "units si\natom_style sphere\natom_modify map array\nnewton off\nboundary {} {} {}\n"
-      "comm_modify vel yes\nread_data packing.data\nneighbor {:.6g} bin\n"
+      "comm_modify vel yes\nread_data packing.data\n{}neighbor {:.6g} bin\n"
       "neigh_modify delay 0 every 1 check yes\ngroup free type 1\ngroup fixed type 2\n"
       "pair_style granular\npair_coeff * * {}\n",
       s.cell.periodic[0] ? "p" : "f", s.cell.periodic[1] ? "p" : "f",
-      s.cell.periodic[2] ? "p" : "f", 0.2 * largest, law_of(m, m.friction, deck));
+      s.cell.periodic[2] ? "p" : "f",
+      copies > 1 ? fmt::format("replicate {} {} 1\n", setup.copies[0], setup.copies[1]) : "",
+      0.2 * largest, law_of(m, m.friction, deck));
   out += walls_of(s, m, deck);
   out += fmt::format("timestep {:.17g}\nfix move free nve/sphere\n", setup.time_step);
   if (gravity > 0) {
@@ -254,7 +277,8 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
                          setup.background_damping);
     }
     out += "fix damp free addforce v_damp_x v_damp_y v_damp_z\n";
-    deck.notes.push_back("rest.background_damping slows displacement alone, not rotation");
+    deck.notes.push_back(
+        "rest.background_damping slows displacement alone; spin is set to 0 every 2500 steps");
   }
   if (setup.local_damping > 0) {
     deck.notes.push_back(

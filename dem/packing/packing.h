@@ -24,7 +24,8 @@ struct PackingSetup {
   int columns = 64;                ///< lattices: grains in a row
   int rows = 16;                   ///< lattices: rows; 3D: horizontal layers
   double spacing = 1;              ///< sqrt3: spacing in a row / (sqrt(3) d), up to 1; below 1 rows
-                                   ///< two apart do not touch, and a grain has four contacts
+                                   ///< two apart do not touch, and a grain has four contacts;
+                                   ///< close_packed: of neighbours in a layer over d, 0.9 to 1
   double width = 0.6;              ///< m; layered, random
   double depth = 0.15;             ///< m; layered: rows are dropped until this height is reached;
                                    ///< random: grains are counted out for it

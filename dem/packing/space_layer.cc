@@ -19,6 +19,8 @@ namespace {
 constexpr double kLooseFraction = 0.25;
 // A cell must be wide enough that a sphere does not touch another and its image.
 constexpr double kLeastDiameters = 4;
+// Of neighbours in a close packed layer, over their diameter: closer ones overlap too much.
+constexpr double kLeastSpacing = 0.9;
 
 double volume_of(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius * radius; }
 
@@ -38,6 +40,13 @@ void check_lattice(const PackingSetup& p) {
   if (p.rows < 1) refuse("rows", fmt::format("{}", p.rows), "1 or more");
   if (!(p.jitter >= 0 && p.jitter < 0.5)) {
     refuse("jitter", fmt::format("{:g}", p.jitter), "0 to below 0.5");
+  }
+  if (!(p.spacing >= kLeastSpacing && p.spacing <= 1)) {
+    refuse("spacing", fmt::format("{:g}", p.spacing),
+           fmt::format("{:g} to 1 with packing.kind = close_packed", kLeastSpacing));
+  }
+  if (p.spacing < 1 && p.sides != "periodic") {
+    refuse("spacing", fmt::format("{:g}", p.spacing), "1 between walls, which would be overlapped");
   }
 }
 
@@ -132,10 +141,10 @@ bool fits(const PackingSetup& p, const std::array<double, 2>& sides, double x, d
 // A horizontal layer of a close packing: `shift` 0, 1 or 2 is A, B or C.
 void add_layer(const PackingSetup& p, int shift, double z, double density, bool fixed,
                Random& random, std::vector<NewGrain>& grains) {
-  const double d = 2 * p.radius, step = d * std::sqrt(3.0) / 2;
+  const double d = 2 * p.radius * p.spacing, step = d * std::sqrt(3.0) / 2;
   const auto sides = layer_sides(p);
   const int rows = rows_of(p);
-  const double x0 = -0.5 * sides[0] + p.radius, y0 = -0.5 * sides[1] + p.radius;
+  const double x0 = 0.5 * (d - sides[0]), y0 = 0.5 * (d - sides[1]);
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < p.columns; ++i) {
       double x = x0 + d * (i + 0.5 * (j % 2)) + 0.5 * d * shift;
@@ -160,7 +169,7 @@ int stacked(const PackingSetup& p, int number) {
 
 std::vector<NewGrain> lattice(const PackingSetup& p, double density, Random& random) {
   std::vector<NewGrain> grains;
-  const double up = 2 * p.radius * std::sqrt(2.0 / 3);
+  const double up = 2 * p.radius * std::sqrt(1 - p.spacing * p.spacing / 3);
   const bool rough = p.floor == "rough";
   for (int k = 0; k < p.rows; ++k) {
     const double z = rough ? up * (k + 1) - p.radius : up * k + p.radius;
@@ -236,7 +245,7 @@ double mean_sphere_volume(const PackingSetup& p) {
 
 std::array<double, 2> layer_sides(const PackingSetup& p) {
   if (!is_lattice(p)) return {p.width, p.width};
-  const double d = 2 * p.radius;
+  const double d = 2 * p.radius * p.spacing;
   if (p.sides == "periodic") return {p.columns * d, rows_of(p) * d * std::sqrt(3.0) / 2};
   // Between walls the rows end with whole spheres.
   return {(p.columns + 0.5) * d, (1 + (rows_of(p) - 1) * std::sqrt(3.0) / 2) * d};

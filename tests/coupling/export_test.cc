@@ -79,6 +79,36 @@ TEST(Export, SaysLawWallsCellAndLoadInLammpsWords) {
   EXPECT_THAT(lammps_deck(two_spheres(), setup).input, HasSubstr(" rolling sds 500 0 0.1"));
 }
 
+// A response to a small load needs a rest as deep as that of the engine: the limit of the spheres'
+// energy goes with the contacts' energy, and with the copies.
+TEST(Export, RestIsMeasuredByTheEnergyOfTheContacts) {
+  dem::Snapshot s = two_spheres();
+  const double depth = 1e-5;
+  s.grains[1].position =
+      s.grains[0].position + dem::Vec3(0, 0, s.grains[0].radius + s.grains[1].radius - depth);
+  dem::Contact c;
+  c.i = 0;
+  c.j = 1;
+  c.normal_force = 0.25;
+  s.contacts = {c};
+  LammpsSetup setup = setup_of("hertz");
+  setup.kinetic_to_elastic_energy = 1e-12;
+  const auto limit = [&] {
+    const std::string input = lammps_deck(s, setup).input, before = "c_motion+c_spin > ";
+    return std::stod(input.substr(input.find(before) + before.size()));
+  };
+  EXPECT_NEAR(limit() / (1e-12 * 0.4 * 0.25 * depth), 1, 1e-9);
+  EXPECT_THAT(lammps_deck(s, setup).input, Not(HasSubstr("replicate")));
+  setup.copies = {3, 2};
+  EXPECT_NEAR(limit() / (6e-12 * 0.4 * 0.25 * depth), 1, 1e-9);
+  EXPECT_THAT(lammps_deck(s, setup).input, HasSubstr("packing.data\nreplicate 3 2 1\n"));
+  setup = setup_of("linear");
+  setup.kinetic_to_elastic_energy = 1e-12;
+  EXPECT_NEAR(limit() / (1e-12 * 0.5 * 0.25 * depth), 1, 1e-9);
+  s.contacts.clear();
+  EXPECT_GT(limit(), 0);
+}
+
 TEST(Export, RestitutionOfTsujisPolynomial) {
   EXPECT_EQ(tsuji_restitution(2), 0);
   for (const double e : {0.1, 0.5, 0.9}) {
@@ -104,6 +134,11 @@ TEST(Export, RefusesWhatLammpsHasNot) {
   dem::Snapshot bad = good;
   bad.dim = 2;
   EXPECT_THAT(complaint(bad, setup_of("hertz")), HasSubstr("in the plane"));
+  bad = good;
+  bad.cell.periodic[1] = false;
+  LammpsSetup twice = setup_of("hertz");
+  twice.copies = {1, 2};
+  EXPECT_THAT(complaint(bad, twice), HasSubstr("--copies: found 2 along y, allowed: 1"));
   bad = good;
   bad.cell.edges(0, 2) = 0.1;
   EXPECT_THAT(complaint(bad, setup_of("hertz")), HasSubstr("sheared cell"));

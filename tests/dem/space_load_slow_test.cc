@@ -259,6 +259,12 @@ TEST(SpaceLoad, RefusesWhatCannotBe) {
   s = spheres("close_packed");
   s.packing.columns = 2;
   EXPECT_THAT(refusal(s), HasSubstr("packing.columns: found 2, allowed: 4 or more"));
+  s = spheres("close_packed");
+  s.packing.spacing = 0.8;
+  EXPECT_THAT(refusal(s), HasSubstr("packing.spacing: found 0.8, allowed: 0.9 to 1 with"));
+  s.packing.spacing = 0.95;
+  s.packing.sides = "walls";
+  EXPECT_THAT(refusal(s), HasSubstr("packing.spacing: found 0.95, allowed: 1 between walls"));
   s = spheres("random");
   s.load.method = "newton";
   s.material.law = "hertz_elliptic";
@@ -337,6 +343,32 @@ TEST(SpaceLayer, ClosePackingsTouchWithoutOverlap) {
       EXPECT_EQ(touching, 3 * all.size() + 3 * (all.size() - layer)) << stacking << " " << floor;
     }
   }
+}
+
+// Pressed together along the layers: six neighbours overlap by what was asked, those of the layers
+// above and below touch as before.
+TEST(SpaceLayer, CloserLayersStandHigher) {
+  PackingSetup p = spheres("close_packed").packing;
+  p.spacing = 0.98;
+  Random random(1);
+  const std::vector<NewGrain> all = space_grains(p, 1, random);
+  const auto sides = layer_sides(p);
+  const double d = 2 * p.radius;
+  EXPECT_DOUBLE_EQ(sides[0], p.columns * 0.98 * d);
+  std::size_t touching = 0, pressed = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      double x = all[i].x - all[j].x, y = all[i].y - all[j].y;
+      x -= sides[0] * std::round(x / sides[0]);
+      y -= sides[1] * std::round(y / sides[1]);
+      const double apart = std::sqrt(x * x + y * y + std::pow(all[i].z - all[j].z, 2)) / d;
+      if (std::fabs(apart - 0.98) < 1e-9) ++pressed;
+      if (std::fabs(apart - 1) < 1e-9) ++touching;
+      EXPECT_GT(apart, 0.98 - 1e-9);
+    }
+  }
+  EXPECT_EQ(pressed, 3 * all.size());
+  EXPECT_EQ(touching, 3 * (all.size() - all.size() / 3));
 }
 
 TEST(SpaceLayer, FccAndHcpDifferInTheThirdLayer) {

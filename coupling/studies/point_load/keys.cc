@@ -55,9 +55,10 @@ void declare_packing_keys(SectionKeys s) {
   s.only("packing.kind", {"triangular", "sqrt3", "close_packed"});
   s.number("spacing", "-", IN(packing.spacing), {0.71, 1},
            "distance of neighbours in a row over sqrt(3) diameters; below 1 rows two apart do "
-           "not touch and a grain has four contacts",
+           "not touch and a grain has four contacts; in space over one diameter, from 0.9: below 1 "
+           "neighbours in a layer press on each other, at 1 they touch without force",
            "Roul 5.4");
-  s.only("packing.kind", {"sqrt3"});
+  s.only("packing.kind", {"sqrt3", "close_packed"});
   s.number("width", "m", IN(packing.width), kLength,
            "distance of the side walls, or the periodic length along x and y; four depths keep "
            "their influence small",
