@@ -1,6 +1,7 @@
 #include "coupling/heap/cone_windows.h"
 
 #include <array>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -37,6 +38,27 @@ ConeWindows cone_windows(const dem::Snapshot& cone, const ConeFrame& frame,
   }
   if (out.in_disk < kLeastInDisk) out.mean.centre = kNan;
   out.sector_error = spread_of(differences).standard_error;
+  return out;
+}
+
+Eigen::VectorXd ring_sector_errors(const RingPlaces& rings, const Eigen::VectorXd& values,
+                                   int sectors) {
+  using Eigen::Index;
+  Eigen::VectorXd out(static_cast<Index>(rings.count.size()));
+  Index at = 0;
+  for (Index k = 0; k < out.size(); ++k) {
+    const Index count = rings.count[static_cast<std::size_t>(k)];
+    std::vector<double> sum(static_cast<std::size_t>(sectors)), places(sum.size());
+    for (Index p = 0; p < count; ++p) {
+      const auto sector = static_cast<std::size_t>(p * sectors / count);
+      sum[sector] += values[at + p];
+      ++places[sector];
+    }
+    for (std::size_t sector = 0; sector < sum.size(); ++sector) sum[sector] /= places[sector];
+    out[k] =
+        count < sectors ? std::numeric_limits<double>::quiet_NaN() : spread_of(sum).standard_error;
+    at += count;
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 // The dip of the base pressure under a cone's apex.
 #pragma once
+#include "coupling/averaging/base_space.h"
 #include "coupling/averaging/cone.h"
 #include "coupling/heap/dip.h"
 #include "coupling/heap/setup.h"
@@ -17,5 +18,11 @@ struct ConeWindows {
 /// Mean vertical pressure of one cone in a disk and a ring of its base, from the forces on the base
 /// themselves (no smearing), in units of its rho g h.
 ConeWindows cone_windows(const dem::Snapshot& cone, const ConeFrame& frame, const HeapSetup& setup);
+
+/// Standard errors of the means over rings (ring_means) from so many equal sectors, at least 2:
+/// what one cone tells of its own mean, as if sectors were independent. nan where a ring has fewer
+/// places than sectors.
+Eigen::VectorXd ring_sector_errors(const RingPlaces& rings, const Eigen::VectorXd& values,
+                                   int sectors);
 
 }  // namespace grainfield::coupling

@@ -1,8 +1,12 @@
 // A small load on a settled layer of spheres by Newton's method: 1,728 and 8,000 spheres, six
-// unknowns each. The layers settle first, which takes minutes.
+// unknowns each. The layers settle first, which takes minutes. GRAINFIELD_LAYER = FILE.h5:GROUP, a
+// layer at rest of a run of point-load-3d, is loaded too, by a tenth of a sphere's weight
+// (GRAINFIELD_YOUNG: its material.young, default 2e7).
 #include <benchmark/benchmark.h>
 
+#include <cstdlib>
 #include <map>
+#include <string>
 
 #include "dem/engine/engine.h"
 #include "dem/quasistatic/quasistatic.h"
@@ -54,13 +58,8 @@ dem::Snapshot settled_layer(int side, const dem::EngineSettings& settings, doubl
   return engine->snapshot();
 }
 
-void small_load_on_spheres(benchmark::State& state) {
-  const auto side = static_cast<int>(state.range(0));
-  const double cell = 2.25 * kRadius;
-  const dem::EngineSettings settings = hertz_settings(side * cell);
-  static std::map<int, dem::Snapshot> layers;
-  if (layers.count(side) == 0) layers[side] = settled_layer(side, settings, cell);
-  const dem::Snapshot& layer = layers[side];
+void load(benchmark::State& state, const dem::Snapshot& layer, const dem::EngineSettings& settings,
+          double ratio) {
   dem::AppliedForce force;
   double top = 0;
   for (const dem::Grain& g : layer.grains) {
@@ -70,7 +69,7 @@ void small_load_on_spheres(benchmark::State& state) {
   }
   force.fz = -1e-3;
   dem::QuasistaticSettings how;
-  how.unbalanced_force_ratio = 1e-5;
+  how.unbalanced_force_ratio = ratio;
   const dem::Vec3 gravity(0, 0, -kGravity);
   int iterations = 0;
   for (auto _ : state) {
@@ -81,7 +80,34 @@ void small_load_on_spheres(benchmark::State& state) {
   state.counters["unknowns"] = 6.0 * static_cast<double>(layer.grains.size());
   state.counters["newton_iterations"] = iterations;
 }
+
+void small_load_on_spheres(benchmark::State& state) {
+  const auto side = static_cast<int>(state.range(0));
+  const double cell = 2.25 * kRadius;
+  const dem::EngineSettings settings = hertz_settings(side * cell);
+  static std::map<int, dem::Snapshot> layers;
+  if (layers.count(side) == 0) layers[side] = settled_layer(side, settings, cell);
+  load(state, layers[side], settings, 1e-5);
+}
 BENCHMARK(small_load_on_spheres)->Arg(12)->Arg(20)->Unit(benchmark::kSecond)->Iterations(1);
+
+// As point-load-3d has its spheres.
+void small_load_on_a_layer_of_a_run(benchmark::State& state) {
+  const char* place = std::getenv("GRAINFIELD_LAYER");
+  if (place == nullptr) {
+    state.SkipWithError("GRAINFIELD_LAYER: not set");
+    return;
+  }
+  const std::string text = place;
+  const std::size_t colon = text.rfind(':');
+  const dem::Snapshot layer = dem::read_snapshot(text.substr(0, colon), text.substr(colon + 1));
+  dem::EngineSettings settings = hertz_settings(1);
+  const char* young = std::getenv("GRAINFIELD_YOUNG");
+  settings.law = dem::HertzLaw{young == nullptr ? 2e7 : std::stod(young), 0.3, 0.3};
+  settings.cell = layer.cell;
+  load(state, layer, settings, 1e-8);
+}
+BENCHMARK(small_load_on_a_layer_of_a_run)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
 }  // namespace grainfield::benchmarks

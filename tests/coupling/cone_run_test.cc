@@ -406,5 +406,26 @@ TEST(ConeFrame, MeasuresSlopesBySector) {
   }
 }
 
+// Sectors of independent values scatter as the ring's mean does from one cone to the next; what all
+// sectors share has no error.
+TEST(ConeBase, SectorsTellTheErrorOfARing) {
+  const RingPlaces rings = ring_places({0, 0}, Eigen::VectorXd::LinSpaced(2, 1, 3), 0.05);
+  dem::Random random(5);
+  double squared = 0, told = 0;
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Eigen::VectorXd values(rings.places.rows());
+    for (double& v : values) v = random.uniform(-1, 1);
+    const double mean = ring_means(rings, values)[1];
+    const double error = ring_sector_errors(rings, values, kConeSectors)[1];
+    squared += mean * mean / kTrials;
+    told += error * error / kTrials;
+  }
+  EXPECT_NEAR(told / squared, 1, 0.1);
+  const Eigen::VectorXd same = Eigen::VectorXd::Constant(rings.places.rows(), 2);
+  EXPECT_EQ(ring_sector_errors(rings, same, kConeSectors)[0], 0);
+  EXPECT_TRUE(std::isnan(ring_sector_errors(rings, same, 1000)[1]));
+}
+
 }  // namespace
 }  // namespace grainfield::coupling

@@ -194,6 +194,17 @@ double ConeEnsemble::add_base(const dem::Snapshot& cone, const ConeFrame& frame)
   const Eigen::VectorXd pressure = ring_means(rings, on_rings.find("sigma_zz")->value);
   means.add("sigma_zz", "1").value = pressure / unit;
   means.add("sigma_rz", "1").value = ring_means(rings, radial) / unit;
+  const auto over_sectors = [&](const char* name, const Eigen::VectorXd& values) {
+    Eigen::VectorXd error = ring_sector_errors(rings, values, kConeSectors) / unit;
+    // Near the axis neighbouring sectors are within one kernel.
+    for (Index k = 0; k < error.size(); ++k) {
+      const double arc = 2 * std::numbers::pi / kConeSectors * radii_[k] * frame.height;
+      if (arc < kernel_->independent_length()) error[k] = kNan;
+    }
+    means.add(name, "1").value = error;
+  };
+  over_sectors("sigma_zz_sector_error", on_rings.find("sigma_zz")->value);
+  over_sectors("sigma_rz_sector_error", radial);
   // Beyond the heap nothing is measured, and nothing has no spread.
   const Eigen::VectorXd covered = ring_means(rings, on_rings.find("contacts")->value);
   for (Index k = 0; k < covered.size(); ++k) {

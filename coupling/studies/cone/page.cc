@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "coupling/run/radial_page.h"
 
 namespace grainfield::coupling {
@@ -28,6 +31,35 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
                          {{"", {std::move(series)}}});
   drawn.caption = "Above 0 the grains push the floor outwards.";
   report.sections.emplace_back(std::move(drawn));
+}
+
+// Pressure and shear on the base at a tenth of the radii, each with both errors.
+void add_cone_base(Report& report, const ConePage& page) {
+  Table table;
+  table.title = "The base by radius";
+  table.caption =
+      "In rho g h, with the standard error over the cones. Beside it what one cone can tell of its "
+      "own mean: the spread of eight sectors over the root of eight, mean of the cones. No number "
+      "where a sector is narrower than the averaging, or nothing lies.";
+  table.header = {"radius / h", "pressure", "over sectors", "radial shear", "over sectors"};
+  const auto of = [&](const char* name, Eigen::Index k, double sign) {
+    const Column& column = *page.rings.find(name);
+    if (!std::isfinite(column.value[k])) return std::string("-");
+    const std::string value = fmt::format("{:.3f}", sign * column.value[k]);
+    if (column.error.size() == 0 || !std::isfinite(column.error[k])) return value;
+    return fmt::format("{} ± {:.3f}", value, column.error[k]);
+  };
+  const auto error = [&](const char* name, Eigen::Index k) {
+    const double value = page.rings.find(name)->value[k];
+    return std::isfinite(value) ? fmt::format("± {:.3f}", value) : std::string("-");
+  };
+  const Eigen::Index step = std::max<Eigen::Index>(1, page.rings.points.rows() / 10);
+  for (Eigen::Index k = 0; k < page.rings.points.rows(); k += step) {
+    table.rows.push_back({fmt::format("{:.2f}", page.rings.points(k, 0)), of("sigma_zz", k, -1),
+                          error("sigma_zz_sector_error", k), of("sigma_rz", k, 1),
+                          error("sigma_rz_sector_error", k)});
+  }
+  report.sections.emplace_back(std::move(table));
 }
 
 // The difference of ring and disk with its two errors, and what they are of.
@@ -96,6 +128,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   }
   add_cone_maps(report, c, page);
   add_cone_dip(report, result);
+  add_cone_base(report, page);
   if (!c.models.empty()) add_radial_tables(report, c, "ρgh");
   add_rows(report, "Figures",
            figure_rows(result.summary, {"dem.grains",
