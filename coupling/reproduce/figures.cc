@@ -248,7 +248,7 @@ std::string agreement(const SourceFigure& figure, const Measured& ours) {
                        miss / ours.error);
   }
   const double stake = figure.effect > 0 ? figure.effect : std::fabs(middle);
-  if (reach > kTooWide * stake) return "spread too wide to tell";
+  if (reach > kTooWide * stake) return kWideSpread;
   return "agrees";
 }
 

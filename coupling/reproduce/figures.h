@@ -26,6 +26,8 @@ struct SourceFigure {
   double effect = 0;
   /// What must be known of ours, in the row's last words; "" where nothing.
   std::function<std::string(const Results&)> note = nullptr;
+  /// What ours says where no result has it; "": "not run".
+  std::string missing = "";
 };
 
 /// In the order of the page.
@@ -37,5 +39,6 @@ const std::vector<SourceFigure>& source_figures();
 /// with one realization.
 std::string agreement(const SourceFigure& figure, const Measured& ours);
 inline constexpr double kTooWide = 0.5;
+inline constexpr const char* kWideSpread = "spread too wide to tell";
 
 }  // namespace grainfield::coupling

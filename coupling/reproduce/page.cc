@@ -28,15 +28,17 @@ std::string with_error(const SourceFigure& figure, const Measured& m) {
 
 // Ours and the agreement.
 std::pair<std::string, std::string> row_of(const SourceFigure& figure, const Results& results) {
+  const std::string lacking = figure.missing.empty() ? kNotRun : figure.missing;
   if (figure.number) {
     const auto ours = figure.number(results);
-    if (!ours) return {kNotRun, ""};
+    if (!ours) return {lacking, ""};
     return {with_error(figure, *ours), agreement(figure, *ours)};
   }
   const auto ours = figure.word(results);
-  if (!ours) return {kNotRun, ""};
+  if (!ours) return {lacking, ""};
   const std::string word = ours->substr(0, ours->find(':'));
   if (word == "undecided") return {*ours, "too few realizations to tell"};
+  if (word == "between") return {*ours, kWideSpread};
   // What is not there beyond the spread says nothing of a dip, nor of none.
   if (word == "neither") return {*ours, "uninformative"};
   const bool same = std::find(figure.words.begin(), figure.words.end(), word) != figure.words.end();
@@ -172,8 +174,11 @@ std::string reproduction_page(const Results& results) {
       "what a true model's does by chance: in 1 of 100, under the older weights in 1.35 of "
       "1000. A dip or peak is one at 5 % over [all pours "
       "together](#dips-and-peaks-of-all-pours); a peak meets \"no dip\" too; neither is "
-      "uninformative: it agrees with a dip as with none. A stress ratio hardly changes where 2 "
-      "standard errors leave it within a tenth. Nothing was tuned to agree, but for "
+      "uninformative: it agrees with a dip as with none. A stress ratio hardly changes where it "
+      "does by less than a tenth also with 2 standard errors more, and changes where it does by "
+      "more "
+      "than a tenth also with 2 less; between, the spread is too wide to tell. Nothing was tuned "
+      "to agree, but for "
       "the window of Liffman's H at 32.6°, of which its row tells; the value over the whole way "
       "to the bend is not among the stored results.\n\n"
       "| source | figure | theirs | ours | agreement | realizations | study |\n"

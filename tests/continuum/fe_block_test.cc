@@ -124,6 +124,68 @@ TEST(FeBlock, ShearUnderConstantStress) {
   EXPECT_NEAR(states[40].stress(2, 2), -kPressure, kExact);
 }
 
+// Without lateral strain a hydrostatic block yields where K0 of elasticity is less than 1/N, N =
+// (1 + sin phi)/(1 - sin phi), and flows at the edge s1 = N s3 of both lateral stresses s3. A
+// plastic shortening l comes with lateral extensions M l/2 (M as N, of psi), which elastic ones
+// take back: M l/2 = ((1 - nu)/N - nu) ds1/E, and so ds1 = E d eps/(1 - 2 nu/N + 2 ((1 - nu)/N -
+// nu)/M). The way back is elastic.
+TEST(FeBlock, OedometricFlowAndItsWayBack) {
+  for (const auto& [friction, dilation] : {std::pair(20.0, 0.0), {25.0, 10.0}, {30.0, 30.0}}) {
+    const double s = std::sin(friction * kDegree), d = std::sin(dilation * kDegree);
+    const double n = (1 + s) / (1 - s), m = (1 + d) / (1 - d);
+    const double oedometric = kYoung * (1 - kNu) / ((1 + kNu) * (1 - 2 * kNu));
+    const double k0 = kNu / (1 - kNu);
+    // p + M e = N (p + K0 M e).
+    const double yields_at = kPressure * (n - 1) / (oedometric * (1 - n * k0));
+    const double flowing = kYoung / (1 - 2 * kNu / n + 2 * ((1 - kNu) / n - kNu) / m);
+    std::vector<BlockLoad> path(12);
+    for (std::size_t k = 0; k < 8; ++k) path[k].strain.z() = -2e-3 * static_cast<double>(k + 1);
+    for (std::size_t k = 8; k < 12; ++k) {
+      path[k].strain.z() = path[7].strain.z() + 2e-5 * static_cast<double>(k - 7);
+    }
+    ASSERT_LT(yields_at, 0.8 * 0.016);
+    const auto states = load_block(material(true, friction, dilation), hydrostatic(), path, 2);
+    for (std::size_t k = 0; k <= 8; ++k) {
+      const double e = 2e-3 * static_cast<double>(k);
+      const double beyond = std::max(0.0, e - yields_at), elastic = e - beyond;
+      const double axial = kPressure + oedometric * elastic + flowing * beyond;
+      EXPECT_NEAR(states[k].stress(2, 2), -axial, 10 * kExact) << friction << " " << k;
+      EXPECT_NEAR(states[k].stress(0, 0),
+                  beyond > 0 ? -axial / n : -kPressure - k0 * oedometric * elastic, 10 * kExact);
+    }
+    for (std::size_t k = 9; k <= 12; ++k) {
+      EXPECT_NEAR(states[k].stress(2, 2) - states[8].stress(2, 2),
+                  oedometric * 2e-5 * static_cast<double>(k - 8), 10 * kExact);
+    }
+  }
+}
+
+// A held volume keeps what dilates from doing so: beyond tau = p sin phi the mean c of the stresses
+// in the plane rises with tau = c sin phi. Plastic dilation lambda sin psi is taken back by the
+// elastic compression dc/K', K' = E/(2 (1 + nu)(1 - 2 nu)), and d gamma = lambda + dtau/G. Across
+// the plane the stress follows by 2 nu dc.
+TEST(FeBlock, ShearAtConstantVolumeBuildsUpPressureWhereItWouldDilate) {
+  const double g = kYoung / (2 * (1 + kNu));
+  for (const auto& [friction, dilation] : {std::pair(30.0, 12.0), {40.0, 5.0}, {25.0, 25.0}}) {
+    const double s = std::sin(friction * kDegree), d = std::sin(dilation * kDegree);
+    const double rise = 1 / ((2 * (1 + kNu) * (1 - 2 * kNu)) / (kYoung * d) + s / g);
+    std::vector<BlockLoad> path(8);
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      path[k].shear = 1e-3 * static_cast<double>(k + 1);
+    }
+    const auto states = load_block(material(true, friction, dilation), hydrostatic(), path, 2);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const double gamma = 1e-3 * static_cast<double>(k);
+      const double beyond = std::max(0.0, gamma - kPressure * s / g);
+      const double c = kPressure + rise * beyond;
+      EXPECT_NEAR(states[k].stress(0, 2), beyond > 0 ? c * s : g * gamma, 10 * kExact) << k;
+      EXPECT_NEAR(states[k].stress(2, 2), -c, 10 * kExact) << friction << " " << k;
+      EXPECT_NEAR(states[k].stress(1, 1), -kPressure - 2 * kNu * (c - kPressure), 10 * kExact);
+    }
+    EXPECT_GT(-states.back().stress(2, 2), 1.2 * kPressure);
+  }
+}
+
 TEST(FeBlock, AFirstStressBeyondTheLimitIsReturned) {
   Matrix3d stress = hydrostatic();
   stress(2, 2) = -10 * kPressure;

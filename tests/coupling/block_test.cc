@@ -62,9 +62,49 @@ TEST(Block, TablesHaveErrorsOverRealizations) {
   }
   ASSERT_NE(leaving, nullptr);
   ASSERT_NE(stages, nullptr);
-  ASSERT_EQ(leaving->rows.size(), block_summary_keys().size());
+  // Without mean stress beside the driving one, unloading and angles.
+  ASSERT_EQ(leaving->rows.size(), 5U);
   EXPECT_EQ(leaving->rows.back()[1], "0.025 ± 0.005");
   EXPECT_EQ(stages->rows[2][2], "2.5 ± 0.5");
+}
+
+// Two states more on the way back, where the block is straight and the grains are not; and a mean
+// stress beside the driving one.
+TEST(Block, FiguresOfTheUnloadingAndOfTheMeanStress) {
+  BlockComparison c;
+  c.strain.resize(5);
+  c.strain << 0, 0.01, 0.02, 0.015, 0.01;
+  c.loading = 2;
+  BlockQuantity axial{"sigma_zz", "Pa", MatrixXd(5, 1), {}}, mean{"p", "Pa", MatrixXd(5, 1), {}},
+      volume{"volumetric_strain", "-", MatrixXd::Zero(5, 1), {}};
+  axial.grains << -10, -20, -30, -10, -6;
+  mean.grains << 10, 15, 20, 12, 8;
+  MatrixXd driving(5, 1), pressure(5, 1);
+  driving << -10, -20, -30, -25, -20;
+  pressure << 10, 13, 16, 14, 13;
+  axial.laws[kPlasticBlock] = driving;
+  mean.laws[kPlasticBlock] = pressure;
+  volume.laws[kPlasticBlock] = volume.grains;
+  c.quantities = {axial, mean, volume};
+  c.laws = {kPlasticBlock};
+  c.friction = {36};
+  c.dilation = {9};
+  const auto figures = block_figures(c);
+  const auto one = [&](const std::string& key) {
+    return figures.at("block.mohr_coulomb." + key).at(0);
+  };
+  EXPECT_EQ(one("rel_l2"), 0);
+  EXPECT_EQ(one("leaves"), 0);
+  EXPECT_EQ(figures.count("block.mohr_coulomb.leaves_at"), 0U);
+  EXPECT_NEAR(one("pressure_rel_l2"), std::sqrt((4 + 16) / (100 + 225 + 400.0)), 1e-12);
+  EXPECT_NEAR(one("pressure_end_ratio"), 0.8, 1e-12);
+  // Off by 2 of 20 is not more than a tenth, off by 4 is.
+  EXPECT_NEAR(one("pressure_leaves_at"), 0.02, 1e-12);
+  EXPECT_NEAR(one("unloading_rel_l2"), std::sqrt((225 + 196) / (100 + 36.0)), 1e-12);
+  EXPECT_NEAR(one("unloading_stiffness"), 5.0 / 20, 1e-12);
+  EXPECT_NEAR(one("unloaded_ratio"), 20.0 / 6, 1e-12);
+  EXPECT_EQ(one("friction_deg"), 36);
+  EXPECT_EQ(one("dilation_deg"), 9);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 namespace grainfield::coupling {
 namespace {
 
+using ::testing::AllOf;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -146,6 +147,7 @@ TEST(Reproduce, SuperellipsoidsChangeInWordsWithNotesOnTheRun) {
   put("ratio_025", 1.2);
   put("ratio_1", 1.4);
   put("ratio_1_friction_025", 1);
+  put("ratio_025_friction_025", 0.88);
   put("poisson_0", 1.4);
   put("poisson_045", 1.45);
   put("poisson_0_friction_025", 1.39);
@@ -155,19 +157,32 @@ TEST(Reproduce, SuperellipsoidsChangeInWordsWithNotesOnTheRun) {
  "sample.kinetic_share.penalty_0": 15})");
   folder.write("box-shear.json", R"({"rve.contraction.hertz_05": 0.0002,
  "rve.contraction.standard_error.hertz_05": 0.0002, "rve.dilation.hertz_05": 0.001,
- "rve.dilation.standard_error.hertz_05": 0.0001})");
+ "rve.dilation.standard_error.hertz_05": 0.0001,
+ "sample.axial_dip_strain.penalty_025": 0.07, "sample.axial_dip_strain.standard_error.penalty_025": 0.003,
+ "sample.pressure_ratio.penalty_025": 1.3, "sample.pressure_ratio.standard_error.penalty_025": 0.02,
+ "sample.pressure_ratio.hertz_025": 1.2, "sample.pressure_ratio.standard_error.hertz_025": 0.02})");
   const std::string page = reproduction_page(Results(folder.path()));
   EXPECT_THAT(page, HasSubstr("penalty law | rises | rises: +0.400 ± 0.028 | agrees |  | "
                               "`contact-laws` (quick, 200 grains) |"));
   EXPECT_THAT(page, HasSubstr("Hertz law | rises | undecided: +0.010 ± 0.028 | too few"));
   EXPECT_THAT(page, HasSubstr("0.25 to 1, mu = 0.5 | hardly changes | changes: +0.200 ± 0.028, "
                               "+17 ± 2 % | differs |"));
+  // Above a tenth, but not by two errors: neither.
+  EXPECT_THAT(page, HasSubstr("0.25 to 1, mu = 0.25 | hardly changes | between: +0.120 ± 0.028, "
+                              "+14 ± 3 % | spread too wide to tell |"));
   EXPECT_THAT(page, HasSubstr("0 to 0.45, mu = 0.5 | hardly changes | hardly changes: +0.050 ± "
                               "0.028, +4 ± 2 % | agrees |"));
   EXPECT_THAT(page, HasSubstr("| 0.100 ± 0.010 | agrees; slow flow, not at rest: kinetic over "
                               "elastic energy up to 15 |  | `box-compression` |"));
   EXPECT_THAT(page, HasSubstr("| dilation: trace/3 falls by 0.00020 ± 0.00020, then rises by "
                               "0.00100 ± 0.00010 | differs |"));
+  EXPECT_THAT(page, HasSubstr("penalty law, mu = 0.25 | about 0.05 | 0.070 ± 0.003 | differs by "
+                              "0.0075 (2.5 standard errors) |"));
+  EXPECT_THAT(page,
+              HasSubstr("volumetric stress over its start, from penalty to Hertz law | rises | "
+                        "falls: -0.100 ± 0.028 | differs |"));
+  EXPECT_THAT(page, HasSubstr("mu = 0 | about 1 | not given: the compressed sample did not come to "
+                              "rest |  |"));
 }
 
 TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
@@ -244,7 +259,13 @@ TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
                                    "sample.plastic_strain.hertz_0",
                                    "sample.plastic_strain.hertz_05",
                                    "sample.unloading_stiffness.hertz_05",
+                                   "sample.pressure_ratio.hertz_0",
                                    "sample.pressure_ratio.hertz_025",
+                                   "sample.pressure_ratio.penalty_025",
+                                   "sample.shear_over_pressure.penalty_025",
+                                   "sample.axial_dip_strain.hertz_025",
+                                   "sample.axial_dip_strain.penalty_025",
+                                   "sample.kinetic_share",
                                    "sample.pressure_ratio.hertz_05",
                                    "sample.shear_over_pressure.hertz_025",
                                    "sample.shear_over_pressure.hertz_05",

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
+#include <sstream>
 
 #include "check_scene.h"
+#include "continuum/constants.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "run_scene.h"
@@ -141,6 +144,81 @@ TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
   EXPECT_THAT(page, HasSubstr("The grains and a block of finite elements"));
 }
 
+// A row of block.csv by the names of its columns.
+std::map<std::string, double> block_row(const Folder& folder, int state) {
+  std::istringstream lines(testing::read_text(folder / "out/block.csv"));
+  std::string heading, line;
+  while (std::getline(lines, heading) && heading.starts_with('#')) {
+  }
+  for (int k = 0; k <= state; ++k) std::getline(lines, line);
+  std::map<std::string, double> out;
+  std::istringstream names(heading), values(line);
+  std::string name, value;
+  while (std::getline(names, name, ',') && std::getline(values, value, ',')) {
+    out[name] = std::stod(value);
+  }
+  return out;
+}
+
+const std::string kSmall = "--set sample.grains=80 --set output.vtu=false";
+
+// Compression does not tell angles, others are given; and the block goes back, too.
+TEST(SampleBox, ABlockGoesBesideCompressionAndUnloading) {
+  const Folder folder;
+  const Summary summary =
+      run(folder,
+          box(kCompression +
+                  "probe = \"first\"\nprobe_strain = 3e-5\n[block]\nlaw = \"both\"\nangles = "
+                  "\"given\"\nfriction_deg = 20\ndilation_deg = 5",
+              "friction = 0.4\nwall_friction = 0.4"),
+          kSmall + " --set output.report=false");
+  // The elastic block rises by M = E (1 - nu)/((1 + nu)(1 - 2 nu)) of the strain, to and fro.
+  const double young = number(summary, "moduli.first.young"),
+               nu = number(summary, "moduli.first.poisson"),
+               modulus = young * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  const auto first = block_row(folder, 0);
+  for (const int state : {3, 6}) {
+    const auto row = block_row(folder, state);
+    EXPECT_NEAR(row.at("sigma_zz_Pa_elastic") - first.at("sigma_zz_Pa_elastic"),
+                modulus * row.at("volumetric_strain_elastic"), 1e-4 * modulus * 0.02);
+    EXPECT_NEAR(row.at("volumetric_strain_elastic"), row.at("volumetric_strain"), 1e-7);
+  }
+  EXPECT_NEAR(
+      number(summary, "block.elastic.unloaded_ratio"),
+      block_row(folder, 6).at("sigma_zz_Pa_elastic") / block_row(folder, 6).at("sigma_zz_Pa"),
+      1e-4);
+  // Grains that slid come back stiffer than they went.
+  EXPECT_LT(number(summary, "block.elastic.unloading_stiffness"), 0.9);
+  EXPECT_EQ(number(summary, "block.mohr_coulomb.friction_deg"), 20);
+  EXPECT_EQ(number(summary, "block.mohr_coulomb.dilation_deg"), 5);
+  // It flows, with s1 = s3 (1 + sin phi)/(1 - sin phi).
+  const auto loaded = block_row(folder, 3);
+  const double axial = -loaded.at("sigma_zz_Pa_mohr_coulomb"), p = loaded.at("p_Pa_mohr_coulomb"),
+               sine = std::sin(20 * kDegree);
+  EXPECT_NEAR(axial / (0.5 * (3 * p - axial)), (1 + sine) / (1 - sine), 1e-3);
+}
+
+// At constant volume the plastic block has no dilation and keeps its mean stress, and says so.
+TEST(SampleBox, ABlockGoesBesideAShear) {
+  const Folder folder;
+  const Summary summary =
+      run(folder,
+          box("precompression = 0.02\ndeformation = \"simple_shear\"\nconstant = \"volume\"\n"
+              "strain = 0.1\nrecords = 4\nprobe = \"first\"\nprobe_strain = 3e-5\n[block]\nlaw = "
+              "\"both\"",
+              "friction = 0.5\nwall_friction = 0.5"),
+          kSmall);
+  EXPECT_EQ(number(summary, "block.mohr_coulomb.dilation_deg"), 0);
+  // sin of the block's angle is tan of the planes' one.
+  EXPECT_NEAR(std::sin(number(summary, "block.mohr_coulomb.friction_deg") * kDegree),
+              std::tan(number(summary, "strength.peak_friction_deg") * kDegree), 1e-9);
+  EXPECT_NEAR(number(summary, "block.elastic.pressure_end_ratio"),
+              1 / number(summary, "sample.pressure_ratio"), 1e-6);
+  EXPECT_LT(number(summary, "block.mohr_coulomb.rel_l2"), number(summary, "block.elastic.rel_l2"));
+  EXPECT_THAT(testing::read_text(folder / "out/report.html"),
+              HasSubstr("The volume is held, so the grains show no dilation"));
+}
+
 // Three states after the first one tell no residual angle: the plastic block is left out, and why.
 TEST(SampleBox, ABlockWithoutItsAngleSaysSo) {
   const Folder folder;
@@ -185,8 +263,11 @@ TEST(SampleBox, MistakesAreNamed) {
   says({"rve.radius=2"}, "rve.radius: unknown key; nearest: rve.radii");
   says({"rve.radii=[2, 9]"}, "rve.radii: found 9, allowed for 110 grains: up to ");
   says({"block.law=elastic"}, "block.law: found \"elastic\", allowed with sample.probe = \"none\"");
-  says({"block.law=both", "sample.probe=first"},
-       "block.angles: found \"peak\", allowed with sample.deformation = \"uniaxial\": given");
+  says(
+      {"block.law=both", "sample.probe=first"},
+      "block.angles: found \"peak\", allowed with sample.deformation = \"uniaxial\": given, "
+      "because it "
+      "does not show the grains' strength; another test's (strength.*) go into block.friction_deg");
   says({"block.law=both", "sample.probe=first", "block.angles=given", "block.dilation_deg=40"},
        "block.dilation_deg: found 40, allowed: up to block.friction_deg = 30");
   says({"sample.filling=dropped", "sample.boundary=periodic"},

@@ -20,9 +20,6 @@ using continuum::BlockState;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr const char* kElastic = "elastic";
-constexpr const char* kMohrCoulomb = "mohr_coulomb";
-
 // A quantity of a state of the block, by the name of the grains' column, in its sign.
 double value_of(const std::string& column, const BlockState& s) {
   const Eigen::Matrix3d& t = s.stress;
@@ -94,7 +91,7 @@ BlockMaterial material_of(const BlockSetup& setup, const std::string& law, const
   BlockMaterial out;
   out.constants.E = m.young;
   out.constants.nu = m.poisson;
-  out.plastic = law == kMohrCoulomb;
+  out.plastic = law == kPlasticBlock;
   if (!std::isfinite(m.young) || !std::isfinite(m.poisson)) {
     lacking = "small strains give no moduli";
     return out;
@@ -148,6 +145,10 @@ bool add_law(const BlockSetup& setup, const StateTable& table, const dem::Sample
       if (why.empty()) why = lacking;
       continue;
     }
+    if (material.plastic) {
+      out.friction.push_back(material.constants.friction_deg);
+      out.dilation.push_back(material.constants.dilation_deg);
+    }
     for (BlockQuantity& quantity : out.quantities) {
       for (Index k = 0; k < table.states(); ++k) {
         quantity.laws[law](k, r) = value_of(quantity.name, states[static_cast<std::size_t>(k)]);
@@ -183,11 +184,12 @@ void check_block(const BlockSetup& setup, const dem::SamplePlan& plan) {
         "of the first state: set sample.probe to \"first\" or \"both\"",
         setup.law, plan.probe));
   }
-  if (!setup.has(kMohrCoulomb)) return;
+  if (!setup.has(kPlasticBlock)) return;
   if (setup.angles != "given" && plan.deformation != "axial" && !dem::shears(plan)) {
     throw std::invalid_argument(fmt::format(
         "block.angles: found \"{}\", allowed with sample.deformation = \"{}\": given, because it "
-        "does not show the grains' strength",
+        "does not show the grains' strength; another test's (strength.*) go into "
+        "block.friction_deg and block.dilation_deg",
         setup.angles, plan.deformation));
   }
   if (setup.angles == "given" && setup.dilation_deg > setup.friction_deg) {
@@ -210,7 +212,14 @@ BlockComparison compare_block(const BlockSetup& setup, const StateTable& table,
   for (const auto& [name, unit] : columns) {
     out.quantities.push_back({name, unit, table.of(name), {}});
   }
-  for (const char* law : {kElastic, kMohrCoulomb}) {
+  if (setup.has(kPlasticBlock) && setup.angles != "given" && dem::shears(plan) &&
+      plan.constant == "volume") {
+    out.remarks.emplace_back(
+        "The volume is held, so the grains show no dilation: the block of law mohr_coulomb flows "
+        "without, and its mean stress cannot rise. Angles of a shear under constant stress may be "
+        "given (block.angles).");
+  }
+  for (const char* law : {kElasticBlock, kPlasticBlock}) {
     if (!setup.has(law)) continue;
     if (add_law(setup, table, plan, moduli, strength, law, out)) out.laws.emplace_back(law);
   }

@@ -15,6 +15,9 @@
 
 namespace grainfield::coupling {
 
+/// The laws of a block, as block.law and the figures name them.
+inline constexpr const char *kElasticBlock = "elastic", *kPlasticBlock = "mohr_coulomb";
+
 /// The case keys [block].
 struct BlockSetup {
   std::string law = "none";                    ///< none | elastic | mohr_coulomb | both
@@ -45,7 +48,9 @@ struct BlockComparison {
   int loading = 0;                        ///< last state of the loading
   std::vector<BlockQuantity> quantities;  ///< driving stress, p, volumetric strain
   std::vector<std::string> laws;          ///< "elastic", "mohr_coulomb"
-  std::vector<std::string> remarks;       ///< of laws that were left out, of angles that were bent
+  /// That the plastic blocks had, degrees, by realization without those that were not solved.
+  std::vector<double> friction, dilation;
+  std::vector<std::string> remarks;  ///< of laws that were left out, of angles that were bent
 };
 
 /// Each realization's block has its own moduli (of the first state), angles and first stress.

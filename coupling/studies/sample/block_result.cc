@@ -139,28 +139,67 @@ std::string block_csv(const BlockComparison& c) {
   return out;
 }
 
-std::map<std::string, std::vector<double>> block_figures(const BlockComparison& c) {
-  std::map<std::string, std::vector<double>> out;
+namespace {
+
+using Figures = std::map<std::string, std::vector<double>>;
+
+// How far a law is off in a quantity, of the realizations that it has an answer for.
+void add_distance(const BlockComparison& c, const BlockQuantity& q, const std::string& law,
+                  const std::string& begin, Figures& out) {
   const Index n = c.loading + 1;
-  for (const std::string& law : c.laws) {
-    const BlockQuantity &driving = c.quantities.front(), &volume = c.quantities.back();
-    const auto put = [&](const char* key, double value) {
-      out[fmt::format("block.{}.{}", law, key)].push_back(value);
-    };
-    for (Index r = 0; r < driving.grains.cols(); ++r) {
-      if (!driving.laws.at(law).col(r).allFinite()) continue;
-      const VectorXd grains = driving.grains.col(r).head(n);
-      const VectorXd off = driving.laws.at(law).col(r).head(n) - grains;
-      put("rel_l2", off.norm() / grains.norm());
-      put("end_ratio", driving.laws.at(law)(n - 1, r) / grains[n - 1]);
-      put("volumetric_difference", volume.laws.at(law)(n - 1, r) - volume.grains(n - 1, r));
-      const double most = kHasLeft * grains.cwiseAbs().maxCoeff();
-      Index left = 0;
-      while (left < n && std::fabs(off[left]) <= most) ++left;
-      put("leaves", left < n ? 1 : 0);
-      if (left < n) put("leaves_at", c.strain[left]);
-    }
+  const auto put = [&](const char* key, double value) { out[begin + key].push_back(value); };
+  for (Index r = 0; r < q.grains.cols(); ++r) {
+    if (!q.laws.at(law).col(r).allFinite()) continue;
+    const VectorXd grains = q.grains.col(r).head(n);
+    const VectorXd off = q.laws.at(law).col(r).head(n) - grains;
+    put("rel_l2", off.norm() / grains.norm());
+    put("end_ratio", q.laws.at(law)(n - 1, r) / grains[n - 1]);
+    const double most = kHasLeft * grains.cwiseAbs().maxCoeff();
+    Index left = 0;
+    while (left < n && std::fabs(off[left]) <= most) ++left;
+    put("leaves", left < n ? 1 : 0);
+    if (left < n) put("leaves_at", c.strain[left]);
   }
+}
+
+// The driving stress on the way back.
+void add_unloading(const BlockComparison& c, const std::string& law, Figures& out) {
+  const BlockQuantity& q = c.quantities.front();
+  const Index back = c.strain.size() - 1 - c.loading, middle = c.loading + (back + 1) / 2;
+  if (back == 0) return;
+  for (Index r = 0; r < q.grains.cols(); ++r) {
+    const VectorXd block = q.laws.at(law).col(r), grains = q.grains.col(r);
+    if (!block.allFinite()) continue;
+    out["block." + law + ".unloading_rel_l2"].push_back((block - grains).tail(back).norm() /
+                                                        grains.tail(back).norm());
+    out["block." + law + ".unloading_stiffness"].push_back((block[middle] - block[c.loading]) /
+                                                           (grains[middle] - grains[c.loading]));
+    out["block." + law + ".unloaded_ratio"].push_back(block[block.size() - 1] /
+                                                      grains[grains.size() - 1]);
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<double>> block_figures(const BlockComparison& c) {
+  Figures out;
+  const BlockQuantity &driving = c.quantities.front(), &volume = c.quantities.back();
+  for (const std::string& law : c.laws) {
+    const std::string begin = "block." + law + ".";
+    add_distance(c, driving, law, begin, out);
+    for (const BlockQuantity& q : c.quantities) {
+      if (q.name == "p" && &q != &driving) add_distance(c, q, law, begin + "pressure_", out);
+    }
+    for (Index r = 0; r < volume.grains.cols(); ++r) {
+      const double off = volume.laws.at(law)(c.loading, r) - volume.grains(c.loading, r);
+      if (std::isfinite(off)) out[begin + "volumetric_difference"].push_back(off);
+    }
+    add_unloading(c, law, out);
+    if (law != kPlasticBlock) continue;
+    out[begin + "friction_deg"] = c.friction;
+    out[begin + "dilation_deg"] = c.dilation;
+  }
+  std::erase_if(out, [](const auto& entry) { return entry.second.empty(); });
   return out;
 }
 
@@ -180,12 +219,14 @@ Table leaving_table(const BlockComparison& c) {
   const auto figures = block_figures(c);
   for (const SummaryKey& key : block_summary_keys()) {
     const std::string name = key.pattern.substr(key.pattern.rfind('.') + 1);
-    auto& row = table.rows.emplace_back();
-    row.push_back(key.meaning);
+    std::vector<std::string> row{key.meaning};
+    bool any = false;
     for (const std::string& law : c.laws) {
       const auto found = figures.find(fmt::format("block.{}.{}", law, name));
+      any = any || found != figures.end();
       row.push_back(found == figures.end() ? "–" : spread_told(spread_of(found->second)));
     }
+    if (any) table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -225,7 +266,9 @@ void declare_block_keys(SectionKeys s) {
   s.space();
   s.word("angles", GRAINFIELD_MEMBER(BlockSetup, angles), {"peak", "residual", "given"},
          "its friction and dilation: those of the grains at their peak, in the last quarter of "
-         "strain (strength.*), or given; where the volume is held, without dilation");
+         "strain (strength.*), or given, such as those of another test; where a shear holds the "
+         "volume "
+         "the grains show no dilation, and only a given block has one");
   s.only("block.law", {"mohr_coulomb", "both"});
   s.number("friction_deg", "deg", GRAINFIELD_MEMBER(BlockSetup, friction_deg), {0.1, 80},
            "its friction angle");
@@ -252,6 +295,17 @@ std::vector<SummaryKey> block_summary_keys() {
        "share of the samples that the block leaves: its driving stress is off by more than 10 % of "
        "the grains' largest"},
       {"block.*.leaves_at", "-", "imposed strain of the first such state, of these samples"},
+      {"block.*.pressure_rel_l2", "-", "as rel_l2, of the mean stress where another one drives"},
+      {"block.*.pressure_end_ratio", "-", "mean stress of the block over the grains' at the end"},
+      {"block.*.pressure_leaves", "-", "as leaves, of the mean stress"},
+      {"block.*.pressure_leaves_at", "-", "as leaves_at, of the mean stress"},
+      {"block.*.unloading_rel_l2", "-", "as rel_l2, of the driving stress in the unloading"},
+      {"block.*.unloading_stiffness", "-",
+       "slope of the block's driving stress to the middle state of the unloading over the grains'"},
+      {"block.*.unloaded_ratio", "-",
+       "driving stress of the block at the end of the unloading over the grains'"},
+      {"block.mohr_coulomb.friction_deg", "deg", "friction angle that the block had"},
+      {"block.mohr_coulomb.dilation_deg", "deg", "dilation angle that it had"},
   };
 }
 

@@ -145,6 +145,7 @@ const std::vector<std::string>& shown_figures() {
                                              "sample.stiffening_late",
                                              "sample.pressure_ratio",
                                              "sample.shear_over_pressure",
+                                             "sample.axial_dip_strain",
                                              "sample.plastic_strain",
                                              "sample.unloading_stiffness",
                                              "sample.loop_loss",
