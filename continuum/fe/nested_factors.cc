@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 namespace grainfield::continuum::fe {
 namespace {
@@ -32,8 +31,9 @@ void subtract_product(C&& c, const A& a, const B& b) {
 
 }  // namespace
 
-NestedFactors::NestedFactors(std::vector<std::vector<unsigned int>> cells,
-                             std::vector<Eigen::Vector2d> centres, std::size_t unknowns)
+template <typename Scalar>
+NestedFactors<Scalar>::NestedFactors(std::vector<std::vector<unsigned int>> cells,
+                                     std::vector<Eigen::Vector2d> centres, std::size_t unknowns)
     : cells_(std::move(cells)),
       centres_(std::move(centres)),
       order_(cells_.size()),
@@ -52,7 +52,8 @@ NestedFactors::NestedFactors(std::vector<std::vector<unsigned int>> cells,
   find_places();
 }
 
-int NestedFactors::split(std::size_t begin, std::size_t end) {
+template <typename Scalar>
+int NestedFactors<Scalar>::split(std::size_t begin, std::size_t end) {
   Front front;
   front.begin = begin;
   front.end = end;
@@ -67,7 +68,8 @@ int NestedFactors::split(std::size_t begin, std::size_t end) {
 
 /// Sorts the part's cells so that those before the position returned are one side: of all straight
 /// cuts in the directions above the one with the fewest unknowns on both sides.
-std::size_t NestedFactors::cut(std::size_t begin, std::size_t end) {
+template <typename Scalar>
+std::size_t NestedFactors<Scalar>::cut(std::size_t begin, std::size_t end) {
   const auto from = order_.begin() + static_cast<std::ptrdiff_t>(begin);
   const auto to = order_.begin() + static_cast<std::ptrdiff_t>(end);
   std::vector<std::size_t> trial(from, to), best;
@@ -103,7 +105,8 @@ std::size_t NestedFactors::cut(std::size_t begin, std::size_t end) {
 }
 
 /// An unknown is eliminated in the first front that has all its cells.
-void NestedFactors::find_unknowns() {
+template <typename Scalar>
+void NestedFactors<Scalar>::find_unknowns() {
   std::fill(inside_.begin(), inside_.end(), 0);
   for (const auto& cell : cells_)
     for (const unsigned int u : cell) ++inside_[u];
@@ -138,7 +141,8 @@ void NestedFactors::find_unknowns() {
   }
 }
 
-void NestedFactors::find_places() {
+template <typename Scalar>
+void NestedFactors<Scalar>::find_places() {
   std::vector<Index> place(front_of_.size(), 0);
   for (Front& front : fronts_) {
     for (std::size_t k = 0; k < front.unknowns.size(); ++k)
@@ -157,14 +161,15 @@ void NestedFactors::find_places() {
 }
 
 /// Turns the own columns and rows into factors and the rest into what it leaves to the outer front.
-bool NestedFactors::eliminate(Front& front, Eigen::MatrixXd& whole) {
+template <typename Scalar>
+bool NestedFactors<Scalar>::eliminate(Front& front, Matrix& whole) {
   const Index own = front.own, size = whole.rows(), rest = size - own;
   front.exchange.clear();
   for (Index begin = 0; begin < own; begin += kPanel) {
     const Index n = std::min(kPanel, own - begin), end = begin + n;
     for (Index k = begin; k < end; ++k) {
       Index row = 0;
-      const double largest = whole.col(k).segment(k, own - k).cwiseAbs().maxCoeff(&row);
+      const Scalar largest = whole.col(k).segment(k, own - k).cwiseAbs().maxCoeff(&row);
       if (!(largest > 0) || !std::isfinite(largest)) return false;
       front.exchange.push_back(k + row);
       if (row > 0) whole.row(k).swap(whole.row(k + row));
@@ -174,7 +179,9 @@ bool NestedFactors::eliminate(Front& front, Eigen::MatrixXd& whole) {
           whole.col(k).tail(below) * whole.row(k).segment(k + 1, right);
     }
     auto beside = whole.block(begin, end, n, own - end);
-    whole.block(begin, begin, n, n).triangularView<Eigen::UnitLower>().solveInPlace(beside);
+    whole.block(begin, begin, n, n)
+        .template triangularView<Eigen::UnitLower>()
+        .solveInPlace(beside);
     subtract_product(whole.block(end, end, size - end, own - end),
                      whole.block(end, begin, size - end, n), beside);
   }
@@ -182,7 +189,7 @@ bool NestedFactors::eliminate(Front& front, Eigen::MatrixXd& whole) {
     const Index n = std::min(kPanel, own - begin);
     auto rows = whole.block(begin, own, n, rest);
     subtract_product(rows, whole.block(begin, 0, n, begin), whole.block(0, own, begin, rest));
-    whole.block(begin, begin, n, n).triangularView<Eigen::UnitLower>().solveInPlace(rows);
+    whole.block(begin, begin, n, n).template triangularView<Eigen::UnitLower>().solveInPlace(rows);
   }
   subtract_product(whole.bottomRightCorner(rest, rest), whole.bottomLeftCorner(rest, own),
                    whole.topRightCorner(own, rest));
@@ -191,14 +198,18 @@ bool NestedFactors::eliminate(Front& front, Eigen::MatrixXd& whole) {
   return true;
 }
 
-bool NestedFactors::factorize(const std::vector<double>& matrices,
-                              const std::vector<Entry>& entries) {
+template <typename Scalar>
+bool NestedFactors<Scalar>::factorize(const std::vector<double>& matrices,
+                                      const std::vector<NestedEntry>& entries) {
+  double largest = 0;
+  for (const double value : matrices) largest = std::max(largest, std::abs(value));
+  scale_ = largest > 0 ? 1 / largest : 1;
   for (Front& front : fronts_) front.entries.clear();
   // Of the fronts of two unknowns of a cell the inner one has both.
   for (std::size_t e = 0; e < entries.size(); ++e)
     fronts_[std::min(front_of_[entries[e].row], front_of_[entries[e].column])].entries.push_back(e);
-  std::vector<Eigen::MatrixXd> left;  // by fronts that are not yet in an outer one
-  Eigen::MatrixXd whole;
+  std::vector<Matrix> left;  // by fronts that are not yet in an outer one
+  Matrix whole;
   for (Front& front : fronts_) {
     const auto size = static_cast<Index>(front.unknowns.size());
     whole.setZero(size, size);
@@ -207,12 +218,12 @@ bool NestedFactors::factorize(const std::vector<double>& matrices,
         const auto& place = places_[order_[c]];
         const double* value = matrices.data() + offsets_[order_[c]];
         for (const Index i : place)
-          for (const Index j : place) whole(i, j) += *value++;
+          for (const Index j : place) whole(i, j) += static_cast<Scalar>(scale_ * *value++);
       }
     } else {
       for (const int part : {front.parts[1], front.parts[0]}) {
         const auto& into = fronts_[static_cast<std::size_t>(part)].into;
-        const Eigen::MatrixXd& from = left.back();
+        const Matrix& from = left.back();
         for (std::size_t j = 0; j < into.size(); ++j)
           for (std::size_t i = 0; i < into.size(); ++i)
             whole(into[i], into[j]) += from(static_cast<Index>(i), static_cast<Index>(j));
@@ -223,18 +234,22 @@ bool NestedFactors::factorize(const std::vector<double>& matrices,
       return std::find(front.unknowns.begin(), front.unknowns.end(), u) - front.unknowns.begin();
     };
     for (const std::size_t e : front.entries)
-      whole(place(entries[e].row), place(entries[e].column)) += entries[e].value;
+      whole(place(entries[e].row), place(entries[e].column)) +=
+          static_cast<Scalar>(scale_ * entries[e].value);
     if (!eliminate(front, whole)) return false;
     left.push_back(whole.bottomRightCorner(size - front.own, size - front.own));
   }
   return true;
 }
 
-void NestedFactors::solve(Eigen::VectorXd& x) const {
-  Eigen::VectorXd part, rest;
+template <typename Scalar>
+void NestedFactors<Scalar>::solve(Eigen::VectorXd& x) const {
+  x *= scale_;
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> part, rest;
   const auto own = [&](const Front& front) {
     part.resize(front.own);
-    for (Index k = 0; k < front.own; ++k) part[k] = x[front.unknowns[static_cast<std::size_t>(k)]];
+    for (Index k = 0; k < front.own; ++k)
+      part[k] = static_cast<Scalar>(x[front.unknowns[static_cast<std::size_t>(k)]]);
   };
   const auto put = [&](const Front& front) {
     for (Index k = 0; k < front.own; ++k) x[front.unknowns[static_cast<std::size_t>(k)]] = part[k];
@@ -257,7 +272,8 @@ void NestedFactors::solve(Eigen::VectorXd& x) const {
     const Index n = front->own, others = front->rows.cols();
     own(*front);
     for (Index i = 0; i < others; ++i)
-      part -= x[front->unknowns[static_cast<std::size_t>(n + i)]] * front->rows.col(i);
+      part -= static_cast<Scalar>(x[front->unknowns[static_cast<std::size_t>(n + i)]]) *
+              front->rows.col(i);
     for (Index k = n; k-- > 0;) {
       part[k] /= front->columns(k, k);
       part.head(k) -= part[k] * front->columns.col(k).head(k);
@@ -265,5 +281,8 @@ void NestedFactors::solve(Eigen::VectorXd& x) const {
     put(*front);
   }
 }
+
+template class NestedFactors<float>;
+template class NestedFactors<double>;
 
 }  // namespace grainfield::continuum::fe

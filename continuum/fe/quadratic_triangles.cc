@@ -19,9 +19,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A solution is refined until this share of the right side is left, at most so often.
-constexpr double kRefined = 1e-12;
-constexpr int kRefinements = 3;
+/// A solution is refined until this share of the right side is left, at most so often: single
+/// precision gives six digits at once. Where it does not come so far the factors are of double
+/// precision.
+constexpr double kRefined = 1e-10;
+constexpr int kRefinements = 6;
 
 dealii::Triangulation<2>& build(dealii::Triangulation<2>& out, const TriangleMesh& mesh) {
   std::vector<dealii::Point<2>> vertices;
@@ -48,8 +50,10 @@ struct QuadraticTriangles::Impl {
   dealii::FESystem<2> element;
   dealii::DoFHandler<2> dofs;
   std::vector<double> matrices;  // of the cells, by rows
-  std::vector<NestedFactors::Entry> entries;
-  std::optional<NestedFactors> factors;
+  std::vector<NestedEntry> entries;
+  std::optional<NestedFactors<float>> factors;
+  std::optional<NestedFactors<double>> exact;
+  bool single = true;  // which of them hold the matrix
 };
 
 CellVector QuadraticCell::gather(const Eigen::VectorXd& u) const {
@@ -154,40 +158,60 @@ void QuadraticTriangles::add(unsigned int row, unsigned int column, double value
   impl_->entries.push_back({row, column, value});
 }
 
-bool QuadraticTriangles::factorize() {
-  if (!impl_->factors) {
-    std::vector<std::vector<unsigned int>> unknowns_of;
-    std::vector<Vector2d> centres;
-    Vector2d extents = Vector2d::Zero();
-    for (const QuadraticCell& cell : cells) {
-      unknowns_of.emplace_back(cell.unknowns.begin(), cell.unknowns.end());
-      centres.push_back((cell.points[0] + cell.points[1] + cell.points[2]) / 3);
-      Vector2d low = cell.points[0], high = low;
-      for (const Vector2d& p : cell.points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-      }
-      extents += high - low;
+template <typename Scalar>
+NestedFactors<Scalar> QuadraticTriangles::dissect() const {
+  std::vector<std::vector<unsigned int>> unknowns_of;
+  std::vector<Vector2d> centres;
+  Vector2d extents = Vector2d::Zero();
+  for (const QuadraticCell& cell : cells) {
+    unknowns_of.emplace_back(cell.unknowns.begin(), cell.unknowns.end());
+    centres.push_back((cell.points[0] + cell.points[1] + cell.points[2]) / 3);
+    Vector2d low = cell.points[0], high = low;
+    for (const Vector2d& p : cell.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
     }
-    for (Vector2d& centre : centres) centre = centre.cwiseQuotient(extents);
-    impl_->factors.emplace(std::move(unknowns_of), std::move(centres), unknowns());
+    extents += high - low;
   }
-  return impl_->factors->factorize(impl_->matrices, impl_->entries);
+  for (Vector2d& centre : centres) centre = centre.cwiseQuotient(extents);
+  return {std::move(unknowns_of), std::move(centres), unknowns()};
+}
+
+bool QuadraticTriangles::factorize_exactly() const {
+  if (!impl_->exact) impl_->exact.emplace(dissect<double>());
+  impl_->single = false;
+  return impl_->exact->factorize(impl_->matrices, impl_->entries);
+}
+
+bool QuadraticTriangles::factorize() {
+  if (!impl_->factors) impl_->factors.emplace(dissect<float>());
+  impl_->single = impl_->factors->factorize(impl_->matrices, impl_->entries);
+  return impl_->single || factorize_exactly();
 }
 
 void QuadraticTriangles::solve(Eigen::VectorXd& x) const {
   const Eigen::VectorXd right = x;
-  impl_->factors->solve(x);
-  double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < kRefinements; ++k) {
-    Eigen::VectorXd left = right - product(x);
+  x.setZero();
+  Eigen::VectorXd left = right, better = x;
+  double before = left.norm();
+  const double aim = kRefined * before;
+  for (int k = 0; k <= kRefinements && before > aim; ++k) {
+    if (impl_->single)
+      impl_->factors->solve(left);
+    else
+      impl_->exact->solve(left);
+    better = x + left;
+    left = right - product(better);
     const double size = left.norm();
-    // Not a number, or no better than before: the factors give no more.
-    if (!(size > kRefined * right.norm()) || !(size < before / 2)) break;
+    // Not a number, or hardly better than before: these factors give no more. There are none better
+    // than those of double precision.
+    if (!(size < before / 2) && (k > 0 || impl_->single)) break;
     before = size;
-    impl_->factors->solve(left);
-    x += left;
+    x = better;
   }
+  if (before <= aim || !impl_->single || !factorize_exactly()) return;
+  x = right;
+  solve(x);
 }
 
 Eigen::VectorXd QuadraticTriangles::product(const Eigen::VectorXd& x) const {

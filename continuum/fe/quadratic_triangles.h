@@ -13,6 +13,9 @@
 
 namespace grainfield::continuum::fe {
 
+template <typename Scalar>
+class NestedFactors;
+
 /// Triangles of straight edges, corners counter-clockwise.
 struct TriangleMesh {
   std::vector<Eigen::Vector2d> vertices;
@@ -73,15 +76,21 @@ class QuadraticTriangles {
   /// Adds a cell's matrix to the rows and columns of unknowns that are free.
   void add(const QuadraticCell& cell, const CellMatrix& values, const std::vector<bool>& free);
   void add(unsigned int row, unsigned int column, double value);
-  /// By nested dissection (nested_factors.h). False: singular.
+  /// By nested dissection (nested_factors.h), in single precision where that is enough. False:
+  /// singular.
   bool factorize();
-  /// With the last factors, in place, refined with the matrix as it is.
+  /// In place, refined with the matrix as it is. Factorizes in double precision where the single
+  /// one does not come near.
   void solve(Eigen::VectorXd& x) const;
   /// The matrix times x.
   Eigen::VectorXd product(const Eigen::VectorXd& x) const;
 
  private:
   struct Impl;
+  template <typename Scalar>
+  NestedFactors<Scalar> dissect() const;
+  bool factorize_exactly() const;
+
   std::unique_ptr<Impl> impl_;
   bool revolution_;
 };

@@ -32,6 +32,7 @@ void fe_plastic(benchmark::State& state) {
 
 BENCHMARK(fe_plastic)
     ->ArgName("cells")
+    ->Arg(4)  // loads the library
     ->Arg(24)
     ->Arg(48)
     ->Arg(96)
