@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <mutex>
 
+#include "continuum/closed/transverse.h"
 #include "continuum/fe/block.h"
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
@@ -23,6 +24,8 @@ constexpr char layer_name[] = "fe_elastic_layer";
 constexpr char orthotropic_name[] = "fe_orthotropic_layer";
 constexpr char core_name[] = "fe_cantelaube_core";
 constexpr char half_space_name[] = "fe_elastic_half_space";
+constexpr char transverse_layer_name[] = "fe_transverse_layer";
+constexpr char transverse_half_space_name[] = "fe_transverse_half_space";
 constexpr char wedge_name[] = "fe_mohr_coulomb_wedge";
 constexpr char cone_name[] = "fe_cone";
 
@@ -115,6 +118,26 @@ std::vector<Parameter> layer_parameters() {
       whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1, 1000)};
 }
 
+std::vector<Parameter> half_space_parameters() {
+  return {number("depth", "m", "depth of interest, to which the mesh is fitted", "numerics", 0.15,
+                 kAboveZero, kUnbounded),
+          number("patch", "depth",
+                 "width of the loaded strip or square, in depths, from 1e-4 on; what is felt of it "
+                 "falls like its square; 0: 0.05 in 2D, 0.02 in 3D",
+                 "numerics", 0, 0, 1),
+          number("radius", "depth",
+                 "least distance of the mesh's end from the load, in depths; what is felt "
+                 "of the end falls like 1/radius (3D: its square); 0: 10000 in 2D, 50 in 3D",
+                 "numerics", 0, 0, 1e9),
+          number("cells", "-",
+                 "cells per distance from the load before refinement; 0: 2 in 2D, 1 in 3D",
+                 "numerics", 0, 0, 100)};
+}
+
+std::vector<Parameter> point_load() {
+  return {number("F", "N", "load at the origin, down", "elasticity", 1, 0, kUnbounded)};
+}
+
 std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
   std::vector<Parameter> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
@@ -139,6 +162,11 @@ std::vector<Figure> solver_figures(std::vector<Figure> own, bool refined = true)
   }
   all.insert(all.end(), own.begin(), own.end());
   return all;
+}
+
+std::vector<Figure> half_space_figures() {
+  return solver_figures({{"truncation_radius", "m", "half width and depth of the mesh"},
+                         {"patch_width", "m", "width of the loaded strip or square"}});
 }
 
 // Of heaps of Mohr-Coulomb material, in the plane and as cones.
@@ -291,23 +319,34 @@ ModelInfo fe_elastic_half_space_info() {
       "elastic half plane or half space under a small loaded patch, finite elements",
       0,
       joined(
-          {common_parameters(),
-           {number("depth", "m", "depth of interest, to which the mesh is fitted", "numerics", 0.15,
-                   kAboveZero, kUnbounded),
-            number("patch", "depth", "width of the loaded strip or square, in depths", "numerics",
-                   0.05, 1e-4, 1),
-            number("radius", "depth",
-                   "least distance of the mesh's end from the load, in depths; what is felt "
-                   "of the end falls like 1/radius (3D: its square); 0: 10000 in 2D, 50 in 3D",
-                   "numerics", 0, 0, 1e9),
-            number("cells", "-",
-                   "cells per distance from the load before refinement; 0: 2 in 2D, 1 in 3D",
-                   "numerics", 0, 0, 100)},
+          {common_parameters(), half_space_parameters(),
            numerical_parameters(
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
       make_in_plugin<half_space_name>,
-      solver_figures({{"truncation_radius", "m", "half width and depth of the mesh"},
-                      {"patch_width", "m", "width of the loaded strip or square"}})};
+      half_space_figures()};
+}
+
+ModelInfo fe_transverse_layer_info() {
+  return {
+      transverse_layer_name,
+      "elastic layer with a vertical axis of symmetry on a rigid base under a point load, finite "
+      "elements",
+      3,
+      joined({point_load(), transverse_parameters(), layer_parameters(),
+              numerical_parameters("over F/h2; 0: 5e-3", 6)}),
+      make_in_plugin<transverse_layer_name>,
+      solver_figures({})};
+}
+
+ModelInfo fe_transverse_half_space_info() {
+  return {transverse_half_space_name,
+          "elastic half space with a vertical axis of symmetry under a small loaded patch, finite "
+          "elements",
+          3,
+          joined({point_load(), transverse_parameters(), half_space_parameters(),
+                  numerical_parameters("over F/r2, r the distance from the load; 0: 1e-2", 4)}),
+          make_in_plugin<transverse_half_space_name>,
+          half_space_figures()};
 }
 
 ModelInfo fe_cantelaube_core_info() {

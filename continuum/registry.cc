@@ -36,6 +36,8 @@ const std::vector<ModelInfo>& registry() {
                                                 fe_elastic_layer_info(),
                                                 fe_orthotropic_layer_info(),
                                                 fe_elastic_half_space_info(),
+                                                fe_transverse_layer_info(),
+                                                fe_transverse_half_space_info(),
                                                 fe_cantelaube_core_info(),
                                                 fe_osl_wedge_info(),
                                                 fe_osl_layer_info(),

@@ -37,16 +37,19 @@ struct Mesh {
 
 Mesh mesh_of(const std::string& name, const Settings& settings) {
   const Numbers n(settings);
-  const bool space = n("dim") == 3;
-  if (name == "fe_elastic_layer" || name == "fe_orthotropic_layer") {
+  const bool transverse = name == "fe_transverse_layer" || name == "fe_transverse_half_space";
+  const bool space = n("dim") == 3 || transverse;
+  if (name == "fe_elastic_layer" || name == "fe_transverse_layer" ||
+      name == "fe_orthotropic_layer") {
     const double down = n("cells") * n.or_else("degree", space ? 2 : 3);
     const double across = 2 * n("half_width") * down;
     return {space ? 3 * down * across * across : 2 * down * across,
             {"cells", "half_width", "degree"}};
   }
-  if (name == "fe_elastic_half_space") {
+  if (name == "fe_elastic_half_space" || transverse) {
     // Rings around the load, each twice as wide as the one before.
-    const double rings = 1 + std::log2(n.or_else("radius", space ? 50 : 10000) / n("patch"));
+    const double rings = 1 + std::log2(n.or_else("radius", space ? 50 : 10000) /
+                                       n.or_else("patch", space ? 0.02 : 0.05));
     const double along = n.or_else("cells", space ? 1 : 2) * n.or_else("degree", 3);
     return {rings * (space ? 12 * along * along * along : 8 * along * along), {"cells", "degree"}};
   }

@@ -78,12 +78,20 @@ TransverseModuli transverse_moduli(const std::string& model, const Settings& s) 
                   model, m.nu_h, m.nu_v, m.E_h / m.E_v));
 }
 
-TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
+Eigen::Matrix<double, 6, 6> TransverseModuli::stiffness() const {
   Eigen::Matrix3d compliance;
-  compliance << 1 / m.E_h, -m.nu_h / m.E_h, -m.nu_v / m.E_v,  //
-      -m.nu_h / m.E_h, 1 / m.E_h, -m.nu_v / m.E_v,            //
-      -m.nu_v / m.E_v, -m.nu_v / m.E_v, 1 / m.E_v;
-  const Eigen::Matrix3d c = compliance.inverse();
+  compliance << 1 / E_h, -nu_h / E_h, -nu_v / E_v,  //
+      -nu_h / E_h, 1 / E_h, -nu_v / E_v,            //
+      -nu_v / E_v, -nu_v / E_v, 1 / E_v;
+  Eigen::Matrix<double, 6, 6> c = Eigen::Matrix<double, 6, 6>::Zero();
+  c.topLeftCorner<3, 3>() = compliance.inverse();
+  c(3, 3) = c(4, 4) = G_v;
+  c(5, 5) = E_h / (2 * (1 + nu_h));
+  return c;
+}
+
+TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
+  const Eigen::Matrix<double, 6, 6> c = m.stiffness();
   const double c11 = c(0, 0), c13 = c(0, 2), c33 = c(2, 2), c44 = m.G_v;
   plane_ = m.E_h / (1 + m.nu_h);
   // n1 n2 = c33/c11 and (sqrt n1 + sqrt n2)^2 = n1 + n2 + 2 sqrt(n1 n2).
@@ -107,6 +115,7 @@ TransverseHalfSpace::TransverseHalfSpace(double F, const TransverseModuli& m) {
     const Complex first = c13 + c11 * n;
     const bool cancels = std::abs(first) < kCancels * (std::fabs(c13) + c11 * std::abs(n));
     term.A = term.a / c44 * (cancels ? (c33 - c44 * n) / (c33 + c13 * n) : (c13 + c44) / first);
+    term.down = term.a / c44 - term.A;
   }
 }
 
@@ -128,6 +137,16 @@ std::array<double, 6> TransverseHalfSpace::stress(double x, double y, double z) 
   const double tt = hoop.real(), turn = across.real();
   return {tt + turn * x * x, tt + turn * y * y, zz.real(),
           shear.real() * y,  shear.real() * x,  turn * x * y};
+}
+
+std::array<double, 3> TransverseHalfSpace::displacement(double x, double y, double z) const {
+  Complex side = 0, down = 0;
+  for (const Term& t : terms_) {
+    const Complex depth = -t.g * z, R = std::sqrt(x * x + y * y + depth * depth);
+    side += t.A / (R * (R + depth));
+    down += t.down * t.g / R;
+  }
+  return {side.real() * x, side.real() * y, -down.real()};
 }
 
 ModelInfo transverse_half_space_info() {

@@ -6,9 +6,11 @@
 // a_1 + a_2 = F/(2 pi), a_1 g_1 + a_2 g_2 = 0 (no shear on the surface),
 //   s_zz = -sum a_i z_i/R_i^3,  s_rz = -sum a_i g_i r/R_i^3,
 //   s_rr = sum a_i g_i^2 z_i/R_i^3 - (c11 - c12) sum A_i/(R_i (R_i + z_i)),
-//   s_tt = sum (a_i g_i^2 - (c11 - c12) A_i) z_i/R_i^3 + (c11 - c12) sum A_i/(R_i (R_i + z_i)).
+//   s_tt = sum (a_i g_i^2 - (c11 - c12) A_i) z_i/R_i^3 + (c11 - c12) sum A_i/(R_i (R_i + z_i)),
+//   u_r = sum A_i r/(R_i (R_i + z_i)),  u_z = sum k_i A_i g_i/R_i.
 // The roots are real or conjugate; where they nearly agree (isotropy) they are held apart.
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <complex>
 #include <string>
@@ -29,6 +31,8 @@ struct TransverseModuli {
   /// Of a vertical plane that does not strain across itself; x horizontal, y vertical. Across it is
   /// then nu_h s_xx + nu_v E_h/E_v s_yy.
   PlaneModuli plane_strain() const;
+  /// Stress xx, yy, zz, yz, xz, xy of the strains xx, yy, zz, 2 yz, 2 xz, 2 xy; z vertical, Pa.
+  Eigen::Matrix<double, 6, 6> stiffness() const;
 };
 
 /// E_h, E_v, nu_h, nu_v, G_v of a model's settings and their check: throws BadParameter naming the
@@ -43,10 +47,12 @@ class TransverseHalfSpace {
   /// xx, yy, zz, yz, xz, xy at a point, z up, z < 0, load at the origin, down; Pa, tension
   /// positive.
   std::array<double, 6> stress(double x, double y, double z) const;
+  /// x, y, z at a point, m; vanishes far away.
+  std::array<double, 3> displacement(double x, double y, double z) const;
 
  private:
   struct Term {
-    std::complex<double> g, a, A;
+    std::complex<double> g, a, A, down;  // down: k A
   };
   std::array<Term, 2> terms_;
   double plane_ = 0;  // c11 - c12

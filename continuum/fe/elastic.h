@@ -19,6 +19,9 @@ ModelInfo fe_elastic_layer_info();
 ModelInfo fe_orthotropic_layer_info();
 /// A half plane or half space under a load on a small patch.
 ModelInfo fe_elastic_half_space_info();
+/// Both in space with a vertical axis of symmetry.
+ModelInfo fe_transverse_layer_info();
+ModelInfo fe_transverse_half_space_info();
 
 /// The elastic core of Cantelaube's heap as a boundary value problem.
 ModelInfo fe_cantelaube_core_info();

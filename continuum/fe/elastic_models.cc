@@ -8,12 +8,16 @@
 // Half space: no closed form enters. The load is a uniform pressure on a small patch, and the mesh,
 // whose cells grow with their distance from the load, reaches so far (each doubling of the radius
 // costs the same number of cells) that holding its end fixed is not felt at the depth of interest.
+//
+// The material is isotropic, or in space has a vertical axis of symmetry.
 #include <deal.II/grid/grid_generator.h>
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 
 #include "continuum/closed/half_space.h"
+#include "continuum/closed/transverse.h"
 #include "continuum/fe/box_model.h"
 #include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
@@ -58,13 +62,47 @@ Vector<dim> point_load_displacement(double F, double E, double nu, const Point<d
   return u;
 }
 
+/// A material, and its half space under the load.
+template <int dim>
+struct Medium {
+  fe::Stiffness<dim> stiffness;
+  std::function<Stress<dim>(const Point<dim>&)> stress = {};
+  std::function<Vector<dim>(const Point<dim>&)> displacement = {};
+};
+
+template <int dim>
+Medium<dim> isotropic(const Settings& s) {
+  const double F = number_of(s, "F"), E = number_of(s, "E"), nu = number_of(s, "nu");
+  return {fe::isotropic_stiffness<dim>(E, nu),
+          [=](const Point<dim>& p) { return point_load_stress<dim>(F, nu, p); },
+          [=](const Point<dim>& p) { return point_load_displacement<dim>(F, E, nu, p); }};
+}
+
+Medium<3> transverse(const std::string& model, const Settings& s) {
+  const TransverseModuli moduli = transverse_moduli(model, s);
+  const TransverseHalfSpace half_space(number_of(s, "F"), moduli);
+  Medium<3> out{moduli.stiffness()};
+  out.stress = [half_space](const Point<3>& p) {
+    const auto found = half_space.stress(p[0], p[1], p[2]);
+    Stress<3> stress;
+    for (unsigned int c = 0; c < 6; ++c) stress[c] = found[c];
+    return stress;
+  };
+  out.displacement = [half_space](const Point<3>& p) {
+    const auto found = half_space.displacement(p[0], p[1], p[2]);
+    Vector<3> u;
+    for (unsigned int d = 0; d < 3; ++d) u[d] = found[d];
+    return u;
+  };
+  return out;
+}
+
 template <int dim>
 class ElasticLayer : public BoxModel<dim> {
  public:
-  explicit ElasticLayer(const Settings& s)
-      : BoxModel<dim>("fe_elastic_layer", s, dim == 2 ? 2e-4 : 5e-3, dim == 2 ? 3 : 2),
-        young_(number_of(s, "E")),
-        poisson_(number_of(s, "nu")),
+  ElasticLayer(const std::string& name, const Settings& s, Medium<dim> medium)
+      : BoxModel<dim>(name, s, dim == 2 ? 2e-4 : 5e-3, dim == 2 ? 3 : 2),
+        medium_(std::move(medium)),
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
@@ -84,14 +122,12 @@ class ElasticLayer : public BoxModel<dim> {
   }
 
   ElasticProblem<dim> problem() const override {
-    const double F = this->load_, E = young_, nu = poisson_;
-    const auto displacement = [=](const Point<dim>& p) {
-      return -point_load_displacement<dim>(F, E, nu, p);
+    const auto displacement = [this](const Point<dim>& p) { return -medium_.displacement(p); };
+    const auto traction = [this](const Point<dim>& p, const Vector<dim>& normal) {
+      return -fe::traction<dim>(medium_.stress(p), normal);
     };
-    const auto traction = [=](const Point<dim>& p, const Vector<dim>& normal) {
-      return -fe::traction<dim>(point_load_stress<dim>(F, nu, p), normal);
-    };
-    ElasticProblem<dim> equations{E, nu, {}, {}};
+    ElasticProblem<dim> equations;
+    equations.stiffness = medium_.stiffness;
     for (int axis = 0; axis < dim - 1; ++axis) {
       equations.boundaries[2 * axis] = this->mirror_plane(axis);
       auto& side = equations.boundaries[2 * axis + 1];
@@ -116,12 +152,11 @@ class ElasticLayer : public BoxModel<dim> {
     return std::max(std::abs(this->load_) / std::pow(h_, dim - 1),
                     std::numeric_limits<double>::min());
   }
-  Stress<dim> closed_part(const Point<dim>& p) const override {
-    return point_load_stress<dim>(this->load_, poisson_, p);
-  }
+  Stress<dim> closed_part(const Point<dim>& p) const override { return medium_.stress(p); }
 
  private:
-  double young_, poisson_, h_, ratio_;
+  Medium<dim> medium_;
+  double h_, ratio_;
   unsigned int cells_;
   bool rough_, free_sides_;
 };
@@ -129,18 +164,19 @@ class ElasticLayer : public BoxModel<dim> {
 template <int dim>
 class ElasticHalfSpace : public BoxModel<dim> {
  public:
-  explicit ElasticHalfSpace(const Settings& s)
-      : BoxModel<dim>("fe_elastic_half_space", s, dim == 2 ? 2e-3 : 1e-2, 3),
-        young_(number_of(s, "E")),
-        poisson_(number_of(s, "nu")),
+  ElasticHalfSpace(const std::string& name, const Settings& s, const Medium<dim>& medium)
+      : BoxModel<dim>(name, s, dim == 2 ? 2e-3 : 1e-2, 3),
+        stiffness_(medium.stiffness),
         depth_(number_of(s, "depth")),
-        patch_(number_of(s, "patch") * depth_),
+        patch_(number_or(s, "patch", dim == 2 ? 0.05 : 0.02) * depth_),
         cells_(number_or(s, "cells", dim == 2 ? 2 : 1)) {
     const double reach = number_or(s, "radius", dim == 2 ? 1e4 : 50);
     if (reach < 4)
       throw BadParameter(fmt::format(
-          "model fe_elastic_half_space: radius = {} is out of range; allowed: 0, or at least 4",
-          reach));
+          "model {}: radius = {} is out of range; allowed: 0, or at least 4", name, reach));
+    if (patch_ < kLeastPatch * depth_)
+      throw BadParameter(fmt::format("model {}: patch = {} is out of range; allowed: 0, or {} to 1",
+                                     name, patch_ / depth_, kLeastPatch));
     // The half patch is a cell of the finest level, so that its border is a cell's border.
     levels_ = static_cast<int>(std::ceil(std::log2(reach * depth_ / (patch_ / 2))));
   }
@@ -171,7 +207,8 @@ class ElasticHalfSpace : public BoxModel<dim> {
   }
 
   ElasticProblem<dim> problem() const override {
-    ElasticProblem<dim> equations{young_, poisson_, {}, {}};
+    ElasticProblem<dim> equations;
+    equations.stiffness = stiffness_;
     for (int axis = 0; axis < dim - 1; ++axis) {
       equations.boundaries[2 * axis] = this->mirror_plane(axis);
       equations.boundaries[2 * axis + 1].fixed.fill(true);
@@ -205,23 +242,29 @@ class ElasticHalfSpace : public BoxModel<dim> {
   }
 
  private:
-  double young_, poisson_, depth_, patch_, cells_;
+  static constexpr double kLeastPatch = 1e-4;
+  fe::Stiffness<dim> stiffness_;
+  double depth_, patch_, cells_;
   int levels_ = 0;
 };
 
 template <template <int> class Kind>
-std::unique_ptr<Model> make(const Settings& s) {
-  if (s.at("dim") == "3") return std::make_unique<Kind<3>>(s);
-  return std::make_unique<Kind<2>>(s);
+std::unique_ptr<Model> make(const std::string& name, const Settings& s) {
+  if (s.at("dim") == "3") return std::make_unique<Kind<3>>(name, s, isotropic<3>(s));
+  return std::make_unique<Kind<2>>(name, s, isotropic<2>(s));
 }
 
 }  // namespace
 
 std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& settings) {
-  if (name == "fe_elastic_layer") return make<ElasticLayer>(settings);
+  if (name == "fe_elastic_layer") return make<ElasticLayer>(name, settings);
   if (name == "fe_orthotropic_layer") return make_orthotropic_layer(settings);
   if (name == "fe_cantelaube_core") return make_cantelaube_core(settings);
-  if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(settings);
+  if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(name, settings);
+  if (name == "fe_transverse_layer")
+    return std::make_unique<ElasticLayer<3>>(name, settings, transverse(name, settings));
+  if (name == "fe_transverse_half_space")
+    return std::make_unique<ElasticHalfSpace<3>>(name, settings, transverse(name, settings));
   if (name == "fe_mohr_coulomb_wedge") return make_wedge_model(settings);
   if (name == "fe_cone") return make_cone_model(settings);
   throw BadParameter("no finite-element model '" + name + "'");

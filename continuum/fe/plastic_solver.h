@@ -4,7 +4,7 @@
 //
 // In every load step the equations  sum_cells int B^T sigma(e_n + B du) dV = f  are solved for the
 // displacement increment du by Newton's method with line search (dem/newton), the consistent
-// tangent and a sparse direct factorization (UMFPACK). Strains are small. A step that does not
+// tangent and a direct factorization (nested_factors.h). Strains are small. A step that does not
 // converge is halved; one that converges quickly is followed by a larger one.
 //
 // A short step that does not converge is taken in viscoplastic time (Duvaut and Lions 1972; as a

@@ -2,26 +2,28 @@
 
 #include <deal.II/base/quadrature.h>
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 #include <deal.II/grid/tria.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparse_direct.h>
-#include <deal.II/lac/sparse_matrix.h>
 
+#include <limits>
 #include <numbers>
 #include <optional>
 
-// OpenBLAS, when that is the BLAS in use: its threads would change the order of sums.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+#include "continuum/fe/nested_factors.h"
 
 namespace grainfield::continuum::fe {
 namespace {
 
 using Eigen::Vector2d;
+
+/// A solution is refined until this share of the right side is left, at most so often: single
+/// precision gives six digits at once. Where it does not come so far the factors are of double
+/// precision.
+constexpr double kRefined = 1e-10;
+constexpr int kRefinements = 6;
 
 dealii::Triangulation<2>& build(dealii::Triangulation<2>& out, const TriangleMesh& mesh) {
   std::vector<dealii::Point<2>> vertices;
@@ -42,18 +44,16 @@ struct QuadraticTriangles::Impl {
   explicit Impl(const TriangleMesh& triangles)
       : element(dealii::FE_SimplexP<2>(2), 2), dofs(build(mesh, triangles)) {
     dofs.distribute_dofs(element);
-    dealii::DynamicSparsityPattern dynamic(dofs.n_dofs());
-    dealii::DoFTools::make_sparsity_pattern(dofs, dynamic);
-    pattern.copy_from(dynamic);
-    matrix.reinit(pattern);
   }
 
   dealii::Triangulation<2> mesh;
   dealii::FESystem<2> element;
   dealii::DoFHandler<2> dofs;
-  dealii::SparsityPattern pattern;
-  dealii::SparseMatrix<double> matrix;
-  std::optional<dealii::SparseDirectUMFPACK> factors;
+  std::vector<double> matrices;  // of the cells, by rows
+  std::vector<NestedEntry> entries;
+  std::optional<NestedFactors<float>> factors;
+  std::optional<NestedFactors<double>> exact;
+  bool single = true;  // which of them hold the matrix
 };
 
 CellVector QuadraticCell::gather(const Eigen::VectorXd& u) const {
@@ -139,41 +139,90 @@ double QuadraticTriangles::share(const BoundaryEdge& edge, std::size_t node) con
   return revolution_ ? 2 * std::numbers::pi * positions[edge.unknowns[node][0]][0] * part : part;
 }
 
-void QuadraticTriangles::clear_matrix() { impl_->matrix = 0; }
+void QuadraticTriangles::clear_matrix() {
+  impl_->matrices.assign(cells.size() * kUnknowns * kUnknowns, 0);
+  impl_->entries.clear();
+}
 
 void QuadraticTriangles::add(const QuadraticCell& cell, const CellMatrix& values,
                              const std::vector<bool>& free) {
-  std::array<dealii::types::global_dof_index, kUnknowns> columns;
-  for (std::size_t i = 0; i < kUnknowns; ++i) columns[i] = cell.unknowns[i];
-  for (std::size_t i = 0; i < kUnknowns; ++i) {
-    if (!free[cell.unknowns[i]]) continue;
-    std::array<double, kUnknowns> row;
-    for (std::size_t j = 0; j < kUnknowns; ++j)
-      row[j] = free[cell.unknowns[j]] ? values(static_cast<int>(i), static_cast<int>(j)) : 0;
-    impl_->matrix.add(cell.unknowns[i], kUnknowns, columns.data(), row.data());
-  }
+  double* matrix = impl_->matrices.data() +
+                   static_cast<std::size_t>(&cell - cells.data()) * kUnknowns * kUnknowns;
+  for (std::size_t i = 0; i < kUnknowns; ++i)
+    for (std::size_t j = 0; j < kUnknowns; ++j, ++matrix)
+      if (free[cell.unknowns[i]] && free[cell.unknowns[j]])
+        *matrix += values(static_cast<int>(i), static_cast<int>(j));
 }
 
 void QuadraticTriangles::add(unsigned int row, unsigned int column, double value) {
-  impl_->matrix.add(row, column, value);
+  impl_->entries.push_back({row, column, value});
+}
+
+template <typename Scalar>
+NestedFactors<Scalar> QuadraticTriangles::dissect() const {
+  std::vector<std::vector<unsigned int>> unknowns_of;
+  std::vector<Vector2d> centres;
+  Vector2d extents = Vector2d::Zero();
+  for (const QuadraticCell& cell : cells) {
+    unknowns_of.emplace_back(cell.unknowns.begin(), cell.unknowns.end());
+    centres.push_back((cell.points[0] + cell.points[1] + cell.points[2]) / 3);
+    Vector2d low = cell.points[0], high = low;
+    for (const Vector2d& p : cell.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    extents += high - low;
+  }
+  for (Vector2d& centre : centres) centre = centre.cwiseQuotient(extents);
+  return {std::move(unknowns_of), std::move(centres), unknowns()};
+}
+
+bool QuadraticTriangles::factorize_exactly() const {
+  if (!impl_->exact) impl_->exact.emplace(dissect<double>());
+  impl_->single = false;
+  return impl_->exact->factorize(impl_->matrices, impl_->entries);
 }
 
 bool QuadraticTriangles::factorize() {
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-  try {
-    impl_->factors.emplace();
-    impl_->factors->initialize(impl_->matrix);
-  } catch (const dealii::ExceptionBase&) {
-    return false;
-  }
-  return true;
+  if (!impl_->factors) impl_->factors.emplace(dissect<float>());
+  impl_->single = impl_->factors->factorize(impl_->matrices, impl_->entries);
+  return impl_->single || factorize_exactly();
 }
 
 void QuadraticTriangles::solve(Eigen::VectorXd& x) const {
-  dealii::Vector<double> b(static_cast<unsigned int>(x.size()));
-  for (unsigned int i = 0; i < b.size(); ++i) b[i] = x[i];
-  impl_->factors->solve(b);
-  for (unsigned int i = 0; i < b.size(); ++i) x[i] = b[i];
+  const Eigen::VectorXd right = x;
+  x.setZero();
+  Eigen::VectorXd left = right, better = x;
+  double before = left.norm();
+  const double aim = kRefined * before;
+  for (int k = 0; k <= kRefinements && before > aim; ++k) {
+    if (impl_->single)
+      impl_->factors->solve(left);
+    else
+      impl_->exact->solve(left);
+    better = x + left;
+    left = right - product(better);
+    const double size = left.norm();
+    // Not a number, or hardly better than before: these factors give no more. There are none better
+    // than those of double precision.
+    if (!(size < before / 2) && (k > 0 || impl_->single)) break;
+    before = size;
+    x = better;
+  }
+  if (before <= aim || !impl_->single || !factorize_exactly()) return;
+  x = right;
+  solve(x);
+}
+
+Eigen::VectorXd QuadraticTriangles::product(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  const double* matrix = impl_->matrices.data();
+  for (const QuadraticCell& cell : cells) {
+    cell.scatter(Eigen::Map<const CellMatrix>(matrix) * cell.gather(x), out);
+    matrix += kUnknowns * kUnknowns;
+  }
+  for (const auto& entry : impl_->entries) out[entry.row] += entry.value * x[entry.column];
+  return out;
 }
 
 TriangleMesh triangle_lattice(const Vector2d& left, const Vector2d& right, const Vector2d& apex,

@@ -1,6 +1,6 @@
 // Quadratic displacements on triangles with straight edges: strains, nodal weights, boundary edges,
-// and the sparse matrix with its direct factorization. What plasticity needs of deal.II, behind a
-// header that does without it. Internal to fe/.
+// and the matrix with its direct factorization. What plasticity needs of deal.II, behind a header
+// that does without it. Internal to fe/.
 //
 // Plane strain, or a body of revolution about x = 0, of which the triangles are a half section,
 // x the radius: an area then stands for the ring it makes, 2 pi x times itself, and there is a
@@ -12,6 +12,9 @@
 #include <vector>
 
 namespace grainfield::continuum::fe {
+
+template <typename Scalar>
+class NestedFactors;
 
 /// Triangles of straight edges, corners counter-clockwise.
 struct TriangleMesh {
@@ -73,13 +76,21 @@ class QuadraticTriangles {
   /// Adds a cell's matrix to the rows and columns of unknowns that are free.
   void add(const QuadraticCell& cell, const CellMatrix& values, const std::vector<bool>& free);
   void add(unsigned int row, unsigned int column, double value);
-  /// UMFPACK, on one thread: the same bits everywhere. False: singular.
+  /// By nested dissection (nested_factors.h), in single precision where that is enough. False:
+  /// singular.
   bool factorize();
-  /// With the last factors, in place.
+  /// In place, refined with the matrix as it is. Factorizes in double precision where the single
+  /// one does not come near.
   void solve(Eigen::VectorXd& x) const;
+  /// The matrix times x.
+  Eigen::VectorXd product(const Eigen::VectorXd& x) const;
 
  private:
   struct Impl;
+  template <typename Scalar>
+  NestedFactors<Scalar> dissect() const;
+  bool factorize_exactly() const;
+
   std::unique_ptr<Impl> impl_;
   bool revolution_;
 };

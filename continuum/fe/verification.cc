@@ -136,6 +136,59 @@ struct MappedManufactured {
   }
 };
 
+constexpr double kLoadNu = 0.3, kLoadGap = 0.05;
+
+template <int dim>
+Vector<dim> below_load_displacement(const Point<dim>& p) {
+  Vector<dim> u;
+  if constexpr (dim == 2) {
+    const auto found = flamant_displacement(1, 1, kLoadNu, p[0], p[1]);
+    for (unsigned int d = 0; d < 2; ++d) u[d] = found[d];
+  } else {
+    const auto found = boussinesq_displacement(1, 1, kLoadNu, p[0], p[1], p[2]);
+    for (unsigned int d = 0; d < 3; ++d) u[d] = found[d];
+  }
+  return u;
+}
+
+template <int dim>
+Stress<dim> below_load_stress(const Point<dim>& p) {
+  Stress<dim> s;
+  if constexpr (dim == 2) {
+    const auto found = flamant_stress(1., p[0], p[1]);
+    for (unsigned int c = 0; c < 3; ++c) s[c] = found[c];
+  } else {
+    const auto found = boussinesq_stress(1., kLoadNu, p[0], p[1], p[2]);
+    for (unsigned int c = 0; c < 6; ++c) s[c] = found[c];
+  }
+  return s;
+}
+
+template <int dim>
+ManufacturedErrors below_load(int degree, int cells) {
+  fe::ElasticProblem<dim> problem;
+  problem.nu = kLoadNu;
+  for (unsigned int id = 0; id < 2 * dim; ++id) {
+    problem.boundaries[id].fixed.fill(true);
+    problem.boundaries[id].displacement = below_load_displacement<dim>;
+  }
+  fe::ElasticSolver<dim> solver(fe::communicator(fe::chosen_ranks()), degree, 500,
+                                "box below a load");
+  Point<dim> low, high;
+  for (unsigned int d = 0; d + 1 < dim; ++d) {
+    low[d] = -0.5;
+    high[d] = 0.5;
+  }
+  low[dim - 1] = -1 - kLoadGap;
+  high[dim - 1] = -kLoadGap;
+  dealii::GridGenerator::subdivided_hyper_rectangle(
+      solver.mesh(), std::vector<unsigned int>(dim, static_cast<unsigned int>(cells)), low, high,
+      true);
+  solver.solve(problem);
+  const auto errors = solver.errors(below_load_displacement<dim>, below_load_stress<dim>);
+  return {errors[0], errors[1], errors[2], solver.figures()};
+}
+
 }  // namespace
 
 ManufacturedErrors solve_manufactured_map(int degree, const PlaneModuli& moduli, int refinement,
@@ -188,34 +241,8 @@ ManufacturedErrors solve_manufactured_map(int degree, const PlaneModuli& moduli,
   return {errors[0], errors[1], errors[2], solver.figures()};
 }
 
-ManufacturedErrors solve_below_load(int degree, int cells) {
-  constexpr double kNu = 0.3, kGap = 0.05;
-  fe::ElasticProblem<2> problem;
-  problem.nu = kNu;
-  const auto displacement = [](const Point<2>& p) {
-    const auto found = flamant_displacement(1, 1, kNu, p[0], p[1]);
-    Vector<2> u;
-    u[0] = found[0];
-    u[1] = found[1];
-    return u;
-  };
-  for (unsigned int id = 0; id < 4; ++id) {
-    problem.boundaries[id].fixed.fill(true);
-    problem.boundaries[id].displacement = displacement;
-  }
-  fe::ElasticSolver<2> solver(fe::communicator(fe::chosen_ranks()), degree, 500,
-                              "box below a load");
-  const auto n = static_cast<unsigned int>(cells);
-  dealii::GridGenerator::subdivided_hyper_rectangle(
-      solver.mesh(), {n, n}, Point<2>(-0.5, -1 - kGap), Point<2>(0.5, -kGap), true);
-  solver.solve(problem);
-  const auto errors = solver.errors(displacement, [](const Point<2>& p) {
-    const auto found = flamant_stress(1., p[0], p[1]);
-    Stress<2> s;
-    for (unsigned int c = 0; c < 3; ++c) s[c] = found[c];
-    return s;
-  });
-  return {errors[0], errors[1], errors[2], solver.figures()};
+ManufacturedErrors solve_below_load(int dim, int degree, int cells) {
+  return dim == 2 ? below_load<2>(degree, cells) : below_load<3>(degree, cells);
 }
 
 ManufacturedErrors solve_manufactured(int dim, int degree, double nu, int refinement, bool mixed) {

@@ -32,8 +32,9 @@ ManufacturedErrors solve_manufactured_map(int degree, const PlaneModuli& moduli,
 
 /// Plane strain on a unit square whose upper side is 0.05 below a point load on a half plane
 /// (Flamant), F = E = 1, nu = 0.3, with the exact displacement on all its sides, on cells x cells
-/// squares: what tests/benchmarks/against_fe_peers.sh gives to other programs too. Throws
+/// squares: what tests/benchmarks/against_fe_peers.sh gives to other programs too. With dim 3 a
+/// unit cube below a point load on a half space (Boussinesq), on cells^3 cubes. Throws
 /// ComputationFailed.
-ManufacturedErrors solve_below_load(int degree, int cells);
+ManufacturedErrors solve_below_load(int dim, int degree, int cells);
 
 }  // namespace grainfield::continuum

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "continuum/cylindrical.h"
 #include "continuum/model.h"
 #include "continuum/settings.h"
 #include "coupling/app/commands.h"
@@ -65,7 +66,7 @@ void add_model(CLI::App& app, Action& action) {
   struct Given {
     std::string name, points, output;
     std::vector<std::string> sets;
-    bool list = false, all = false, figures = false;
+    bool list = false, all = false, figures = false, cylindrical = false;
   };
   auto given = std::make_shared<Given>();
   command->add_option("name", given->name, "model; without it the models are listed");
@@ -74,6 +75,9 @@ void add_model(CLI::App& app, Action& action) {
   add_output(*command, given->output, "CSV of stresses; without it on the terminal");
   command->add_flag("--all", given->all,
                     "also what the model knows besides the stress, e.g. displacements");
+  command->add_flag("--cylindrical", given->cylindrical,
+                    "3D: components rr, tt, zz, tz, rz, rt, r away from the vertical through the "
+                    "load, t along the circle");
   command->add_flag("--figures", given->figures,
                     "begin with lines '# name = value' of the evaluation, e.g. its iterations");
   command->add_flag("--list", given->list, "show the model's parameters");
@@ -93,8 +97,15 @@ void add_model(CLI::App& app, Action& action) {
       const auto settings = parse_settings(given->sets, "--set");
       auto progress = std::make_unique<SolverProgress>();
       const auto model = continuum::make_model(given->name, settings);
-      const auto points = read_points_csv(given->points, continuum::dimension(info, settings));
-      const auto stresses = model->stress(points);
+      const int dim = continuum::dimension(info, settings);
+      if (given->cylindrical && dim != 3) {
+        throw std::invalid_argument(
+            fmt::format("model: --cylindrical is for models of space; {} is of the plane",
+                        info.name + (info.dim == 0 ? " without --set dim=3" : "")));
+      }
+      const auto points = read_points_csv(given->points, dim);
+      auto stresses = model->stress(points);
+      if (given->cylindrical) stresses = continuum::in_cylindrical_axes(points, stresses);
       progress.reset();
       Eigen::Index outside = 0;
       for (Eigen::Index k = 0; k < stresses.rows(); ++k) outside += stresses.row(k).hasNaN();
@@ -103,7 +114,8 @@ void add_model(CLI::App& app, Action& action) {
       }
       std::string text =
           stresses_csv(points, stresses,
-                       given->all ? model->quantities(points) : std::vector<continuum::Quantity>());
+                       given->all ? model->quantities(points) : std::vector<continuum::Quantity>(),
+                       given->cylindrical);
       if (given->figures) {
         std::string lines;
         for (const auto& [figure, value] : model->figures())

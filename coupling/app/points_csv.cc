@@ -84,11 +84,15 @@ Eigen::MatrixXd read_points_csv(const std::string& file, int dim) {
 Eigen::MatrixXd read_rings_csv(const std::string& file) { return read<2>(file, {"r", "z"}); }
 
 std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
-                         const std::vector<continuum::Quantity>& quantities) {
-  std::string out = points.cols() == 2
-                        ? "x,y,sigma_xx,sigma_yy,sigma_xy"
-                        : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy";
+                         const std::vector<continuum::Quantity>& quantities, bool cylindrical) {
+  std::string out = points.cols() == 2 ? "x,y,sigma_xx,sigma_yy,sigma_xy"
+                    : cylindrical ? "x,y,z,sigma_rr,sigma_tt,sigma_zz,sigma_tz,sigma_rz,sigma_rt"
+                                  : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy";
+  const std::string components = out + ',';
+  std::vector<const continuum::Quantity*> beside;
   for (const auto& quantity : quantities) {
+    if (components.find(',' + quantity.name + ',') != std::string::npos) continue;
+    beside.push_back(&quantity);
     out += ',';
     out += quantity.name;
   }
@@ -101,7 +105,7 @@ std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& s
       out += fmt::format("{}{}", c > 0 ? "," : "", points(i, c));
     }
     for (Eigen::Index c = 0; c < stresses.cols(); ++c) add(stresses(i, c));
-    for (const auto& quantity : quantities) add(quantity.values[i]);
+    for (const auto* quantity : beside) add(quantity->values[i]);
     out += '\n';
   }
   return out;

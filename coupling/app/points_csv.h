@@ -17,9 +17,11 @@ Eigen::MatrixXd read_points_csv(const std::string& file, int dim);
 /// The same of rings: columns r,z, radius and height; n x 2. Throws likewise.
 Eigen::MatrixXd read_rings_csv(const std::string& file);
 
-/// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components), then the quantities' names, with all
-/// digits; nan outside the model.
+/// "x,y,sigma_xx,sigma_yy,sigma_xy" (3D: six components, `cylindrical`: as
+/// continuum/cylindrical.h has them), then the names of the quantities that are not among them,
+/// with all digits; nan outside the model.
 std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
-                         const std::vector<continuum::Quantity>& quantities = {});
+                         const std::vector<continuum::Quantity>& quantities = {},
+                         bool cylindrical = false);
 
 }  // namespace grainfield::coupling

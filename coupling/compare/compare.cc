@@ -161,10 +161,12 @@ std::string family_of(const std::string& model_name) {
   if (model_name == "flamant" || model_name == "fe_elastic_half_space" ||
       model_name == "orthotropic_half_plane")
     return "half plane";
-  if (model_name == "boussinesq" || model_name == "transverse_half_space") return "half space";
+  if (model_name == "boussinesq" || model_name == "transverse_half_space" ||
+      model_name == "fe_transverse_half_space")
+    return "half space";
   if (model_name == "layer" || model_name == "fe_elastic_layer" ||
       model_name == "orthotropic_layer" || model_name == "fe_orthotropic_layer" ||
-      model_name == "transverse_layer")
+      model_name == "transverse_layer" || model_name == "fe_transverse_layer")
     return "finite layer";
   return model_name;
 }

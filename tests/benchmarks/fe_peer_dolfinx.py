@@ -1,6 +1,6 @@
 # The box below a load of fe_peers_benchmark.cc by dolfinx: assembles and solves once, prints unknowns,
 # iterations, processor seconds of assembly and solve, L2 errors of displacement and stress.
-# Usage: fe_peer_dolfinx.py CELLS DEGREE amg|lu
+# Usage: fe_peer_dolfinx.py CELLS DEGREE amg|lu [2|3]   (dimension)
 import sys
 import time
 
@@ -12,9 +12,17 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 cells, degree, method = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
+dim = int(sys.argv[4]) if len(sys.argv) > 4 else 2
 nu, gap = 0.3, 0.05
-square = mesh.create_rectangle(
-    MPI.COMM_SELF, [np.array([-0.5, -1 - gap]), np.array([0.5, -gap])], [cells, cells], mesh.CellType.quadrilateral)
+if dim == 2:
+    box = mesh.create_rectangle(
+        MPI.COMM_SELF, [np.array([-0.5, -1 - gap]), np.array([0.5, -gap])], [cells, cells], mesh.CellType.quadrilateral)
+else:
+    box = mesh.create_box(
+        MPI.COMM_SELF, [np.array([-0.5, -0.5, -1 - gap]), np.array([0.5, 0.5, -gap])], [cells] * 3,
+        mesh.CellType.hexahedron)
+# As many points a direction as the other program has.
+rule = {"quadrature_degree": 2 * degree + 1} if dim == 3 else {}
 
 
 def flamant(x):
@@ -25,36 +33,49 @@ def flamant(x):
                      scale * ((1 - nu) * np.log(r2) + x[0] ** 2 / r2)])
 
 
+def boussinesq(x, sqrt):
+    depth = -x[2]
+    r = sqrt(x[0] ** 2 + x[1] ** 2 + depth ** 2)
+    scale = (1 + nu) / (2 * np.pi)
+    side = depth / r ** 3 - (1 - 2 * nu) / (r * (r + depth))
+    return [scale * x[0] * side, scale * x[1] * side, -scale * (depth ** 2 / r ** 3 + 2 * (1 - nu) / r)]
+
+
+def below_load(x):
+    return flamant(x) if dim == 2 else np.array(boussinesq(x, np.sqrt))
+
+
 def stress(u):
     lame, shear = nu / ((1 + nu) * (1 - 2 * nu)), 1 / (2 * (1 + nu))
     strain = ufl.sym(ufl.grad(u))
-    return lame * ufl.tr(strain) * ufl.Identity(2) + 2 * shear * strain
+    return lame * ufl.tr(strain) * ufl.Identity(dim) + 2 * shear * strain
 
 
 def null_space(space):
     index = space.dofmap.index_map
     n = index.size_local
     x = space.tabulate_dof_coordinates()[:n]
-    modes = [np.zeros(2 * n) for _ in range(3)]
-    modes[0][0::2] = 1
-    modes[1][1::2] = 1
-    modes[2][0::2], modes[2][1::2] = -x[:, 1], x[:, 0]
+    modes = [np.zeros(dim * n) for _ in range(3 if dim == 2 else 6)]
+    for d in range(dim):
+        modes[d][d::dim] = 1
+    for k, (a, b) in enumerate([(0, 1)] if dim == 2 else [(0, 1), (1, 2), (2, 0)]):
+        modes[dim + k][a::dim], modes[dim + k][b::dim] = -x[:, b], x[:, a]
     basis = [PETSc.Vec().createWithArray(np.ascontiguousarray(q), comm=MPI.COMM_SELF) for q in
              np.linalg.qr(np.array(modes).T)[0].T]
     return PETSc.NullSpace().create(vectors=basis, comm=MPI.COMM_SELF), basis
 
 
 def solve():
-    space = fem.VectorFunctionSpace(square, ("Lagrange", degree))
+    space = fem.VectorFunctionSpace(box, ("Lagrange", degree))
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-    a = fem.form(ufl.inner(stress(u), ufl.sym(ufl.grad(v))) * ufl.dx)
-    zero = fem.Constant(square, PETSc.ScalarType((0, 0)))
+    a = fem.form(ufl.inner(stress(u), ufl.sym(ufl.grad(v))) * ufl.dx(metadata=rule))
+    zero = fem.Constant(box, PETSc.ScalarType((0,) * dim))
     right = fem.form(ufl.inner(zero, v) * ufl.dx)
-    square.topology.create_connectivity(1, 2)
+    box.topology.create_connectivity(dim - 1, dim)
     held = fem.Function(space)
-    held.interpolate(flamant)
-    facets = mesh.exterior_facet_indices(square.topology)
-    bc = fem.dirichletbc(held, fem.locate_dofs_topological(space, 1, facets))
+    held.interpolate(below_load)
+    facets = mesh.exterior_facet_indices(box.topology)
+    bc = fem.dirichletbc(held, fem.locate_dofs_topological(space, dim - 1, facets))
     start = time.process_time()
     matrix = fem.petsc.assemble_matrix(a, bcs=[bc])
     matrix.assemble()
@@ -84,19 +105,22 @@ def solve():
     return space, found, solver.getIterationNumber(), assembled - start, solved - assembled
 
 
-solve() if cells <= 32 else None
+solve() if dim == 2 and cells <= 32 else None
 space, found, iterations, assembly, solution = solve()
-x = ufl.SpatialCoordinate(square)
-depth = -x[1]
-r2 = x[0] ** 2 + depth ** 2
-scale = (1 + nu) / np.pi
-exact = ufl.as_vector([scale * (x[0] * depth / r2 - (1 - 2 * nu) * ufl.atan_2(x[0], depth)),
-                       scale * ((1 - nu) * ufl.ln(r2) + x[0] ** 2 / r2)])
+x = ufl.SpatialCoordinate(box)
+if dim == 2:
+    depth = -x[1]
+    r2 = x[0] ** 2 + depth ** 2
+    scale = (1 + nu) / np.pi
+    exact = ufl.as_vector([scale * (x[0] * depth / r2 - (1 - 2 * nu) * ufl.atan_2(x[0], depth)),
+                           scale * ((1 - nu) * ufl.ln(r2) + x[0] ** 2 / r2)])
+else:
+    exact = ufl.as_vector(boussinesq(x, ufl.sqrt))
 difference = found - exact
-rule = {"quadrature_degree": 2 * degree + 4}
+rule = {"quadrature_degree": 2 * degree + 4 if dim == 2 else 2 * degree + 5}
 error = np.sqrt(fem.assemble_scalar(fem.form(ufl.inner(difference, difference) * ufl.dx(metadata=rule))))
-# xx, yy, xy as the benchmark counts them: the shear once.
+# Components as the benchmark counts them: each shear once.
 s = stress(found) - stress(exact)
-stress_error = np.sqrt(fem.assemble_scalar(fem.form(
-    (s[0, 0] ** 2 + s[1, 1] ** 2 + s[0, 1] ** 2) * ufl.dx(metadata=rule))))
-print(space.dofmap.index_map.size_global * 2, iterations, f"{assembly:.4f} {solution:.4f} {error:.4e} {stress_error:.4e}")
+square = sum(s[i, j] ** 2 for i in range(dim) for j in range(i + 1))
+stress_error = np.sqrt(fem.assemble_scalar(fem.form(square * ufl.dx(metadata=rule))))
+print(space.dofmap.index_map.size_global * dim, iterations, f"{assembly:.4f} {solution:.4f} {error:.4e} {stress_error:.4e}")

@@ -8,11 +8,11 @@ namespace {
 
 using namespace grainfield::continuum;
 
-/// state.range(0): cells along a side; state.range(1): degree.
+/// state.range(0): dimension; state.range(1): cells along a side; state.range(2): degree.
 void fe_box(benchmark::State& state) {
+  const auto argument = [&](int k) { return static_cast<int>(state.range(k)); };
   ManufacturedErrors errors;
-  for (auto _ : state)
-    errors = solve_below_load(static_cast<int>(state.range(1)), static_cast<int>(state.range(0)));
+  for (auto _ : state) errors = solve_below_load(argument(0), argument(2), argument(1));
   state.counters["unknowns"] = errors.figures["unknowns"];
   state.counters["iterations"] = errors.figures["cg_iterations"];
   state.counters["assemble_s"] = errors.figures["assemble_s"];
@@ -24,8 +24,9 @@ void fe_box(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(fe_box)
-    ->ArgNames({"cells", "degree"})
-    ->ArgsProduct({{32, 64, 128, 256, 512, 700}, {1, 2}})
+    ->ArgNames({"dim", "cells", "degree"})
+    ->ArgsProduct({{2}, {32, 64, 128, 256, 512, 700}, {1, 2}})
+    ->ArgsProduct({{3}, {8, 10, 16, 20, 34}, {1, 2}})
     ->Iterations(1)
     ->UseRealTime()
     ->Unit(benchmark::kSecond);

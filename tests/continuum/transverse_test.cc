@@ -74,6 +74,39 @@ TEST(TransverseHalfSpace, IsInBalanceAndItsSurfaceIsFree) {
   }
 }
 
+// Its displacement: Hooke's law of the strains by differences, and Boussinesq's where isotropic.
+TEST(TransverseHalfSpace, TheStressIsHookesOfTheDisplacement) {
+  Random random(6);
+  for (int trial = 0; trial < 500; ++trial) {
+    const TransverseModuli m = random_moduli(random);
+    const TransverseHalfSpace half(1, m);
+    const Eigen::Vector3d at(random.uniform(-1, 1), random.uniform(-1, 1), -random.uniform(0.1, 1));
+    constexpr double kStep = 1e-4;
+    Eigen::Matrix3d gradient;
+    for (int j = 0; j < 3; ++j) {
+      const auto along = [&](double way) {
+        Eigen::Vector3d p = at;
+        p[j] += way * kStep;
+        const auto u = half.displacement(p.x(), p.y(), p.z());
+        return Eigen::Vector3d(u[0], u[1], u[2]);
+      };
+      gradient.col(j) = (8 * (along(1) - along(-1)) - (along(2) - along(-2))) / (12 * kStep);
+    }
+    Eigen::Matrix<double, 6, 1> strain;
+    strain << gradient(0, 0), gradient(1, 1), gradient(2, 2), gradient(1, 2) + gradient(2, 1),
+        gradient(0, 2) + gradient(2, 0), gradient(0, 1) + gradient(1, 0);
+    const Eigen::Matrix<double, 6, 1> stress = m.stiffness() * strain;
+    const auto exact = half.stress(at.x(), at.y(), at.z());
+    const double size = m.stiffness().norm() * strain.norm();
+    for (int c = 0; c < 6; ++c)
+      EXPECT_NEAR(stress[c], exact[static_cast<std::size_t>(c)], 1e-6 * size) << c;
+  }
+  const TransverseHalfSpace half(2, {5, 5, 0.3, 0.3, 5 / 2.6});
+  const auto found = half.displacement(0.3, -0.4, -0.6);
+  const auto exact = boussinesq_displacement(2, 5, 0.3, 0.3, -0.4, -0.6);
+  for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(found[d], exact[d], 1e-9);
+}
+
 TEST(TransverseHalfSpace, EveryDepthCarriesTheLoad) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {

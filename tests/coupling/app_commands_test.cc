@@ -37,6 +37,36 @@ TEST(Commands, QuickOnesNeedLittleTime) {
   }
 }
 
+TEST(Commands, ModelsOfSpaceInCylindricalAxes) {
+  const Folder folder;
+  const std::string points = folder.write("p.csv", "x,y,z\n0.3,0,-1\n0,-0.3,-1\n");
+  const Output plain = program("model boussinesq --points " + points);
+  const Output turned = program("model boussinesq --cylindrical --points " + points);
+  EXPECT_THAT(turned.out, ::testing::StartsWith(
+                              "x,y,z,sigma_rr,sigma_tt,sigma_zz,sigma_tz,sigma_rz,sigma_rt\n"));
+  const auto row = [](const std::string& text, int line) {
+    std::vector<double> out;
+    std::size_t at = 0;
+    for (int k = 0; k < line; ++k) at = text.find('\n', at) + 1;
+    const std::size_t end = text.find('\n', at);
+    for (; at < end; at = std::min(text.find(',', at), end) + 1)
+      out.push_back(std::stod(text.substr(at)));
+    return out;
+  };
+  const auto first = row(turned.out, 1), second = row(turned.out, 2), cartesian = row(plain.out, 1);
+  ASSERT_EQ(first.size(), 9u);
+  for (std::size_t c = 3; c < 9; ++c) {
+    EXPECT_NEAR(first[c], cartesian[c], 1e-14);
+    EXPECT_NEAR(second[c], first[c], 1e-14);
+  }
+  const std::string plane = folder.write("q.csv", "x,y\n0,-1\n");
+  const Output refused = program("model layer --cylindrical --points " + plane);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err,
+              HasSubstr("--cylindrical is for models of space; layer without --set dim=3"
+                        " is of the plane"));
+}
+
 TEST(Commands, KeysAndCases) {
   EXPECT_THAT(program("keys material").out, HasSubstr("friction = 0.5"));
   EXPECT_THAT(program("keys fit.heights material.young").out,
