@@ -1,4 +1,4 @@
-// Where kernels of numbers side by side (space/lane_width.h) find what the engine keeps of spheres.
+// Where kernels of numbers side by side (space/lane_width.h) find what the engine keeps.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,6 +7,7 @@
 #include "dem/engine/rolling_contacts.h"
 #include "dem/laws/sphere_lanes.h"
 #include "dem/motion/round_lanes.h"
+#include "dem/shapes/crossing_lanes.h"
 
 namespace grainfield::dem {
 
@@ -25,7 +26,20 @@ SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls) {
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr};
 }
 
-/// For their motion.
+/// For overlaps of polygons.
+template <class World>
+CrossingRows crossing_rows_of(World& world) {
+  using Pair = typename World::Pair;
+  static_assert(sizeof(typename World::Body) == kPlaneBody * sizeof(double));
+  static_assert(sizeof(Pair) == kPlanePair && offsetof(Pair, j) == kSecondInPair);
+  static_assert(offsetof(Pair, feature) == kFeatureInPair);
+  CrossingRows rows = world.grains.shapes.crossing_rows();
+  rows.bodies = world.grains.bodies.data()->position.data();
+  rows.pairs = reinterpret_cast<const unsigned char*>(&world.contacts.pairs[0]);
+  return rows;
+}
+
+/// For the motion of spheres.
 template <class World, class Sum>
 RoundRows round_rows_of(World& world, std::vector<Sum>& sums) {
   using Body = typename World::Body;

@@ -8,6 +8,7 @@
 
 #include "dem/image/image.h"
 #include "dem/shapes/bounding_rectangle.h"
+#include "dem/shapes/crossing_lanes.h"
 #include "dem/shapes/place_lanes.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
@@ -77,6 +78,16 @@ class PolygonStore {
     rows.position_size = sizeof(Body<2>) / sizeof(double);
     rows.angle_size = step;
     place_outlines(rows, list, count);
+  }
+
+  /// Of the bodies' corners, for overlaps side by side.
+  CrossingRows crossing_rows() const {
+    CrossingRows rows;
+    rows.blocks = corners_.data();
+    rows.block_size = kBlocks * stride_;
+    rows.stride = static_cast<int>(stride_);
+    rows.corners = count_.data();
+    return rows;
   }
 
   void swap(int i, int j) {
