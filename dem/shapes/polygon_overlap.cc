@@ -281,6 +281,7 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
   const double squared = dx * dx + dy * dy;
   in_doubt = false;
   if (squared > reach * reach) return false;
+  in_doubt = true;
   if (squared < 1e-16 * reach * reach) {  // any axis will do
     dx = reach;
     dy = 0;
@@ -298,7 +299,6 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
     if (p < low) low = p, near = k;
   }
   if (low >= high) return false;
-  in_doubt = true;
   Crossings crossings;
   if (find_crossings(a, b, crossings) && contact_of_crossings(a, b, crossings, measures, o)) {
     feature.hint = crossings.packed();
