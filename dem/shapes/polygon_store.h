@@ -12,6 +12,7 @@
 #include "dem/shapes/place_lanes.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
+#include "dem/space/aligned.h"
 #include "dem/space/body.h"
 #include "dem/space/plane.h"
 #include "dem/space/rotation.h"
@@ -214,7 +215,7 @@ class PolygonStore {
   }
   void widen(int corners) {
     const std::size_t stride = static_cast<std::size_t>(corners + 3) / 4 * 4;
-    std::vector<double> wide(count_.size() * kBlocks * stride, 0.0);
+    LineVector<double> wide(count_.size() * kBlocks * stride, 0.0);
     for (std::size_t b = 0; b < count_.size() * kBlocks; ++b) {
       std::copy_n(corners_.begin() + static_cast<std::ptrdiff_t>(b * stride_), stride_,
                   wide.begin() + static_cast<std::ptrdiff_t>(b * stride));
@@ -228,7 +229,7 @@ class PolygonStore {
   std::vector<std::array<double, 2>> long_axis_, axes_;  // in the body frame (long_axis_of)
   bool any_slender_ = false;
   std::vector<double> equal_radius_, radii_;  // of the circles of equal area, m
-  std::vector<double> corners_, scratch_;
+  LineVector<double> corners_, scratch_;
 };
 
 }  // namespace grainfield::dem
