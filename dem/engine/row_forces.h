@@ -15,9 +15,13 @@ namespace grainfield::dem {
 
 /// Spheres, and a law that tells its numbers for them side by side (laws/sphere_lanes.h).
 template <class Shape, class Law>
-concept SphereRowsInLanes = Shape::rows_in_lanes && requires(const Law& law) {
+concept SphereRowsInLanes = Shape::dim == 3 && Shape::rows_in_lanes&& requires(const Law& law) {
   law.sphere_numbers(0.0, 0.0);
 };
+/// Disks likewise, with the linear law (laws/disk_lanes.h).
+template <class Shape, class Law>
+concept DiskRowsInLanes =
+    Shape::dim == 2 && Shape::rows_in_lanes&& Law::sphere_kind == SphereLawKind::linear;
 /// Polygons likewise (shapes/crossing_lanes.h, laws/area_lanes.h).
 template <class Shape, class Law>
 concept OutlineRowsInLanes = Law::measures ==
@@ -61,6 +65,32 @@ class RowForces<World> {
   SphereNumbers numbers_;
   RollingNumbers rolling_;
   SphereRows rows_;
+  RowBatch batch_;
+};
+
+template <class World>
+requires DiskRowsInLanes<typename World::Shape, typename World::Law>
+class RowForces<World> {
+ public:
+  using Sum = ForceSum<World::dim>;
+
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt)
+      : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
+        rows_(disk_rows_of(world, sums)) {}
+
+  bool add(int i, int k) {
+    if (batch_.count == 0) batch_.first = k;
+    batch_.i[batch_.count++] = i;
+    return batch_.count == kBatch;
+  }
+  void evaluate() {
+    if (batch_.count > 0) disk_forces(numbers_, rows_, batch_);
+    batch_.count = 0;
+  }
+
+ private:
+  SphereNumbers numbers_;
+  DiskRows rows_;
   RowBatch batch_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "dem/contacts/margins.h"
 #include "dem/engine/rolling_contacts.h"
+#include "dem/laws/disk_lanes.h"
 #include "dem/laws/sphere_lanes.h"
 #include "dem/motion/round_lanes.h"
 #include "dem/shapes/crossing_lanes.h"
@@ -24,6 +25,17 @@ SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls) {
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr};
+}
+
+/// For forces of rows of pairs of disks.
+template <class World, class Sum>
+DiskRows disk_rows_of(World& world, std::vector<Sum>& sums) {
+  using Pair = typename World::Pair;
+  static_assert(sizeof(typename World::Body) == kDiskBody * sizeof(double));
+  static_assert(sizeof(Sum) == kDiskSum * sizeof(double) && kAhead >= kPairsAhead);
+  static_assert(sizeof(Pair) == kDiskPair && offsetof(Pair, j) == kSecondDisk);
+  return {world.grains.bodies.data()->position.data(),
+          reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data()};
 }
 
 /// For overlaps of polygons.

@@ -31,9 +31,10 @@ class Sweep {
   using Body = typename World::Body;
   /// All pairs are evaluated before any sum, several side by side (batch.h).
   static constexpr bool in_lanes = InLanes<typename World::Shape>;
-  /// Rows of pairs are evaluated and summed side by side, several rows at a time (sphere_lanes.h).
+  /// Rows of pairs are evaluated and summed side by side, several rows at a time (row_forces.h).
   static constexpr bool rows_in_lanes =
       SphereRowsInLanes<typename World::Shape, typename World::Law> ||
+      DiskRowsInLanes<typename World::Shape, typename World::Law> ||
       OutlineRowsInLanes<typename World::Shape, typename World::Law>;
   /// So nothing looks at other grains while some begin their next step.
   static constexpr bool begins_in_lanes = (in_lanes || rows_in_lanes) && requires {
@@ -106,7 +107,7 @@ class Sweep {
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
     if constexpr (in_lanes) sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
-      if (!books_ && world_.acting.kinds() == 1 && lane_width() > 2) {
+      if (!books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2) {
         if (world_.cell.is_periodic()) {
           sweep_rows<true>(rank, applied, dt);
         } else {
