@@ -31,7 +31,14 @@ concept OutlineRowsInLanes = Law::measures ==
   law.area_numbers(0.0, 0.0);
 };
 
-/// For a sweep in a step of dt, s, of pairs that another does not do.
+/// Pair k, of grain i, behind the last one; true when that is all that fits.
+inline bool add_to(RowBatch& batch, int i, int k) {
+  if (batch.count == 0) batch.first = k;
+  batch.i[batch.count++] = i;
+  return batch.count == kBatch;
+}
+
+/// For a sweep in a step of dt, s, of the pairs that are for lanes.
 template <class World>
 class RowForces;
 
@@ -50,12 +57,7 @@ class RowForces<World> {
                 r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
   }
 
-  /// Pair k, of grain i, behind the last one; true when that is all that fits.
-  bool add(int i, int k) {
-    if (batch_.count == 0) batch_.first = k;
-    batch_.i[batch_.count++] = i;
-    return batch_.count == kBatch;
-  }
+  bool add(int i, int k) { return add_to(batch_, i, k); }
   void evaluate() {
     if (batch_.count > 0) sphere_forces(numbers_, rolling_, rows_, batch_);
     batch_.count = 0;
@@ -78,11 +80,7 @@ class RowForces<World> {
       : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
         rows_(disk_rows_of(world, sums)) {}
 
-  bool add(int i, int k) {
-    if (batch_.count == 0) batch_.first = k;
-    batch_.i[batch_.count++] = i;
-    return batch_.count == kBatch;
-  }
+  bool add(int i, int k) { return add_to(batch_, i, k); }
   void evaluate() {
     if (batch_.count > 0) disk_forces(numbers_, rows_, batch_);
     batch_.count = 0;
@@ -109,6 +107,7 @@ class RowForces<World> {
         numbers_(world.acting.rule(0, 0).law.area_numbers(world.acting.rule(0, 0).friction, dt)),
         rows_(crossing_rows_of(world)) {}
 
+  /// Asks for what a later pair will need: a tenth for packings beyond the second-level cache.
   bool add(int i, int k) {
     const int later = world_.contacts.pairs[k + kAhead].j;
     const double* corners =
@@ -117,9 +116,7 @@ class RowForces<World> {
     __builtin_prefetch(&sums_[later], 1);
     __builtin_prefetch(corners);
     __builtin_prefetch(corners + rows_.stride);
-    if (batch_.count == 0) batch_.first = k;
-    batch_.i[batch_.count++] = i;
-    return batch_.count == kBatch;
+    return add_to(batch_, i, k);
   }
   void evaluate() {
     if (batch_.count == 0) return;
