@@ -4,7 +4,6 @@
 #pragma once
 #include "dem/engine/world.h"
 #include "dem/laws/contact_batch.h"
-#include "dem/laws/sphere_lanes.h"
 
 namespace grainfield::dem {
 
@@ -18,12 +17,6 @@ template <class Law>
 concept LawInLanes = requires(const Law& law, const OverlapBatch& overlaps,
                               ContactBatch& contacts) {
   law.lanes(overlaps, 0.0, 0.0, contacts, 0);
-};
-
-/// Spheres, and a law that tells its numbers for them side by side (laws/sphere_lanes.h).
-template <class Shape, class Law>
-concept RowsInLanes = Shape::rows_in_lanes && requires(const Law& law) {
-  law.sphere_numbers(0.0, 0.0);
 };
 
 /// `Act`: act(rule, a, b, overlap, memory, k) is the force of pair k alone, with its account.

@@ -1,12 +1,14 @@
-// Where kernels of numbers side by side (space/lane_width.h) find what the engine keeps of spheres.
+// Where kernels of numbers side by side (space/lane_width.h) find what the engine keeps.
 #pragma once
 #include <cstddef>
 #include <vector>
 
 #include "dem/contacts/margins.h"
 #include "dem/engine/rolling_contacts.h"
+#include "dem/laws/disk_lanes.h"
 #include "dem/laws/sphere_lanes.h"
 #include "dem/motion/round_lanes.h"
+#include "dem/shapes/crossing_lanes.h"
 
 namespace grainfield::dem {
 
@@ -25,7 +27,31 @@ SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls) {
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr};
 }
 
-/// For their motion.
+/// For forces of rows of pairs of disks.
+template <class World, class Sum>
+DiskRows disk_rows_of(World& world, std::vector<Sum>& sums) {
+  using Pair = typename World::Pair;
+  static_assert(sizeof(typename World::Body) == kDiskBody * sizeof(double));
+  static_assert(sizeof(Sum) == kDiskSum * sizeof(double) && kAhead >= kPairsAhead);
+  static_assert(sizeof(Pair) == kDiskPair && offsetof(Pair, j) == kSecondDisk);
+  return {world.grains.bodies.data()->position.data(),
+          reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data()};
+}
+
+/// For overlaps of polygons.
+template <class World>
+CrossingRows crossing_rows_of(World& world) {
+  using Pair = typename World::Pair;
+  static_assert(sizeof(typename World::Body) == kPlaneBody * sizeof(double));
+  static_assert(sizeof(Pair) == kPlanePair && offsetof(Pair, j) == kSecondInPair);
+  static_assert(offsetof(Pair, feature) == kFeatureInPair);
+  CrossingRows rows = world.grains.shapes.crossing_rows();
+  rows.bodies = world.grains.bodies.data()->position.data();
+  rows.pairs = reinterpret_cast<const unsigned char*>(&world.contacts.pairs[0]);
+  return rows;
+}
+
+/// For the motion of spheres.
 template <class World, class Sum>
 RoundRows round_rows_of(World& world, std::vector<Sum>& sums) {
   using Body = typename World::Body;

@@ -9,6 +9,7 @@
 #include "dem/engine/contact_forces.h"
 #include "dem/engine/flatten.h"
 #include "dem/engine/outer_forces.h"
+#include "dem/engine/row_forces.h"
 #include "dem/engine/rows_of.h"
 #include "dem/engine/world.h"
 #include "dem/motion/load.h"
@@ -30,8 +31,11 @@ class Sweep {
   using Body = typename World::Body;
   /// All pairs are evaluated before any sum, several side by side (batch.h).
   static constexpr bool in_lanes = InLanes<typename World::Shape>;
-  /// Rows of pairs are evaluated and summed side by side, several rows at a time (sphere_lanes.h).
-  static constexpr bool rows_in_lanes = RowsInLanes<typename World::Shape, typename World::Law>;
+  /// Rows of pairs are evaluated and summed side by side, several rows at a time (row_forces.h).
+  static constexpr bool rows_in_lanes =
+      SphereRowsInLanes<typename World::Shape, typename World::Law> ||
+      DiskRowsInLanes<typename World::Shape, typename World::Law> ||
+      OutlineRowsInLanes<typename World::Shape, typename World::Law>;
   /// So nothing looks at other grains while some begin their next step.
   static constexpr bool begins_in_lanes = (in_lanes || rows_in_lanes) && requires {
     World::Integrator::in_lanes;
@@ -103,7 +107,7 @@ class Sweep {
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
     if constexpr (in_lanes) sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
-      if (!books_ && world_.acting.kinds() == 1 && lane_width() > 2) {
+      if (!books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2) {
         if (world_.cell.is_periodic()) {
           sweep_rows<true>(rank, applied, dt);
         } else {
@@ -171,43 +175,31 @@ class Sweep {
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
 
-  /// The same, for spheres: pairs are evaluated and added to the sums kBatch at a time, row after
-  /// row; then the grains whose rows are done move, side by side where they can. Bit by bit as pair
-  /// by pair. Pairs that another thread has evaluated, or whose second grain sleeps or is across a
-  /// face, are the last of a row and done by themselves.
+  /// The same, for shapes whose pairs are evaluated and added to the sums kBatch at a time, row
+  /// after row (row_forces.h); then the grains whose rows are done move, spheres side by side where
+  /// they can. Bit by bit as pair by pair. Pairs that another thread has evaluated, or whose second
+  /// grain sleeps or is across a face, are the last of a row and done by themselves.
   template <bool in_cell>
   GRAINFIELD_FLATTEN void sweep_rows(int rank, const Vector& applied, double dt) {
     const auto& contacts = world_.contacts;
     const auto& pairs = contacts.pairs;
     const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
     if (first == last) return;
-    const auto& rule = world_.acting.rule(0, 0);
-    const SphereNumbers numbers = rule.law.sphere_numbers(rule.friction, dt);
-    const auto& r = rule.rolling;
-    const RollingNumbers rolling{r.stiffness,          r.damping,          r.friction,
-                                 r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
-    const SphereRows rows = sphere_rows_of(world_, sums_, rolls_);
+    RowForces<World> rows(world_, contact_forces_, sums_, dt);
     Begins begins;
-    SphereBatch batch;
     int done = first;
-    const auto evaluate = [&] {
-      if (batch.count > 0) sphere_forces(numbers, rolling, rows, batch);
-      batch.count = 0;
-    };
     for (int i = first; i < last; ++i) {
       const int end = in_cell ? first_across(i) : pairs.last(i);
       int special = end;
       while (special > pairs.first(i) && pairs[special - 1].j >= last) --special;
       for (int k = pairs.first(i); k < special; ++k) {
-        if (batch.count == 0) batch.first = k;
-        batch.i[batch.count++] = i;
-        if (batch.count < kBatch) continue;
-        evaluate();
+        if (!rows.add(i, k)) continue;
+        rows.evaluate();
         end_rows<in_cell>(done, i, applied, dt, begins);
         done = i;
       }
       if (special < pairs.last(i)) {
-        evaluate();
+        rows.evaluate();
         Sum& sum = sums_[i];
         sum_pairs<SweepKind::move_on>(
             special, end, last, [&](int k, Force& f) { return contact_forces_.pair(i, k, dt, f); },
@@ -219,9 +211,10 @@ class Sweep {
         }
       }
     }
-    evaluate();
+    rows.evaluate();
     end_rows<in_cell>(done, last, applied, dt, begins);
-    begins.moved |= begin_all(begins.list, begins.waiting);
+    if constexpr (begins_in_lanes) begins.moved |= begin_all(begins.list, begins.waiting);
+    if constexpr (places_together) place_waiting(begins);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
   /// The motion of rows [from, to), whose sums are complete.
@@ -229,7 +222,8 @@ class Sweep {
   void end_rows(int from, int to, const Vector& applied, double dt, Begins& begins) {
     const auto& bodies = world_.grains.bodies;
     const auto& contacts = world_.contacts;
-    const bool together = world_.all_round && !outer_forces_.damps() && !world_.cell.flows();
+    const bool together =
+        dim == 3 && world_.all_round && !outer_forces_.damps() && !world_.cell.flows();
     int list[kBatch], count = 0;
     for (int i = from; i < to; ++i) {
       if (bodies[i].inverse_mass == 0) {
@@ -258,10 +252,14 @@ class Sweep {
   }
   /// End of a step and beginning of the next of spheres that nothing else acts on.
   bool step_on(const int* list, int count) {
-    if (count == 0) return false;
-    const auto& gravity = world_.around.gravity;
-    return round_steps({world_.time_step, {gravity[0], gravity[1], gravity[2]}, world_.around.drag},
-                       round_rows_of(world_, sums_), list, count);
+    if constexpr (dim == 3) {
+      if (count == 0) return false;
+      const auto& gravity = world_.around.gravity;
+      return round_steps(
+          {world_.time_step, {gravity[0], gravity[1], gravity[2]}, world_.around.drag},
+          round_rows_of(world_, sums_), list, count);
+    }
+    return false;
   }
 
   /// What else acts on a grain that moves, the end of its step, and the beginning of the next.

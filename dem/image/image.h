@@ -21,8 +21,8 @@ class ImageWriter {
     static_assert(kIsPlain<T>);
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
-  template <class T>
-  void put(const std::vector<T>& values) {
+  template <class T, class A>
+  void put(const std::vector<T, A>& values) {
     static_assert(kIsPlain<T>);
     put(static_cast<std::uint64_t>(values.size()));
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
@@ -46,8 +46,8 @@ class ImageReader {
     std::memcpy(static_cast<void*>(&value), bytes_.data() + position_, sizeof(T));
     position_ += sizeof(T);
   }
-  template <class T>
-  void get(std::vector<T>& values) {
+  template <class T, class A>
+  void get(std::vector<T, A>& values) {
     std::uint64_t count = 0;
     get(count);
     require(count <= (bytes_.size() - position_) / sizeof(T));

@@ -4,6 +4,7 @@
 //   dashpots and spring of friction: area_dashpots.h
 #pragma once
 #include "dem/laws/area_dashpots.h"
+#include "dem/laws/area_lanes.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 
@@ -29,6 +30,10 @@ struct OverlapAreaLaw : AreaDashpots {
   }
 
   double repulsion(const Overlap& o) const { return young / o.length * o.area; }
+  /// For pairs side by side, in a step of dt, s.
+  AreaNumbers area_numbers(double mu, double dt) const {
+    return {young, damping, tangential_stiffness(), mu, dt};
+  }
   /// Of the overlap the work of R at constant l, (E/l) * integral of A over the depth. The
   /// integral of the lens area is 2/5 A depth for small overlaps (A ~ depth^{3/2}), to O(depth/r).
   /// Of polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.

@@ -121,7 +121,7 @@ template <int W>
 /// SphereStore::overlap and motion_at. Lanes beyond the batch do the first one's work again.
 template <int W, SphereLawKind kind>
 [[gnu::always_inline]] inline void meet(const SphereNumbers& law, const SphereRows& rows,
-                                        const SphereBatch& batch, int at, Passed& to) {
+                                        const RowBatch& batch, int at, Passed& to) {
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
@@ -228,7 +228,7 @@ template <int W, SphereLawKind kind, bool rolls>
 
 /// To the memories and sums.
 template <int W, SphereLawKind kind, bool rolls>
-[[gnu::always_inline]] inline void give(const SphereBatch& batch, int at, const Passed& c) {
+[[gnu::always_inline]] inline void give(const RowBatch& batch, int at, const Passed& c) {
   const int left = batch.count - at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
   const Three<W> tangential = three<W>(c.tangential, at), spring = three<W>(c.spring, at);
@@ -267,7 +267,7 @@ template <int W, SphereLawKind kind, bool rolls>
 
 template <int W, SphereLawKind kind, bool rolls>
 [[gnu::always_inline]] inline void forces(const SphereNumbers& law, const RollingNumbers& rolling,
-                                          const SphereRows& rows, const SphereBatch& batch) {
+                                          const SphereRows& rows, const RowBatch& batch) {
   Passed passed;
   for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
   for (int at = 0; at < batch.count; at += W) press<W, kind, rolls>(law, rolling, at, passed);
@@ -275,7 +275,7 @@ template <int W, SphereLawKind kind, bool rolls>
 }
 template <int W, SphereLawKind kind>
 void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,
-            const SphereBatch& batch) {
+            const RowBatch& batch) {
   if (rows.rolling != nullptr) return forces<W, kind, true>(law, rolling, rows, batch);
   forces<W, kind, false>(law, rolling, rows, batch);
 }
@@ -284,7 +284,7 @@ void forces(const SphereNumbers& law, const RollingNumbers& rolling, const Spher
 
 template <int W>
 void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
-                      const SphereRows& rows, const SphereBatch& batch) {
+                      const SphereRows& rows, const RowBatch& batch) {
   switch (law.kind) {
     case SphereLawKind::hertz:
       return forces<W, SphereLawKind::hertz>(law, rolling, rows, batch);
@@ -296,6 +296,6 @@ void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
 }
 template void sphere_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law,
                                                  const RollingNumbers& rolling,
-                                                 const SphereRows& rows, const SphereBatch& batch);
+                                                 const SphereRows& rows, const RowBatch& batch);
 
 }  // namespace grainfield::dem

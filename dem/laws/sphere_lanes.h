@@ -45,19 +45,13 @@ struct SphereRows {
   double* rolling = nullptr;  ///< by pair, RollingMemory<3>: four numbers; null: no resistance
 };
 
-/// Pairs first, first + 1, ..., with the first grain of each.
-struct SphereBatch {
-  int count = 0, first = 0;
-  int i[kBatch];
-};
-
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
 /// on W. Behind the last pair there must be kPairsAhead idle ones.
 template <int W>
 void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
-                      const SphereRows& rows, const SphereBatch& batch);
+                      const SphereRows& rows, const RowBatch& batch);
 inline void sphere_forces(const SphereNumbers& law, const RollingNumbers& rolling,
-                          const SphereRows& rows, const SphereBatch& batch) {
+                          const SphereRows& rows, const RowBatch& batch) {
   with_lanes([&](auto width) { sphere_forces_of<width()>(law, rolling, rows, batch); });
 }
 

@@ -18,6 +18,7 @@ class DiskStore {
   static constexpr bool outlines = false;
   static constexpr bool central = true;
   static constexpr bool keeps_places = false;
+  static constexpr bool rows_in_lanes = true;  ///< whole pairs (laws/disk_lanes.h)
   static constexpr bool offers(Measures m) {
     return m != Measures::curvature && m != Measures::curvatures;
   }

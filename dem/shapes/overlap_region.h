@@ -24,13 +24,6 @@ constexpr int kMostPoints = 4 * kMostCorners;
 /// Below this part of the region's circumference |b| counts as 0.
 constexpr double kNoChord = 1e-9;
 
-/// A chord hands over to least penetration, so that a grain is swallowed without a leap, while the
-/// last kLastPart of the smaller outline's area goes in, and where the chord's square is below
-/// kLastPart of the overlap's area (bars that cross nearly symmetrically, the tip of a needle).
-constexpr double kLastPart = 0.02;
-/// Area over the square of the radius is at least this: a triangle of slenderness 20 has 1/17.6.
-constexpr double kLeastArea = 1.0 / 40;
-
 /// The region's outline. `of_b` is 0 (1) where the side from this point to the next one is A's
 /// (B's).
 struct Loop {
@@ -60,8 +53,8 @@ inline double inner_radius(const PlacedShape& shape) {
 /// The arm that enters the characteristic length: of a deep overlap the contact point can reach the
 /// centroid, and the length stays positive and bounded below.
 inline double bounded_arm(const PlacedShape& shape, double arm) {
-  if (arm >= 0.25 * shape.radius) return arm;
-  return std::fmax(arm, 0.25 * inner_radius(shape));
+  if (arm >= kShortArm * shape.radius) return arm;
+  return std::fmax(arm, kShortArm * inner_radius(shape));
 }
 
 /// Fills levers, shifts, arms and length from the contact point (sx, sy) and the normal.

@@ -28,12 +28,10 @@
 #include <cstdint>
 
 #include "dem/shapes/disk.h"
+#include "dem/shapes/pair_memory.h"
 #include "dem/space/outline.h"
 
 namespace grainfield::dem {
-
-/// Corners a polygon can have at most.
-inline constexpr int kMostCorners = 64;
 
 /// An outline where it is. n = 0: a disk of `radius` about (cx, cy).
 struct PlacedShape {

@@ -27,8 +27,6 @@ namespace {
 
 using region::Loop;
 
-// Of (r_i + r_j)^2: a larger region is more than round-off (some 100 times its bound).
-constexpr double kSureArea = 1e-13;
 // Of r_i + r_j: what the slab is widened by, far above round-off, far below anything that costs.
 constexpr double kSlabMargin = 1e-9;
 
@@ -45,11 +43,6 @@ inline bool separates(const PlacedShape& shape, int k, const PlacedShape& other,
   gap = least;
   return least >= 0;
 }
-
-// The memory: 0 nothing; up to kMostHint 1 + 2 edge + (0: A's, 1: B's), the separating edge;
-// with kCrossed the edges of the crossings, six bits each.
-constexpr std::uint32_t kMostHint = 2 * kMostCorners;
-constexpr std::uint32_t kCrossed = 1u << 30;
 
 inline bool separated_as_before(const PlacedShape& a, const PlacedShape& b, PairFeature feature) {
   const auto hint = static_cast<std::uint32_t>(feature.hint);
@@ -288,6 +281,7 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
   const double squared = dx * dx + dy * dy;
   in_doubt = false;
   if (squared > reach * reach) return false;
+  in_doubt = true;
   if (squared < 1e-16 * reach * reach) {  // any axis will do
     dx = reach;
     dy = 0;
@@ -305,7 +299,6 @@ bool overlap_of_polygons(const PlacedShape& a, const PlacedShape& b, PairFeature
     if (p < low) low = p, near = k;
   }
   if (low >= high) return false;
-  in_doubt = true;
   Crossings crossings;
   if (find_crossings(a, b, crossings) && contact_of_crossings(a, b, crossings, measures, o)) {
     feature.hint = crossings.packed();

@@ -8,9 +8,11 @@
 
 #include "dem/image/image.h"
 #include "dem/shapes/bounding_rectangle.h"
+#include "dem/shapes/crossing_lanes.h"
 #include "dem/shapes/place_lanes.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
+#include "dem/space/aligned.h"
 #include "dem/space/body.h"
 #include "dem/space/plane.h"
 #include "dem/space/rotation.h"
@@ -77,6 +79,16 @@ class PolygonStore {
     rows.position_size = sizeof(Body<2>) / sizeof(double);
     rows.angle_size = step;
     place_outlines(rows, list, count);
+  }
+
+  /// Of the bodies' corners, for overlaps side by side.
+  CrossingRows crossing_rows() const {
+    CrossingRows rows;
+    rows.blocks = corners_.data();
+    rows.block_size = kBlocks * stride_;
+    rows.stride = static_cast<int>(stride_);
+    rows.corners = count_.data();
+    return rows;
   }
 
   void swap(int i, int j) {
@@ -203,7 +215,7 @@ class PolygonStore {
   }
   void widen(int corners) {
     const std::size_t stride = static_cast<std::size_t>(corners + 3) / 4 * 4;
-    std::vector<double> wide(count_.size() * kBlocks * stride, 0.0);
+    LineVector<double> wide(count_.size() * kBlocks * stride, 0.0);
     for (std::size_t b = 0; b < count_.size() * kBlocks; ++b) {
       std::copy_n(corners_.begin() + static_cast<std::ptrdiff_t>(b * stride_), stride_,
                   wide.begin() + static_cast<std::ptrdiff_t>(b * stride));
@@ -217,7 +229,7 @@ class PolygonStore {
   std::vector<std::array<double, 2>> long_axis_, axes_;  // in the body frame (long_axis_of)
   bool any_slender_ = false;
   std::vector<double> equal_radius_, radii_;  // of the circles of equal area, m
-  std::vector<double> corners_, scratch_;
+  LineVector<double> corners_, scratch_;
 };
 
 }  // namespace grainfield::dem

@@ -83,4 +83,47 @@ template <class M>
   return any != 0;
 }
 
+/// Bit k: lane k of a mask.
+template <class M>
+[[gnu::always_inline]] inline std::uint64_t bits_of(const M& mask) {
+#if defined(__AVX512DQ__)
+  if constexpr (sizeof(M) == 64) return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask));
+#endif
+#if defined(__AVX__)
+  if constexpr (sizeof(M) == 32) {
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+  }
+#endif
+  std::uint64_t bits = 0;
+  for (unsigned k = 0; k < sizeof(M) / 8; ++k) bits |= static_cast<std::uint64_t>(mask[k] & 1) << k;
+  return bits;
+}
+/// Bit k: lane k of x is above 0.
+template <int W>
+[[gnu::always_inline]] inline std::uint64_t positive_bits(const Lanes<W>& x) {
+#if defined(__AVX512DQ__)
+  if constexpr (W == 8) return _mm512_cmp_pd_mask(x, _mm512_setzero_pd(), _CMP_GT_OQ);
+#endif
+  return bits_of(x > 0);
+}
+/// Bit k: lane k of x is not below 0, and a number.
+template <int W>
+[[gnu::always_inline]] inline std::uint64_t unsigned_bits(const Lanes<W>& x) {
+#if defined(__AVX512DQ__)
+  if constexpr (W == 8) return _mm512_cmp_pd_mask(x, _mm512_setzero_pd(), _CMP_GE_OQ);
+#endif
+  return bits_of(x >= 0);
+}
+/// Each lane has the next one's number; the last keeps its own.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> next_lanes(const Lanes<W>& x) {
+  if constexpr (W == 2) {
+    return __builtin_shufflevector(x, x, 1, 1);
+  } else if constexpr (W == 4) {
+    return __builtin_shufflevector(x, x, 1, 2, 3, 3);
+  } else {
+    return __builtin_shufflevector(x, x, 1, 2, 3, 4, 5, 6, 7, 7);
+  }
+}
+
 }  // namespace grainfield::dem

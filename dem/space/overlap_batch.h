@@ -13,4 +13,27 @@ struct alignas(64) OverlapBatch {
   double radius[kBatch], lesser_curvature[kBatch], greater_curvature[kBatch], major[3][kBatch];
 };
 
+/// Pairs first, first + 1, ... of the list, at most kBatch, with the first grain of each.
+struct RowBatch {
+  int count = 0, first = 0;
+  int i[kBatch];
+};
+
+/// What is known of a pair.
+enum class PairFate : unsigned char {
+  apart,
+  touches,
+  left  ///< nothing: to be done alone
+};
+
+/// Of the pairs that touch as Overlap, one after the other.
+struct alignas(64) PlaneOverlapBatch {
+  double nx[kBatch], ny[kBatch], area[kBatch], chord[kBatch], length[kBatch];
+  double arm_i[kBatch], arm_j[kBatch], lever_i[kBatch], lever_j[kBatch];
+  double shift_i[kBatch], shift_j[kBatch];
+  int count = 0;
+  int slot[kBatch], place[kBatch];  ///< in the batch of one that touches here; here of one there
+  PairFate state[kBatch];           ///< by slot
+};
+
 }  // namespace grainfield::dem

@@ -7,6 +7,7 @@
 #include "dem/shapes/polygon_store.h"
 #include "dem/space/lane_width.h"
 #include "tests/dem/bits_scene.h"
+#include "tests/dem/cell_scene.h"
 #include "tests/dem/polygon_engine_scene.h"
 
 namespace grainfield::dem {
@@ -53,7 +54,8 @@ TEST(PolygonLanes, CornersAreThoseOfOneByOne) {
   }
 }
 
-// Polygons and disks among them that fall, touch, slide and fall asleep, by one thread and two.
+// Polygons and disks among them that fall, touch, slide and fall asleep, by one thread and two;
+// with an energy balance, too, which asks for pair by pair.
 TEST(PolygonLanes, StepsHaveTheSameBits) {
   const Width kept;
   for (const bool sleep : {false, true}) {
@@ -61,13 +63,39 @@ TEST(PolygonLanes, StepsHaveTheSameBits) {
     for (const int width : {2, 4, 8}) {
       if (!use_lane_width(width)) continue;
       for (const int threads : {1, 2}) {
-        auto engine = polygon_box(polygon_settings(threads, sleep), 12, 10);
+        EngineSettings settings = polygon_settings(threads, sleep);
+        settings.energy_balance = threads == 2 && width == 4;
+        auto engine = polygon_box(settings, 12, 10);
         engine->step(4000);
         hashes.push_back(bits::hash_of(engine->snapshot()));
       }
     }
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
   }
+}
+
+// Polygons of up to seven corners, pressed together, in a cell that shears.
+TEST(PolygonLanes, StepsInACellHaveTheSameBits) {
+  const Width kept;
+  Eigen::Matrix3d shear = Eigen::Matrix3d::Zero();
+  shear(0, 1) = 2;
+  EngineSettings settings =
+      cells::settings_of(ShapeKind::polygon, cells::cell_of(2, {0, 0, 0}, cells::square(1), shear));
+  settings.law = OverlapAreaLaw{1e4, 0.75};
+  const auto grains = cells::block(ShapeKind::polygon, settings.cell, 10, 3);
+  std::vector<std::uint64_t> hashes;
+  for (const int width : {2, 4, 8}) {
+    if (!use_lane_width(width)) continue;
+    for (const int threads : {1, 3}) {
+      settings.threads = threads;
+      auto engine = make_engine(settings);
+      for (const NewGrain& grain : grains) engine->add(grain);
+      engine->step(1500);
+      EXPECT_GT(engine->measure().contacts, 100);
+      hashes.push_back(bits::hash_of(engine->snapshot()));
+    }
+  }
+  for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
 }  // namespace

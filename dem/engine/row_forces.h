@@ -1,0 +1,181 @@
+// Forces of rows of pairs evaluated several side by side and added to the sums in the order of the
+// pairs: what a sweep does with them kBatch at a time. Bit by bit as pair by pair.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "dem/engine/contact_forces.h"
+#include "dem/engine/flatten.h"
+#include "dem/engine/rows_of.h"
+#include "dem/laws/area_lanes.h"
+#include "dem/laws/sphere_lanes.h"
+#include "dem/shapes/crossing_lanes.h"
+
+namespace grainfield::dem {
+
+/// Spheres, and a law that tells its numbers for them side by side (laws/sphere_lanes.h).
+template <class Shape, class Law>
+concept SphereRowsInLanes = Shape::dim == 3 && Shape::rows_in_lanes&& requires(const Law& law) {
+  law.sphere_numbers(0.0, 0.0);
+};
+/// Disks likewise, with the linear law (laws/disk_lanes.h).
+template <class Shape, class Law>
+concept DiskRowsInLanes =
+    Shape::dim == 2 && Shape::rows_in_lanes&& Law::sphere_kind == SphereLawKind::linear;
+/// Polygons likewise (shapes/crossing_lanes.h, laws/area_lanes.h).
+template <class Shape, class Law>
+concept OutlineRowsInLanes = Law::measures ==
+                             Measures::area&& requires(const Shape& shapes, const Law& law,
+                                                       const typename Shape::Feature& feature) {
+  shapes.crossing_rows();
+  law.area_numbers(0.0, 0.0);
+};
+
+/// Pair k, of grain i, behind the last one; true when that is all that fits.
+inline bool add_to(RowBatch& batch, int i, int k) {
+  if (batch.count == 0) batch.first = k;
+  batch.i[batch.count++] = i;
+  return batch.count == kBatch;
+}
+
+/// For a sweep in a step of dt, s, of the pairs that are for lanes.
+template <class World>
+class RowForces;
+
+template <class World>
+requires SphereRowsInLanes<typename World::Shape, typename World::Law>
+class RowForces<World> {
+ public:
+  using Sum = ForceSum<World::dim>;
+
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt)
+      : rows_(sphere_rows_of(world, sums, world.rolling.on)) {
+    const auto& rule = world.acting.rule(0, 0);
+    const auto& r = rule.rolling;
+    numbers_ = rule.law.sphere_numbers(rule.friction, dt);
+    rolling_ = {r.stiffness,          r.damping,          r.friction,
+                r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
+  }
+
+  bool add(int i, int k) { return add_to(batch_, i, k); }
+  void evaluate() {
+    if (batch_.count > 0) sphere_forces(numbers_, rolling_, rows_, batch_);
+    batch_.count = 0;
+  }
+
+ private:
+  SphereNumbers numbers_;
+  RollingNumbers rolling_;
+  SphereRows rows_;
+  RowBatch batch_;
+};
+
+template <class World>
+requires DiskRowsInLanes<typename World::Shape, typename World::Law>
+class RowForces<World> {
+ public:
+  using Sum = ForceSum<World::dim>;
+
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt)
+      : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
+        rows_(disk_rows_of(world, sums)) {}
+
+  bool add(int i, int k) { return add_to(batch_, i, k); }
+  void evaluate() {
+    if (batch_.count > 0) disk_forces(numbers_, rows_, batch_);
+    batch_.count = 0;
+  }
+
+ private:
+  SphereNumbers numbers_;
+  DiskRows rows_;
+  RowBatch batch_;
+};
+
+template <class World>
+requires OutlineRowsInLanes<typename World::Shape, typename World::Law>
+class RowForces<World> {
+ public:
+  using Sum = ForceSum<World::dim>;
+  using Force = ContactForce<World::dim>;
+
+  RowForces(World& world, ContactForces<World>& alone, std::vector<Sum>& sums, double dt)
+      : world_(world),
+        alone_(alone),
+        sums_(sums),
+        dt_(dt),
+        numbers_(world.acting.rule(0, 0).law.area_numbers(world.acting.rule(0, 0).friction, dt)),
+        rows_(crossing_rows_of(world)) {}
+
+  /// Asks for what a later pair will need: a tenth for packings beyond the second-level cache.
+  bool add(int i, int k) {
+    const int later = world_.contacts.pairs[k + kAhead].j;
+    const double* corners =
+        rows_.blocks + static_cast<std::size_t>(later) * rows_.block_size + 2 * rows_.stride;
+    __builtin_prefetch(&world_.grains.bodies[later], 1);
+    __builtin_prefetch(&sums_[later], 1);
+    __builtin_prefetch(corners);
+    __builtin_prefetch(corners + rows_.stride);
+    return add_to(batch_, i, k);
+  }
+  void evaluate() {
+    if (batch_.count == 0) return;
+    crossing_overlaps(rows_, batch_, overlaps_);
+    auto& pairs = world_.contacts.pairs;
+    for (int n = 0; n < overlaps_.count; ++n) {
+      const int slot = overlaps_.slot[n];
+      const auto& pair = pairs[batch_.first + slot];
+      forces_.body_i[n] = rows_.bodies + std::ptrdiff_t{batch_.i[slot]} * kPlaneBody;
+      forces_.body_j[n] = rows_.bodies + std::ptrdiff_t{pair.j} * kPlaneBody;
+      forces_.spring[n] = pair.memory.spring;
+    }
+    area_forces(numbers_, overlaps_, forces_);
+    int count = 0, felt[kBatch];
+    for (int slot = 0; slot < batch_.count; ++slot) {
+      const bool apart = overlaps_.state[slot] == PairFate::apart;
+      auto& spring = pairs[batch_.first + slot].memory.spring;
+      spring = apart ? 0 : spring;
+      felt[count] = slot;
+      count += apart ? 0 : 1;
+    }
+    for (int n = 0; n < count; ++n) add_up(felt[n]);
+    batch_.count = 0;
+  }
+
+ private:
+  void add_up(int slot) {
+    const int i = batch_.i[slot], k = batch_.first + slot;
+    auto& pair = world_.contacts.pairs[k];
+    Force f;
+    if (overlaps_.state[slot] == PairFate::touches) {
+      const int place = overlaps_.place[slot];
+      const double* row = forces_.force[place];
+      f.force = {row[0], row[1]};
+      f.torque_i = row[2];
+      f.torque_j = row[3];
+      pair.memory.spring = forces_.spring[place];
+    } else if (!by_itself(i, k, f)) {
+      return;
+    }
+    Sum &a = sums_[i], &b = sums_[pair.j];
+    b.force -= f.force;
+    b.torque += f.torque_j;
+    a.force += f.force;
+    a.torque += f.torque_i;
+  }
+  [[gnu::noinline]] GRAINFIELD_FLATTEN bool by_itself(int i, int k, Force& f) {
+    return alone_.pair(i, k, dt_, f);
+  }
+
+  World& world_;
+  ContactForces<World>& alone_;
+  std::vector<Sum>& sums_;
+  const double dt_;
+  AreaNumbers numbers_;
+  CrossingRows rows_;
+  RowBatch batch_;
+  PlaneOverlapBatch overlaps_;
+  PlaneForceBatch forces_;
+};
+
+}  // namespace grainfield::dem

@@ -1,0 +1,30 @@
+// Pairs of disks side by side, from the bodies to their sums of forces, with the linear law:
+// overlap, motion, law and friction, operation by operation what is done for one (shapes/disk.h,
+// kinematics.h, linear.h, contact.h).
+#pragma once
+#include "dem/laws/sphere_lanes.h"
+#include "dem/space/lane_width.h"
+#include "dem/space/overlap_batch.h"
+
+namespace grainfield::dem {
+
+/// What the kernel expects of the engine's rows: numbers of a Body<2> and of a ForceSum<2>; a
+/// pair's bytes, with the spring first and its second grain's index, an int, after so many.
+inline constexpr int kDiskBody = 8, kDiskSum = 4, kDiskPair = 16, kSecondDisk = 8;
+
+/// Where the engine has what is read and written.
+struct DiskRows {
+  const double* bodies = nullptr;
+  unsigned char* pairs = nullptr;
+  double* sums = nullptr;
+};
+
+/// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
+/// on W. Behind the last pair there must be kPairsAhead idle ones.
+template <int W>
+void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch);
+inline void disk_forces(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch) {
+  with_lanes([&](auto width) { disk_forces_of<width()>(law, rows, batch); });
+}
+
+}  // namespace grainfield::dem
