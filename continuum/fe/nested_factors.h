@@ -5,8 +5,9 @@
 // the mesh alone is found once. Internal to fe/; without deal.II.
 //
 // The dense products are Eigen's, in pieces whose sums do not depend on the processor's caches: the
-// same bits everywhere. Rows are exchanged inside a front alone; what that costs of accuracy is for
-// the caller to refine.
+// same bits everywhere. Rows are exchanged inside a front alone: what that costs of accuracy is for
+// the caller to refine, and a regular matrix is refused where a part has no pivot of its own, which
+// the stiffness of a body always has.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -31,7 +32,7 @@ class NestedFactors {
                 std::size_t unknowns);
 
   /// Factorizes the sum of the cells' matrices (each by rows, cell after cell) and the entries.
-  /// False: a pivot is zero or not a number.
+  /// False: a pivot is zero or not a number, among the rows of its front.
   bool factorize(const std::vector<double>& matrices, const std::vector<NestedEntry>& entries);
   /// In place, with the last factors.
   void solve(Eigen::VectorXd& x) const;

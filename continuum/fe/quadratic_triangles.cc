@@ -8,6 +8,7 @@
 #include <deal.II/fe/mapping_fe.h>
 #include <deal.II/grid/tria.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -194,6 +195,10 @@ void QuadraticTriangles::solve(Eigen::VectorXd& x) const {
   x.setZero();
   Eigen::VectorXd left = right, better = x;
   double before = left.norm();
+  if (!std::isfinite(before)) {
+    x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   const double aim = kRefined * before;
   for (int k = 0; k <= kRefinements && before > aim; ++k) {
     if (impl_->single)
@@ -209,7 +214,11 @@ void QuadraticTriangles::solve(Eigen::VectorXd& x) const {
     before = size;
     x = better;
   }
-  if (before <= aim || !impl_->single || !factorize_exactly()) return;
+  if (before <= aim || !impl_->single) return;
+  if (!factorize_exactly()) {
+    x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   x = right;
   solve(x);
 }

@@ -77,10 +77,10 @@ class QuadraticTriangles {
   void add(const QuadraticCell& cell, const CellMatrix& values, const std::vector<bool>& free);
   void add(unsigned int row, unsigned int column, double value);
   /// By nested dissection (nested_factors.h), in single precision where that is enough. False:
-  /// singular.
+  /// singular, or a part of the cells has no pivot of its own.
   bool factorize();
   /// In place, refined with the matrix as it is. Factorizes in double precision where the single
-  /// one does not come near.
+  /// one does not come near; nan where that finds no pivot, or where x is not finite.
   void solve(Eigen::VectorXd& x) const;
   /// The matrix times x.
   Eigen::VectorXd product(const Eigen::VectorXd& x) const;

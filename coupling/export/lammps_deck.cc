@@ -277,8 +277,7 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
                          setup.background_damping);
     }
     out += "fix damp free addforce v_damp_x v_damp_y v_damp_z\n";
-    deck.notes.push_back(
-        "rest.background_damping slows displacement alone; spin is set to 0 every 2500 steps");
+    deck.notes.push_back("rest.background_damping slows displacement alone, not rotation");
   }
   if (setup.local_damping > 0) {
     deck.notes.push_back(
@@ -292,6 +291,8 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
       "thermo 2500\nthermo_style custom step atoms c_motion c_spin\n"
       "variable quiet equal \"c_motion+c_spin > {:.17g}\"\n\n",
       quiet);
+  deck.notes.push_back(
+      "until rest the spin of all spheres is set to 0 every 2500 steps: LAMMPS damps no rotation");
   out += "# The springs of friction begin anew.\n" + rest("unloaded") + dump_of(s, "unloaded");
   if (!setup.loaded.empty()) {
     out += "\ngroup loaded id";

@@ -151,6 +151,9 @@ SourceFigure steady(const char* what, const char* from, const char* to) {
                     const auto c = change_of(r, kLaws, kStressRatio, from, to);
                     if (!c) return std::nullopt;
                     const double most = kHardly * std::fabs(c->base), reach = 2 * c->error;
+                    if (!std::isfinite(reach))
+                      return fmt::format("undecided: {:+.3f}, {:+.0f} %", c->of,
+                                         100 * c->of / c->base);
                     const char* word = std::fabs(c->of) + reach <= most  ? "hardly changes"
                                        : std::fabs(c->of) - reach > most ? "changes"
                                                                          : "between";
@@ -183,7 +186,7 @@ std::vector<SourceFigure> box_figures() {
     }
     out.push_back(row_figure(row));
     if (row.study == std::string(kShear) && row.member == std::string("hertz_0")) {
-      out.back().missing = "not given: the compressed sample did not come to rest";
+      out.back().missing = "not in this run: without friction no sample came to rest before it";
     }
     if (row.member == std::string("penalty_025")) {
       out.push_back(rise("fig. 16", "volumetric stress over its start, from penalty to Hertz law",

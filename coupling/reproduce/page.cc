@@ -28,7 +28,8 @@ std::string with_error(const SourceFigure& figure, const Measured& m) {
 
 // Ours and the agreement.
 std::pair<std::string, std::string> row_of(const SourceFigure& figure, const Results& results) {
-  const std::string lacking = figure.missing.empty() ? kNotRun : figure.missing;
+  const bool was_run = results.has(figure.study);
+  const std::string lacking = figure.missing.empty() || !was_run ? kNotRun : figure.missing;
   if (figure.number) {
     const auto ours = figure.number(results);
     if (!ours) return {lacking, ""};
@@ -189,12 +190,13 @@ std::string reproduction_page(const Results& results) {
     const auto [ours, word] = row_of(figure, results);
     const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
     const std::string note = figure.note && ours != kNotRun ? figure.note(results) : "";
-    out += fmt::format(
-        "| {} | {} | {}{} | {} | {}{} | {} | {} |\n", figure.source, figure.what, figure.theirs,
-        unit, ours, word, note.empty() ? "" : "; " + note,
-        ours == kNotRun ? ""
+    out +=
+        fmt::format("| {} | {} | {}{} | {} | {}{} | {} | {} |\n", figure.source, figure.what,
+                    figure.theirs, unit, ours, word, note.empty() ? "" : "; " + note,
+                    ours == kNotRun || ours == figure.missing
+                        ? ""
                         : optional_number(results, figure.study, "ensemble.realizations", "{:g}"),
-        study_cell(results, figure.study));
+                    study_cell(results, figure.study));
     if (std::find(studies.begin(), studies.end(), figure.study) == studies.end()) {
       studies.push_back(figure.study);
     }

@@ -5,7 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
+
+#include "continuum/fe/quadratic_triangles.h"
 
 namespace grainfield::continuum::fe {
 namespace {
@@ -81,6 +86,41 @@ TEST(NestedFactors, AnUnknownWithoutEquationIsSaid) {
   EXPECT_FALSE(factors.factorize(lattice.matrices, lattice.entries));
   lattice.matrices[0] = 1;
   EXPECT_TRUE(factors.factorize(lattice.matrices, lattice.entries));
+}
+
+// Cells whose stiffness spans ten powers of ten: single precision alone does not come near, and
+// what solve() gives meets the equations all the same.
+TEST(NestedFactors, StiffAndSoftCellsAreSolvedInDoublePrecision) {
+  for (const double powers : {0., 10., 14.}) {
+    QuadraticTriangles grid(triangle_lattice({-1, 0}, {1, 0}, {0, 1}, 12));
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> any(-1, 1);
+    grid.clear_matrix();
+    const std::vector<bool> free(grid.unknowns(), true);
+    for (const QuadraticCell& cell : grid.cells) {
+      const CellMatrix half = CellMatrix::NullaryExpr([&] { return any(random); });
+      const CellMatrix spd = half * half.transpose() + 0.1 * CellMatrix::Identity();
+      grid.add(cell, std::pow(10, powers / 2 * any(random)) * spd, free);
+    }
+    ASSERT_TRUE(grid.factorize());
+    const Eigen::VectorXd right =
+        Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(grid.unknowns()), -1, 2);
+    Eigen::VectorXd x = right;
+    grid.solve(x);
+    EXPECT_LT((grid.product(x) - right).norm(), 1e-9 * right.norm()) << powers;
+  }
+}
+
+TEST(NestedFactors, WhatIsNoNumberStaysNone) {
+  QuadraticTriangles grid(triangle_lattice({-1, 0}, {1, 0}, {0, 1}, 2));
+  grid.clear_matrix();
+  const std::vector<bool> free(grid.unknowns(), true);
+  for (const QuadraticCell& cell : grid.cells) grid.add(cell, CellMatrix::Identity(), free);
+  ASSERT_TRUE(grid.factorize());
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(grid.unknowns()));
+  x[3] = std::numeric_limits<double>::infinity();
+  grid.solve(x);
+  EXPECT_FALSE(x.allFinite());
 }
 
 }  // namespace

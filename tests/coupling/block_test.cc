@@ -105,6 +105,9 @@ TEST(Block, FiguresOfTheUnloadingAndOfTheMeanStress) {
   EXPECT_NEAR(one("unloaded_ratio"), 20.0 / 6, 1e-12);
   EXPECT_EQ(one("friction_deg"), 36);
   EXPECT_EQ(one("dilation_deg"), 9);
+  // Unloaded to next to nothing: no ratio.
+  c.quantities.front().grains(4, 0) = -0.2;
+  EXPECT_EQ(block_figures(c).count("block.mohr_coulomb.unloaded_ratio"), 0U);
 }
 
 }  // namespace

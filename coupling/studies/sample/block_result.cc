@@ -16,6 +16,8 @@ using Eigen::VectorXd;
 
 // A law has left the grains where its driving stress is off by this share of their largest.
 constexpr double kHasLeft = 0.1;
+// Share of the grains' largest stress below which they carry next to nothing.
+constexpr double kUnloaded = 0.01;
 // A block whose volume the path prescribes shows no difference of it beyond rounding.
 constexpr double kNoDifference = 1e-9;
 
@@ -174,8 +176,11 @@ void add_unloading(const BlockComparison& c, const std::string& law, Figures& ou
                                                         grains.tail(back).norm());
     out["block." + law + ".unloading_stiffness"].push_back((block[middle] - block[c.loading]) /
                                                            (grains[middle] - grains[c.loading]));
-    out["block." + law + ".unloaded_ratio"].push_back(block[block.size() - 1] /
-                                                      grains[grains.size() - 1]);
+    // Over grains that carry next to nothing any more a ratio says nothing.
+    if (const double end = grains[grains.size() - 1];
+        std::fabs(end) >= kUnloaded * grains.cwiseAbs().maxCoeff()) {
+      out["block." + law + ".unloaded_ratio"].push_back(block[block.size() - 1] / end);
+    }
   }
 }
 
@@ -303,7 +308,8 @@ std::vector<SummaryKey> block_summary_keys() {
       {"block.*.unloading_stiffness", "-",
        "slope of the block's driving stress to the middle state of the unloading over the grains'"},
       {"block.*.unloaded_ratio", "-",
-       "driving stress of the block at the end of the unloading over the grains'"},
+       "driving stress of the block at the end of the unloading over the grains', of samples that "
+       "still carry a hundredth of their largest"},
       {"block.mohr_coulomb.friction_deg", "deg", "friction angle that the block had"},
       {"block.mohr_coulomb.dilation_deg", "deg", "dilation angle that it had"},
   };

@@ -44,9 +44,9 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.shear_over_pressure", "-",
        "simple shear: shear stress at the end of the loading over p of the first state"},
       {"sample.axial_dip_strain", "-",
-       "simple shear: shear strain (half the shear) of the state of the loading whose axial "
-       "pressure "
-       "is least; at constant volume it falls first and rises then"},
+       "simple shear at constant volume: shear strain (half the shear) of the recorded state of "
+       "the "
+       "loading whose axial pressure is least; it falls first and rises then"},
       {"sample.end_stress_ratio", "-", "uniaxial: q/p at the end of the loading"},
       {"sample.end_axial_stress_ratio", "-",
        "uniaxial in three dimensions: q/p there with q the axial pressure less the mean lateral "

@@ -53,9 +53,11 @@ std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
     if (dem::shears(plan)) {
       const char* shear = plan.dim == 2 ? "sigma_xy" : "sigma_xz";
       put("shear_over_pressure", column(shear)[end] / p[0]);
-      Index least = 0;
-      column(axial).head(end + 1).maxCoeff(&least);
-      put("axial_dip_strain", strain[least] / 2);
+      if (plan.constant == "volume") {  // a held stress has no least value
+        Index least = 0;
+        column(axial).head(end + 1).maxCoeff(&least);
+        put("axial_dip_strain", strain[least] / 2);
+      }
     }
     const VectorXd inside = -column(axial);
     if (plan.deformation == "uniaxial") {

@@ -14,9 +14,8 @@ namespace grainfield::coupling {
 ///   sample.pressure_ratio        p at the end of the loading over that at the start
 /// of simple shear
 ///   sample.shear_over_pressure   shear stress at the end of the loading over p at the start
-///   sample.axial_dip_strain      half the shear of the state of the loading whose axial pressure
-///   is
-///                                least
+///   sample.axial_dip_strain      at constant volume: half the shear of the state of the loading
+///                                whose axial pressure is least
 /// of uniaxial deformation
 ///   sample.end_stress_ratio      q/p at the end of the loading
 ///   sample.end_axial_stress_ratio  the same with the source's q, in three dimensions
