@@ -19,7 +19,7 @@ constexpr std::array kLayerDirections{"xx", "yy", "zz", "yz", "xz", "xy"};
 // Balance to be reached, over contact forces: a strain of 1e-6 changes them by about 3e-4.
 constexpr double kProbeBalance = 1e-9;
 
-// Where the branch of a contact that ends in grain j, or its image, ends.
+// Where the branch of a contact that ends in grain j >= 0, or its image, ends.
 Vec3 far_end(const Snapshot& s, const Contact& c) {
   return s.grains[static_cast<std::size_t>(c.j)].position +
          s.cell.edges * Vec3(c.image[0], c.image[1], c.image[2]);
@@ -50,9 +50,8 @@ constexpr double kMostLost = 0.2;
 [[noreturn]] void refuse_thin_layer(double height) {
   throw ComputationFailed(fmt::format(
       "load.probe_strain: the layer is {:.3g} m deep, too thin to be strained: contacts of the "
-      "held "
-      "grains at its floor and surface reach into its middle half; set load.probe_strain = 0, or "
-      "packing.depth to five grains or more",
+      "held grains at its floor and surface reach into its middle half; set "
+      "load.probe_strain = 0, or packing.depth to five grains or more",
       height));
 }
 
@@ -84,6 +83,7 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
       return held_.grains[static_cast<std::size_t>(k)].fixed;
     };
     if (!held(c.i) || (c.j >= 0 && !held(c.j))) return false;
+    if (c.j < 0) return true;  // with a wall
     const double z = layer_.grains[static_cast<std::size_t>(c.i)].position.z();
     if (share_within(z, far_end(layer_, c).z(), low_, high_) > kMostLost) refuse_thin_layer(height);
     return true;
