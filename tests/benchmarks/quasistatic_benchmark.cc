@@ -1,12 +1,15 @@
 // A small load on a settled layer of spheres by Newton's method: 1,728 and 8,000 spheres, six
 // unknowns each. The layers settle first, which takes minutes. GRAINFIELD_LAYER = FILE.h5:GROUP, a
 // layer at rest of a run of point-load-3d, is loaded too, by a tenth of a sphere's weight
-// (GRAINFIELD_YOUNG: its material.young, default 2e7).
+// (GRAINFIELD_YOUNG: its material.young, default 2e7; GRAINFIELD_COPIES: so many of it beside each
+// other along x and as many along y, default 1).
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "dem/engine/engine.h"
 #include "dem/quasistatic/quasistatic.h"
@@ -91,6 +94,45 @@ void small_load_on_spheres(benchmark::State& state) {
 }
 BENCHMARK(small_load_on_spheres)->Arg(12)->Arg(20)->Unit(benchmark::kSecond)->Iterations(1);
 
+// The layer, periodic along x and y, n by n times beside itself: at rest as it was.
+dem::Snapshot copied(const dem::Snapshot& layer, int n) {
+  dem::Snapshot out = layer;
+  out.grains.clear();
+  out.contacts.clear();
+  const auto count = static_cast<std::int64_t>(layer.grains.size());
+  const auto place = [n](int k) { return (k % n + n) % n; };
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      const std::int64_t first = (y * n + x) * count;
+      for (dem::Grain g : layer.grains) {
+        g.id += (y * n + x) * (layer.grains.back().id + 1);
+        g.position += layer.cell.edges * dem::Vec3(x, y, 0);
+        out.grains.push_back(g);
+      }
+      for (dem::Contact c : layer.contacts) {
+        c.i += first;
+        c.point += layer.cell.edges * dem::Vec3(x, y, 0);
+        if (c.j >= 0) {
+          const int to_x = x + c.image[0], to_y = y + c.image[1];
+          c.j += (place(to_y) * n + place(to_x)) * count;
+          c.image = {(to_x - place(to_x)) / n, (to_y - place(to_y)) / n, 0};
+          if (c.j < c.i) {
+            std::swap(c.i, c.j);
+            for (int& k : c.image) k = -k;
+            for (dem::Vec3* v : {&c.normal, &c.force, &c.spring_vector, &c.rolling_spring})
+              *v = -*v;
+          }
+        }
+        out.contacts.push_back(c);
+      }
+    }
+  }
+  std::sort(out.contacts.begin(), out.contacts.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+  out.cell.edges.leftCols<2>() *= n;
+  return out;
+}
+
 // As point-load-3d has its spheres.
 void small_load_on_a_layer_of_a_run(benchmark::State& state) {
   const char* place = std::getenv("GRAINFIELD_LAYER");
@@ -100,7 +142,10 @@ void small_load_on_a_layer_of_a_run(benchmark::State& state) {
   }
   const std::string text = place;
   const std::size_t colon = text.rfind(':');
-  const dem::Snapshot layer = dem::read_snapshot(text.substr(0, colon), text.substr(colon + 1));
+  const char* copies = std::getenv("GRAINFIELD_COPIES");
+  const dem::Snapshot layer =
+      copied(dem::read_snapshot(text.substr(0, colon), text.substr(colon + 1)),
+             copies == nullptr ? 1 : std::stoi(copies));
   dem::EngineSettings settings = hertz_settings(1);
   const char* young = std::getenv("GRAINFIELD_YOUNG");
   settings.law = dem::HertzLaw{young == nullptr ? 2e7 : std::stod(young), 0.3, 0.3};
