@@ -181,8 +181,20 @@ TEST(Reproduce, SuperellipsoidsChangeInWordsWithNotesOnTheRun) {
   EXPECT_THAT(page,
               HasSubstr("volumetric stress over its start, from penalty to Hertz law | rises | "
                         "falls: -0.100 ± 0.028 | differs |"));
-  EXPECT_THAT(page, HasSubstr("mu = 0 | about 1 | not given: the compressed sample did not come to "
-                              "rest |  |"));
+  EXPECT_THAT(page, HasSubstr("mu = 0 | about 1 | not in this run: without friction no sample came "
+                              "to rest before it |  |  |"));
+}
+
+// One sample has no error, and of a study that was not run nothing is known.
+TEST(Reproduce, OneSampleDecidesNothingAndNoRunIsSaidSo) {
+  const Folder folder;
+  const std::string key = "\"sample.end_axial_stress_ratio.";
+  folder.write("contact-laws.json", "{" + key + "ratio_025\": 1.2, " + key + "ratio_1\": 1.201}");
+  const std::string page = reproduction_page(Results(folder.path()));
+  EXPECT_THAT(page, HasSubstr("0.25 to 1, mu = 0.5 | hardly changes | undecided: +0.001, +0 % | "
+                              "too few realizations to tell |"));
+  EXPECT_THAT(page,
+              HasSubstr("volumetric stress over its start, mu = 0 | about 1 | not run |  |  |"));
 }
 
 TEST(Reproduce, EveryKeyIsOneThatSummariesHave) {
