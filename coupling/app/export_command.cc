@@ -105,6 +105,14 @@ std::string listed(const std::vector<std::filesystem::path>& files) {
 
 int export_file(const ExportRequest& given) {
   const Exporter& exporter = find_exporter(given.to);
+  const auto only_of_decks = [&](const char* option, bool there) {
+    if (there)
+      throw std::invalid_argument(
+          fmt::format("{}: found with --to {}, allowed: with --to lammps alone", option, given.to));
+  };
+  only_of_decks("--set", !given.sets.empty());
+  only_of_decks("--quick", given.quick);
+  only_of_decks("--copies", given.copies != std::vector<int>{1, 1});
   if (given.files.size() != 1) {
     throw std::invalid_argument(
         fmt::format("--to {}: found {} files, expected one, FILE.h5 or FILE.h5:NAME", given.to,

@@ -113,7 +113,7 @@ double elastic_energy(const dem::Snapshot& s, const std::string& law) {
     if (c.j < 0) continue;
     const dem::Grain& a = s.grains[static_cast<std::size_t>(c.i)];
     const dem::Grain& b = s.grains[static_cast<std::size_t>(c.j)];
-    const Vec3 way = b.position + dem::shift_to(s.cell, c.image) - a.position;
+    const Vec3 way = dem::second_place(s, c) - a.position;
     out += share * c.normal_force * std::max(0., a.radius + b.radius - way.norm());
   }
   return out;

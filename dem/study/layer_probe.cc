@@ -11,6 +11,7 @@
 #include "dem/computation_failed.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/snapshot/contact_changes.h"
+#include "dem/snapshot/images.h"
 
 namespace grainfield::dem {
 namespace {
@@ -18,12 +19,6 @@ namespace {
 constexpr std::array kLayerDirections{"xx", "yy", "zz", "yz", "xz", "xy"};
 // Balance to be reached, over contact forces: a strain of 1e-6 changes them by about 3e-4.
 constexpr double kProbeBalance = 1e-9;
-
-// Where the branch of a contact that ends in grain j >= 0, or its image, ends.
-Vec3 far_end(const Snapshot& s, const Contact& c) {
-  return s.grains[static_cast<std::size_t>(c.j)].position +
-         s.cell.edges * Vec3(c.image[0], c.image[1], c.image[2]);
-}
 
 // Share of the way from height a to height b that is between low and high.
 double share_within(double a, double b, double low, double high) {
@@ -85,7 +80,8 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
     if (!held(c.i) || (c.j >= 0 && !held(c.j))) return false;
     if (c.j < 0) return true;  // with a wall
     const double z = layer_.grains[static_cast<std::size_t>(c.i)].position.z();
-    if (share_within(z, far_end(layer_, c).z(), low_, high_) > kMostLost) refuse_thin_layer(height);
+    if (share_within(z, second_place(layer_, c).z(), low_, high_) > kMostLost)
+      refuse_thin_layer(height);
     return true;
   });
   before_ = stress_of(layer, Eigen::Matrix3d::Zero());
@@ -132,9 +128,9 @@ Eigen::Matrix3d LayerProber::stress_of(const Snapshot& state,
     if (c.j < 0) continue;
     const auto i = static_cast<std::size_t>(c.i);
     const double share =
-        share_within(layer_.grains[i].position.z(), far_end(layer_, c).z(), low_, high_);
+        share_within(layer_.grains[i].position.z(), second_place(layer_, c).z(), low_, high_);
     if (share == 0) continue;
-    sum += share * c.force * (far_end(state, c) - state.grains[i].position).transpose();
+    sum += share * c.force * (second_place(state, c) - state.grains[i].position).transpose();
   }
   return sum / (area_ * (high_ - low_) * (1 + gradient.trace()));
 }

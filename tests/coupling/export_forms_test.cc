@@ -256,6 +256,11 @@ TEST(ExportForms, WhatIsNoFormOrNoNameIsSaid) {
   EXPECT_THAT(
       refusal(kLayer + " --to vtk"),
       HasSubstr("--to: found \"vtk\", allowed: lammps, vtu, csv, html, svg, png; nearest: vtu"));
+  for (const std::string option : {"--quick", "--copies 2 2", "--set material.young=1"}) {
+    EXPECT_THAT(refusal(kLayer + " --to csv " + option),
+                HasSubstr(option.substr(0, option.find(' ')) +
+                          ": found with --to csv, allowed: with --to lammps alone"));
+  }
   EXPECT_THAT(refusal(kLayer + ":nothing --to csv"), HasSubstr("found no \"nothing\", allowed: /"));
   EXPECT_THAT(refusal(kLayer + " " + kLayer + " --to csv"),
               HasSubstr("found 2 files, expected one"));

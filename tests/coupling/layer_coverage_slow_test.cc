@@ -1,4 +1,5 @@
-// Synthetic truth: dozens of ensembles of layers per model; coverage of the intervals, and the verdict.
+// Synthetic truth: dozens of ensembles of layers per model; coverage of the intervals, and the
+// verdict.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -6,7 +6,7 @@
 
 #include "dem/engine/engine.h"
 #include "dem/random/random.h"
-#include "dem/space/lane_width.h"
+#include "tests/dem/at_lane_width.h"
 #include "tests/dem/bits_scene.h"
 
 namespace grainfield::dem {
@@ -71,16 +71,7 @@ std::unique_ptr<Engine> engine_of(const Scene& scene) {
   return engine;
 }
 
-class DiskLanes : public testing::TestWithParam<int> {
- protected:
-  void SetUp() override {
-    if (!use_lane_width(GetParam())) GTEST_SKIP() << "not in this processor: " << GetParam();
-  }
-  void TearDown() override { use_lane_width(before_); }
-
- private:
-  int before_ = lane_width();
-};
+class DiskLanes : public AtLaneWidth {};
 
 TEST_P(DiskLanes, StepsAreThoseOfPairByPair) {
   for (const Place place : {Place::box, Place::cell, Place::heap}) {

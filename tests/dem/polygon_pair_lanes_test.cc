@@ -10,6 +10,7 @@
 #include "dem/laws/overlap_area.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon_store.h"
+#include "tests/dem/at_lane_width.h"
 #include "tests/dem/polygon_engine_scene.h"
 
 namespace grainfield::dem {
@@ -81,16 +82,7 @@ struct Pairs {
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-class PolygonPairLanes : public testing::TestWithParam<int> {
- protected:
-  void SetUp() override {
-    if (!use_lane_width(GetParam())) GTEST_SKIP() << "not in this processor: " << GetParam();
-  }
-  void TearDown() override { use_lane_width(before_); }
-
- private:
-  int before_ = lane_width();
-};
+class PolygonPairLanes : public AtLaneWidth {};
 
 TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
   Rules<OverlapAreaLaw>::Rule rule;

@@ -7,7 +7,7 @@
 
 #include "dem/engine/engine.h"
 #include "dem/random/random.h"
-#include "dem/space/lane_width.h"
+#include "tests/dem/at_lane_width.h"
 #include "tests/dem/bits_scene.h"
 
 namespace grainfield::dem {
@@ -83,16 +83,7 @@ HertzLaw hertz(bool displacement, bool viscoelastic) {
   return law;
 }
 
-class SphereLanes : public testing::TestWithParam<int> {
- protected:
-  void SetUp() override {
-    if (!use_lane_width(GetParam())) GTEST_SKIP() << "not in this processor: " << GetParam();
-  }
-  void TearDown() override { use_lane_width(before_); }
-
- private:
-  int before_ = lane_width();
-};
+class SphereLanes : public AtLaneWidth {};
 
 TEST_P(SphereLanes, EveryLawIsThatOfOnePair) {
   const AnyLaw laws[] = {hertz(false, false), hertz(true, true), LinearLaw{300, 100, 2, 1},

@@ -1,23 +1,14 @@
 // Pairs, forces and turning side by side (lane_width.h): the bits of one by one, at every width.
 #include <gmock/gmock.h>
 
-#include "dem/space/lane_width.h"
+#include "tests/dem/at_lane_width.h"
 #include "tests/dem/bits_scene.h"
 #include "tests/dem/superellipsoid_lanes_scene.h"
 
 namespace grainfield::dem {
 namespace {
 
-class SuperellipsoidLanes : public testing::TestWithParam<int> {
- protected:
-  void SetUp() override {
-    if (!use_lane_width(GetParam())) GTEST_SKIP() << "not in this processor: " << GetParam();
-  }
-  void TearDown() override { use_lane_width(before_); }
-
- private:
-  int before_ = lane_width();
-};
+class SuperellipsoidLanes : public AtLaneWidth {};
 
 // As the engine had it pair by pair, before there were lanes.
 TEST_P(SuperellipsoidLanes, ScenesEndAsPairByPair) {
