@@ -1,16 +1,41 @@
-// Which grains each thread sweeps, and the pairs that cross from one thread's grains to another's.
+// Which grains each thread sweeps, and in which order it does their pairs.
 #pragma once
-#include <utility>
+#include <cstddef>
 #include <vector>
 
 namespace grainfield::dem {
 
+/// Pairs of the list one after the other, for code that takes many of them side by side.
+struct PairsInOrder {
+  int count = 0;
+  std::vector<int> first, pair;  ///< first grain and index, by place; idle ones behind the last
+
+  void add(int i, int k) {
+    first.push_back(i);
+    pair.push_back(k);
+    ++count;
+  }
+  void pad(int idle, int idle_pair) {
+    first.resize(static_cast<std::size_t>(count) + static_cast<std::size_t>(idle), 0);
+    pair.resize(first.size(), idle_pair);
+  }
+};
+
+/// The pairs of a row from `from` on are done by themselves: their second grain is in a later
+/// block, asleep or an image.
+struct RowTail {
+  int row = -1, from = 0;
+  int before = 0;  ///< so many pairs of the block are done side by side before them
+};
+
 class Blocks {
  public:
   /// Blocks of about the same number of pairs. The rows are those of the first `grains` bodies; a
-  /// pair's second grain behind them belongs to no block.
-  template <class Rows>
-  void divide(const Rows& rows, int grains, int threads) {
+  /// pair's second grain behind them belongs to no block. is_across(k): the second grain of pair k
+  /// is an image; those come last in a row. Behind the last pair of an order there are `idle` more
+  /// that may be looked at: the first idle one of the list.
+  template <class Rows, class IsAcross>
+  void divide(const Rows& rows, int grains, int threads, int idle, IsAcross is_across) {
     bounds_.assign(threads + 1, grains);
     bounds_[0] = 0;
     const auto work = [&](int i) {
@@ -20,28 +45,55 @@ class Blocks {
       while (i < grains && work(i) * threads < work(grains) * rank) ++i;
       bounds_[rank] = i;
     }
-    incoming_.assign(threads, {});
-    for (int from = 0; from + 1 < threads; ++from) {
+    threads_.assign(threads, {});
+    for (int from = 0; from < threads; ++from) {
+      Thread& mine = threads_[from];
       for (int i = first(from); i < last(from); ++i) {
+        int end = rows.last(i);
+        while (end > rows.first(i) && is_across(end - 1)) --end;
+        int tail = end;
+        while (tail > rows.first(i) && rows[tail - 1].j >= last(from)) --tail;
+        for (int k = rows.first(i); k < tail; ++k) mine.inside.add(i, k);
+        const RowTail own{i, tail, mine.inside.count};
+        if (end < rows.last(i)) {
+          mine.across.push_back(own);
+        } else if (tail < end) {
+          mine.tails.push_back(own);
+        }
         for (int k = rows.first(i); k < rows.last(i); ++k) {
           const int j = rows[k].j;
           if (j < last(from) || j >= grains) continue;
           int to = from + 1;
           while (j >= last(to)) ++to;
-          incoming_[to].emplace_back(i, k);
+          threads_[to].incoming.add(i, k);
         }
       }
+    }
+    for (Thread& t : threads_) {
+      t.tails.push_back({});  // of no row
+      t.inside.pad(idle, rows.size());
+      t.incoming.pad(idle, rows.size());
     }
   }
 
   int first(int rank) const { return bounds_[rank]; }
   int last(int rank) const { return bounds_[rank + 1]; }
-  /// (first grain, pair) of the pairs from earlier blocks into this one, in their order.
-  const std::vector<std::pair<int, int>>& incoming(int rank) const { return incoming_[rank]; }
+  /// The pairs from earlier blocks into this one.
+  const PairsInOrder& incoming(int rank) const { return threads_[rank].incoming; }
+  /// The pairs of this block's rows but for their tails.
+  const PairsInOrder& inside(int rank) const { return threads_[rank].inside; }
+  /// Of rows without images, and of those that end with some. The first ones end with one of no
+  /// row.
+  const std::vector<RowTail>& tails(int rank) const { return threads_[rank].tails; }
+  const std::vector<RowTail>& across(int rank) const { return threads_[rank].across; }
 
  private:
+  struct Thread {
+    PairsInOrder inside, incoming;
+    std::vector<RowTail> tails, across;
+  };
   std::vector<int> bounds_;  // first grain of each block, and the end
-  std::vector<std::vector<std::pair<int, int>>> incoming_;
+  std::vector<Thread> threads_;
 };
 
 }  // namespace grainfield::dem

@@ -9,6 +9,7 @@
 #include "dem/contacts/rows.h"
 #include "dem/space/body.h"
 #include "dem/space/moving_cell.h"
+#include "dem/space/overlap_batch.h"
 
 namespace grainfield::dem {
 
@@ -36,13 +37,18 @@ struct ContactList {
   std::vector<ForceSum<D>> felt;  ///< by sleepers, by pair, since the last search
   /// Of the walls' contacts in the step before, towards the grain; 0: none, or a plane at rest.
   std::vector<VectorOf<D>> wall_normals;
-  Blocks blocks;  ///< not in the image: divide() makes them again
+  Blocks blocks;  ///< not in the image: divide() makes them
 
   void clear() {
     pairs.clear();
     walls.clear();
     images.clear();
     wall_normals.clear();
+  }
+  /// After finish(): what each thread does.
+  void divide(int grains, int threads) {
+    blocks.divide(pairs, grains, threads, kPairsBehind,
+                  [&](int k) { return !images.empty() && is_image(images[k]); });
   }
   /// After the last pair. `with_images`: in a cell.
   void finish(bool with_images = false) {

@@ -93,7 +93,8 @@ class ContactForces {
                                     world_.balance.pairs, k)
                             .force;
                       });
-    for (const auto& [i, k] : contacts.blocks.incoming(rank)) batch.add(i, k);
+    const PairsInOrder& incoming = contacts.blocks.incoming(rank);
+    for (int n = 0; n < incoming.count; ++n) batch.add(incoming.first[n], incoming.pair[n]);
     for (int i = contacts.blocks.first(rank); i < last; ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
         const int j = contacts.pairs[k].j;

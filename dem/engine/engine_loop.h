@@ -196,12 +196,17 @@ class EngineLoop final : public Engine {
           team_.meet();
         }
         if (!between_steps(rank, start + s)) return;
-        sweep_.incoming(rank, world_.time_step);
+        const bool moves_on = s + 1 < n;
+        if (moves_on) {
+          sweep_.template incoming<SweepKind::move_on>(rank, world_.time_step);
+        } else {
+          sweep_.template incoming<SweepKind::last>(rank, world_.time_step);
+        }
         team_.meet();
         if (rank == 0) watch_walls();
         const auto applied =
             world_.around.applied_at(static_cast<double>(start + s + 1) * world_.time_step);
-        if (s + 1 < n) {
+        if (moves_on) {
           sweep_.template run<SweepKind::move_on>(rank, applied, world_.time_step);
         } else {
           sweep_.template run<SweepKind::last>(rank, applied, world_.time_step);
@@ -425,7 +430,7 @@ class EngineLoop final : public Engine {
     const auto applied =
         world_.around.applied_at(static_cast<double>(world_.steps) * world_.time_step);
     team_.run([&](int rank) {
-      sweep_.incoming(rank, 0);
+      sweep_.template incoming<SweepKind::start>(rank, 0);
       team_.meet();
       sweep_.template run<SweepKind::start>(rank, applied, 0, first_new_);
     });

@@ -31,12 +31,14 @@ concept OutlineRowsInLanes = Law::measures ==
   law.area_numbers(0.0, 0.0);
 };
 
-/// Pair k, of grain i, behind the last one; true when that is all that fits.
-inline bool add_to(RowBatch& batch, int i, int k) {
-  if (batch.count == 0) batch.first = k;
-  batch.i[batch.count++] = i;
-  return batch.count == kBatch;
+/// Pairs [from, to) of an order.
+inline RowBatch batch_of(const PairsInOrder& order, int from, int to) {
+  return {order.first.data() + from, order.pair.data() + from, to - from};
 }
+
+/// Where the forces on first grains go: to their sums, or to the list, where the thread that sweeps
+/// those grains finds them.
+enum class FirstForces { summed, kept };
 
 /// For a sweep in a step of dt, s, of the pairs that are for lanes.
 template <class World>
@@ -48,8 +50,9 @@ class RowForces<World> {
  public:
   using Sum = ForceSum<World::dim>;
 
-  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt)
-      : rows_(sphere_rows_of(world, sums, world.rolling.on)) {
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt,
+            FirstForces first)
+      : rows_(sphere_rows_of(world, sums, world.rolling.on, first == FirstForces::kept)) {
     const auto& rule = world.acting.rule(0, 0);
     const auto& r = rule.rolling;
     numbers_ = rule.law.sphere_numbers(rule.friction, dt);
@@ -57,17 +60,14 @@ class RowForces<World> {
                 r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
   }
 
-  bool add(int i, int k) { return add_to(batch_, i, k); }
-  void evaluate() {
-    if (batch_.count > 0) sphere_forces(numbers_, rolling_, rows_, batch_);
-    batch_.count = 0;
+  void evaluate(const PairsInOrder& order, int from, int to) {
+    if (from < to) sphere_forces(numbers_, rolling_, rows_, batch_of(order, from, to));
   }
 
  private:
   SphereNumbers numbers_;
   RollingNumbers rolling_;
   SphereRows rows_;
-  RowBatch batch_;
 };
 
 template <class World>
@@ -76,20 +76,18 @@ class RowForces<World> {
  public:
   using Sum = ForceSum<World::dim>;
 
-  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt)
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt,
+            FirstForces first)
       : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
-        rows_(disk_rows_of(world, sums)) {}
+        rows_(disk_rows_of(world, sums, first == FirstForces::kept)) {}
 
-  bool add(int i, int k) { return add_to(batch_, i, k); }
-  void evaluate() {
-    if (batch_.count > 0) disk_forces(numbers_, rows_, batch_);
-    batch_.count = 0;
+  void evaluate(const PairsInOrder& order, int from, int to) {
+    if (from < to) disk_forces(numbers_, rows_, batch_of(order, from, to));
   }
 
  private:
   SphereNumbers numbers_;
   DiskRows rows_;
-  RowBatch batch_;
 };
 
 template <class World>
@@ -99,52 +97,54 @@ class RowForces<World> {
   using Sum = ForceSum<World::dim>;
   using Force = ContactForce<World::dim>;
 
-  RowForces(World& world, ContactForces<World>& alone, std::vector<Sum>& sums, double dt)
+  RowForces(World& world, ContactForces<World>& alone, std::vector<Sum>& sums, double dt,
+            FirstForces first)
       : world_(world),
         alone_(alone),
         sums_(sums),
         dt_(dt),
+        keeps_(first == FirstForces::kept),
         numbers_(world.acting.rule(0, 0).law.area_numbers(world.acting.rule(0, 0).friction, dt)),
         rows_(crossing_rows_of(world)) {}
 
-  /// Asks for what a later pair will need: a tenth for packings beyond the second-level cache.
-  bool add(int i, int k) {
-    const int later = world_.contacts.pairs[k + kAhead].j;
+  void evaluate(const PairsInOrder& order, int from, int to) {
+    if (from == to) return;
+    const RowBatch batch = batch_of(order, from, to);
+    for (int n = 0; n < batch.count; ++n) ask_for(batch.pair[n + kPairsAhead]);
+    crossing_overlaps(rows_, batch, overlaps_);
+    auto& pairs = world_.contacts.pairs;
+    for (int n = 0; n < overlaps_.count; ++n) {
+      const int slot = overlaps_.slot[n];
+      const auto& pair = pairs[batch.pair[slot]];
+      forces_.body_i[n] = rows_.bodies + std::ptrdiff_t{batch.first[slot]} * kPlaneBody;
+      forces_.body_j[n] = rows_.bodies + std::ptrdiff_t{pair.j} * kPlaneBody;
+      forces_.spring[n] = pair.memory.spring;
+    }
+    area_forces(numbers_, overlaps_, forces_);
+    int count = 0, felt[kBatch];
+    for (int slot = 0; slot < batch.count; ++slot) {
+      const bool apart = overlaps_.state[slot] == PairFate::apart;
+      auto& spring = pairs[batch.pair[slot]].memory.spring;
+      spring = apart ? 0 : spring;
+      felt[count] = slot;
+      count += apart ? 0 : 1;
+    }
+    for (int n = 0; n < count; ++n) add_up(batch, felt[n]);
+  }
+
+ private:
+  /// What pair k will need: a tenth for packings beyond the second-level cache.
+  void ask_for(int k) const {
+    const int later = world_.contacts.pairs[k].j;
     const double* corners =
         rows_.blocks + static_cast<std::size_t>(later) * rows_.block_size + 2 * rows_.stride;
     __builtin_prefetch(&world_.grains.bodies[later], 1);
     __builtin_prefetch(&sums_[later], 1);
     __builtin_prefetch(corners);
     __builtin_prefetch(corners + rows_.stride);
-    return add_to(batch_, i, k);
   }
-  void evaluate() {
-    if (batch_.count == 0) return;
-    crossing_overlaps(rows_, batch_, overlaps_);
-    auto& pairs = world_.contacts.pairs;
-    for (int n = 0; n < overlaps_.count; ++n) {
-      const int slot = overlaps_.slot[n];
-      const auto& pair = pairs[batch_.first + slot];
-      forces_.body_i[n] = rows_.bodies + std::ptrdiff_t{batch_.i[slot]} * kPlaneBody;
-      forces_.body_j[n] = rows_.bodies + std::ptrdiff_t{pair.j} * kPlaneBody;
-      forces_.spring[n] = pair.memory.spring;
-    }
-    area_forces(numbers_, overlaps_, forces_);
-    int count = 0, felt[kBatch];
-    for (int slot = 0; slot < batch_.count; ++slot) {
-      const bool apart = overlaps_.state[slot] == PairFate::apart;
-      auto& spring = pairs[batch_.first + slot].memory.spring;
-      spring = apart ? 0 : spring;
-      felt[count] = slot;
-      count += apart ? 0 : 1;
-    }
-    for (int n = 0; n < count; ++n) add_up(felt[n]);
-    batch_.count = 0;
-  }
-
- private:
-  void add_up(int slot) {
-    const int i = batch_.i[slot], k = batch_.first + slot;
+  void add_up(const RowBatch& batch, int slot) {
+    const int i = batch.first[slot], k = batch.pair[slot];
     auto& pair = world_.contacts.pairs[k];
     Force f;
     if (overlaps_.state[slot] == PairFate::touches) {
@@ -157,9 +157,14 @@ class RowForces<World> {
     } else if (!by_itself(i, k, f)) {
       return;
     }
-    Sum &a = sums_[i], &b = sums_[pair.j];
+    Sum& b = sums_[pair.j];
     b.force -= f.force;
     b.torque += f.torque_j;
+    if (keeps_) {
+      world_.contacts.pair_forces[k] = f;
+      return;
+    }
+    Sum& a = sums_[i];
     a.force += f.force;
     a.torque += f.torque_i;
   }
@@ -171,9 +176,9 @@ class RowForces<World> {
   ContactForces<World>& alone_;
   std::vector<Sum>& sums_;
   const double dt_;
+  const bool keeps_;
   AreaNumbers numbers_;
   CrossingRows rows_;
-  RowBatch batch_;
   PlaneOverlapBatch overlaps_;
   PlaneForceBatch forces_;
 };

@@ -12,30 +12,35 @@
 
 namespace grainfield::dem {
 
-/// For forces of rows of pairs. `rolls`: there is resistance against rolling.
+/// For forces of rows of pairs. `rolls`: there is resistance against rolling. `keeps`: those on
+/// first grains are for the list.
 template <class World, class Sum>
-SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls) {
+SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool keeps) {
   using Body = typename World::Body;
   using Pair = typename World::Pair;
   constexpr SphereLawKind kind = World::Law::sphere_kind;
   static_assert(sizeof(Body) == kSphereBody * sizeof(double));
   static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
+  static_assert(sizeof(ContactForce<3>) == kSphereForce * sizeof(double));
   static_assert(sizeof(RollingMemory<World::dim>) == 4 * sizeof(double));
   static_assert(sizeof(Pair) == pair_size(kind) && offsetof(Pair, j) == second_in_pair(kind));
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
-          rolls ? world.rolling.pairs.data()->roll.data() : nullptr};
+          rolls ? world.rolling.pairs.data()->roll.data() : nullptr,
+          keeps ? world.contacts.pair_forces.data()->force.data() : nullptr};
 }
 
 /// For forces of rows of pairs of disks.
 template <class World, class Sum>
-DiskRows disk_rows_of(World& world, std::vector<Sum>& sums) {
+DiskRows disk_rows_of(World& world, std::vector<Sum>& sums, bool keeps) {
   using Pair = typename World::Pair;
   static_assert(sizeof(typename World::Body) == kDiskBody * sizeof(double));
   static_assert(sizeof(Sum) == kDiskSum * sizeof(double) && kAhead >= kPairsAhead);
+  static_assert(sizeof(ContactForce<2>) == kDiskForce * sizeof(double));
   static_assert(sizeof(Pair) == kDiskPair && offsetof(Pair, j) == kSecondDisk);
   return {world.grains.bodies.data()->position.data(),
-          reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data()};
+          reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
+          keeps ? world.contacts.pair_forces.data()->force.data() : nullptr};
 }
 
 /// For overlaps of polygons.
@@ -55,21 +60,17 @@ CrossingRows crossing_rows_of(World& world) {
 template <class World, class Sum>
 RoundRows round_rows_of(World& world, std::vector<Sum>& sums) {
   using Body = typename World::Body;
-  using Grip = typename World::Integrator::Memory;
-  constexpr int dim = World::dim;
+  static_assert(sizeof(Body) == kRoundBody * sizeof(double));
+  static_assert(sizeof(typename World::Integrator::Memory) == kRoundMemory * sizeof(double));
+  static_assert(sizeof(Sum) == kRoundSum * sizeof(double));
+  static_assert(sizeof(Inertia<World::dim>) == kRoundInertia * sizeof(double));
   auto& grains = world.grains;
   RoundRows rows;
   rows.bodies = grains.bodies.data()->position.data();
   rows.memories = grains.memory.data()->rotation.coeffs().data();
   rows.sums = sums.data()->force.data();
   rows.inertias = &grains.inertias.data()->mass;
-  rows.margins = world.margins.data()->position.data();
-  rows.body_size = sizeof(Body) / sizeof(double);
-  rows.memory_size = sizeof(Grip) / sizeof(double);
-  rows.sum_size = sizeof(Sum) / sizeof(double);
-  rows.inertia_size = sizeof(Inertia<dim>) / sizeof(double);
-  rows.margin_size = sizeof(Margin<dim>) / sizeof(double);
-  rows.way = offsetof(Margin<dim>, way) / sizeof(double);
+  rows.margins = world.round_margins.data();
   return rows;
 }
 

@@ -64,7 +64,6 @@ class Search {
     contacts.finish(world_.cell.is_periodic());
     accounts.put_back();
     rolling.put_back();
-    divide();
     world_.margins.resize(n);
     for (int i = 0; i < n; ++i) {
       const double way = reaches_[i].reach - world_.grains.bodies[i].radius;
@@ -76,10 +75,20 @@ class Search {
       for (int i = 0; i < n; ++i) world_.all_round &= is_round(world_.grains.inertias[i]);
     }
     world_.search_needed = false;
+    prepare();
   }
 
-  /// Blocks of the threads. After run(), or after a list has come from an image.
-  void divide() { world_.contacts.blocks.divide(world_.contacts.pairs, world_.awake, threads_); }
+  /// Blocks of the threads and what else an image does not hold. Part of run(), or after a list has
+  /// come from an image.
+  void prepare() {
+    world_.contacts.divide(world_.awake, threads_);
+    if constexpr (dim == 3) {
+      world_.round_margins.clear();
+      for (const auto& m : world_.margins) {
+        world_.round_margins.push_back({{m.position[0], m.position[1], m.position[2]}, m.way});
+      }
+    }
+  }
 
   /// Of the bodies from `awake` on. Reviews ask near_sleepers between searches.
   void bin_sleepers() {

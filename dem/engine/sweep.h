@@ -85,10 +85,17 @@ class Sweep {
 
   /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
   /// their second grain, as they do when one thread sweeps all.
+  /// For a sweep of this kind.
+  template <SweepKind kind>
   GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
     if constexpr (in_lanes) return contact_forces_.evaluate(rank, dt);
+    if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
+      if (sweeps_rows()) return incoming_rows(rank, dt);
+    }
     const bool periodic = world_.cell.is_periodic();
-    for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
+    const PairsInOrder& order = world_.contacts.blocks.incoming(rank);
+    for (int n = 0; n < order.count; ++n) {
+      const int i = order.first[n], k = order.pair[n];
       Force& f = world_.contacts.pair_forces[k];
       const bool across = periodic && is_image(world_.contacts.images[k]);
       if (!(across ? contact_forces_.pair_across(i, k, dt, f)
@@ -107,7 +114,7 @@ class Sweep {
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
     if constexpr (in_lanes) sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
-      if (!books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2) {
+      if (sweeps_rows()) {
         if (world_.cell.is_periodic()) {
           sweep_rows<true>(rank, applied, dt);
         } else {
@@ -131,6 +138,33 @@ class Sweep {
     bool moved = false;  ///< one has left its margin
     int waiting = 0, list[kBatch];
   };
+  /// Rows are evaluated side by side in this run.
+  bool sweeps_rows() const {
+    return !books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
+  }
+  /// incoming(), side by side but for pairs across a face.
+  GRAINFIELD_FLATTEN void incoming_rows(int rank, double dt) {
+    auto& contacts = world_.contacts;
+    const PairsInOrder& order = contacts.blocks.incoming(rank);
+    if (order.count == 0) return;
+    const bool periodic = world_.cell.is_periodic();
+    RowForces<World> rows(world_, contact_forces_, sums_, dt, FirstForces::kept);
+    int from = 0;
+    for (int n = 0; n < order.count; ++n) {
+      const int k = order.pair[n];
+      Force& f = contacts.pair_forces[k];
+      f = Force{};
+      if (periodic && is_image(contacts.images[k])) {
+        rows.evaluate(order, from, n);
+        if (contact_forces_.pair_across(order.first[n], k, dt, f)) add_to_second(k, f);
+        from = n + 1;
+      } else if (n + 1 - from == kBatch) {
+        rows.evaluate(order, from, n + 1);
+        from = n + 1;
+      }
+    }
+    rows.evaluate(order, from, order.count);
+  }
 
   /// Flattened: an overlap, a motion or a force that goes through memory to a function waits for
   /// its stores (a third of the time per step of 1,000 disks). Also begin_block and incoming, so
@@ -178,54 +212,72 @@ class Sweep {
   /// The same, for shapes whose pairs are evaluated and added to the sums kBatch at a time, row
   /// after row (row_forces.h); then the grains whose rows are done move, spheres side by side where
   /// they can. Bit by bit as pair by pair. Pairs that another thread has evaluated, or whose second
-  /// grain sleeps or is across a face, are the last of a row and done by themselves.
+  /// grain sleeps or is across a face, are the last of a row and done by themselves: before the
+  /// grain moves, or at once where one is across a face, for it may add to any grain's sum.
   template <bool in_cell>
   GRAINFIELD_FLATTEN void sweep_rows(int rank, const Vector& applied, double dt) {
-    const auto& contacts = world_.contacts;
-    const auto& pairs = contacts.pairs;
-    const int first = contacts.blocks.first(rank), last = contacts.blocks.last(rank);
-    if (first == last) return;
-    RowForces<World> rows(world_, contact_forces_, sums_, dt);
+    const Blocks& blocks = world_.contacts.blocks;
+    const int last = blocks.last(rank);
+    if (blocks.first(rank) == last) return;
+    const PairsInOrder& order = blocks.inside(rank);
+    const std::vector<RowTail>& across = blocks.across(rank);
+    RowForces<World> rows(world_, contact_forces_, sums_, dt, FirstForces::summed);
     Begins begins;
-    int done = first;
-    for (int i = first; i < last; ++i) {
-      const int end = in_cell ? first_across(i) : pairs.last(i);
-      int special = end;
-      while (special > pairs.first(i) && pairs[special - 1].j >= last) --special;
-      for (int k = pairs.first(i); k < special; ++k) {
-        if (!rows.add(i, k)) continue;
-        rows.evaluate();
-        end_rows<in_cell>(done, i, applied, dt, begins);
-        done = i;
-      }
-      if (special < pairs.last(i)) {
-        rows.evaluate();
-        Sum& sum = sums_[i];
-        sum_pairs<SweepKind::move_on>(
-            special, end, last, [&](int k, Force& f) { return contact_forces_.pair(i, k, dt, f); },
-            sum.force, sum.torque);
-        if (in_cell && end < pairs.last(i)) {
-          const Force across = sum_across<SweepKind::move_on>(i, last, dt);
-          sum.force += across.force;
-          sum.torque += across.torque_i;
-        }
-      }
+    Ends ends{blocks.first(rank), blocks.tails(rank).data()};
+    std::size_t next = 0;  // of the rows with images
+    for (int n = 0; n < order.count || next < across.size();) {
+      const int stop = next < across.size() ? across[next].before : order.count;
+      const int to = std::min(n + kBatch, stop);
+      rows.evaluate(order, n, to);
+      n = to;
+      const int row = n < order.count ? order.first[n] : last;  // the next to be evaluated
+      end_rows<in_cell>(next < across.size() ? std::min(row, across[next].row) : row, applied, dt,
+                        ends, begins);
+      if (!in_cell || n < stop || next == across.size()) continue;
+      const RowTail& tail = across[next++];
+      add_tail(tail, first_across(tail.row), dt);
+      const Force sum = sum_across<SweepKind::move_on>(tail.row, last, dt);
+      sums_[tail.row].force += sum.force;
+      sums_[tail.row].torque += sum.torque_i;
     }
-    rows.evaluate();
-    end_rows<in_cell>(done, last, applied, dt, begins);
+    end_rows<in_cell>(last, applied, dt, ends, begins);
     if constexpr (begins_in_lanes) begins.moved |= begin_all(begins.list, begins.waiting);
     if constexpr (places_together) place_waiting(begins);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
-  /// The motion of rows [from, to), whose sums are complete.
+  /// What is done of a block, in whose rows pairs go side by side.
+  struct Ends {
+    int row = 0;                    ///< the first one whose grain has not moved
+    const RowTail* tail = nullptr;  ///< the first one that has not been added
+  };
+  /// A row's pairs from its tail on, up to `end`. What another thread has written is far away.
+  void add_tail(const RowTail& tail, int end, double dt) {
+    auto& contacts = world_.contacts;
+    Sum& sum = sums_[tail.row];
+    for (int k = tail.from; k < end; ++k) {
+      __builtin_prefetch(&contacts.pair_forces[k + kAhead]);
+      Force f;
+      if (contacts.pairs[k].j < world_.awake) {
+        f = contacts.pair_forces[k];
+      } else if (contact_forces_.pair(tail.row, k, dt, f)) {
+        contacts.felt[k].add_second(f);
+      }
+      sum.force += f.force;
+      sum.torque += f.torque_i;
+    }
+  }
+  /// The motion of rows before `to`, whose sums are complete but for their tails.
   template <bool in_cell>
-  void end_rows(int from, int to, const Vector& applied, double dt, Begins& begins) {
+  void end_rows(int to, const Vector& applied, double dt, Ends& ends, Begins& begins) {
     const auto& bodies = world_.grains.bodies;
     const auto& contacts = world_.contacts;
     const bool together =
         dim == 3 && world_.all_round && !outer_forces_.damps() && !world_.cell.flows();
     int list[kBatch], count = 0;
-    for (int i = from; i < to; ++i) {
+    for (int i = ends.row; i < to; ++i) {
+      if (ends.tail->row == i) [[unlikely]] {
+        add_tail(*ends.tail++, contacts.pairs.last(i), dt);
+      }
       if (bodies[i].inverse_mass == 0) {
         sums_[i] = Sum{};
         continue;
@@ -249,6 +301,7 @@ class Sweep {
       end_step<SweepKind::move_on, in_cell>(i, force, torque, applied, dt, 0, begins);
     }
     begins.moved |= step_on(list, count);
+    ends.row = to;
   }
   /// End of a step and beginning of the next of spheres that nothing else acts on.
   bool step_on(const int* list, int count) {
@@ -338,10 +391,7 @@ class Sweep {
           sums_[j].torque += f.torque_j;
         } else if constexpr (kind != SweepKind::start) {
           // A sleeper, or fixed: it only remembers what it feels.
-          Sum& felt = contacts.felt[k];
-          felt.force += f.force;
-          felt.torque += f.torque_j;
-          felt.press += f.force.norm();
+          contacts.felt[k].add_second(f);
         }
       }
       force += f.force;
@@ -477,7 +527,9 @@ class Sweep {
 
   GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
     const bool periodic = world_.cell.is_periodic();
-    for (const auto& [i, k] : world_.contacts.blocks.incoming(rank)) {
+    const PairsInOrder& order = world_.contacts.blocks.incoming(rank);
+    for (int n = 0; n < order.count; ++n) {
+      const int k = order.pair[n];
       Force f;
       const bool across = periodic && is_image(world_.contacts.images[k]);
       if (across ? contact_forces_.evaluated_across(k, dt, f) : contact_forces_.evaluated(k, f))

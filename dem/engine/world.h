@@ -14,6 +14,7 @@
 #include "dem/engine/rolling_contacts.h"
 #include "dem/engine/wall_contacts.h"
 #include "dem/motion/applied_force.h"
+#include "dem/motion/round_lanes.h"
 #include "dem/sleep/sleepers.h"
 #include "dem/space/moving_cell.h"
 #include "dem/walls/walls.h"
@@ -67,7 +68,8 @@ struct World {
   using Sleepers = dem::Sleepers<dim, Memory>;
   Sleepers sleepers;
   Contacts contacts;
-  std::vector<Margin<dim>> margins;  ///< of the awake
+  std::vector<Margin<dim>> margins;        ///< of the awake
+  std::vector<RoundMargin> round_margins;  ///< the same, in three dimensions
   int awake = 0;  ///< bodies [0, awake) move; the others sleep or, with sleeping, are fixed
   int applied_index = -1;            ///< body that carries the applied force
   std::vector<std::int64_t> beside;  ///< ids, ascending, of others that carry the same

@@ -63,7 +63,7 @@ void read_world(World& world, Search<World>& search, ImageReader& r) {
   for (const std::int64_t id : world.grains.ids) r.require(id >= 0 && id < n);
   for (const int kind : world.grains.kinds) r.require(kind < world.acting.kinds());
   if (searched) {
-    search.divide();
+    search.prepare();
     search.bin_sleepers();  // a review may ask it before the next search
   } else {
     world.sleepers.set_changed();

@@ -22,7 +22,7 @@ template <int W>
   return limit < above ? limit : above;
 }
 
-/// Lanes beyond the batch do the first one's work again.
+/// Lanes beyond the batch do later pairs' work, for nobody.
 template <int W>
 [[gnu::always_inline]] inline void press(const SphereNumbers& law, const DiskRows& rows,
                                          const RowBatch& batch, int at, Passed& to) {
@@ -31,18 +31,19 @@ template <int W>
   const double *body_i[W], *body_j[W];
   V spring{};
   for (int k = 0; k < W; ++k) {
-    const int slot = at + k < batch.count ? at + k : at;
-    unsigned char* const pair = rows.pairs + std::ptrdiff_t{batch.first + slot} * kDiskPair;
+    const std::ptrdiff_t at_pair = batch.pair[at + k], ahead = batch.pair[at + k + kPairsAhead];
+    unsigned char* const pair = rows.pairs + at_pair * kDiskPair;
     int j = 0, later = 0;
     double force = 0;
     __builtin_memcpy(&j, pair + kSecondDisk, sizeof j);
-    __builtin_memcpy(&later, pair + kPairsAhead * kDiskPair + kSecondDisk, sizeof later);
+    __builtin_memcpy(&later, rows.pairs + ahead * kDiskPair + kSecondDisk, sizeof later);
     __builtin_memcpy(&force, pair, sizeof force);
-    const std::ptrdiff_t i = batch.i[slot];
+    const std::ptrdiff_t i = batch.first[at + k];
     spring[k] = force;
     to.pair[at + k] = pair;
     body_i[k] = rows.bodies + i * kDiskBody;
-    to.sum_i[at + k] = rows.sums + i * kDiskSum;
+    to.sum_i[at + k] =
+        rows.kept != nullptr ? rows.kept + at_pair * kDiskForce : rows.sums + i * kDiskSum;
     body_j[k] = rows.bodies + std::ptrdiff_t{j} * kDiskBody;
     to.sum_j[at + k] = rows.sums + std::ptrdiff_t{j} * kDiskSum;
     __builtin_prefetch(rows.bodies + std::ptrdiff_t{later} * kDiskBody);
@@ -115,6 +116,7 @@ template <int W>
 
 template <int W>
 void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch) {
+  static_assert(kPairsBehind >= kPairsAhead + W);
   Passed passed;
   for (int at = 0; at < batch.count; at += W) press<W>(law, rows, batch, at, passed);
   for (int at = 0; at < batch.count; at += W) give<W>(batch, at, passed);

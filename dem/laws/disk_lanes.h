@@ -8,19 +8,21 @@
 
 namespace grainfield::dem {
 
-/// What the kernel expects of the engine's rows: numbers of a Body<2> and of a ForceSum<2>; a
-/// pair's bytes, with the spring first and its second grain's index, an int, after so many.
-inline constexpr int kDiskBody = 8, kDiskSum = 4, kDiskPair = 16, kSecondDisk = 8;
+/// What the kernel expects of the engine's rows: numbers of a Body<2>, of a ForceSum<2> and of
+/// a ContactForce<2>, whose first three are those of a sum; a pair's bytes, with the spring first
+/// and its second grain's index, an int, after so many.
+inline constexpr int kDiskBody = 8, kDiskSum = 4, kDiskForce = 4, kDiskPair = 16, kSecondDisk = 8;
 
 /// Where the engine has what is read and written.
 struct DiskRows {
   const double* bodies = nullptr;
   unsigned char* pairs = nullptr;
   double* sums = nullptr;
+  double* kept = nullptr;  ///< by pair, ContactForce<2>: added to instead of first grains' sums
 };
 
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
-/// on W. Behind the last pair there must be kPairsAhead idle ones.
+/// on W.
 template <int W>
 void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch);
 inline void disk_forces(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch) {

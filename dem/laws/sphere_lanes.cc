@@ -39,11 +39,11 @@ struct alignas(64) Passed {
   double apart[kBatch];                     ///< not 0: the two do not touch
   double spring[3][kBatch], remembered[kBatch];
   double force[3][kBatch], tangential[3][kBatch];  ///< N
-  double *sum_i[kBatch], *sum_j[kBatch], *memory[kBatch];
+  int second[kBatch];
   // With resistance against rolling:
   double turning[3][kBatch], radius[kBatch];  ///< w_i - w_j, rad/s; R_eff, m
   double moment[3][kBatch];                   ///< on i, N m
-  double *rolling[kBatch], roll[3][kBatch], roll_twist[kBatch];
+  double roll[3][kBatch], roll_twist[kBatch];
 };
 
 /// As capped (contact.h). Seldom does any of W contacts slide.
@@ -89,16 +89,28 @@ template <int W>
   return limit < above ? limit : above;
 }
 
+/// The memory of pair k, and what it remembers of rolling.
+template <SphereLawKind kind>
+[[gnu::always_inline]] inline double* memory_of(const SphereRows& rows, int k) {
+  return reinterpret_cast<double*>(rows.pairs + std::ptrdiff_t{k} * pair_size(kind));
+}
+[[gnu::always_inline]] inline double* rolling_of(const SphereRows& rows, int k) {
+  return rows.rolling + std::ptrdiff_t{k} * 4;
+}
+
 /// RollingLaw::moment.
 template <int W>
-[[gnu::always_inline]] inline void roll(const RollingNumbers& law, double dt, int at,
+[[gnu::always_inline]] inline void roll(const RollingNumbers& law, double dt,
+                                        const SphereRows& rows, const RowBatch& batch, int at,
                                         const Three<W>& normal, const Three<W>& force, Passed& c) {
   using V = Lanes<W>;
   const V none{}, repulsion = -dot<W>(force, normal);
   const auto apart = loaded<W>(c.apart + at) != 0;
   const Three<W> turning = three<W>(c.turning, at), zero{none, none, none};
   const V radius = loaded<W>(c.radius + at);
-  const Four<W> memory = four_of<W>(c.rolling + at, 0);
+  double* remembered[W];
+  for (int k = 0; k < W; ++k) remembered[k] = rolling_of(rows, batch.pair[at + k]);
+  const Four<W> memory = four_of<W>(remembered, 0);
   Three<W> spring = turned<W>({memory.a, memory.b, memory.c}, normal, loaded<W>(c.twist + at));
   const Three<W> rolling = scaled<W>(radius, cross<W>(turning, normal));
   const Three<W> held = slid<W>(law.friction * repulsion, none + law.stiffness, none + law.damping,
@@ -118,30 +130,25 @@ template <int W>
   store<W>(apart ? none : twist, c.roll_twist + at);
 }
 
-/// SphereStore::overlap and motion_at. Lanes beyond the batch do the first one's work again.
+/// SphereStore::overlap and motion_at. Lanes beyond the batch do later pairs' work, for nobody.
 template <int W, SphereLawKind kind>
 [[gnu::always_inline]] inline void meet(const SphereNumbers& law, const SphereRows& rows,
                                         const RowBatch& batch, int at, Passed& to) {
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
-  for (int k = 0; k < W; ++k) {
-    const int slot = at + k < batch.count ? at + k : at;
-    unsigned char* const pair = rows.pairs + std::ptrdiff_t{batch.first + slot} * pair_size(kind);
-    int j = 0, later = 0;
+  const auto second = [&](int n) {
+    int j = 0;
+    const unsigned char* const pair = rows.pairs + std::ptrdiff_t{batch.pair[n]} * pair_size(kind);
     __builtin_memcpy(&j, pair + second_in_pair(kind), sizeof j);
-    __builtin_memcpy(&later, pair + kPairsAhead * pair_size(kind) + second_in_pair(kind),
-                     sizeof later);
-    const std::ptrdiff_t i = batch.i[slot];
-    to.memory[at + k] = reinterpret_cast<double*>(pair);
-    body_i[k] = rows.bodies + i * kSphereBody;
-    to.sum_i[at + k] = rows.sums + i * kSphereSum;
+    return j;
+  };
+  for (int k = 0; k < W; ++k) {
+    const int j = second(at + k), later = second(at + k + kPairsAhead);
+    to.second[at + k] = j;
+    body_i[k] = rows.bodies + std::ptrdiff_t{batch.first[at + k]} * kSphereBody;
     body_j[k] = rows.bodies + std::ptrdiff_t{j} * kSphereBody;
-    to.sum_j[at + k] = rows.sums + std::ptrdiff_t{j} * kSphereSum;
     const double* const ahead = rows.bodies + std::ptrdiff_t{later} * kSphereBody;
-    if (rows.rolling != nullptr) {
-      to.rolling[at + k] = rows.rolling + std::ptrdiff_t{batch.first + slot} * 4;
-    }
     __builtin_prefetch(ahead);
     __builtin_prefetch(ahead + 8);
     __builtin_prefetch(rows.sums + std::ptrdiff_t{later} * kSphereSum, 1);
@@ -184,10 +191,13 @@ template <int W, SphereLawKind kind>
 /// do not touch.
 template <int W, SphereLawKind kind, bool rolls>
 [[gnu::always_inline]] inline void press(const SphereNumbers& law, const RollingNumbers& rolling,
-                                         int at, Passed& c) {
+                                         const SphereRows& rows, const RowBatch& batch, int at,
+                                         Passed& c) {
   using V = Lanes<W>;
   const V none{};
-  const Four<W> memory = four_of<W>(c.memory + at, 0);
+  const double* before[W];
+  for (int k = 0; k < W; ++k) before[k] = memory_of<kind>(rows, batch.pair[at + k]);
+  const Four<W> memory = four_of<W>(before, 0);
   const Three<W> normal = three<W>(c.normal, at), slip = three<W>(c.slip, at);
   const V approach = loaded<W>(c.approach + at), depth = loaded<W>(c.depth + at);
   const auto apart = loaded<W>(c.apart + at) != 0;
@@ -223,13 +233,15 @@ template <int W, SphereLawKind kind, bool rolls>
   put<W>(chosen<W>(apart, zero, tangential), c.tangential, at);
   put<W>(chosen<W>(apart, zero, spring), c.spring, at);
   store<W>(remembered, c.remembered + at);
-  if constexpr (rolls) roll<W>(rolling, law.dt, at, normal, force, c);
+  if constexpr (rolls) roll<W>(rolling, law.dt, rows, batch, at, normal, force, c);
 }
 
 /// To the memories and sums.
 template <int W, SphereLawKind kind, bool rolls>
-[[gnu::always_inline]] inline void give(const RowBatch& batch, int at, const Passed& c) {
+[[gnu::always_inline]] inline void give(const SphereRows& rows, const RowBatch& batch, int at,
+                                        const Passed& c) {
   const int left = batch.count - at;
+  const int* const pairs = batch.pair + at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
   const Three<W> tangential = three<W>(c.tangential, at), spring = three<W>(c.spring, at);
   Three<W> torque_i = cross<W>(scaled<W>(loaded<W>(c.lever_i + at), normal), tangential);
@@ -240,20 +252,23 @@ template <int W, SphereLawKind kind, bool rolls>
     torque_j = torque_j - moment;
     each_row<W>({spring_roll.x, spring_roll.y, spring_roll.z, loaded<W>(c.roll_twist + at)},
                 [&](int k, const Lanes<4>& row) {
-                  if (k < left) store<4>(row, c.rolling[at + k]);
+                  if (k < left) store<4>(row, rolling_of(rows, pairs[k]));
                 });
   }
   each_row<W>({spring.x, spring.y, spring.z, loaded<W>(c.remembered + at)},
               [&](int k, const Lanes<4>& row) {
                 if (k >= left) return;
-                double* const memory = c.memory[at + k];
+                double* const memory = memory_of<kind>(rows, pairs[k]);
                 if constexpr (kind == SphereLawKind::hertz) return store<4>(row, memory);
                 store<2>(__builtin_shufflevector(row, row, 0, 1), memory);
                 memory[2] = row[2];
               });
   // A grain is the second of its pairs in earlier rows, then the first of those in its own: so all
   // second ones before the first ones keep the order of every sum.
-  const auto add = [&](const Three<W>& f, const Three<W>& torque, double* const* sums) {
+  const auto add = [&](const Three<W>& f, const Three<W>& torque, double* to, int size,
+                       const int* place) {
+    double* sums[W];
+    for (int k = 0; k < W; ++k) sums[k] = to + std::ptrdiff_t{place[k]} * size;
     each_row<W>({f.x, f.y, f.z, torque.x}, [&](int k, const Lanes<4>& row) {
       if (k < left) store<4>(loaded<4>(sums[k]) + row, sums[k]);
     });
@@ -261,17 +276,23 @@ template <int W, SphereLawKind kind, bool rolls>
       if (k < left) store<2>(loaded<2>(sums[k] + 4) + row, sums[k] + 4);
     });
   };
-  add(-force, torque_j, c.sum_j + at);
-  add(force, torque_i, c.sum_i + at);
+  add(-force, torque_j, rows.sums, kSphereSum, c.second + at);
+  if (rows.kept != nullptr) {
+    add(force, torque_i, rows.kept, kSphereForce, pairs);
+  } else {
+    add(force, torque_i, rows.sums, kSphereSum, batch.first + at);
+  }
 }
 
 template <int W, SphereLawKind kind, bool rolls>
 [[gnu::always_inline]] inline void forces(const SphereNumbers& law, const RollingNumbers& rolling,
                                           const SphereRows& rows, const RowBatch& batch) {
+  static_assert(kPairsBehind >= kPairsAhead + W);
   Passed passed;
   for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
-  for (int at = 0; at < batch.count; at += W) press<W, kind, rolls>(law, rolling, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W, kind, rolls>(batch, at, passed);
+  for (int at = 0; at < batch.count; at += W)
+    press<W, kind, rolls>(law, rolling, rows, batch, at, passed);
+  for (int at = 0; at < batch.count; at += W) give<W, kind, rolls>(rows, batch, at, passed);
 }
 template <int W, SphereLawKind kind>
 void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,

@@ -29,11 +29,12 @@ struct RollingNumbers {
   double twisting_stiffness = 0, twisting_damping = 0, twisting_friction = 0;
 };
 
-/// What the kernel expects of the engine's rows. Numbers of a Body<3> and of a ForceSum<3>; a pair
+/// What the kernel expects of the engine's rows. Numbers of a Body<3>, of a ForceSum<3> and of a
+/// ContactForce<3>, which begins as a sum does; a pair
 /// of which the first bytes are the law's memory (HertzMemory<3> four numbers, SpringMemory<3>
 /// three; eight bytes more are read) and then the second grain's
 /// index, an int; what will be read is asked for so many pairs ahead.
-inline constexpr int kSphereBody = 12, kSphereSum = 8, kPairsAhead = 16;
+inline constexpr int kSphereBody = 12, kSphereSum = 8, kSphereForce = 9, kPairsAhead = 16;
 constexpr int second_in_pair(SphereLawKind kind) { return kind == SphereLawKind::hertz ? 32 : 24; }
 constexpr int pair_size(SphereLawKind kind) { return second_in_pair(kind) + 8; }
 
@@ -43,10 +44,11 @@ struct SphereRows {
   unsigned char* pairs = nullptr;
   double* sums = nullptr;
   double* rolling = nullptr;  ///< by pair, RollingMemory<3>: four numbers; null: no resistance
+  double* kept = nullptr;     ///< by pair, ContactForce<3>: added to instead of first grains' sums
 };
 
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
-/// on W. Behind the last pair there must be kPairsAhead idle ones.
+/// on W.
 template <int W>
 void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
                       const SphereRows& rows, const RowBatch& batch);

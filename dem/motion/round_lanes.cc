@@ -9,25 +9,28 @@
 namespace grainfield::dem {
 namespace {
 
-template <int W, class Number>
-[[gnu::always_inline]] inline void find_rows(Number* from, int size, const int* list, int left,
+template <int size, int W, class Number>
+[[gnu::always_inline]] inline void find_rows(Number* from, const int (&grains)[W],
                                              Number* (&rows)[W]) {
-  for (int k = 0; k < W; ++k) rows[k] = from + std::ptrdiff_t{list[k < left ? k : 0]} * size;
+  for (int k = 0; k < W; ++k) rows[k] = from + std::ptrdiff_t{grains[k]} * size;
 }
 
 /// True when one has left its margin. `left`: so many of the lanes are grains of their own; others
-/// do the first one's work again, for nobody.
-template <int W>
+/// do the first one's work again, for nobody. `in_a_row`: list[k] is list[0] + k, for all lanes.
+template <int W, bool in_a_row>
 [[gnu::always_inline]] inline bool step_on(const RoundStep& step, const RoundRows& from,
-                                           const int* list, int left) {
+                                           const int* list, int count) {
+  const int left = in_a_row ? W : count;
   using V = Lanes<W>;
   const V none{};
   double *bodies[W], *memories[W], *sums[W];
   const double* margins[W];
-  find_rows<W>(from.bodies, from.body_size, list, left, bodies);
-  find_rows<W>(from.memories, from.memory_size, list, left, memories);
-  find_rows<W>(from.sums, from.sum_size, list, left, sums);
-  find_rows<W>(from.margins, from.margin_size, list, left, margins);
+  int grains[W];
+  for (int k = 0; k < W; ++k) grains[k] = in_a_row ? list[0] + k : list[k < left ? k : 0];
+  find_rows<kRoundBody>(from.bodies, grains, bodies);
+  find_rows<kRoundMemory>(from.memories, grains, memories);
+  find_rows<kRoundSum>(from.sums, grains, sums);
+  for (int k = 0; k < W; ++k) margins[k] = from.margins[grains[k]].position;
   const Four<W> body1 = four_of<W>(bodies, 0), body2 = four_of<W>(bodies, 4);
   const Four<W> body3 = four_of<W>(bodies, 8), turn = four_of<W>(memories, 0);
   const Four<W> sum1 = four_of<W>(sums, 0), sum2 = four_of<W>(sums, 4);
@@ -42,9 +45,8 @@ template <int W>
   const Three<W> acceleration =
       (scaled<W>(inverse_mass, force) + gravity) - scaled<W>(none + step.drag, velocity);
   if (step.drag != 0) {
-    const V moment = lanes_of<W>([&](int k) {
-      return from.inertias[std::ptrdiff_t{list[k < left ? k : 0]} * from.inertia_size + 1];
-    });
+    const V moment = lanes_of<W>(
+        [&](int k) { return from.inertias[std::ptrdiff_t{grains[k]} * kRoundInertia + 1]; });
     torque = torque - scaled<W>(none + step.drag, scaled<W>(moment, spin));
   }
   const V half = none + 0.5 * step.dt, turning = half * inverse_inertia;
@@ -63,7 +65,7 @@ template <int W>
   // Margin::is_left.
   const Four<W> centre = four_of<W>(margins, 0);
   const Three<W> moved = position - Three<W>{centre.a, centre.b, centre.c};
-  const V way = lanes_of<W>([&](int k) { return margins[k][from.way]; });
+  const V way = centre.d;
   const auto stays = (way >= 0) & (dot<W>(moved, moved) <= way * way);
 
   const auto put = [&](const Four<W>& columns, double* const* rows, int at) {
@@ -75,17 +77,11 @@ template <int W>
   put({velocity.y, velocity.z, spin.x, spin.y}, bodies, 4);
   for (int k = 0; k < W && k < left; ++k) bodies[k][8] = spin.z[k];
   put({rotation.v.x, rotation.v.y, rotation.v.z, rotation.w}, memories, 0);
-  put({acceleration.x, acceleration.y, acceleration.z, torque.x}, memories, 4);
-  each_pair<W>(torque.y, torque.z, [&](int k, const Lanes<2>& row) {
-    if (k < left) store<2>(row, memories[k] + 8);
-  });
   for (int k = 0; k < W && k < left; ++k) {
     store<4>(Lanes<4>{}, sums[k]);
     store<2>(Lanes<2>{}, sums[k] + 4);
   }
-  bool left_margin = false;
-  for (int k = 0; k < W && k < left; ++k) left_margin |= stays[k] == 0;
-  return left_margin;
+  return any_of(~stays);
 }
 
 }  // namespace
@@ -93,7 +89,12 @@ template <int W>
 template <int W>
 bool round_steps_of(const RoundStep& step, const RoundRows& rows, const int* list, int count) {
   bool moved = false;
-  for (int at = 0; at < count; at += W) moved |= step_on<W>(step, rows, list + at, count - at);
+  for (int at = 0; at < count; at += W) {
+    const int *here = list + at, left = count - at;
+    const bool in_a_row = left >= W && here[W - 1] - here[0] == W - 1;  // the list ascends
+    moved |= in_a_row ? step_on<W, true>(step, rows, here, left)
+                      : step_on<W, false>(step, rows, here, left);
+  }
   return moved;
 }
 template bool round_steps_of<GRAINFIELD_LANES>(const RoundStep& step, const RoundRows& rows,

@@ -1,19 +1,27 @@
 // The end of a step and the beginning of the next for spheres side by side, velocity Verlet:
 // operation by operation what is done for one (verlet3.h, motion/load.h, contacts/margins.h).
+// The acceleration and torque of the step that has ended are not kept: the next step that ends
+// makes them anew.
 #pragma once
 #include "dem/space/lane_width.h"
 #include "dem/space/overlap_batch.h"
 
 namespace grainfield::dem {
 
-/// Where the engine has what is read and written (laws/sphere_lanes.h): bodies Body<3>; memories of
-/// VerletIntegrator<3>; sums ForceSum<3>, which are 0 then; inertias Inertia<3>, all of whose
-/// moments are equal; margins Margin<3>. Sizes count numbers.
+/// Numbers of a Body<3>, a memory of VerletIntegrator<3>, a ForceSum<3> and an Inertia<3>.
+inline constexpr int kRoundBody = 12, kRoundMemory = 10, kRoundSum = 8, kRoundInertia = 5;
+
+/// Where a body was at the last search, and how far it may go from there, m (Margin<3>).
+struct alignas(32) RoundMargin {
+  double position[3] = {}, way = 0;
+};
+
+/// Where the engine has what is read and written. The sums are 0 then; all moments of an inertia
+/// are equal.
 struct RoundRows {
   double *bodies = nullptr, *memories = nullptr, *sums = nullptr;
-  const double *inertias = nullptr, *margins = nullptr;
-  int body_size = 0, memory_size = 0, sum_size = 0, inertia_size = 0, margin_size = 0;
-  int way = 0;  ///< where in a margin the way is
+  const double* inertias = nullptr;
+  const RoundMargin* margins = nullptr;
 };
 
 struct RoundStep {
@@ -22,7 +30,7 @@ struct RoundStep {
   double drag = 0;         ///< 1/s
 };
 
-/// Of grains list[0] to list[count - 1], whose inverse moment is above 0. True when one may have
+/// Of grains list[0] to list[count - 1], ascending, whose inverse moment is above 0. True when one may have
 /// left its margin. The bits do not depend on W.
 template <int W>
 bool round_steps_of(const RoundStep& step, const RoundRows& rows, const int* list, int count);

@@ -231,12 +231,12 @@ struct Sorted {
 GRAINFIELD_INLINE void sort(const CrossingRows& rows, const RowBatch& batch, Sorted& s,
                             PairFate* state) {
   for (int slot = 0; slot < batch.count; ++slot) {
-    const unsigned char* pair = rows.pairs + std::ptrdiff_t{batch.first + slot} * kPlanePair;
+    const unsigned char* pair = rows.pairs + std::ptrdiff_t{batch.pair[slot]} * kPlanePair;
     std::uint32_t hint = 0;
     int j = 0;
     __builtin_memcpy(&j, pair + kSecondInPair, sizeof j);
     __builtin_memcpy(&hint, pair + kFeatureInPair, sizeof hint);
-    const int i = batch.i[slot];
+    const int i = batch.first[slot];
     const double* a = rows.bodies + std::ptrdiff_t{i} * kPlaneBody;
     const double* b = rows.bodies + std::ptrdiff_t{j} * kPlaneBody;
     const double dx = b[0] - a[0], dy = b[1] - a[1], reach = a[5] + b[5];
@@ -260,7 +260,7 @@ GRAINFIELD_INLINE void overlaps_by(const CrossingRows& rows, const RowBatch& bat
   for (int n = 0; n < s.separated; ++n) {
     const int slot = s.of_separated[n];
     const std::uint32_t edge = (s.hint[slot] - 1) / 2, of_b = (s.hint[slot] - 1) & 1u;
-    const int i = batch.i[slot], j = s.j[slot];
+    const int i = batch.first[slot], j = s.j[slot];
     const Corners shape = corners_of(rows, of_b != 0 ? j : i);
     const Corners other = corners_of(rows, of_b != 0 ? i : j);
     if (edge >= static_cast<std::uint32_t>(shape.n)) continue;
@@ -271,7 +271,7 @@ GRAINFIELD_INLINE void overlaps_by(const CrossingRows& rows, const RowBatch& bat
   Crossing c;
   int count = 0;
   for (int n = 0; n < s.crossed; ++n) {
-    const int slot = s.of_crossed[n], i = batch.i[slot], j = s.j[slot];
+    const int slot = s.of_crossed[n], i = batch.first[slot], j = s.j[slot];
     c.body_i[count] = rows.bodies + std::ptrdiff_t{i} * kPlaneBody;
     c.body_j[count] = rows.bodies + std::ptrdiff_t{j} * kPlaneBody;
     o.slot[count] = slot;

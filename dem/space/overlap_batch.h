@@ -13,10 +13,13 @@ struct alignas(64) OverlapBatch {
   double radius[kBatch], lesser_curvature[kBatch], greater_curvature[kBatch], major[3][kBatch];
 };
 
-/// Pairs first, first + 1, ... of the list, at most kBatch, with the first grain of each.
+/// So many pairs behind the last one may be looked at; their forces go nowhere.
+inline constexpr int kPairsBehind = 32;
+
+/// Pairs of the list, at most kBatch, with the first grain of each.
 struct RowBatch {
-  int count = 0, first = 0;
-  int i[kBatch];
+  const int *first = nullptr, *pair = nullptr;  ///< by place, kPairsBehind more behind the last
+  int count = 0;
 };
 
 /// What is known of a pair.

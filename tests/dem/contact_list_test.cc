@@ -93,7 +93,7 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
       list.pairs.end_row();
     }
     list.finish();
-    list.blocks.divide(list.pairs, grains, threads);
+    list.divide(grains, threads);
     EXPECT_EQ(list.blocks.first(0), 0);
     EXPECT_EQ(list.blocks.last(threads - 1), grains);
     std::vector<int> done(list.pairs.size(), 0);
@@ -108,7 +108,9 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
         }
       }
       most = std::max(most, pairs);
-      for (const auto& [i, k] : list.blocks.incoming(rank)) {
+      const PairsInOrder& incoming = list.blocks.incoming(rank);
+      for (int n = 0; n < incoming.count; ++n) {
+        const int i = incoming.first[n], k = incoming.pair[n];
         EXPECT_LT(i, list.blocks.first(rank));
         EXPECT_GE(list.pairs[k].j, list.blocks.first(rank));
         EXPECT_LT(list.pairs[k].j, list.blocks.last(rank));

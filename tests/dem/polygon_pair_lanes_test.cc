@@ -25,6 +25,7 @@ struct Pairs {
   PolygonStore shapes;
   std::vector<Body<2>> bodies{2 * kBatch};
   std::vector<Pair> pairs{kBatch};
+  std::vector<int> first = std::vector<int>(kBatch + kPairsBehind), order = first;
   RowBatch batch;
 
   Pairs(Random& random, int least, int most) {
@@ -41,10 +42,14 @@ struct Pairs {
       bodies[k].inverse_mass = k % 9 == 2 ? 0 : random.uniform(0.5, 2);
       bodies[k].inverse_inertia = 2 * bodies[k].inverse_mass;
     }
+    batch.first = first.data();
+    batch.pair = order.data();
     for (int k = 0; k < kBatch; ++k) {
       const int i = k, j = kBatch + k;
       pairs[k] = {{any(k % 2 == 0 ? 1e5 : 10)}, j, {}};
-      batch.i[batch.count++] = i;
+      first[k] = i;
+      order[k] = k;
+      ++batch.count;
       const double place = any(3), angle_i = any(3), angle_j = any(3);
       const auto put = [&](double distance, double turned) {
         bodies[i].position = {0.1, 0.2};
