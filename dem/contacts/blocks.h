@@ -8,15 +8,18 @@ namespace grainfield::dem {
 /// Pairs of the list one after the other, for code that takes many of them side by side.
 struct PairsInOrder {
   int count = 0;
-  std::vector<int> first, pair;  ///< first grain and index, by place; idle ones behind the last
+  /// Both grains and the index, by place; idle ones behind the last.
+  std::vector<int> first, second, pair;
 
-  void add(int i, int k) {
+  void add(int i, int j, int k) {
     first.push_back(i);
+    second.push_back(j);
     pair.push_back(k);
     ++count;
   }
   void pad(int idle, int idle_pair) {
     first.resize(static_cast<std::size_t>(count) + static_cast<std::size_t>(idle), 0);
+    second.resize(first.size(), 0);
     pair.resize(first.size(), idle_pair);
   }
 };
@@ -30,7 +33,7 @@ struct RowTail {
 
 class Blocks {
  public:
-  /// Blocks of about the same number of pairs. The rows are those of the first `grains` bodies; a
+  /// Blocks of about the same work. The rows are those of the first `grains` bodies; a
   /// pair's second grain behind them belongs to no block. is_across(k): the second grain of pair k
   /// is an image; those come last in a row. Behind the last pair of an order there are `idle` more
   /// that may be looked at: the first idle one of the list.
@@ -38,11 +41,18 @@ class Blocks {
   void divide(const Rows& rows, int grains, int threads, int idle, IsAcross is_across) {
     bounds_.assign(threads + 1, grains);
     bounds_[0] = 0;
-    const auto work = [&](int i) {
-      return static_cast<long long>(i < grains ? rows.first(i) : rows.size()) + 2LL * i;
-    };
+    // A pair is evaluated with its second grain's block; a grain's motion takes as long as two.
+    std::vector<long long> work(static_cast<std::size_t>(grains) + 1, 0);  // of all grains before
+    for (int i = 0; i < grains; ++i) {
+      work[i + 1] += 2;
+      for (int k = rows.first(i); k < rows.last(i); ++k) {
+        const int j = rows[k].j;
+        ++work[(j < grains ? j : i) + 1];
+      }
+    }
+    for (int i = 0; i < grains; ++i) work[i + 1] += work[i];
     for (int rank = 1, i = 0; rank < threads; ++rank) {
-      while (i < grains && work(i) * threads < work(grains) * rank) ++i;
+      while (i < grains && work[i] * threads < work[grains] * rank) ++i;
       bounds_[rank] = i;
     }
     threads_.assign(threads, {});
@@ -53,7 +63,7 @@ class Blocks {
         while (end > rows.first(i) && is_across(end - 1)) --end;
         int tail = end;
         while (tail > rows.first(i) && rows[tail - 1].j >= last(from)) --tail;
-        for (int k = rows.first(i); k < tail; ++k) mine.inside.add(i, k);
+        for (int k = rows.first(i); k < tail; ++k) mine.inside.add(i, rows[k].j, k);
         const RowTail own{i, tail, mine.inside.count};
         if (end < rows.last(i)) {
           mine.across.push_back(own);
@@ -65,7 +75,7 @@ class Blocks {
           if (j < last(from) || j >= grains) continue;
           int to = from + 1;
           while (j >= last(to)) ++to;
-          threads_[to].incoming.add(i, k);
+          threads_[to].incoming.add(i, j, k);
         }
       }
     }

@@ -33,7 +33,8 @@ concept OutlineRowsInLanes = Law::measures ==
 
 /// Pairs [from, to) of an order.
 inline RowBatch batch_of(const PairsInOrder& order, int from, int to) {
-  return {order.first.data() + from, order.pair.data() + from, to - from};
+  return {order.first.data() + from, order.second.data() + from, order.pair.data() + from,
+          to - from};
 }
 
 /// Where the forces on first grains go: to their sums, or to the list, where the thread that sweeps
@@ -110,7 +111,7 @@ class RowForces<World> {
   void evaluate(const PairsInOrder& order, int from, int to) {
     if (from == to) return;
     const RowBatch batch = batch_of(order, from, to);
-    for (int n = 0; n < batch.count; ++n) ask_for(batch.pair[n + kPairsAhead]);
+    for (int n = 0; n < batch.count; ++n) ask_for(batch.second[n + kPairsAhead]);
     crossing_overlaps(rows_, batch, overlaps_);
     auto& pairs = world_.contacts.pairs;
     for (int n = 0; n < overlaps_.count; ++n) {
@@ -133,9 +134,9 @@ class RowForces<World> {
   }
 
  private:
-  /// What pair k will need: a tenth for packings beyond the second-level cache.
-  void ask_for(int k) const {
-    const int later = world_.contacts.pairs[k].j;
+  /// What a later pair needs of its second grain: a tenth for packings beyond the second-level
+  /// cache.
+  void ask_for(int later) const {
     const double* corners =
         rows_.blocks + static_cast<std::size_t>(later) * rows_.block_size + 2 * rows_.stride;
     __builtin_prefetch(&world_.grains.bodies[later], 1);

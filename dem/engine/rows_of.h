@@ -23,7 +23,7 @@ SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool
   static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
   static_assert(sizeof(ContactForce<3>) == kSphereForce * sizeof(double));
   static_assert(sizeof(RollingMemory<World::dim>) == 4 * sizeof(double));
-  static_assert(sizeof(Pair) == pair_size(kind) && offsetof(Pair, j) == second_in_pair(kind));
+  static_assert(sizeof(Pair) == pair_size(kind));
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr,
@@ -37,7 +37,7 @@ DiskRows disk_rows_of(World& world, std::vector<Sum>& sums, bool keeps) {
   static_assert(sizeof(typename World::Body) == kDiskBody * sizeof(double));
   static_assert(sizeof(Sum) == kDiskSum * sizeof(double) && kAhead >= kPairsAhead);
   static_assert(sizeof(ContactForce<2>) == kDiskForce * sizeof(double));
-  static_assert(sizeof(Pair) == kDiskPair && offsetof(Pair, j) == kSecondDisk);
+  static_assert(sizeof(Pair) == kDiskPair);
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
           keeps ? world.contacts.pair_forces.data()->force.data() : nullptr};
@@ -48,7 +48,7 @@ template <class World>
 CrossingRows crossing_rows_of(World& world) {
   using Pair = typename World::Pair;
   static_assert(sizeof(typename World::Body) == kPlaneBody * sizeof(double));
-  static_assert(sizeof(Pair) == kPlanePair && offsetof(Pair, j) == kSecondInPair);
+  static_assert(sizeof(Pair) == kPlanePair);
   static_assert(offsetof(Pair, feature) == kFeatureInPair);
   CrossingRows rows = world.grains.shapes.crossing_rows();
   rows.bodies = world.grains.bodies.data()->position.data();

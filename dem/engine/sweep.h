@@ -271,8 +271,7 @@ class Sweep {
   void end_rows(int to, const Vector& applied, double dt, Ends& ends, Begins& begins) {
     const auto& bodies = world_.grains.bodies;
     const auto& contacts = world_.contacts;
-    const bool together =
-        dim == 3 && world_.all_round && !outer_forces_.damps() && !world_.cell.flows();
+    const bool together = dim == 3 && world_.all_round && !world_.cell.flows();
     int list[kBatch], count = 0;
     for (int i = ends.row; i < to; ++i) {
       if (ends.tail->row == i) [[unlikely]] {
@@ -303,14 +302,16 @@ class Sweep {
     begins.moved |= step_on(list, count);
     ends.row = to;
   }
-  /// End of a step and beginning of the next of spheres that nothing else acts on.
+  /// End of a step and beginning of the next of spheres.
   bool step_on(const int* list, int count) {
     if constexpr (dim == 3) {
       if (count == 0) return false;
       const auto& gravity = world_.around.gravity;
-      return round_steps(
-          {world_.time_step, {gravity[0], gravity[1], gravity[2]}, world_.around.drag},
-          round_rows_of(world_, sums_), list, count);
+      return round_steps({world_.time_step,
+                          {gravity[0], gravity[1], gravity[2]},
+                          world_.around.drag,
+                          world_.local_damping},
+                         round_rows_of(world_, sums_), list, count);
     }
     return false;
   }

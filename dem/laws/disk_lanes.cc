@@ -31,12 +31,10 @@ template <int W>
   const double *body_i[W], *body_j[W];
   V spring{};
   for (int k = 0; k < W; ++k) {
-    const std::ptrdiff_t at_pair = batch.pair[at + k], ahead = batch.pair[at + k + kPairsAhead];
+    const std::ptrdiff_t at_pair = batch.pair[at + k];
     unsigned char* const pair = rows.pairs + at_pair * kDiskPair;
-    int j = 0, later = 0;
+    const int j = batch.second[at + k], later = batch.second[at + k + kPairsAhead];
     double force = 0;
-    __builtin_memcpy(&j, pair + kSecondDisk, sizeof j);
-    __builtin_memcpy(&later, rows.pairs + ahead * kDiskPair + kSecondDisk, sizeof later);
     __builtin_memcpy(&force, pair, sizeof force);
     const std::ptrdiff_t i = batch.first[at + k];
     spring[k] = force;

@@ -9,9 +9,8 @@
 namespace grainfield::dem {
 
 /// What the kernel expects of the engine's rows: numbers of a Body<2>, of a ForceSum<2> and of
-/// a ContactForce<2>, whose first three are those of a sum; a pair's bytes, with the spring first
-/// and its second grain's index, an int, after so many.
-inline constexpr int kDiskBody = 8, kDiskSum = 4, kDiskForce = 4, kDiskPair = 16, kSecondDisk = 8;
+/// a ContactForce<2>, whose first three are those of a sum; a pair's bytes, with the spring first.
+inline constexpr int kDiskBody = 8, kDiskSum = 4, kDiskForce = 4, kDiskPair = 16;
 
 /// Where the engine has what is read and written.
 struct DiskRows {

@@ -39,7 +39,6 @@ struct alignas(64) Passed {
   double apart[kBatch];                     ///< not 0: the two do not touch
   double spring[3][kBatch], remembered[kBatch];
   double force[3][kBatch], tangential[3][kBatch];  ///< N
-  int second[kBatch];
   // With resistance against rolling:
   double turning[3][kBatch], radius[kBatch];  ///< w_i - w_j, rad/s; R_eff, m
   double moment[3][kBatch];                   ///< on i, N m
@@ -137,17 +136,10 @@ template <int W, SphereLawKind kind>
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
-  const auto second = [&](int n) {
-    int j = 0;
-    const unsigned char* const pair = rows.pairs + std::ptrdiff_t{batch.pair[n]} * pair_size(kind);
-    __builtin_memcpy(&j, pair + second_in_pair(kind), sizeof j);
-    return j;
-  };
   for (int k = 0; k < W; ++k) {
-    const int j = second(at + k), later = second(at + k + kPairsAhead);
-    to.second[at + k] = j;
+    const int later = batch.second[at + k + kPairsAhead];
     body_i[k] = rows.bodies + std::ptrdiff_t{batch.first[at + k]} * kSphereBody;
-    body_j[k] = rows.bodies + std::ptrdiff_t{j} * kSphereBody;
+    body_j[k] = rows.bodies + std::ptrdiff_t{batch.second[at + k]} * kSphereBody;
     const double* const ahead = rows.bodies + std::ptrdiff_t{later} * kSphereBody;
     __builtin_prefetch(ahead);
     __builtin_prefetch(ahead + 8);
@@ -236,11 +228,11 @@ template <int W, SphereLawKind kind, bool rolls>
   if constexpr (rolls) roll<W>(rolling, law.dt, rows, batch, at, normal, force, c);
 }
 
-/// To the memories and sums.
-template <int W, SphereLawKind kind, bool rolls>
+/// To the memories and sums. `full`: no lane is beyond the batch.
+template <int W, SphereLawKind kind, bool rolls, bool full>
 [[gnu::always_inline]] inline void give(const SphereRows& rows, const RowBatch& batch, int at,
                                         const Passed& c) {
-  const int left = batch.count - at;
+  const int left = full ? W : batch.count - at;
   const int* const pairs = batch.pair + at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
   const Three<W> tangential = three<W>(c.tangential, at), spring = three<W>(c.spring, at);
@@ -269,6 +261,15 @@ template <int W, SphereLawKind kind, bool rolls>
                        const int* place) {
     double* sums[W];
     for (int k = 0; k < W; ++k) sums[k] = to + std::ptrdiff_t{place[k]} * size;
+    if constexpr (W == 8) {
+      Lanes<8> rows_in_order[8];
+      each_row_of_six({f.x, f.y, f.z, torque.x}, torque.y, torque.z,
+                      [&](int k, const Lanes<8>& row) { rows_in_order[k] = row; });
+      for (int k = 0; k < 8; ++k) {
+        if (k < left) store<8>(loaded<8>(sums[k]) + rows_in_order[k], sums[k]);
+      }
+      return;
+    }
     each_row<W>({f.x, f.y, f.z, torque.x}, [&](int k, const Lanes<4>& row) {
       if (k < left) store<4>(loaded<4>(sums[k]) + row, sums[k]);
     });
@@ -276,7 +277,7 @@ template <int W, SphereLawKind kind, bool rolls>
       if (k < left) store<2>(loaded<2>(sums[k] + 4) + row, sums[k] + 4);
     });
   };
-  add(-force, torque_j, rows.sums, kSphereSum, c.second + at);
+  add(-force, torque_j, rows.sums, kSphereSum, batch.second + at);
   if (rows.kept != nullptr) {
     add(force, torque_i, rows.kept, kSphereForce, pairs);
   } else {
@@ -292,7 +293,9 @@ template <int W, SphereLawKind kind, bool rolls>
   for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
   for (int at = 0; at < batch.count; at += W)
     press<W, kind, rolls>(law, rolling, rows, batch, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W, kind, rolls>(rows, batch, at, passed);
+  int at = 0;
+  for (; at + W <= batch.count; at += W) give<W, kind, rolls, true>(rows, batch, at, passed);
+  if (at < batch.count) give<W, kind, rolls, false>(rows, batch, at, passed);
 }
 template <int W, SphereLawKind kind>
 void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,

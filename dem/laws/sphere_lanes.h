@@ -29,14 +29,12 @@ struct RollingNumbers {
   double twisting_stiffness = 0, twisting_damping = 0, twisting_friction = 0;
 };
 
-/// What the kernel expects of the engine's rows. Numbers of a Body<3>, of a ForceSum<3> and of a
-/// ContactForce<3>, which begins as a sum does; a pair
-/// of which the first bytes are the law's memory (HertzMemory<3> four numbers, SpringMemory<3>
-/// three; eight bytes more are read) and then the second grain's
-/// index, an int; what will be read is asked for so many pairs ahead.
+/// What the kernel expects of the engine's rows. Numbers of a Body<3>, of a ForceSum<3>, whose last
+/// two it may add 0 to, and of a ContactForce<3>, which begins as a sum does; bytes of a pair, of
+/// which the first are the law's memory (HertzMemory<3> four numbers, SpringMemory<3> three; eight
+/// bytes more are read). What will be read is asked for so many pairs ahead.
 inline constexpr int kSphereBody = 12, kSphereSum = 8, kSphereForce = 9, kPairsAhead = 16;
-constexpr int second_in_pair(SphereLawKind kind) { return kind == SphereLawKind::hertz ? 32 : 24; }
-constexpr int pair_size(SphereLawKind kind) { return second_in_pair(kind) + 8; }
+constexpr int pair_size(SphereLawKind kind) { return kind == SphereLawKind::hertz ? 40 : 32; }
 
 /// Where the engine has what is read and written.
 struct SphereRows {

@@ -15,6 +15,18 @@ template <int size, int W, class Number>
   for (int k = 0; k < W; ++k) rows[k] = from + std::ptrdiff_t{grains[k]} * size;
 }
 
+/// local_damping (local_damping.h).
+template <int W>
+[[gnu::always_inline]] inline Three<W> local_damping(const Three<W>& force, const Three<W>& motion,
+                                                     double share) {
+  using V = Lanes<W>;
+  const auto against = [&](const V& f, const V& v) {
+    const V size = share * (magnitude(f) + 0.0);  // of -0, too, +0
+    return v > 0 ? -size : v < 0 ? size : V{};
+  };
+  return {against(force.x, motion.x), against(force.y, motion.y), against(force.z, motion.z)};
+}
+
 /// True when one has left its margin. `left`: so many of the lanes are grains of their own; others
 /// do the first one's work again, for nobody. `in_a_row`: list[k] is list[0] + k, for all lanes.
 template <int W, bool in_a_row>
@@ -37,17 +49,25 @@ template <int W, bool in_a_row>
   const Three<W> before{body1.a, body1.b, body1.c};
   Three<W> velocity{body1.d, body2.a, body2.b}, spin{body2.c, body2.d, body3.a};
   const V inverse_mass = body3.c, inverse_inertia = body3.d;
-  const Three<W> force{sum1.a, sum1.b, sum1.c};
+  Three<W> force{sum1.a, sum1.b, sum1.c};
   Three<W> torque{sum1.d, sum2.a, sum2.b};
 
-  // VerletIntegrator<3>::end.
   const Three<W> gravity{none + step.gravity[0], none + step.gravity[1], none + step.gravity[2]};
+  const auto inertia = [&](int number) {
+    return lanes_of<W>(
+        [&](int k) { return from.inertias[std::ptrdiff_t{grains[k]} * kRoundInertia + number]; });
+  };
+  if (step.local_damping != 0) {
+    const Three<W> all = force + scaled<W>(inertia(0), gravity);
+    force = force + local_damping<W>(all, velocity, step.local_damping);
+    torque = torque + local_damping<W>(torque, spin, step.local_damping);
+  }
+
+  // VerletIntegrator<3>::end.
   const Three<W> acceleration =
       (scaled<W>(inverse_mass, force) + gravity) - scaled<W>(none + step.drag, velocity);
   if (step.drag != 0) {
-    const V moment = lanes_of<W>(
-        [&](int k) { return from.inertias[std::ptrdiff_t{grains[k]} * kRoundInertia + 1]; });
-    torque = torque - scaled<W>(none + step.drag, scaled<W>(moment, spin));
+    torque = torque - scaled<W>(none + step.drag, scaled<W>(inertia(1), spin));
   }
   const V half = none + 0.5 * step.dt, turning = half * inverse_inertia;
   velocity = velocity + scaled<W>(half, acceleration);

@@ -28,10 +28,11 @@ struct RoundStep {
   double dt = 0;           ///< s
   double gravity[3] = {};  ///< m/s2
   double drag = 0;         ///< 1/s
+  double local_damping = 0;
 };
 
-/// Of grains list[0] to list[count - 1], ascending, whose inverse moment is above 0. True when one may have
-/// left its margin. The bits do not depend on W.
+/// Of grains list[0] to list[count - 1], ascending, whose inverse moment is above 0. True when one
+/// may have left its margin. The bits do not depend on W.
 template <int W>
 bool round_steps_of(const RoundStep& step, const RoundRows& rows, const int* list, int count);
 inline bool round_steps(const RoundStep& step, const RoundRows& rows, const int* list, int count) {

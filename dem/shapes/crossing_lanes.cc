@@ -233,8 +233,7 @@ GRAINFIELD_INLINE void sort(const CrossingRows& rows, const RowBatch& batch, Sor
   for (int slot = 0; slot < batch.count; ++slot) {
     const unsigned char* pair = rows.pairs + std::ptrdiff_t{batch.pair[slot]} * kPlanePair;
     std::uint32_t hint = 0;
-    int j = 0;
-    __builtin_memcpy(&j, pair + kSecondInPair, sizeof j);
+    const int j = batch.second[slot];
     __builtin_memcpy(&hint, pair + kFeatureInPair, sizeof hint);
     const int i = batch.first[slot];
     const double* a = rows.bodies + std::ptrdiff_t{i} * kPlaneBody;

@@ -9,9 +9,9 @@
 namespace grainfield::dem {
 
 /// What the kernel expects of the engine's rows: numbers of a Body<2>, of which the first are its
-/// place and the sixth its radius; pairs of which the second grain and the feature, both of 32
-/// bits, come after so many bytes.
-inline constexpr int kPlaneBody = 8, kPlanePair = 16, kSecondInPair = 8, kFeatureInPair = 12;
+/// place and the sixth its radius; pairs of which the feature, of 32 bits, comes after so many
+/// bytes.
+inline constexpr int kPlaneBody = 8, kPlanePair = 16, kFeatureInPair = 12;
 
 /// Where things are. A block holds a body's corners as OutlineRows says.
 struct CrossingRows {

@@ -34,7 +34,7 @@ struct ContactForce {
 
 /// Sum of forces on one grain.
 template <int D>
-struct alignas(32) ForceSum {
+struct alignas(D == 2 ? 32 : 64) ForceSum {
   VectorOf<D> force = zero<VectorOf<D>>();
   SpinOf<D> torque = zero<SpinOf<D>>();
   double press = 0;  ///< sum of the forces' lengths; where sleeping is judged

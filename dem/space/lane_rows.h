@@ -90,6 +90,33 @@ template <int W, class Give>
     }
   }
 }
+/// The same of six columns of eight lanes: rows of eight numbers, the last two 0.
+template <class Give>
+[[gnu::always_inline]] inline void each_row_of_six(const Four<8>& four, const Lanes<8>& e,
+                                                   const Lanes<8>& f, Give give) {
+  const Lanes<8> none{};
+  // Pairs of numbers of rows 0, 2, 4, 6 and of rows 1, 3, 5, 7; then four rows' of each side by
+  // side.
+  const auto side_by_side = [&](const Lanes<8>& ab, const Lanes<8>& cd, const Lanes<8>& ef,
+                                int at) {
+    const auto low = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 2, 3, 10, 11);
+    const auto high = __builtin_shufflevector(ab, cd, 4, 5, 12, 13, 6, 7, 14, 15);
+    const auto last_low = __builtin_shufflevector(ef, none, 0, 1, 8, 9, 2, 3, 8, 9);
+    const auto last_high = __builtin_shufflevector(ef, none, 4, 5, 8, 9, 6, 7, 8, 9);
+    give(at, __builtin_shufflevector(low, last_low, 0, 1, 2, 3, 8, 9, 10, 11));
+    give(at + 2, __builtin_shufflevector(low, last_low, 4, 5, 6, 7, 12, 13, 14, 15));
+    give(at + 4, __builtin_shufflevector(high, last_high, 0, 1, 2, 3, 8, 9, 10, 11));
+    give(at + 6, __builtin_shufflevector(high, last_high, 4, 5, 6, 7, 12, 13, 14, 15));
+  };
+  const auto even = [](const Lanes<8>& x, const Lanes<8>& y) {
+    return __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+  };
+  const auto odd = [](const Lanes<8>& x, const Lanes<8>& y) {
+    return __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  };
+  side_by_side(even(four.a, four.b), even(four.c, four.d), even(e, f), 0);
+  side_by_side(odd(four.a, four.b), odd(four.c, four.d), odd(e, f), 1);
+}
 /// The same of two columns.
 template <int W, class Give>
 [[gnu::always_inline]] inline void each_pair(const Lanes<W>& a, const Lanes<W>& b, Give give) {

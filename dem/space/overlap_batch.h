@@ -16,9 +16,10 @@ struct alignas(64) OverlapBatch {
 /// So many pairs behind the last one may be looked at; their forces go nowhere.
 inline constexpr int kPairsBehind = 32;
 
-/// Pairs of the list, at most kBatch, with the first grain of each.
+/// Pairs of the list, at most kBatch, with both grains of each.
 struct RowBatch {
-  const int *first = nullptr, *pair = nullptr;  ///< by place, kPairsBehind more behind the last
+  /// By place, kPairsBehind more behind the last.
+  const int *first = nullptr, *second = nullptr, *pair = nullptr;
   int count = 0;
 };
 

@@ -96,29 +96,44 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
     list.divide(grains, threads);
     EXPECT_EQ(list.blocks.first(0), 0);
     EXPECT_EQ(list.blocks.last(threads - 1), grains);
-    std::vector<int> done(list.pairs.size(), 0);
-    int most = 0;
+    std::vector<int> done(list.pairs.size(), 0), swept = done;
     for (int rank = 0; rank < threads; ++rank) {
       EXPECT_EQ(list.blocks.first(rank), rank == 0 ? 0 : list.blocks.last(rank - 1));
-      int pairs = 0;
+      int work = 0;
       for (int i = list.blocks.first(rank); i < list.blocks.last(rank); ++i) {
-        for (int k = list.pairs.first(i); k < list.pairs.last(i); ++k, ++pairs) {
+        work += 2;
+        for (int k = list.pairs.first(i); k < list.pairs.last(i); ++k) {
           const int j = list.pairs[k].j;
-          if (j < list.blocks.last(rank) || j >= grains) ++done[k];
+          if (j < list.blocks.last(rank) || j >= grains) {
+            ++done[k];
+            ++work;
+          }
         }
       }
-      most = std::max(most, pairs);
+      const PairsInOrder& inside = list.blocks.inside(rank);
+      for (int n = 0; n < inside.count; ++n) ++swept[inside.pair[n]];
+      for (const RowTail& tail : list.blocks.tails(rank)) {
+        if (tail.row < 0) continue;
+        EXPECT_TRUE(tail.before == 0 || inside.first[tail.before - 1] <= tail.row);
+        EXPECT_TRUE(tail.before == inside.count || inside.first[tail.before] > tail.row);
+        for (int k = tail.from; k < list.pairs.last(tail.row); ++k) ++swept[k];
+      }
+      EXPECT_TRUE(list.blocks.across(rank).empty());
       const PairsInOrder& incoming = list.blocks.incoming(rank);
       for (int n = 0; n < incoming.count; ++n) {
         const int i = incoming.first[n], k = incoming.pair[n];
         EXPECT_LT(i, list.blocks.first(rank));
+        EXPECT_EQ(list.pairs[k].j, incoming.second[n]);
         EXPECT_GE(list.pairs[k].j, list.blocks.first(rank));
         EXPECT_LT(list.pairs[k].j, list.blocks.last(rank));
         ++done[k];
+        ++work;
       }
+      // But for the grain that the bound falls on.
+      EXPECT_NEAR(work, (list.pairs.size() + 2.0 * grains) / threads, 20);
     }
     EXPECT_THAT(done, testing::Each(1));
-    EXPECT_LT(most, 1.2 * list.pairs.size() / threads + 6);
+    EXPECT_THAT(swept, testing::Each(1));
   }
 }
 

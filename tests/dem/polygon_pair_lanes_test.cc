@@ -25,7 +25,7 @@ struct Pairs {
   PolygonStore shapes;
   std::vector<Body<2>> bodies{2 * kBatch};
   std::vector<Pair> pairs{kBatch};
-  std::vector<int> first = std::vector<int>(kBatch + kPairsBehind), order = first;
+  std::vector<int> first = std::vector<int>(kBatch + kPairsBehind), second = first, order = first;
   RowBatch batch;
 
   Pairs(Random& random, int least, int most) {
@@ -43,11 +43,13 @@ struct Pairs {
       bodies[k].inverse_inertia = 2 * bodies[k].inverse_mass;
     }
     batch.first = first.data();
+    batch.second = second.data();
     batch.pair = order.data();
     for (int k = 0; k < kBatch; ++k) {
       const int i = k, j = kBatch + k;
       pairs[k] = {{any(k % 2 == 0 ? 1e5 : 10)}, j, {}};
       first[k] = i;
+      second[k] = j;
       order[k] = k;
       ++batch.count;
       const double place = any(3), angle_i = any(3), angle_j = any(3);
