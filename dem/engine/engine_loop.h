@@ -21,6 +21,7 @@
 #include "dem/engine/sweep.h"
 #include "dem/engine/thread_team.h"
 #include "dem/engine/turning.h"
+#include "dem/engine/wall_steps.h"
 #include "dem/engine/world.h"
 #include "dem/engine/world_image.h"
 #include "dem/image/image.h"
@@ -42,6 +43,7 @@ class EngineLoop final : public Engine {
         search_(world_, settings.skin, settings.threads),
         review_(world_, search_),
         sweep_(world_),
+        wall_steps_(world_),
         team_(settings.threads) {
     check_rest_in_flow(world_.cell.flows(), false, settings.sleep.on);
   }
@@ -118,19 +120,19 @@ class EngineLoop final : public Engine {
     const typename State::Vector before =
         known ? world_.walls.state(wall).centre : zero<typename State::Vector>();
     world_.walls.set_motion(wall, motion, time());
-    move_torques(wall, before - world_.walls.state(wall).centre);
+    wall_steps_.move_torques(wall, before - world_.walls.state(wall).centre);
     const auto [force, torque] =
         Report(world_).on_wall(wall, to_three(world_.walls.state(wall).centre));
     world_.walls.feel(wall, in_space<dim>(force), turning_in_space<dim>(torque));
     if (motion.servo) {
-      Report(world_).visit_contacts(
-          [&](int i, const auto& pair, const auto&, bool at_wall, const auto&) {
-            if (!at_wall || world_.walls.wall_of(pair.j) != wall) return;
-            world_.walls.add_force(wall, State::Vector::Zero(), zero<SpinOf<dim>>(),
-                                   stiffness_at(i, pair.j), world_.grains.inertias[i].mass);
-          });
+      Report(world_).visit_contacts([&](int i, const auto& pair, const auto&, bool at_wall,
+                                        const auto&) {
+        if (!at_wall || world_.walls.wall_of(pair.j) != wall) return;
+        world_.walls.add_force(wall, State::Vector::Zero(), zero<SpinOf<dim>>(),
+                               wall_steps_.stiffness_at(i, pair.j), world_.grains.inertias[i].mass);
+      });
     }
-    speeds_checked_ = false;
+    wall_steps_.forget();
     world_.search_needed = true;
     world_.wake_all();
   }
@@ -175,12 +177,12 @@ class EngineLoop final : public Engine {
 
   void step(long n) override {
     if (n <= 0) return;
-    check_wall_speeds();
+    wall_steps_.check_speeds();
     if (world_.search_needed) search(false);
     const long start = world_.steps;
     sweep_.clear_moved();
     if (first_new_ < world_.grains.size()) start_new_grains();
-    watch_walls();
+    if (wall_steps_.leave_margins()) sweep_.ask_for_search();
     const bool flows = world_.cell.flows();
     if (flows) world_.cell.look_ahead();
     team_.run([&](int rank) {
@@ -188,8 +190,8 @@ class EngineLoop final : public Engine {
       for (long s = 0; s < n; ++s) {
         team_.meet();
         if (rank == 0) {
-          if (s > 0) feel_walls();
-          move_walls(start + s);
+          if (s > 0) wall_steps_.feel();
+          wall_steps_.advance(start + s);
         }
         if (flows) {
           if (rank == 0) world_.cell.advance();
@@ -203,7 +205,7 @@ class EngineLoop final : public Engine {
           sweep_.template incoming<SweepKind::last>(rank, world_.time_step);
         }
         team_.meet();
-        if (rank == 0) watch_walls();
+        if (rank == 0 && wall_steps_.leave_margins()) sweep_.ask_for_search();
         const auto applied =
             world_.around.applied_at(static_cast<double>(start + s + 1) * world_.time_step);
         if (moves_on) {
@@ -215,7 +217,7 @@ class EngineLoop final : public Engine {
     });
     if (!diverged_) {
       if (flows) world_.cell.finish();
-      feel_walls();
+      wall_steps_.feel();
       world_.steps = start + n;
       diverged_ = has_diverged();  // a grain that only spins is not searched for
     }
@@ -300,7 +302,7 @@ class EngineLoop final : public Engine {
     for (const int kind : world_.grains.kinds) world_.acting.add_grain(kind);
     for (const auto& b : world_.grains.bodies) largest_ = std::max(largest_, b.radius);
     sweep_.reset();
-    speeds_checked_ = false;
+    wall_steps_.forget();
   }
 
  private:
@@ -329,74 +331,6 @@ class EngineLoop final : public Engine {
   void search(bool by_motion) {
     search_.run(by_motion);
     sweep_.reset();
-  }
-
-  // Walls: by one thread, while the grains stand still (move_walls, between the sweeps of two
-  // steps) or after they have asked for all that moves them (feel_walls).
-
-  /// The torques on a wall in the books of the last step, about a centre from which it is `way` to
-  /// the former one.
-  void move_torques(int wall, const typename State::Vector& way) {
-    if (!world_.balance.on) return;
-    const auto& list = world_.contacts.walls;
-    for (int k = 0; k < list.size(); ++k) {
-      if (world_.walls.wall_of(list[k].j) != wall) continue;
-      auto& parts = world_.balance.walls[k].before;
-      for (ContactForce<dim>* f : {&parts.all, &parts.dashpot, &parts.along}) {
-        f->torque_j += torque_of(way, typename State::Vector(-f->force));
-      }
-    }
-  }
-  void move_walls(long step) {
-    if (!world_.walls.any_driven()) return;
-    world_.walls.advance(static_cast<double>(step) * world_.time_step, world_.time_step);
-  }
-  /// Asks for a search before a wall's next step may take it out of its margin.
-  void watch_walls() {
-    if (world_.walls.any_driven() && world_.walls.leaves_margin(world_.time_step)) {
-      sweep_.ask_for_search();
-    }
-  }
-  /// What the grains have done to the walls in the step that has ended, in the list's order.
-  void feel_walls() {
-    auto& walls = world_.walls;
-    if (!walls.any_driven()) return;
-    const auto& contacts = world_.contacts;
-    walls.clear_forces();
-    for (int i = 0; i < contacts.walls.rows(); ++i) {
-      for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
-        const int slot = contacts.walls[k].j, wall = walls.wall_of(slot);
-        const auto& f = contacts.wall_forces[k];
-        if (!walls.is_driven(wall) || contacts.wall_normals[k].isZero(0)) continue;
-        const double stiffness = walls.state(wall).servo.on != 0 ? stiffness_at(i, slot) : 0;
-        walls.add_force(wall, -f.force, f.torque_j, stiffness, world_.grains.inertias[i].mass);
-      }
-    }
-    walls.finish_forces(world_.time_step);
-  }
-  /// By how much the force of a contact may answer a wall that moves by a metre in a step: the
-  /// law's stiffness, and a dashpot. The law tells the decay rate of six neighbours, each with half
-  /// a grain's effective mass; a wall is one, with all of it: c is at most a third of m rate.
-  double stiffness_at(int i, int slot) const {
-    const auto& law = world_.wall_rule(i, slot).law;
-    const double mass = world_.grains.inertias[i].mass, radius = world_.grains.bodies[i].radius;
-    double rate = 0;
-    if constexpr (requires { law.normal_rate(mass, radius); }) {
-      rate = law.normal_rate(mass, radius);
-    } else {
-      rate = law.viscous_rate(mass, radius);
-    }
-    return law.stiffness(radius) + 2.0 / 3 * mass * rate / world_.time_step;
-  }
-  void check_wall_speeds() {
-    if (speeds_checked_ && checked_grains_ == world_.grains.size()) return;
-    speeds_checked_ = true;
-    checked_grains_ = world_.grains.size();
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < world_.grains.size(); ++i) {
-      if (!world_.grains.is_fixed(i)) least = std::min(least, world_.grains.bodies[i].radius);
-    }
-    world_.walls.check_speeds(kMaxMoveShare * least, world_.time_step);
   }
 
   /// By all threads, between two steps: the first one decides about sleep and search. False when
@@ -501,13 +435,12 @@ class EngineLoop final : public Engine {
   Search<State> search_;
   Review<State> review_;
   Sweep<State> sweep_;
+  WallSteps<State> wall_steps_;
   ThreadTeam team_;
   int free_ = 0;                // grains that are not fixed
   double largest_ = 0;          // radius, m
   std::int64_t first_new_ = 0;  // ids from here on have not been started yet
   std::atomic<bool> diverged_{false};
-  bool speeds_checked_ = true;  // of the walls that move, with so many grains
-  int checked_grains_ = 0;
 };
 
 }  // namespace grainfield::dem

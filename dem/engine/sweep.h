@@ -8,6 +8,7 @@
 
 #include "dem/engine/contact_forces.h"
 #include "dem/engine/flatten.h"
+#include "dem/engine/grain_motion.h"
 #include "dem/engine/outer_forces.h"
 #include "dem/engine/row_forces.h"
 #include "dem/engine/rows_of.h"
@@ -49,7 +50,7 @@ class Sweep {
 
   explicit Sweep(World& world)
       : world_(world),
-        integrator_(world.time_step),
+        motion_(world),
         books_(world.balance.on),
         rolls_(world.rolling.on),
         contact_forces_(world),
@@ -75,9 +76,9 @@ class Sweep {
     for (int i = blocks.first(rank); i < blocks.last(rank); ++i) {
       if (world_.grains.bodies[i].inverse_mass == 0) continue;
       if (flows) {
-        moved |= begin_in_flow(i);
+        moved |= motion_.begin_in_flow(i);
       } else {
-        begin(i, moved);
+        moved |= motion_.begin(i);
       }
     }
     if (moved) moved_.store(true, std::memory_order_relaxed);
@@ -133,11 +134,6 @@ class Sweep {
  private:
   using Sum = ForceSum<dim>;
 
-  /// Grains that begin their next step, together where that is in lanes.
-  struct Begins {
-    bool moved = false;  ///< one has left its margin
-    int waiting = 0, list[kBatch];
-  };
   /// Rows are evaluated side by side in this run.
   bool sweeps_rows() const {
     return !books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
@@ -203,9 +199,9 @@ class Sweep {
       end_step<kind, in_cell>(i, force, torque, applied, dt, first_new, begins);
     }
     if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
-      begins.moved |= begin_all(begins.list, begins.waiting);
+      begins.moved |= motion_.begin_all(begins.list, begins.waiting);
     }
-    if constexpr (kind == SweepKind::move_on && places_together) place_waiting(begins);
+    if constexpr (kind == SweepKind::move_on && places_together) motion_.place_waiting(begins);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
 
@@ -241,8 +237,8 @@ class Sweep {
       sums_[tail.row].torque += sum.torque_i;
     }
     end_rows<in_cell>(last, applied, dt, ends, begins);
-    if constexpr (begins_in_lanes) begins.moved |= begin_all(begins.list, begins.waiting);
-    if constexpr (places_together) place_waiting(begins);
+    if constexpr (begins_in_lanes) begins.moved |= motion_.begin_all(begins.list, begins.waiting);
+    if constexpr (places_together) motion_.place_waiting(begins);
     if (begins.moved) moved_.store(true, std::memory_order_relaxed);
   }
   /// What is done of a block, in whose rows pairs go side by side.
@@ -336,30 +332,28 @@ class Sweep {
     }
     const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
     if constexpr (kind == SweepKind::start) {
-      if (grains.ids[i] >= first_new) start(i, load);
+      if (grains.ids[i] >= first_new) motion_.start(i, load);
     } else {
       if (flows) {
-        end_in_flow(i, load, damping.force);
+        motion_.end_in_flow(i, load, damping.force);
       } else {
-        integrator_.end(b, grains.memory[i], grains.inertias[i], load);
+        motion_.end(i, load);
       }
       if constexpr (kind == SweepKind::move_on && begins_in_lanes) {
         begins.list[begins.waiting++] = i;
         if (begins.waiting == kBatch) {
-          begins.moved |= begin_all(begins.list, begins.waiting);
+          begins.moved |= motion_.begin_all(begins.list, begins.waiting);
           begins.waiting = 0;
         }
       } else if constexpr (kind == SweepKind::move_on) {
         if (flows) {
-          begins.moved |= begin_in_flow(i);
+          begins.moved |= motion_.begin_in_flow(i);
         } else if constexpr (places_together) {
-          auto& memory = grains.memory[i];
-          integrator_.begin(b, memory, grains.inertias[i]);
-          begins.moved |= is_left(i);
+          begins.moved |= motion_.begin_before_placing(i);
           begins.list[begins.waiting++] = i;
-          if (begins.waiting == kBatch) place_waiting(begins);
+          if (begins.waiting == kBatch) motion_.place_waiting(begins);
         } else {
-          begin(i, begins.moved);
+          begins.moved |= motion_.begin(i);
         }
       } else if constexpr (World::Shape::keeps_places && World::Integrator::end_moves) {
         grains.shapes.place(i, b, grains.memory[i].rotation);
@@ -424,102 +418,6 @@ class Sweep {
     return sum;
   }
 
-  void begin(int i, bool& moved) {
-    auto& grains = world_.grains;
-    auto& b = grains.bodies[i];
-    auto& memory = grains.memory[i];
-    integrator_.begin(b, memory, grains.inertias[i]);
-    moved |= has_left(i);
-  }
-  /// Of a grain that has moved: its shape is placed, too.
-  bool has_left(int i) {
-    auto& grains = world_.grains;
-    if constexpr (World::Shape::keeps_places) {
-      grains.shapes.place(i, grains.bodies[i], grains.memory[i].rotation);
-    }
-    return is_left(i);
-  }
-  bool is_left(int i) const {
-    const auto& grains = world_.grains;
-    return world_.margins[i].template is_left<World::Shape::outlines>(grains.bodies[i].position,
-                                                                      grains.memory[i].rotation);
-  }
-  /// Nobody looks at a grain that has begun its next step before all have.
-  void place_waiting(Begins& begins) {
-    auto& grains = world_.grains;
-    using Grip = typename World::Integrator::Memory;
-    static_assert(sizeof(Grip) % sizeof(double) == 0);
-    grains.shapes.place_all(begins.list, begins.waiting, grains.bodies.data(),
-                            &grains.memory.data()->rotation, sizeof(Grip) / sizeof(double));
-    begins.waiting = 0;
-  }
-  bool has_left_in_flow(int i) {
-    auto& grains = world_.grains;
-    const auto& cell = world_.cell;
-    const auto& b = grains.bodies[i];
-    const auto& rotation = grains.memory[i].rotation;
-    constexpr bool outlines = World::Shape::outlines;
-    if constexpr (World::Shape::keeps_places) grains.shapes.place(i, b, rotation);
-    const auto& margin = world_.margins[i];
-    return margin.template is_left_in_flow<outlines>(
-        b.position, rotation, cell.carried(margin.position), cell.strain(), b.radius);
-  }
-  /// begin or begin_in_flow of several grains; true when one may have left its margin.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_all(const int* list, int count) {
-    auto& grains = world_.grains;
-    const bool flows = world_.cell.flows();
-    if (flows) {
-      for (int k = 0; k < count; ++k) {
-        auto& b = grains.bodies[list[k]];
-        b.velocity += world_.cell.kick(b.position);
-      }
-    }
-    integrator_.begin(
-        count, [&](int k) -> Body& { return grains.bodies[list[k]]; },
-        [&](int k) -> auto& { return grains.memory[list[k]]; },
-        [&](int k) -> const auto& { return grains.inertias[list[k]]; });
-    bool moved = false;
-    for (int k = 0; k < count; ++k) moved |= flows ? has_left_in_flow(list[k]) : has_left(list[k]);
-    return moved;
-  }
-  /// True when the grain may have left its margin.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN bool begin_in_flow(int i) {
-    auto& grains = world_.grains;
-    const auto& cell = world_.cell;
-    auto& b = grains.bodies[i];
-    b.velocity += cell.kick(b.position);
-    integrator_.begin(b, grains.memory[i], grains.inertias[i]);
-    return has_left_in_flow(i);
-  }
-
-  /// With the drag against the flow, the rest of the acceleration that goes with the flow, and the
-  /// flow's work on the grain:
-  ///   d/dt (kinetic energy of the fluctuations u + elastic energy)
-  ///     = sum over contacts f . G l - sum over grains m u . G u,
-  /// written by grains (force F with its weight): -F . G x - m u . G u, and f . G n of the pairs
-  /// that cross by edges n (ContactForces::pair_across). `local`: what of the load is local
-  /// damping. It is against the flow and no part of that.
-  [[gnu::noinline]] GRAINFIELD_FLATTEN void end_in_flow(int i, Load<dim> load, const Vector local) {
-    auto& grains = world_.grains;
-    const auto& cell = world_.cell;
-    auto& b = grains.bodies[i];
-    load.gravity += load.drag * cell.flow_at(b.position);
-    integrator_.end(b, grains.memory[i], grains.inertias[i], load);
-    // The edges' speed lacks its second half kick too, so that u is that of every image.
-    const Vector flow = cell.flow_at(b.position), u = b.velocity - flow;
-    b.velocity += cell.kick(b.position);
-    const Vector force = load.force - local + world_.weight(i);
-    grains.cell_work[i] -=
-        world_.time_step * (force.dot(flow) + grains.inertias[i].mass * u.dot(cell.flow_of(u)) +
-                            world_.weight(i).dot(cell.drift(grains.images[i])));
-  }
-  void start(int i, Load<dim> load) {
-    auto& grains = world_.grains;
-    auto& b = grains.bodies[i];
-    load.gravity += load.drag * world_.cell.flow_at(b.position);
-    integrator_.start(b, grains.memory[i], grains.inertias[i], load);
-  }
-
   void add_to_second(int k, const Force& f) {
     Sum& sum = sums_[world_.contacts.pairs[k].j];
     sum.force -= f.force;
@@ -539,7 +437,7 @@ class Sweep {
   }
 
   World& world_;
-  typename World::Integrator integrator_;
+  GrainMotion<World> motion_;
   const bool books_;  // there is an energy balance
   const bool rolls_;  // there is resistance against rolling or twisting
   ContactForces<World> contact_forces_;
