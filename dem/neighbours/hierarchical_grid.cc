@@ -89,7 +89,7 @@ void HierarchicalGrid<D>::build(std::span<const Reach<D>> grains) {
 
 template <int D>
 template <class Visit>
-void HierarchicalGrid<D>::visit_cells(const Level& level, const Reach<D>& grain,
+void HierarchicalGrid<D>::visit_cells(const Level& level, const Reach<D>& grain, int least,
                                       Visit visit) const {
   // A partner on this level reaches at most half a cell.
   const PlainVector<D> reach = PlainVector<D>::Constant(grain.reach + 0.5 * level.cell);
@@ -98,7 +98,8 @@ void HierarchicalGrid<D>::visit_cells(const Level& level, const Reach<D>& grain,
   // Runs of cells along the first axis; the others count up like a clock.
   Cell at = low;
   while (true) {
-    const int first = number_of(level, at), last = first + high[0] - low[0];
+    const int begin = number_of(level, at), last = begin + high[0] - low[0];
+    const int first = std::clamp(least, begin, last + 1);
     for (int k = level.start[first]; k < level.start[last + 1]; ++k) {
       const int j = level.members[k];
       const Reach<D>& b = grains_[j];
@@ -117,7 +118,7 @@ void HierarchicalGrid<D>::near(const Reach<D>& grain, std::vector<int>& found) c
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   for (const Level& level : levels_) {
     if (!level.members.empty()) {
-      visit_cells(level, grain, [&](int j) {
+      visit_cells(level, grain, 0, [&](int j) {
         if (!(grain.fixed && grains_[j].fixed)) found.push_back(j);
       });
     }
@@ -134,8 +135,10 @@ void HierarchicalGrid<D>::pairs(std::vector<std::pair<int, int>>& pairs) const {
     for (int l = level_of_[i]; l < static_cast<int>(levels_.size()); ++l) {
       const Level& level = levels_[l];
       if (level.members.empty()) continue;
-      visit_cells(level, a, [&](int j) {
-        if (l == level_of_[i] && j <= i) return;
+      // Of two of one level the one in the earlier cell finds the other.
+      const bool own = l == level_of_[i];
+      visit_cells(level, a, own ? cell_of_[i] : 0, [&](int j) {
+        if (own && j <= i && cell_of_[j] == cell_of_[i]) return;
         if (a.fixed && grains_[j].fixed) return;
         pairs.emplace_back(std::min(i, j), std::max(i, j));
       });

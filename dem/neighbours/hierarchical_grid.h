@@ -54,8 +54,9 @@ class HierarchicalGrid {
   Cell cell_at(const Level& level, const PlainVector<D>& at) const;
   /// Number of a cell: the first axis runs fastest.
   static int number_of(const Level& level, const Cell& cell);
+  /// visit(j) for those of a level that meet the grain, in cells numbered `least` and above.
   template <class Visit>
-  void visit_cells(const Level& level, const Reach<D>& grain, Visit visit) const;
+  void visit_cells(const Level& level, const Reach<D>& grain, int least, Visit visit) const;
 
   PlainVector<D> low_ = PlainVector<D>::Zero();
   double finest_ = 0;
