@@ -8,7 +8,8 @@ namespace grainfield::dem {
 /// Pairs of the list one after the other, for code that takes many of them side by side.
 struct PairsInOrder {
   int count = 0;
-  /// Both grains and the index, by place; idle ones behind the last.
+  /// Both grains and the index, by place. Behind the last pair it is repeated: what is looked at
+  /// beyond it is the thread's own, too.
   std::vector<int> first, second, pair;
 
   void add(int i, int j, int k) {
@@ -17,10 +18,11 @@ struct PairsInOrder {
     pair.push_back(k);
     ++count;
   }
-  void pad(int idle, int idle_pair) {
-    first.resize(static_cast<std::size_t>(count) + static_cast<std::size_t>(idle), 0);
-    second.resize(first.size(), 0);
-    pair.resize(first.size(), idle_pair);
+  void repeat_last(int times) {
+    for (std::vector<int>* list : {&first, &second, &pair}) {
+      if (!list->empty())
+        list->resize(list->size() + static_cast<std::size_t>(times), list->back());
+    }
   }
 };
 
@@ -35,10 +37,10 @@ class Blocks {
  public:
   /// Blocks of about the same work. The rows are those of the first `grains` bodies; a
   /// pair's second grain behind them belongs to no block. is_across(k): the second grain of pair k
-  /// is an image; those come last in a row. Behind the last pair of an order there are `idle` more
-  /// that may be looked at: the first idle one of the list.
+  /// is an image; those come last in a row. Behind the last pair of an order `behind` more may be
+  /// looked at.
   template <class Rows, class IsAcross>
-  void divide(const Rows& rows, int grains, int threads, int idle, IsAcross is_across) {
+  void divide(const Rows& rows, int grains, int threads, int behind, IsAcross is_across) {
     bounds_.assign(threads + 1, grains);
     bounds_[0] = 0;
     // A pair is evaluated with its second grain's block; a grain's motion takes as long as two.
@@ -81,8 +83,8 @@ class Blocks {
     }
     for (Thread& t : threads_) {
       t.tails.push_back({});  // of no row
-      t.inside.pad(idle, rows.size());
-      t.incoming.pad(idle, rows.size());
+      t.inside.repeat_last(behind);
+      t.incoming.repeat_last(behind);
     }
   }
 
