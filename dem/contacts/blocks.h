@@ -12,6 +12,10 @@ struct PairsInOrder {
   /// beyond it is the thread's own, too.
   std::vector<int> first, second, pair;
 
+  void clear() {
+    for (std::vector<int>* list : {&first, &second, &pair}) list->clear();
+    count = 0;
+  }
   void add(int i, int j, int k) {
     first.push_back(i);
     second.push_back(j);
@@ -41,23 +45,9 @@ class Blocks {
   /// looked at.
   template <class Rows, class IsAcross>
   void divide(const Rows& rows, int grains, int threads, int behind, IsAcross is_across) {
-    bounds_.assign(threads + 1, grains);
-    bounds_[0] = 0;
-    // A pair is evaluated with its second grain's block; a grain's motion takes as long as two.
-    std::vector<long long> work(static_cast<std::size_t>(grains) + 1, 0);  // of all grains before
-    for (int i = 0; i < grains; ++i) {
-      work[i + 1] += 2;
-      for (int k = rows.first(i); k < rows.last(i); ++k) {
-        const int j = rows[k].j;
-        ++work[(j < grains ? j : i) + 1];
-      }
-    }
-    for (int i = 0; i < grains; ++i) work[i + 1] += work[i];
-    for (int rank = 1, i = 0; rank < threads; ++rank) {
-      while (i < grains && work[i] * threads < work[grains] * rank) ++i;
-      bounds_[rank] = i;
-    }
-    threads_.assign(threads, {});
+    place_bounds(rows, grains, threads);
+    threads_.resize(threads);
+    for (Thread& t : threads_) t.clear();
     for (int from = 0; from < threads; ++from) {
       Thread& mine = threads_[from];
       for (int i = first(from); i < last(from); ++i) {
@@ -81,16 +71,20 @@ class Blocks {
         }
       }
     }
+    share_crossing(is_across);
     for (Thread& t : threads_) {
       t.tails.push_back({});  // of no row
       t.inside.repeat_last(behind);
-      t.incoming.repeat_last(behind);
+      t.crossing.repeat_last(behind);
     }
   }
 
   int first(int rank) const { return bounds_[rank]; }
   int last(int rank) const { return bounds_[rank + 1]; }
-  /// The pairs from earlier blocks into this one.
+  /// The pairs between two blocks that this thread evaluates. Those with an image are done by the
+  /// thread of the second grain; of the others the threads of both grains do half each.
+  const PairsInOrder& crossing(int rank) const { return threads_[rank].crossing; }
+  /// All pairs from earlier blocks into this one.
   const PairsInOrder& incoming(int rank) const { return threads_[rank].incoming; }
   /// The pairs of this block's rows but for their tails.
   const PairsInOrder& inside(int rank) const { return threads_[rank].inside; }
@@ -101,9 +95,54 @@ class Blocks {
 
  private:
   struct Thread {
-    PairsInOrder inside, incoming;
+    PairsInOrder inside, incoming, crossing;
     std::vector<RowTail> tails, across;
+
+    void clear() {
+      for (PairsInOrder* order : {&inside, &incoming, &crossing}) order->clear();
+      tails.clear();
+      across.clear();
+    }
   };
+
+  template <class Rows>
+  void place_bounds(const Rows& rows, int grains, int threads) {
+    bounds_.assign(threads + 1, grains);
+    bounds_[0] = 0;
+    // Half a pair belongs to each of its grains; a grain's motion takes as long as two pairs.
+    std::vector<long long> work(static_cast<std::size_t>(grains) + 1, 0);  // of all grains before
+    for (int i = 0; i < grains; ++i) {
+      work[i + 1] += 4;
+      for (int k = rows.first(i); k < rows.last(i); ++k) {
+        const int j = rows[k].j;
+        ++work[i + 1];
+        ++work[(j < grains ? j : i) + 1];
+      }
+    }
+    for (int i = 0; i < grains; ++i) work[i + 1] += work[i];
+    for (int rank = 1, i = 0; rank < threads; ++rank) {
+      while (i < grains && work[i] * threads < work[grains] * rank) ++i;
+      bounds_[rank] = i;
+    }
+  }
+
+  template <class IsAcross>
+  void share_crossing(IsAcross is_across) {
+    for (Thread& to : threads_) {
+      const PairsInOrder& in = to.incoming;
+      for (int from = 0, begin = 0; begin < in.count; ++from) {
+        int end = begin;
+        while (end < in.count && in.first[end] < last(from)) ++end;
+        const int half = begin + (end - begin) / 2;
+        for (int n = begin; n < end; ++n) {
+          const int k = in.pair[n];
+          Thread& one = n < half && !is_across(k) ? threads_[from] : to;
+          one.crossing.add(in.first[n], in.second[n], k);
+        }
+        begin = end;
+      }
+    }
+  }
   std::vector<int> bounds_;  // first grain of each block, and the end
   std::vector<Thread> threads_;
 };

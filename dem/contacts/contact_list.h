@@ -50,45 +50,21 @@ struct ContactList {
     blocks.divide(pairs, grains, threads, kPairsBehind,
                   [&](int k) { return !images.empty() && is_image(images[k]); });
   }
-  /// After the last pair. `with_images`: in a cell.
-  void finish(bool with_images = false) {
+  /// After the last pair. `with_images`: in a cell. `felt_before`: some of the last list's pairs
+  /// had a sleeper.
+  void finish(bool with_images = false, bool felt_before = true) {
     pairs.pad(kAhead);
-    if (with_images) images.resize(pairs.with_idle());
-    pair_forces.assign(pairs.with_idle(), {});
+    const std::size_t idle = pairs.with_idle();
+    if (with_images) images.resize(idle);
+    // The last step of step(n) writes them all.
+    pair_forces.resize(static_cast<std::size_t>(pairs.size()));
+    pair_forces.resize(idle);
     wall_forces.assign(walls.with_idle(), {});
     wall_normals.resize(walls.with_idle(), zero<VectorOf<D>>());
-    felt.assign(pairs.with_idle(), {});
+    if (felt_before) felt.clear();
+    felt.resize(idle);
   }
 
-  /// The memories in use between grains, by ids. `skip(i, j)`: those of sleepers, kept elsewhere.
-  template <class Skip>
-  Kept<Law> kept_pairs(const std::vector<std::int64_t>& ids, Skip skip) const {
-    Kept<Law> kept;
-    for (int i = 0; i < pairs.rows(); ++i) {
-      for (int k = pairs.first(i); k < pairs.last(i); ++k) {
-        const Pair& pair = pairs[k];
-        if (pair.memory.empty() || skip(i, pair.j)) continue;
-        kept.add(pair_key(ids[i], ids[pair.j]), seen_from(pair.memory, ids[i] > ids[pair.j]));
-      }
-    }
-    kept.sort();
-    return kept;
-  }
-  /// What pairs remember for their shapes' sake, by ids, where that is carried on (shape.h).
-  Kept<Shape> kept_features(const std::vector<std::int64_t>& ids) const {
-    Kept<Shape> kept;
-    if constexpr (requires(const Shape& feature) { feature.reversed(); }) {
-      for (int i = 0; i < pairs.rows(); ++i) {
-        for (int k = pairs.first(i); k < pairs.last(i); ++k) {
-          const Pair& pair = pairs[k];
-          if (pair.feature.empty()) continue;
-          kept.add(pair_key(ids[i], ids[pair.j]), seen_from(pair.feature, ids[i] > ids[pair.j]));
-        }
-      }
-      kept.sort();
-    }
-    return kept;
-  }
   /// Directions of contacts with walls that have a memory: remembers(k).
   template <class Remembers>
   Kept<VectorOf<D>> kept_normals(const std::vector<std::int64_t>& ids, Remembers remembers) const {
@@ -102,7 +78,7 @@ struct ContactList {
     kept.sort();
     return kept;
   }
-  /// The same with walls.
+  /// The memories in use at walls, by ids. `skip(i)`: those of sleepers, kept elsewhere.
   template <class Skip>
   Kept<Law> kept_walls(const std::vector<std::int64_t>& ids, Skip skip) const {
     Kept<Law> kept;

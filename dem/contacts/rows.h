@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace grainfield::dem {
@@ -24,8 +25,18 @@ class Rows {
   }
   void add(const Pair& pair) { pairs_.push_back(pair); }
   void end_row() { start_.push_back(static_cast<int>(pairs_.size())); }
+  /// Rows of these lengths. What the pairs are is to be said.
+  void set_rows(const std::vector<int>& lengths) {
+    start_.resize(lengths.size() + 1);
+    start_[0] = 0;
+    std::partial_sum(lengths.begin(), lengths.end(), start_.begin() + 1);
+    pairs_.resize(static_cast<std::size_t>(size()));
+  }
   /// So many idle pairs behind the last row, that may be looked at ahead of time.
-  void pad(int idle) { pairs_.resize(static_cast<std::size_t>(size()) + idle); }
+  void pad(int idle) {
+    pairs_.resize(static_cast<std::size_t>(size()));
+    pairs_.resize(static_cast<std::size_t>(size()) + idle);
+  }
   std::size_t with_idle() const { return pairs_.size(); }
 
   /// each(value) for all that an image holds.

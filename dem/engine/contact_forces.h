@@ -81,8 +81,7 @@ class ContactForces {
     return true;
   }
 
-  /// In lanes: a thread evaluates the pairs of its block's rows but those that reach into a later
-  /// block, and those that come in from an earlier one.
+  /// In lanes: a thread evaluates the pairs within its block, and its share of those between two.
   [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
     const auto& contacts = world_.contacts;
     const int last = contacts.blocks.last(rank);
@@ -93,8 +92,8 @@ class ContactForces {
                                     world_.balance.pairs, k)
                             .force;
                       });
-    const PairsInOrder& incoming = contacts.blocks.incoming(rank);
-    for (int n = 0; n < incoming.count; ++n) batch.add(incoming.first[n], incoming.pair[n]);
+    const PairsInOrder& crossing = contacts.blocks.crossing(rank);
+    for (int n = 0; n < crossing.count; ++n) batch.add(crossing.first[n], crossing.pair[n]);
     for (int i = contacts.blocks.first(rank); i < last; ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
         const int j = contacts.pairs[k].j;

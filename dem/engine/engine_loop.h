@@ -40,11 +40,11 @@ class EngineLoop final : public Engine {
   EngineLoop(const EngineSettings& settings, const Rules<Law>& rules, const char* integrator)
       : world_(world_of(settings, rules, integrator)),
         materials_(settings),
-        search_(world_, settings.skin, settings.threads),
+        team_(settings.threads),
+        search_(world_, settings.skin, team_),
         review_(world_, search_),
         sweep_(world_),
-        wall_steps_(world_),
-        team_(settings.threads) {
+        wall_steps_(world_) {
     check_rest_in_flow(world_.cell.flows(), false, settings.sleep.on);
   }
 
@@ -200,9 +200,9 @@ class EngineLoop final : public Engine {
         if (!between_steps(rank, start + s)) return;
         const bool moves_on = s + 1 < n;
         if (moves_on) {
-          sweep_.template incoming<SweepKind::move_on>(rank, world_.time_step);
+          sweep_.template crossing<SweepKind::move_on>(rank, world_.time_step);
         } else {
-          sweep_.template incoming<SweepKind::last>(rank, world_.time_step);
+          sweep_.template crossing<SweepKind::last>(rank, world_.time_step);
         }
         team_.meet();
         if (rank == 0 && wall_steps_.leave_margins()) sweep_.ask_for_search();
@@ -340,16 +340,14 @@ class EngineLoop final : public Engine {
     const bool search_due =
         sweep_.moved() || search_.skin().is_too_large(step) || cell_may_be_too_small();
     if (!search_due && !review_due) return true;
-    team_.meet();  // all have read the flags
-    if (rank == 0) {
+    team_.alone(rank, [&] {  // once all have read the flags
       world_.steps = step;
       diverged_ = has_diverged();
       if (!diverged_ && review_due) review_.run();
       if (!diverged_ && (search_due || world_.search_needed)) search(search_due);
       if (!diverged_ && !holds(world_.cell, largest_)) diverged_ = true;
       sweep_.clear_moved();
-    }
-    team_.meet();
+    });
     return !diverged_;
   }
 
@@ -364,7 +362,7 @@ class EngineLoop final : public Engine {
     const auto applied =
         world_.around.applied_at(static_cast<double>(world_.steps) * world_.time_step);
     team_.run([&](int rank) {
-      sweep_.template incoming<SweepKind::start>(rank, 0);
+      sweep_.template crossing<SweepKind::start>(rank, 0);
       team_.meet();
       sweep_.template run<SweepKind::start>(rank, applied, 0, first_new_);
     });
@@ -432,11 +430,11 @@ class EngineLoop final : public Engine {
 
   State world_;
   Materials materials_;
+  ThreadTeam team_;
   Search<State> search_;
   Review<State> review_;
   Sweep<State> sweep_;
   WallSteps<State> wall_steps_;
-  ThreadTeam team_;
   int free_ = 0;                // grains that are not fixed
   double largest_ = 0;          // radius, m
   std::int64_t first_new_ = 0;  // ids from here on have not been started yet

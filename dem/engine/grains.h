@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "dem/engine/thread_team.h"
 #include "dem/space/body.h"
 
 namespace grainfield::dem {
@@ -31,22 +33,28 @@ struct Grains {
   int size() const { return static_cast<int>(bodies.size()); }
   bool is_fixed(int i) const { return bodies[i].inverse_mass == 0; }
 
-  /// The first order.size() bodies in this order.
-  void sort(const std::vector<int>& order) {
-    const auto permute = [&order](auto& values) {
-      if (values.empty()) return;
-      std::vector sorted(values.begin(),
-                         values.begin() + static_cast<std::ptrdiff_t>(order.size()));
-      for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
-      std::copy(sorted.begin(), sorted.end(), values.begin());
-    };
-    permute(bodies);
-    permute(memory);
-    permute(inertias);
-    permute(ids);
-    permute(kinds);
-    permute(images);
-    permute(cell_work);
+  /// The first order.size() bodies in this order, by all threads: what one of them works on later
+  /// is then near its core.
+  void sort(const std::vector<int>& order, ThreadTeam& team) {
+    const int n = static_cast<int>(order.size());
+    team.together([&](int rank) {
+      const auto [first, last] = share(n, rank, team.size());
+      const auto permute = [&, first = first, last = last](auto& values) {
+        if (values.empty()) return;
+        std::vector<typename std::decay_t<decltype(values)>::value_type> sorted;
+        sorted.reserve(static_cast<std::size_t>(last - first));
+        for (int k = first; k < last; ++k) sorted.push_back(values[order[k]]);
+        team.meet();
+        std::copy(sorted.begin(), sorted.end(), values.begin() + first);
+      };
+      permute(bodies);
+      permute(memory);
+      permute(inertias);
+      permute(ids);
+      permute(kinds);
+      permute(images);
+      permute(cell_work);
+    });
     shapes.sort(order);
   }
   void swap(int i, int j) {

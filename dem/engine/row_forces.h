@@ -37,9 +37,9 @@ inline RowBatch batch_of(const PairsInOrder& order, int from, int to) {
           to - from};
 }
 
-/// Where the forces on first grains go: to their sums, or to the list, where the thread that sweeps
-/// those grains finds them.
-enum class FirstForces { summed, kept };
+/// Where the forces of rows go: to the sums of both grains, or to the list, where the threads that
+/// sweep those grains find them.
+enum class RowForcesGo { to_sums, to_list };
 
 /// For a sweep in a step of dt, s, of the pairs that are for lanes.
 template <class World>
@@ -51,9 +51,8 @@ class RowForces<World> {
  public:
   using Sum = ForceSum<World::dim>;
 
-  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt,
-            FirstForces first)
-      : rows_(sphere_rows_of(world, sums, world.rolling.on, first == FirstForces::kept)) {
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt, RowForcesGo go)
+      : rows_(sphere_rows_of(world, sums, world.rolling.on, go == RowForcesGo::to_list)) {
     const auto& rule = world.acting.rule(0, 0);
     const auto& r = rule.rolling;
     numbers_ = rule.law.sphere_numbers(rule.friction, dt);
@@ -77,10 +76,9 @@ class RowForces<World> {
  public:
   using Sum = ForceSum<World::dim>;
 
-  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt,
-            FirstForces first)
+  RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt, RowForcesGo go)
       : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
-        rows_(disk_rows_of(world, sums, first == FirstForces::kept)) {}
+        rows_(disk_rows_of(world, sums, go == RowForcesGo::to_list)) {}
 
   void evaluate(const PairsInOrder& order, int from, int to) {
     if (from < to) disk_forces(numbers_, rows_, batch_of(order, from, to));
@@ -99,12 +97,12 @@ class RowForces<World> {
   using Force = ContactForce<World::dim>;
 
   RowForces(World& world, ContactForces<World>& alone, std::vector<Sum>& sums, double dt,
-            FirstForces first)
+            RowForcesGo go)
       : world_(world),
         alone_(alone),
         sums_(sums),
         dt_(dt),
-        keeps_(first == FirstForces::kept),
+        to_list_(go == RowForcesGo::to_list),
         numbers_(world.acting.rule(0, 0).law.area_numbers(world.acting.rule(0, 0).friction, dt)),
         rows_(crossing_rows_of(world)) {}
 
@@ -158,13 +156,13 @@ class RowForces<World> {
     } else if (!by_itself(i, k, f)) {
       return;
     }
-    Sum& b = sums_[pair.j];
-    b.force -= f.force;
-    b.torque += f.torque_j;
-    if (keeps_) {
+    if (to_list_) {
       world_.contacts.pair_forces[k] = f;
       return;
     }
+    Sum& b = sums_[pair.j];
+    b.force -= f.force;
+    b.torque += f.torque_j;
     Sum& a = sums_[i];
     a.force += f.force;
     a.torque += f.torque_i;
@@ -177,7 +175,7 @@ class RowForces<World> {
   ContactForces<World>& alone_;
   std::vector<Sum>& sums_;
   const double dt_;
-  const bool keeps_;
+  const bool to_list_;
   AreaNumbers numbers_;
   CrossingRows rows_;
   PlaneOverlapBatch overlaps_;

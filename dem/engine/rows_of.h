@@ -12,10 +12,10 @@
 
 namespace grainfield::dem {
 
-/// For forces of rows of pairs. `rolls`: there is resistance against rolling. `keeps`: those on
-/// first grains are for the list.
+/// For forces of rows of pairs. `rolls`: there is resistance against rolling. `to_list`: they are
+/// for the list, not for the sums.
 template <class World, class Sum>
-SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool keeps) {
+SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool to_list) {
   using Body = typename World::Body;
   using Pair = typename World::Pair;
   constexpr SphereLawKind kind = World::Law::sphere_kind;
@@ -27,12 +27,12 @@ SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr,
-          keeps ? world.contacts.pair_forces.data()->force.data() : nullptr};
+          to_list ? world.contacts.pair_forces.data()->force.data() : nullptr};
 }
 
 /// For forces of rows of pairs of disks.
 template <class World, class Sum>
-DiskRows disk_rows_of(World& world, std::vector<Sum>& sums, bool keeps) {
+DiskRows disk_rows_of(World& world, std::vector<Sum>& sums, bool to_list) {
   using Pair = typename World::Pair;
   static_assert(sizeof(typename World::Body) == kDiskBody * sizeof(double));
   static_assert(sizeof(Sum) == kDiskSum * sizeof(double) && kAhead >= kPairsAhead);
@@ -40,7 +40,7 @@ DiskRows disk_rows_of(World& world, std::vector<Sum>& sums, bool keeps) {
   static_assert(sizeof(Pair) == kDiskPair);
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
-          keeps ? world.contacts.pair_forces.data()->force.data() : nullptr};
+          to_list ? world.contacts.pair_forces.data()->force.data() : nullptr};
 }
 
 /// For overlaps of polygons.

@@ -2,10 +2,13 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "dem/contacts/margins.h"
+#include "dem/contacts/pairs_before.h"
+#include "dem/engine/thread_team.h"
 #include "dem/engine/world.h"
 #include "dem/engine/wrap.h"
 #include "dem/neighbours/hierarchical_grid.h"
@@ -22,20 +25,15 @@ class Search {
   using Feature = typename World::Acting::Feature;
 
   /// `skin`: given, m, or 0 for one that adapts itself to the motion.
-  Search(World& world, double skin, int threads)
-      : world_(world), given_skin_(skin), threads_(threads) {}
+  Search(World& world, double skin, ThreadTeam& team)
+      : world_(world), given_skin_(skin), team_(team) {}
 
-  /// Makes the list of near pairs anew; what contacts remember goes on. by_motion: because grains
-  /// have left their margins, or have not for long.
+  /// Makes the list of near pairs anew; what contacts remember goes on.
+  /// by_motion: because grains have left their margins, or have not for long.
   void run(bool by_motion) {
     auto& contacts = world_.contacts;
     auto& sleepers = world_.sleepers;
-    // By the grains' ids: the order of the bodies changes below. What has frozen since is not
-    // among them.
-    const auto kept = contacts.kept_pairs(world_.grains.ids, [&](int i, int j) {
-      return sleepers.is_asleep(i) && sleepers.is_asleep(j);
-    });
-    features_ = contacts.kept_features(world_.grains.ids);
+    // By the grains' ids: the order of the bodies changes below.
     const auto wall_kept =
         contacts.kept_walls(world_.grains.ids, [&](int i) { return sleepers.is_asleep(i); });
     const auto wall_normals =
@@ -44,24 +42,27 @@ class Search {
     CarryRolling<World> rolling(world_);
     world_.gather_touches();
 
+    before_.take(contacts.pairs, world_.grains.ids);
     world_.awake = sleepers.part(world_.awake, [this](int i, int j) { world_.grains.swap(i, j); });
     settle_cell(world_);
     adapt_skin(by_motion);
     const int n = world_.awake;
-    bin_awake();
+    find_reaches();
     if (n > 0) {
-      const std::vector<int> order = grid_.order();
-      world_.grains.sort(order);
+      const std::vector<int> order = HierarchicalGrid<dim>::order(reaches_);
+      world_.grains.sort(order, team_);
       sleepers.sort(order);
-      bin_awake();
+      find_reaches();
     }
+    grid_.build(reaches_);
     world_.locate_applied();
     if (sleepers.have_changed()) bin_sleepers();
     find_bounds(0, n);
-    list_pairs(kept);
+    list_pairs();
     set_wall_margins();
     list_walls(wall_kept, wall_normals);
-    contacts.finish(world_.cell.is_periodic());
+    contacts.finish(world_.cell.is_periodic(), had_sleepers_);
+    had_sleepers_ = n < world_.grains.size();
     accounts.put_back();
     rolling.put_back();
     world_.margins.resize(n);
@@ -78,10 +79,10 @@ class Search {
     prepare();
   }
 
-  /// Blocks of the threads and what else an image does not hold. Part of run(), or after a list has
-  /// come from an image.
+  /// Blocks of the threads and what else an image does not hold. Part of run(),
+  /// or after a list has come from an image.
   void prepare() {
-    world_.contacts.divide(world_.awake, threads_);
+    world_.contacts.divide(world_.awake, team_.size());
     if constexpr (dim == 3) {
       world_.round_margins.clear();
       for (const auto& m : world_.margins) {
@@ -144,8 +145,8 @@ class Search {
     skin_.set(given_skin_, world_.awake == 0 ? 0 : sum / world_.awake);
   }
 
-  /// How far turning by one radian carries a point of the grain, m; 0 where its circle is what the
-  /// search goes by.
+  /// How far turning by one radian carries a point of the grain, m; 0 where its
+  /// circle is what the search goes by.
   double turning_of(int i) const {
     if constexpr (World::Shape::outlines) {
       return world_.grains.shapes.slender(i) ? world_.grains.bodies[i].radius : 0;
@@ -153,7 +154,7 @@ class Search {
     return 0;
   }
 
-  void bin_awake() {
+  void find_reaches() {
     const int n = world_.awake;
     reaches_.resize(n);
     for (int i = 0; i < n; ++i) {
@@ -166,7 +167,6 @@ class Search {
       }
       reaches_[i] = {b.position, b.radius + way, b.inverse_mass == 0};
     }
-    grid_.build(reaches_);
   }
 
   /// The bounds of these bodies: of those awake with the way that they may go.
@@ -182,8 +182,8 @@ class Search {
     }
   }
 
-  /// True when the two, whose circles meet, cannot touch until the next search: one of them is
-  /// slender and lies beside the other.
+  /// True when the two, whose circles meet, cannot touch until the next search:
+  /// one of them is slender and lies beside the other.
   bool out_of_reach(int i, int j, const PairImage& image = {}) const {
     if constexpr (World::Shape::outlines) {
       if (!world_.grains.shapes.any_slender()) return false;
@@ -197,8 +197,8 @@ class Search {
     return false;
   }
 
-  /// The pairs that cross the cell's faces, each once, by their first and then their second grain;
-  /// the latter, the image, may lie behind the awake.
+  /// The pairs that cross the cell's faces, each once, by their first and then
+  /// their second grain; the latter, the image, may lie behind the awake.
   void find_crossing() {
     crossing_.clear();
     if (!world_.cell.is_periodic()) return;
@@ -225,35 +225,91 @@ class Search {
     });
   }
 
-  void add_pair(int i, int j, const PairImage& image, const Kept<Memory>& kept) {
-    if (out_of_reach(i, j, image)) return;
-    world_.contacts.pairs.add(pair_of(i, j, kept));
-    if (world_.cell.is_periodic()) world_.contacts.images.push_back(image);
-  }
+  /// A pair of the list to be, in row after row.
+  struct Near {
+    int j = 0;
+    PairImage image{};
+  };
+  /// What a thread makes of the list: no two of them share a line of the cache.
+  struct alignas(64) Part {
+    IndexPairs found, sorted;
+    std::vector<Near> near;
+  };
 
-  void list_pairs(const Kept<Memory>& kept) {
-    const int n = world_.awake, all = world_.grains.size();
-    auto& pairs = world_.contacts.pairs;
-    std::vector<std::pair<int, int>> found;
-    grid_.pairs(found);
+  void list_pairs() {
+    auto& contacts = world_.contacts;
+    const bool periodic = world_.cell.is_periodic();
+    const int n = world_.awake, threads = team_.size();
     find_crossing();
-    std::vector<int> near;
-    pairs.clear();
-    world_.contacts.images.clear();
-    std::size_t next = 0, next_crossing = 0;
-    for (int i = 0; i < n; ++i) {
-      for (; next < found.size() && found[next].first == i; ++next) {
-        add_pair(i, found[next].second, {}, kept);
+    parts_.resize(static_cast<std::size_t>(threads));
+    lengths_.assign(static_cast<std::size_t>(n), 0);
+    team_.together([&](int rank) {
+      const auto [first, last] = share(n, rank, threads);
+      grid_.find_pairs(first, last, parts_[rank].found);
+    });
+    team_.together([&](int rank) {
+      const auto [first, last] = share(n, rank, threads);
+      find_rows(first, last, parts_[rank]);
+    });
+    contacts.pairs.set_rows(lengths_);
+    contacts.images.resize(periodic ? static_cast<std::size_t>(contacts.pairs.size()) : 0);
+    team_.together([&](int rank) {
+      const auto [first, last] = share(n, rank, threads);
+      const Near* next = parts_[rank].near.data();
+      for (int i = first; i < last; ++i) {
+        for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k, ++next) {
+          contacts.pairs[k] = pair_of(i, next->j);
+          if (periodic) contacts.images[k] = next->image;
+        }
       }
-      if (all > n) {
-        near.clear();
-        sleepers_grid_.near(reaches_[i], near);
-        for (const int j : near) add_pair(i, n + j, {}, kept);
+    });
+    if (n < world_.grains.size() || !world_.sleepers.frozen.empty()) thaw_pairs();
+  }
+  /// The rows of bodies [first, last): whom they have near, and how many.
+  void find_rows(int first, int last, Part& part) {
+    const int n = world_.awake;
+    const bool sleepers = world_.grains.size() > n;
+    std::vector<Near>& near = part.near;
+    near.clear();
+    std::vector<std::span<const std::pair<int, int>>> found;
+    for (const Part& one : parts_) found.emplace_back(one.found);
+    grid_.sort_pairs(found, first, last, part.sorted);
+    auto next = part.sorted.begin();
+    auto crossing = std::partition_point(crossing_.begin(), crossing_.end(),
+                                         [&](const Crossing& pair) { return pair.i < first; });
+    std::vector<int> asleep;
+    for (int i = first; i < last; ++i) {
+      const std::size_t before = near.size();
+      const auto add = [&](int j, const PairImage& image) {
+        if (!out_of_reach(i, j, image)) near.push_back({j, image});
+      };
+      for (; next != part.sorted.end() && next->first == i; ++next) add(next->second, {});
+      asleep.clear();
+      if (sleepers) sleepers_grid_.near(reaches_[i], asleep);
+      for (const int j : asleep) add(n + j, {});
+      for (; crossing != crossing_.end() && crossing->i == i; ++crossing) {
+        add(crossing->j, crossing->image);
       }
-      for (; next_crossing < crossing_.size() && crossing_[next_crossing].i == i; ++next_crossing) {
-        add_pair(i, crossing_[next_crossing].j, crossing_[next_crossing].image, kept);
+      lengths_[i] = static_cast<int>(near.size() - before);
+    }
+  }
+  /// Contacts of grains that have woken remember what was frozen; a sleeper
+  /// feels what was frozen anew from now on.
+  void thaw_pairs() {
+    auto& pairs = world_.contacts.pairs;
+    auto& sleepers = world_.sleepers;
+    const auto& ids = world_.grains.ids;
+    for (int i = 0; i < pairs.rows(); ++i) {
+      for (int k = pairs.first(i); k < pairs.last(i); ++k) {
+        Pair& pair = pairs[k];
+        typename World::Frozen before;
+        if (pair.memory.empty() && sleepers.frozen.take(pair_key(ids[i], ids[pair.j]), before)) {
+          pair.memory = seen_from(before.memory, ids[i] > ids[pair.j]);
+        }
+        if (pair.j >= world_.awake) {
+          sleepers.release(pair.j, seen_from(before.force, ids[pair.j] > ids[i]));
+        }
       }
-      pairs.end_row();
     }
   }
 
@@ -273,7 +329,8 @@ class Search {
       }
       walls.set_margin(w, lever, 0);
       const double way = skin_.way(walls.speed(w), mean, world_.time_step);
-      // A few steps at full speed at least: a margin left at once would be none.
+      // A few steps at full speed at least: a margin left at once would be
+      // none.
       const double least = 4 * world_.time_step * walls.top_speed(w);
       walls.set_margin(w, lever, std::max(way, least));
     }
@@ -304,22 +361,21 @@ class Search {
     }
   }
 
-  Pair pair_of(int i, int j, const Kept<Memory>& kept) {
-    const auto& ids = world_.grains.ids;
+  /// With what it remembers of the last list.
+  Pair pair_of(int i, int j) const {
+    const auto [before, turned] = before_.find(world_.grains.ids[i], world_.grains.ids[j]);
     Pair pair;
     pair.j = j;
-    const typename World::Frozen before = recalled(pair_key(ids[i], ids[j]), kept);
-    pair.memory = seen_from(before.memory, ids[i] > ids[j]);
+    if (before == nullptr) return pair;
+    if (!before->memory.empty()) pair.memory = seen_from(before->memory, turned);
     if constexpr (requires(const Feature& feature) { feature.reversed(); }) {
-      const Feature* feature = features_.find(pair_key(ids[i], ids[j]));
-      if (feature != nullptr) pair.feature = seen_from(*feature, ids[i] > ids[j]);
+      if (!before->feature.empty()) pair.feature = seen_from(before->feature, turned);
     }
-    // A sleeper feels what was frozen anew from now on.
-    if (j >= world_.awake) world_.sleepers.release(j, seen_from(before.force, ids[j] > ids[i]));
     return pair;
   }
 
-  /// The memory of the last pairs, or of the frozen contact, which is no more then; its force.
+  /// The memory of the last pairs, or of the frozen contact, which is no more
+  /// then; its force.
   typename World::Frozen recalled(PairKey key, const Kept<Memory>& kept) {
     typename World::Frozen before;
     if (const Memory* memory = kept.find(key)) {
@@ -332,13 +388,16 @@ class Search {
 
   World& world_;
   double given_skin_;
-  int threads_;
+  ThreadTeam& team_;
   Skin skin_;
   HierarchicalGrid<dim> grid_, sleepers_grid_;
   double farthest_sleeper_ = 0;      // largest reach of those in the grid
   std::vector<Reach<dim>> reaches_;  // of the awake
   std::vector<Crossing> crossing_;
-  Kept<Feature> features_;                 // of the pairs before, within run()
+  std::vector<Part> parts_;                // by threads
+  std::vector<int> lengths_;               // of the rows
+  PairsBefore<Pair> before_;
+  bool had_sleepers_ = true;  // in the last list
   std::vector<BoundingRectangle> bounds_;  // while some grain is slender
 };
 

@@ -84,17 +84,16 @@ class Sweep {
     if (moved) moved_.store(true, std::memory_order_relaxed);
   }
 
-  /// Pairs that reach from an earlier thread's block into this one's. They come first in the sum of
-  /// their second grain, as they do when one thread sweeps all.
-  /// For a sweep of this kind.
+  /// Forces of pairs between two threads' blocks, for a sweep of this kind. They come first in the
+  /// sum of their second grain, as they do when one thread sweeps all: run() begins with them.
   template <SweepKind kind>
-  GRAINFIELD_FLATTEN void incoming(int rank, double dt) {
+  GRAINFIELD_FLATTEN void crossing(int rank, double dt) {
     if constexpr (in_lanes) return contact_forces_.evaluate(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
-      if (sweeps_rows()) return incoming_rows(rank, dt);
+      if (sweeps_rows()) return crossing_rows(rank, dt);
     }
     const bool periodic = world_.cell.is_periodic();
-    const PairsInOrder& order = world_.contacts.blocks.incoming(rank);
+    const PairsInOrder& order = world_.contacts.blocks.crossing(rank);
     for (int n = 0; n < order.count; ++n) {
       const int i = order.first[n], k = order.pair[n];
       Force& f = world_.contacts.pair_forces[k];
@@ -102,9 +101,7 @@ class Sweep {
       if (!(across ? contact_forces_.pair_across(i, k, dt, f)
                    : contact_forces_.pair(i, k, dt, f))) {
         f = Force{};
-        continue;
       }
-      add_to_second(k, f);
     }
   }
 
@@ -113,7 +110,7 @@ class Sweep {
   /// `applied`: the applied force. `first_new`: with SweepKind::start, ids from here on are new.
   template <SweepKind kind>
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
-    if constexpr (in_lanes) sum_incoming(rank, dt);
+    sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
       if (sweeps_rows()) {
         if (world_.cell.is_periodic()) {
@@ -138,13 +135,13 @@ class Sweep {
   bool sweeps_rows() const {
     return !books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
   }
-  /// incoming(), side by side but for pairs across a face.
-  GRAINFIELD_FLATTEN void incoming_rows(int rank, double dt) {
+  /// crossing(), side by side but for pairs across a face.
+  GRAINFIELD_FLATTEN void crossing_rows(int rank, double dt) {
     auto& contacts = world_.contacts;
-    const PairsInOrder& order = contacts.blocks.incoming(rank);
+    const PairsInOrder& order = contacts.blocks.crossing(rank);
     if (order.count == 0) return;
     const bool periodic = world_.cell.is_periodic();
-    RowForces<World> rows(world_, contact_forces_, sums_, dt, FirstForces::kept);
+    RowForces<World> rows(world_, contact_forces_, sums_, dt, RowForcesGo::to_list);
     int from = 0;
     for (int n = 0; n < order.count; ++n) {
       const int k = order.pair[n];
@@ -152,7 +149,7 @@ class Sweep {
       f = Force{};
       if (periodic && is_image(contacts.images[k])) {
         rows.evaluate(order, from, n);
-        if (contact_forces_.pair_across(order.first[n], k, dt, f)) add_to_second(k, f);
+        contact_forces_.pair_across(order.first[n], k, dt, f);
         from = n + 1;
       } else if (n + 1 - from == kBatch) {
         rows.evaluate(order, from, n + 1);
@@ -163,7 +160,7 @@ class Sweep {
   }
 
   /// Flattened: an overlap, a motion or a force that goes through memory to a function waits for
-  /// its stores (a third of the time per step of 1,000 disks). Also begin_block and incoming, so
+  /// its stores (a third of the time per step of 1,000 disks). Also begin_block and crossing, so
   /// that all of a step is compiled here, with one order of every sum. `in_cell`: pairs may cross
   /// and space may flow; the loop without knows nothing of it, which is worth 7 % to it.
   template <SweepKind kind, bool in_cell>
@@ -217,7 +214,7 @@ class Sweep {
     if (blocks.first(rank) == last) return;
     const PairsInOrder& order = blocks.inside(rank);
     const std::vector<RowTail>& across = blocks.across(rank);
-    RowForces<World> rows(world_, contact_forces_, sums_, dt, FirstForces::summed);
+    RowForces<World> rows(world_, contact_forces_, sums_, dt, RowForcesGo::to_sums);
     Begins begins;
     Ends ends{blocks.first(rank), blocks.tails(rank).data()};
     std::size_t next = 0;  // of the rows with images
@@ -418,21 +415,25 @@ class Sweep {
     return sum;
   }
 
-  void add_to_second(int k, const Force& f) {
-    Sum& sum = sums_[world_.contacts.pairs[k].j];
-    sum.force -= f.force;
-    sum.torque += f.torque_j;
-  }
-
+  /// Of pairs from earlier blocks, on their second grains.
   GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
+    const auto& contacts = world_.contacts;
     const bool periodic = world_.cell.is_periodic();
-    const PairsInOrder& order = world_.contacts.blocks.incoming(rank);
+    const PairsInOrder& order = contacts.blocks.incoming(rank);
     for (int n = 0; n < order.count; ++n) {
       const int k = order.pair[n];
-      Force f;
-      const bool across = periodic && is_image(world_.contacts.images[k]);
-      if (across ? contact_forces_.evaluated_across(k, dt, f) : contact_forces_.evaluated(k, f))
-        add_to_second(k, f);
+      __builtin_prefetch(&contacts.pair_forces[k + kAhead]);
+      Force f = contacts.pair_forces[k];
+      if constexpr (in_lanes) {
+        const bool across = periodic && is_image(contacts.images[k]);
+        if (!(across ? contact_forces_.evaluated_across(k, dt, f)
+                     : contact_forces_.evaluated(k, f))) {
+          continue;
+        }
+      }
+      Sum& sum = sums_[order.second[n]];
+      sum.force -= f.force;
+      sum.torque += f.torque_j;
     }
   }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace grainfield::dem {
@@ -23,13 +24,27 @@ class ThreadTeam {
   void run(const std::function<void(int)>& work);
   /// Within work: waits for all. Free when there is one thread.
   void meet() {
-    if (size_ > 1) wait_for_all();
+    if (size_ > 1) wait_for_all(spins_);
   }
+  /// Within work, by all of them: waits for all, then rank 0 does `task`, and the others only what
+  /// it hands out by together(). Returns when it is done.
+  template <class Task>
+  void alone(int rank, Task task) {
+    meet();
+    if (rank != 0) return help(rank);
+    task();
+    part_ = nullptr;
+    meet();
+  }
+  /// Within alone(), or outside of work: part(rank) on all threads; returns when all are done. part
+  /// must not throw.
+  void together(const std::function<void(int)>& part);
 
  private:
+  void help(int rank);
   void serve(int rank);
   void end();
-  void wait_for_all();
+  void wait_for_all(int spins);
 
   int size_;
   int spins_;  // at a barrier, before it sleeps
@@ -38,6 +53,8 @@ class ThreadTeam {
   std::mutex mutex_;
   std::condition_variable wake_, finished_;
   const std::function<void(int)>* work_ = nullptr;
+  const std::function<void(int)>* part_ = nullptr;  // that rank 0 hands out
+  bool works_ = false;                              // rank 0 is within work
   long generation_ = 0;
   int running_ = 0;
   bool stop_ = false;

@@ -11,7 +11,7 @@ namespace {
 /// What is known of pairs by slot, before it goes to the memories and sums.
 struct alignas(64) Passed {
   double fx[kBatch], fy[kBatch], torque_i[kBatch], torque_j[kBatch], spring[kBatch];
-  double *sum_i[kBatch], *sum_j[kBatch];
+  double *sum_i[kBatch], *sum_j[kBatch], *kept[kBatch];
   unsigned char* pair[kBatch];
 };
 
@@ -40,8 +40,8 @@ template <int W>
     spring[k] = force;
     to.pair[at + k] = pair;
     body_i[k] = rows.bodies + i * kDiskBody;
-    to.sum_i[at + k] =
-        rows.kept != nullptr ? rows.kept + at_pair * kDiskForce : rows.sums + i * kDiskSum;
+    to.sum_i[at + k] = rows.sums + i * kDiskSum;
+    to.kept[at + k] = rows.kept != nullptr ? rows.kept + at_pair * kDiskForce : nullptr;
     body_j[k] = rows.bodies + std::ptrdiff_t{j} * kDiskBody;
     to.sum_j[at + k] = rows.sums + std::ptrdiff_t{j} * kDiskSum;
     __builtin_prefetch(rows.bodies + std::ptrdiff_t{later} * kDiskBody);
@@ -91,9 +91,10 @@ template <int W>
   store<W>(apart ? none : rest, to.spring + at);
 }
 
-/// To the memories and sums.
+/// To the memories, and to the sums or what is kept of pairs.
 template <int W>
-[[gnu::always_inline]] inline void give(const RowBatch& batch, int at, const Passed& c) {
+[[gnu::always_inline]] inline void give(const RowBatch& batch, int at, bool keeps,
+                                        const Passed& c) {
   const int left = batch.count - at;
   const Lanes<W> fx = loaded<W>(c.fx + at), fy = loaded<W>(c.fy + at), none{};
   // A grain is the second of its pairs in earlier rows, then the first of those in its own: so all
@@ -103,8 +104,13 @@ template <int W>
       if (k < left) store<4>(loaded<4>(sums[k]) + row, sums[k]);
     });
   };
-  add({-fx, -fy, loaded<W>(c.torque_j + at), none}, c.sum_j + at);
-  add({fx, fy, loaded<W>(c.torque_i + at), none}, c.sum_i + at);
+  const Lanes<W> torque_i = loaded<W>(c.torque_i + at), torque_j = loaded<W>(c.torque_j + at);
+  if (keeps) {
+    add({fx, fy, torque_i, torque_j}, c.kept + at);
+  } else {
+    add({-fx, -fy, torque_j, none}, c.sum_j + at);
+    add({fx, fy, torque_i, none}, c.sum_i + at);
+  }
   for (int k = 0; k < W && k < left; ++k) {
     __builtin_memcpy(c.pair[at + k], &c.spring[at + k], sizeof(double));
   }
@@ -117,7 +123,7 @@ void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBat
   static_assert(kPairsBehind >= kPairsAhead + W);
   Passed passed;
   for (int at = 0; at < batch.count; at += W) press<W>(law, rows, batch, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W>(batch, at, passed);
+  for (int at = 0; at < batch.count; at += W) give<W>(batch, at, rows.kept != nullptr, passed);
 }
 template void disk_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law, const DiskRows& rows,
                                                const RowBatch& batch);

@@ -228,7 +228,7 @@ template <int W, SphereLawKind kind, bool rolls>
   if constexpr (rolls) roll<W>(rolling, law.dt, rows, batch, at, normal, force, c);
 }
 
-/// To the memories and sums. `full`: no lane is beyond the batch.
+/// To the memories, and to the sums or what is kept of pairs. `full`: no lane is beyond the batch.
 template <int W, SphereLawKind kind, bool rolls, bool full>
 [[gnu::always_inline]] inline void give(const SphereRows& rows, const RowBatch& batch, int at,
                                         const Passed& c) {
@@ -277,12 +277,19 @@ template <int W, SphereLawKind kind, bool rolls, bool full>
       if (k < left) store<2>(loaded<2>(sums[k] + 4) + row, sums[k] + 4);
     });
   };
-  add(-force, torque_j, rows.sums, kSphereSum, batch.second + at);
-  if (rows.kept != nullptr) {
-    add(force, torque_i, rows.kept, kSphereForce, pairs);
-  } else {
+  if (rows.kept == nullptr) {
+    add(-force, torque_j, rows.sums, kSphereSum, batch.second + at);
     add(force, torque_i, rows.sums, kSphereSum, batch.first + at);
+    return;
   }
+  add(force, torque_i, rows.kept, kSphereForce, pairs);
+  const Lanes<W> none{};
+  each_row<W>({torque_j.x, torque_j.y, torque_j.z, none}, [&](int k, const Lanes<4>& row) {
+    if (k >= left) return;
+    double* const to = rows.kept + std::ptrdiff_t{pairs[k]} * kSphereForce + 6;
+    store<2>(__builtin_shufflevector(row, row, 0, 1), to);
+    to[2] = row[2];
+  });
 }
 
 template <int W, SphereLawKind kind, bool rolls>

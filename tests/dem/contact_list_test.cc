@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dem/contacts/margins.h"
+#include "dem/contacts/pairs_before.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {
@@ -50,17 +51,20 @@ TEST(ContactList, MemoriesAreFoundAgainFromEitherSide) {
   EXPECT_EQ(list.pairs.with_idle(), 3U + kAhead);
   EXPECT_EQ(list.pair_forces.size(), list.pairs.with_idle());
 
-  const auto none = [](auto...) { return false; };
-  const Kept<Arrow> kept = list.kept_pairs(ids, none);
-  ASSERT_TRUE(kept.find(pair_key(2, 5)));
-  EXPECT_EQ(kept.find(pair_key(2, 5))->size, -1.5);  // from 2, the lower
-  EXPECT_EQ(seen_from(*kept.find(pair_key(2, 5)), true).size, 1.5);
-  EXPECT_EQ(kept.find(pair_key(2, 9))->size, -4);
-  EXPECT_FALSE(kept.find(pair_key(5, 9)));
-  EXPECT_EQ(list.kept_walls(ids, none).find(wall_key(5, 1))->size, 8);
-  const Kept<Arrow> some = list.kept_pairs(ids, [](int i, int j) { return i == 1 && j == 2; });
-  EXPECT_FALSE(some.find(pair_key(2, 9)));
-  EXPECT_TRUE(some.find(pair_key(2, 5)));
+  EXPECT_EQ(list.kept_walls(ids, [](int) { return false; }).find(wall_key(5, 1))->size, 8);
+  EXPECT_FALSE(list.kept_walls(ids, [](int) { return true; }).find(wall_key(5, 1)));
+
+  PairsBefore<List::Pair> before;
+  before.take(list.pairs, {1, 0, 2});
+  const auto found = before.find(1, 0), turned = before.find(0, 1);
+  ASSERT_TRUE(found.pair && turned.pair);
+  EXPECT_EQ(found.pair->memory.size, 1.5);
+  EXPECT_FALSE(found.turned);
+  EXPECT_EQ(turned.pair, found.pair);
+  EXPECT_TRUE(turned.turned);
+  EXPECT_EQ(before.find(2, 0).pair->memory.size, -4);
+  EXPECT_TRUE(before.find(2, 0).turned);
+  EXPECT_TRUE(before.find(1, 2).pair->memory.empty());
 }
 
 TEST(ContactList, NonsenseFromAnImageIsSeen) {
@@ -96,7 +100,7 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
     list.divide(grains, threads);
     EXPECT_EQ(list.blocks.first(0), 0);
     EXPECT_EQ(list.blocks.last(threads - 1), grains);
-    std::vector<int> done(list.pairs.size(), 0), swept = done;
+    std::vector<int> done(list.pairs.size(), 0), swept = done, summed = done, expected = done;
     for (int rank = 0; rank < threads; ++rank) {
       EXPECT_EQ(list.blocks.first(rank), rank == 0 ? 0 : list.blocks.last(rank - 1));
       int work = 0;
@@ -107,6 +111,8 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
           if (j < list.blocks.last(rank) || j >= grains) {
             ++done[k];
             ++work;
+          } else {
+            ++expected[k];
           }
         }
       }
@@ -126,6 +132,17 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
         EXPECT_EQ(list.pairs[k].j, incoming.second[n]);
         EXPECT_GE(list.pairs[k].j, list.blocks.first(rank));
         EXPECT_LT(list.pairs[k].j, list.blocks.last(rank));
+        ++summed[k];
+      }
+      const PairsInOrder& crossing = list.blocks.crossing(rank);
+      for (int n = 0; n < crossing.count; ++n) {
+        const int i = crossing.first[n], j = crossing.second[n], k = crossing.pair[n];
+        EXPECT_EQ(list.pairs[k].j, j);
+        EXPECT_TRUE(list.pairs.first(i) <= k && k < list.pairs.last(i));
+        const auto own = [&](int grain) {
+          return list.blocks.first(rank) <= grain && grain < list.blocks.last(rank);
+        };
+        EXPECT_NE(own(i), own(j));
         ++done[k];
         ++work;
       }
@@ -134,6 +151,7 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
     }
     EXPECT_THAT(done, testing::Each(1));
     EXPECT_THAT(swept, testing::Each(1));
+    EXPECT_EQ(summed, expected);
   }
 }
 

@@ -44,6 +44,18 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
       std::vector<std::pair<int, int>> found;
       grid.pairs(found);
       EXPECT_EQ(found, all_pairs(grains)) << "ratio " << ratio << " seed " << seed;
+      // In three parts, as threads find them and then sort them.
+      const int bounds[] = {0, 40, 41, 200};
+      IndexPairs some[3], sorted, all;
+      for (int part = 0; part < 3; ++part) {
+        grid.find_pairs(bounds[part], bounds[part + 1], some[part]);
+      }
+      const std::span<const std::pair<int, int>> parts[] = {some[0], some[1], some[2]};
+      for (int part = 0; part < 3; ++part) {
+        HierarchicalGrid<2>::sort_pairs(parts, bounds[part], bounds[part + 1], sorted);
+        all.insert(all.end(), sorted.begin(), sorted.end());
+      }
+      EXPECT_EQ(all, found);
       for (int probe = 0; probe < 50; ++probe) {
         const Reach<2> g{{random.uniform(-1, 1), random.uniform(-0.2, 0.2)},
                          0.01 * std::pow(ratio, random.uniform()),
@@ -58,7 +70,7 @@ TEST(Neighbours, FindsExactlyThePairsOfAllSizes) {
         }
         EXPECT_EQ(near, expected) << "ratio " << ratio << " seed " << seed;
       }
-      auto order = grid.order();
+      auto order = HierarchicalGrid<2>::order(grains);
       std::sort(order.begin(), order.end());
       for (int i = 0; i < 200; ++i) ASSERT_EQ(order[i], i);
     }
@@ -96,7 +108,7 @@ TEST(Neighbours, FindsExactlyThePairsInSpace) {
         const double sum = grains[7].reach + grains[j].reach;
         EXPECT_LT((grains[7].centre - grains[j].centre).norm(), sum);
       }
-      std::vector<int> order = grid.order();
+      std::vector<int> order = HierarchicalGrid<3>::order(grains);
       std::sort(order.begin(), order.end());
       for (int i = 0; i < 250; ++i) ASSERT_EQ(order[i], i);
     }

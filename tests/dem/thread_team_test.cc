@@ -1,14 +1,18 @@
-// Threads that cannot be started are an error and no end of the program.
+// A team of threads: all take part; those that cannot be started are an error and no end of the
+// program.
 #include "dem/engine/thread_team.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace grainfield::dem {
 namespace {
@@ -49,6 +53,35 @@ TEST(ThreadTeam, AllTakePart) {
     if (sum != 7) sum = -100;
   });
   EXPECT_EQ(sum, 7);
+}
+
+TEST(ThreadTeam, OneHandsOutPartsOfItsTask) {
+  for (const int size : {1, 2, 5}) {
+    ThreadTeam team(size);
+    std::vector<int> done(static_cast<std::size_t>(size), 0);
+    int by_hand = 0;
+    team.together([&](int rank) { ++done[rank]; });  // outside of work
+    team.run([&](int rank) {
+      for (int step = 0; step < 40; ++step) {
+        const int before = step * (step - 1) / 2;  // parts of all steps so far
+        team.alone(rank, [&] {
+          ++by_hand;
+          for (int part = 0; part < step; ++part) {
+            team.together([&](int one) {
+              ++done[one];
+              team.meet();
+              if (*std::min_element(done.begin(), done.end()) != 2 + before + part) {
+                by_hand = -1000;
+              }
+              team.meet();
+            });
+          }
+        });
+      }
+    });
+    EXPECT_EQ(by_hand, 40);
+    EXPECT_THAT(done, testing::Each(1 + 39 * 40 / 2));
+  }
 }
 
 }  // namespace
