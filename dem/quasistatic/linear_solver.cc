@@ -4,7 +4,10 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace grainfield::dem {
 namespace {
@@ -13,18 +16,36 @@ namespace {
 // dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
 constexpr double kPivotThreshold = 0.01;
 constexpr int kMostIterations = 500;
+// A preconditioner of an earlier matrix is made anew when it needs so many times the iterations:
+// making one takes as long as some hundred of them.
+constexpr double kMostGrowth = 1.5;
 
 class DirectSolver final : public LinearSolver {
  public:
   DirectSolver() { factors_.setPivotThreshold(kPivotThreshold); }
   bool prepare(const Matrix& matrix) override {
-    factors_.compute(matrix);
+    if (!is_known(matrix)) {
+      factors_.analyzePattern(matrix);
+      remember(matrix);
+    }
+    factors_.factorize(matrix);
     return factors_.info() == Eigen::Success;
   }
   void solve(const Vector& rhs, Vector& x) override { x = factors_.solve(rhs); }
 
  private:
+  /// The pattern is that of the last matrix.
+  bool is_known(const Matrix& m) const {
+    return std::ranges::equal(outer_, std::span(m.outerIndexPtr(), m.outerSize() + 1)) &&
+           std::ranges::equal(inner_, std::span(m.innerIndexPtr(), m.nonZeros()));
+  }
+  void remember(const Matrix& m) {
+    outer_.assign(m.outerIndexPtr(), m.outerIndexPtr() + m.outerSize() + 1);
+    inner_.assign(m.innerIndexPtr(), m.innerIndexPtr() + m.nonZeros());
+  }
+
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> factors_;
+  std::vector<int> outer_, inner_;
 };
 
 // What Eigen's iterative solvers ask of a preconditioner.
@@ -32,6 +53,8 @@ class SymmetricPart {
  public:
   using StorageIndex = int;
   using Matrix = Eigen::SparseMatrix<double>;
+
+  bool stays = false;  ///< factors of an earlier matrix will do
 
   SymmetricPart() = default;
   template <class M>
@@ -44,6 +67,7 @@ class SymmetricPart {
   }
   template <class M>
   SymmetricPart& factorize(const M& matrix) {
+    if (stays) return *this;
     const Matrix transposed = matrix.transpose();
     const Matrix part = 0.5 * (matrix + transposed);
     factors_.compute(part);
@@ -70,20 +94,35 @@ class IterativeSolver final : public LinearSolver {
     solver_.setMaxIterations(kMostIterations);
   }
   bool prepare(const Matrix& matrix) override {
+    const bool fits = solver_.rows() == matrix.rows();
     negative_ = -matrix;
-    solver_.compute(negative_);
-    return solver_.info() == Eigen::Success;
+    return compute(fits && first_ > 0 && last_ <= kMostGrowth * first_);
   }
   void solve(const Vector& rhs, Vector& x) override {
-    x = solver_.solve(Vector(-rhs));
-    if (solver_.info() != Eigen::Success) {
-      x.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
+    if (try_to_solve(rhs, x)) return;
+    if (solver_.preconditioner().stays && compute(false) && try_to_solve(rhs, x)) return;
+    x.setConstant(rhs.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
  private:
+  /// `stays`: with the preconditioner that is there.
+  bool compute(bool stays) {
+    solver_.preconditioner().stays = stays;
+    if (!stays) first_ = last_ = 0;
+    solver_.compute(negative_);
+    return solver_.info() == Eigen::Success;
+  }
+  bool try_to_solve(const Vector& rhs, Vector& x) {
+    x = solver_.solve(Vector(-rhs));
+    if (solver_.info() != Eigen::Success) return false;
+    last_ = std::max<Eigen::Index>(solver_.iterations(), 1);
+    if (first_ == 0) first_ = last_;
+    return true;
+  }
+
   Matrix negative_;
   Eigen::BiCGSTAB<Matrix, SymmetricPart> solver_;
+  Eigen::Index first_ = 0, last_ = 0;  // iterations with this preconditioner: at first, last time
 };
 
 }  // namespace

@@ -18,11 +18,11 @@ class LinearSolver {
   virtual void solve(const Vector& rhs, Vector& x) = 0;
 };
 
-/// Sparse unsymmetric factors of Eigen.
+/// Sparse unsymmetric factors of Eigen; the order of elimination stays while the pattern does.
 std::unique_ptr<LinearSolver> make_direct_solver();
 /// BiCGSTAB to kLinearTolerance of the right side, preconditioned by an incomplete Cholesky
-/// factorization of the symmetric part. For negative definite tangents that friction makes
-/// unsymmetric here and there.
+/// factorization of the symmetric part, which later matrices use while it serves them. For negative
+/// definite tangents that friction makes unsymmetric here and there.
 std::unique_ptr<LinearSolver> make_iterative_solver();
 
 /// Of the residual; Newton's steps lower theirs by no more than that.

@@ -151,6 +151,9 @@ class Relaxation {
       : start_(start),
         settings_(settings),
         network_(make_contact_network(start, materials)),
+        solver_(network_->per_force() == 3 && network_->size() > kMostForFactors
+                    ? make_iterative_solver()
+                    : make_direct_solver()),
         gravity_(gravity),
         gradient_(gradient),
         before_{loaded_in(start, start.loaded_grain, start.also_loaded), start.applied_force},
@@ -225,11 +228,7 @@ class Relaxation {
       Eigen::VectorXd z = zero;
       problem_.enough = nullptr;
       if (free) problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
-      const NewtonReport report =
-          newton(problem_,
-                 {wanted, limit, kMostStep,
-                  network_->per_force() == 3 && network_->size() > kMostForFactors},
-                 z);
+      const NewtonReport report = newton(problem_, {wanted, limit, kMostStep}, *solver_, z);
       iterations_ += report.iterations;
       const bool good = report.converged && z.cwiseAbs().maxCoeff() <= kMostStep;
       if (good) {
@@ -318,6 +317,7 @@ class Relaxation {
   const Snapshot& start_;
   const QuasistaticSettings& settings_;
   std::unique_ptr<ContactNetwork> network_;
+  std::unique_ptr<LinearSolver> solver_;
   Vec3 gravity_;
   Eigen::Matrix3d gradient_;  // of the strain
   ContactNetwork::Load before_, after_;

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "dem/quasistatic/linear_solver.h"
-
 namespace grainfield::dem {
 namespace {
 
@@ -17,19 +15,18 @@ constexpr double kSlow = 0.1;
 }  // namespace
 
 NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings,
-                    Eigen::VectorXd& z) {
+                    LinearSolver& solver, Eigen::VectorXd& z) {
   SparseProblem::Matrix matrix;
-  const auto solver = settings.iterative ? make_iterative_solver() : make_direct_solver();
   double last = 0;  // 2-norm of the last iteration's residual
 
   NewtonProblem core;
   core.residual = problem.residual;
   core.factorize = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& r) {
     problem.tangent(at, r, matrix);
-    return solver->prepare(matrix);
+    return solver.prepare(matrix);
   };
   core.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
-    solver->solve(rhs, x);
+    solver.solve(rhs, x);
     const double longest = x.cwiseAbs().maxCoeff();
     if (longest > settings.most_step) x *= settings.most_step / longest;
   };

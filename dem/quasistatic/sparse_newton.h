@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "dem/newton/newton.h"
+#include "dem/quasistatic/linear_solver.h"
 
 namespace grainfield::dem {
 
@@ -23,11 +24,11 @@ struct SparseSettings {
   double tolerance = 1e-10;  ///< largest |r| to be reached
   int max_iterations = 50;
   double most_step = 0.25;  ///< a longer step (largest |dz|) is shortened
-  bool iterative = false;   ///< make_iterative_solver() instead of make_direct_solver()
 };
 
-/// Improves z, the first guess. Without convergence z is the last iterate.
+/// Improves z, the first guess. Without convergence z is the last iterate. `solver` serves one
+/// Newton after the other, and keeps what it can.
 NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings,
-                    Eigen::VectorXd& z);
+                    LinearSolver& solver, Eigen::VectorXd& z);
 
 }  // namespace grainfield::dem

@@ -117,7 +117,7 @@ TEST(Quasistatic, NewtonConvergesQuadraticallyOnAFixedNetwork) {
   problem.tangent = [&](const Eigen::VectorXd& z, const Eigen::VectorXd& r,
                         Eigen::SparseMatrix<double>& m) { network.tangent(z, r, none, m); };
   Eigen::VectorXd z = none;
-  const NewtonReport report = newton(problem, {1e-11, 20, 0.25}, z);
+  const NewtonReport report = newton(problem, {1e-11, 20, 0.25}, *make_direct_solver(), z);
   EXPECT_TRUE(report.converged) << report.why;
   EXPECT_LE(report.iterations, 7);
   // Order of the iterations that are past the start and above round-off: log r_{k+1} / log r_k.

@@ -115,6 +115,29 @@ TEST(SphereRelaxation, BothLinearSolversAgree) {
   other->solve(rhs, iterated);
   EXPECT_LT((matrix * direct - rhs).norm(), 1e-9 * rhs.norm());
   EXPECT_LT((matrix * iterated - rhs).norm(), 2 * kLinearTolerance * rhs.norm());
+
+  // What is kept of one matrix serves the next, and is made anew for one that it does not serve:
+  // of other values, of another pattern, of another size.
+  const Eigen::SparseMatrix<double> first = matrix;
+  const auto expect_solved = [&](const Eigen::SparseMatrix<double>& next) {
+    const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(next.rows(), -1, 2);
+    ASSERT_TRUE(one->prepare(next));
+    ASSERT_TRUE(other->prepare(next));
+    one->solve(right, direct);
+    other->solve(right, iterated);
+    EXPECT_LT((next * direct - right).norm(), 1e-9 * right.norm());
+    EXPECT_LT((next * iterated - right).norm(), 2 * kLinearTolerance * right.norm());
+  };
+  matrix = 1.1 * first;
+  expect_solved(matrix);
+  for (int k = 0; k < matrix.rows(); ++k) matrix.coeffRef(k, k) *= k % 2 == 0 ? 1e4 : 2;
+  expect_solved(matrix);
+  matrix = matrix.block(0, 0, 60, 60);
+  expect_solved(matrix);
+  matrix.setIdentity();
+  matrix *= -3;
+  expect_solved(matrix);
+  expect_solved(first);
 }
 
 TEST(SphereRelaxation, RefusesWhatItDoesNotKnow) {
