@@ -50,20 +50,21 @@ struct ContactList {
     blocks.divide(pairs, grains, threads, kPairsBehind,
                   [&](int k) { return !images.empty() && is_image(images[k]); });
   }
-  /// After the last pair. `with_images`: in a cell. `felt_before`: some of the last list's pairs
-  /// had a sleeper.
-  void finish(bool with_images = false, bool felt_before = true) {
+  /// After the last pair. `with_images`: in a cell. What was felt has been gathered.
+  void finish(bool with_images = false) {
     pairs.pad(kAhead);
     const std::size_t idle = pairs.with_idle();
     if (with_images) images.resize(idle);
-    // The last step of step(n) writes them all.
+    // The last step of step(n) writes them all; without one forget_forces() does.
     pair_forces.resize(static_cast<std::size_t>(pairs.size()));
     pair_forces.resize(idle);
     wall_forces.assign(walls.with_idle(), {});
     wall_normals.resize(walls.with_idle(), zero<VectorOf<D>>());
-    if (felt_before) felt.clear();
+    felt.resize(static_cast<std::size_t>(pairs.size()));
     felt.resize(idle);
   }
+  /// Of pairs: the list is not that of the last step.
+  void forget_forces() { pair_forces.assign(pair_forces.size(), {}); }
 
   /// Directions of contacts with walls that have a memory: remembers(k).
   template <class Remembers>

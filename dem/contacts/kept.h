@@ -36,11 +36,10 @@ class Kept {
   const Memory* find(PairKey key) const {
     const auto id = static_cast<std::size_t>(first_of(key));
     if (id + 1 >= start_.size()) return nullptr;
-    // A grain has few contacts.
-    for (int k = start_[id]; k < start_[id + 1]; ++k) {
-      if (list_[k].first == key) return &list_[k].second;
-    }
-    return nullptr;
+    const auto last = list_.begin() + start_[id + 1];
+    const auto it = std::lower_bound(list_.begin() + start_[id], last, key,
+                                     [](const auto& a, PairKey b) { return a.first < b; });
+    return it != last && it->first == key ? &it->second : nullptr;
   }
   /// visit(key, memory), by keys.
   template <class Visit>

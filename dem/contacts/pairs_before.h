@@ -20,8 +20,10 @@ class PairsBefore {
   };
 
   /// Takes the pairs of bodies with these ids; what is left in `pairs` is to be overwritten.
-  void take(Rows<Pair>& pairs, const std::vector<std::int64_t>& ids) {
+  /// `ascend`: in every row, by the second grain (no images are behind).
+  void take(Rows<Pair>& pairs, const std::vector<std::int64_t>& ids, bool ascend) {
     std::swap(pairs_, pairs);
+    ascend_ = ascend;
     where_.resize(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) where_[ids[i]] = static_cast<int>(i);
   }
@@ -30,14 +32,25 @@ class PairsBefore {
     const int a = where_[first], b = where_[second];
     const int row = std::min(a, b), other = std::max(a, b);
     if (row >= pairs_.rows()) return {};
-    for (int k = pairs_.first(row); k < pairs_.last(row); ++k) {
+    int k = pairs_.first(row);
+    if (ascend_) {  // a large grain has a long row
+      for (int length = pairs_.last(row) - k; length > kLongRow;) {
+        const int half = length / 2;
+        if (pairs_[k + half].j <= other) k += half;
+        length -= half;
+      }
+    }
+    for (; k < pairs_.last(row) && !(ascend_ && pairs_[k].j > other); ++k) {
       if (pairs_[k].j == other) return {&pairs_[k], a > b};
     }
     return {};
   }
 
  private:
+  static constexpr int kLongRow = 16;
+
   Rows<Pair> pairs_;
+  bool ascend_ = false;
   std::vector<int> where_;  // body by id
 };
 

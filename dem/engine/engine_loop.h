@@ -221,7 +221,10 @@ class EngineLoop final : public Engine {
       world_.steps = start + n;
       diverged_ = has_diverged();  // a grain that only spins is not searched for
     }
-    if (diverged_) report_divergence();
+    if (diverged_) {
+      world_.contacts.forget_forces();
+      report_divergence();
+    }
   }
 
   double time() const override { return world_.time(); }

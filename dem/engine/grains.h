@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -33,28 +32,17 @@ struct Grains {
   int size() const { return static_cast<int>(bodies.size()); }
   bool is_fixed(int i) const { return bodies[i].inverse_mass == 0; }
 
-  /// The first order.size() bodies in this order, by all threads: what one of them works on later
-  /// is then near its core.
+  /// The first order.size() bodies in this order, by all threads: most of what one of them works on
+  /// later is then near its core.
   void sort(const std::vector<int>& order, ThreadTeam& team) {
-    const int n = static_cast<int>(order.size());
-    team.together([&](int rank) {
-      const auto [first, last] = share(n, rank, team.size());
-      const auto permute = [&, first = first, last = last](auto& values) {
-        if (values.empty()) return;
-        std::vector<typename std::decay_t<decltype(values)>::value_type> sorted;
-        sorted.reserve(static_cast<std::size_t>(last - first));
-        for (int k = first; k < last; ++k) sorted.push_back(values[order[k]]);
-        team.meet();
-        std::copy(sorted.begin(), sorted.end(), values.begin() + first);
-      };
-      permute(bodies);
-      permute(memory);
-      permute(inertias);
-      permute(ids);
-      permute(kinds);
-      permute(images);
-      permute(cell_work);
-    });
+    const auto permute = [&](auto& values) { sort_values(values, order, team); };
+    permute(bodies);
+    permute(memory);
+    permute(inertias);
+    permute(ids);
+    permute(kinds);
+    permute(images);
+    permute(cell_work);
     shapes.sort(order);
   }
   void swap(int i, int j) {
@@ -90,6 +78,25 @@ struct Grains {
     return memory.size() == bodies.size() && inertias.size() == bodies.size() &&
            ids.size() == bodies.size() && kinds.size() == bodies.size() &&
            cell_work.size() == images.size();
+  }
+
+ private:
+  template <class T>
+  static void sort_values(std::vector<T>& values, const std::vector<int>& order, ThreadTeam& team) {
+    if (values.empty()) return;
+    const int n = static_cast<int>(order.size());
+    std::vector<std::vector<T>> parts(static_cast<std::size_t>(team.size()));
+    team.together([&](int rank) {
+      const auto [first, last] = share(n, rank, team.size());
+      std::vector<T> sorted;
+      sorted.reserve(static_cast<std::size_t>(last - first));
+      for (int k = first; k < last; ++k) sorted.push_back(values[order[k]]);
+      parts[rank].swap(sorted);
+    });
+    team.together([&](int rank) {
+      std::copy(parts[rank].begin(), parts[rank].end(),
+                values.begin() + share(n, rank, team.size()).first);
+    });
   }
 };
 

@@ -28,8 +28,8 @@ class Search {
   Search(World& world, double skin, ThreadTeam& team)
       : world_(world), given_skin_(skin), team_(team) {}
 
-  /// Makes the list of near pairs anew; what contacts remember goes on.
-  /// by_motion: because grains have left their margins, or have not for long.
+  /// Makes the list of near pairs anew; what contacts remember goes on. by_motion: because grains
+  /// have left their margins, or have not for long.
   void run(bool by_motion) {
     auto& contacts = world_.contacts;
     auto& sleepers = world_.sleepers;
@@ -42,7 +42,7 @@ class Search {
     CarryRolling<World> rolling(world_);
     world_.gather_touches();
 
-    before_.take(contacts.pairs, world_.grains.ids);
+    before_.take(contacts.pairs, world_.grains.ids, !world_.cell.is_periodic());
     world_.awake = sleepers.part(world_.awake, [this](int i, int j) { world_.grains.swap(i, j); });
     settle_cell(world_);
     adapt_skin(by_motion);
@@ -61,8 +61,7 @@ class Search {
     list_pairs();
     set_wall_margins();
     list_walls(wall_kept, wall_normals);
-    contacts.finish(world_.cell.is_periodic(), had_sleepers_);
-    had_sleepers_ = n < world_.grains.size();
+    contacts.finish(world_.cell.is_periodic());
     accounts.put_back();
     rolling.put_back();
     world_.margins.resize(n);
@@ -79,8 +78,8 @@ class Search {
     prepare();
   }
 
-  /// Blocks of the threads and what else an image does not hold. Part of run(),
-  /// or after a list has come from an image.
+  /// Blocks of the threads and what else an image does not hold. Part of run(), or after a list has
+  /// come from an image.
   void prepare() {
     world_.contacts.divide(world_.awake, team_.size());
     if constexpr (dim == 3) {
@@ -145,8 +144,8 @@ class Search {
     skin_.set(given_skin_, world_.awake == 0 ? 0 : sum / world_.awake);
   }
 
-  /// How far turning by one radian carries a point of the grain, m; 0 where its
-  /// circle is what the search goes by.
+  /// How far turning by one radian carries a point of the grain, m; 0 where its circle is what the
+  /// search goes by.
   double turning_of(int i) const {
     if constexpr (World::Shape::outlines) {
       return world_.grains.shapes.slender(i) ? world_.grains.bodies[i].radius : 0;
@@ -182,8 +181,8 @@ class Search {
     }
   }
 
-  /// True when the two, whose circles meet, cannot touch until the next search:
-  /// one of them is slender and lies beside the other.
+  /// True when the two, whose circles meet, cannot touch until the next search: one of them is
+  /// slender and lies beside the other.
   bool out_of_reach(int i, int j, const PairImage& image = {}) const {
     if constexpr (World::Shape::outlines) {
       if (!world_.grains.shapes.any_slender()) return false;
@@ -197,8 +196,8 @@ class Search {
     return false;
   }
 
-  /// The pairs that cross the cell's faces, each once, by their first and then
-  /// their second grain; the latter, the image, may lie behind the awake.
+  /// The pairs that cross the cell's faces, each once, by their first and then their second grain;
+  /// the latter, the image, may lie behind the awake.
   void find_crossing() {
     crossing_.clear();
     if (!world_.cell.is_periodic()) return;
@@ -329,8 +328,7 @@ class Search {
       }
       walls.set_margin(w, lever, 0);
       const double way = skin_.way(walls.speed(w), mean, world_.time_step);
-      // A few steps at full speed at least: a margin left at once would be
-      // none.
+      // A few steps at full speed at least: a margin left at once would be none.
       const double least = 4 * world_.time_step * walls.top_speed(w);
       walls.set_margin(w, lever, std::max(way, least));
     }
@@ -351,7 +349,7 @@ class Search {
           const PairKey key = wall_key(world_.grains.ids[i], slot);
           Pair pair;
           pair.j = slot;
-          pair.memory = recalled(key, kept).memory;
+          pair.memory = recalled(key, kept);
           walls.add(pair);
           const auto* normal = normals.find(key);
           wall_normals.push_back(normal != nullptr ? *normal : World::Vector::Zero());
@@ -374,16 +372,12 @@ class Search {
     return pair;
   }
 
-  /// The memory of the last pairs, or of the frozen contact, which is no more
-  /// then; its force.
-  typename World::Frozen recalled(PairKey key, const Kept<Memory>& kept) {
+  /// At a wall: the memory of the last list, or of the frozen contact, which is no more then.
+  Memory recalled(PairKey key, const Kept<Memory>& kept) {
+    if (const Memory* memory = kept.find(key)) return *memory;
     typename World::Frozen before;
-    if (const Memory* memory = kept.find(key)) {
-      before.memory = *memory;
-    } else if (!world_.sleepers.frozen.empty()) {
-      world_.sleepers.frozen.take(key, before);
-    }
-    return before;
+    if (!world_.sleepers.frozen.empty()) world_.sleepers.frozen.take(key, before);
+    return before.memory;
   }
 
   World& world_;
@@ -394,10 +388,10 @@ class Search {
   double farthest_sleeper_ = 0;      // largest reach of those in the grid
   std::vector<Reach<dim>> reaches_;  // of the awake
   std::vector<Crossing> crossing_;
-  std::vector<Part> parts_;                // by threads
-  std::vector<int> lengths_;               // of the rows
+  std::vector<Part> parts_;   // by threads
+  std::vector<int> lengths_;  // of the rows
   PairsBefore<Pair> before_;
-  bool had_sleepers_ = true;  // in the last list
+  bool had_sleepers_ = true;               // in the last list
   std::vector<BoundingRectangle> bounds_;  // while some grain is slender
 };
 

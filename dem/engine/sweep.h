@@ -204,7 +204,7 @@ class Sweep {
 
   /// The same, for shapes whose pairs are evaluated and added to the sums kBatch at a time, row
   /// after row (row_forces.h); then the grains whose rows are done move, spheres side by side where
-  /// they can. Bit by bit as pair by pair. Pairs that another thread has evaluated, or whose second
+  /// they can. Bit by bit as pair by pair. Pairs that crossing() has evaluated, or whose second
   /// grain sleeps or is across a face, are the last of a row and done by themselves: before the
   /// grain moves, or at once where one is across a face, for it may add to any grain's sum.
   template <bool in_cell>
@@ -243,7 +243,7 @@ class Sweep {
     int row = 0;                    ///< the first one whose grain has not moved
     const RowTail* tail = nullptr;  ///< the first one that has not been added
   };
-  /// A row's pairs from its tail on, up to `end`. What another thread has written is far away.
+  /// A row's pairs from its tail on, up to `end`. What another thread may have written is far away.
   void add_tail(const RowTail& tail, int end, double dt) {
     auto& contacts = world_.contacts;
     Sum& sum = sums_[tail.row];
@@ -373,7 +373,7 @@ class Sweep {
       __builtin_prefetch(&sums_[later], 1);
       Force f;
       if (j >= last && j < awake) {
-        f = contacts.pair_forces[k];  // the block of j has evaluated it
+        f = contacts.pair_forces[k];  // crossing() has evaluated it
       } else {
         const bool touches = evaluate(k, f);
         if constexpr (kind == SweepKind::last) contacts.pair_forces[k] = f;

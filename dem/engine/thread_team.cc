@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace grainfield::dem {
 
@@ -42,7 +43,12 @@ void ThreadTeam::run(const std::function<void(int)>& work) {
   }
   wake_.notify_all();
   works_ = true;
-  work(0);
+  try {
+    work(0);
+  } catch (...) {
+    works_ = false;
+    throw;
+  }
   works_ = false;
   if (size_ > 1) {
     std::unique_lock lock(mutex_);
@@ -71,7 +77,7 @@ void ThreadTeam::wait_for_all(int spins) {
 // Between the parts that are handed out rank 0 does some 100 us of its own.
 void ThreadTeam::help(int rank) {
   while (true) {
-    wait_for_all(20 * spins_);
+    wait_for_all(4 * spins_);
     if (part_ == nullptr) return;
     (*part_)(rank);
     wait_for_all(spins_);
@@ -79,11 +85,23 @@ void ThreadTeam::help(int rank) {
 }
 
 void ThreadTeam::together(const std::function<void(int)>& part) {
-  if (!works_) return run(part);
-  part_ = &part;
-  meet();
-  part(0);
-  meet();
+  const std::function<void(int)> guarded = [&](int rank) {
+    try {
+      part(rank);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  };
+  if (works_) {
+    part_ = &guarded;
+    meet();
+    guarded(0);
+    meet();
+  } else {
+    run(guarded);
+  }
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadTeam::serve(int rank) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -36,8 +37,8 @@ class ThreadTeam {
     part_ = nullptr;
     meet();
   }
-  /// Within alone(), or outside of work: part(rank) on all threads; returns when all are done. part
-  /// must not throw.
+  /// Within alone(), or outside of work: part(rank) on all threads; returns when all are done, and
+  /// throws what one of them has thrown. Parts that may throw must not meet.
   void together(const std::function<void(int)>& part);
 
  private:
@@ -55,6 +56,7 @@ class ThreadTeam {
   const std::function<void(int)>* work_ = nullptr;
   const std::function<void(int)>* part_ = nullptr;  // that rank 0 hands out
   bool works_ = false;                              // rank 0 is within work
+  std::exception_ptr failure_;                      // of a part
   long generation_ = 0;
   int running_ = 0;
   bool stop_ = false;

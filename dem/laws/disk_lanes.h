@@ -17,7 +17,7 @@ struct DiskRows {
   const double* bodies = nullptr;
   unsigned char* pairs = nullptr;
   double* sums = nullptr;
-  double* kept = nullptr;  ///< by pair, ContactForce<2>: added to instead of the sums
+  double* kept = nullptr;  ///< by pair, ContactForce<2> that are 0: these, not the sums
 };
 
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend

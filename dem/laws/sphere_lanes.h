@@ -42,7 +42,7 @@ struct SphereRows {
   unsigned char* pairs = nullptr;
   double* sums = nullptr;
   double* rolling = nullptr;  ///< by pair, RollingMemory<3>: four numbers; null: no resistance
-  double* kept = nullptr;     ///< by pair, ContactForce<3>: added to instead of the sums
+  double* kept = nullptr;     ///< by pair, ContactForce<3> that are 0: these, not the sums
 };
 
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend

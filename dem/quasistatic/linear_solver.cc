@@ -16,9 +16,9 @@ namespace {
 // dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
 constexpr double kPivotThreshold = 0.01;
 constexpr int kMostIterations = 500;
-// A preconditioner of an earlier matrix is made anew when it needs so many times the iterations:
-// making one takes as long as some hundred of them.
-constexpr double kMostGrowth = 1.5;
+// A preconditioner of an earlier matrix is made anew when it needs so many iterations more than it
+// has: making one takes as long as some hundred of them.
+constexpr int kMostMore = 50;
 
 class DirectSolver final : public LinearSolver {
  public:
@@ -96,7 +96,7 @@ class IterativeSolver final : public LinearSolver {
   bool prepare(const Matrix& matrix) override {
     const bool fits = solver_.rows() == matrix.rows();
     negative_ = -matrix;
-    return compute(fits && first_ > 0 && last_ <= kMostGrowth * first_);
+    return compute(fits && least_ > 0 && last_ <= least_ + kMostMore);
   }
   void solve(const Vector& rhs, Vector& x) override {
     if (try_to_solve(rhs, x)) return;
@@ -108,7 +108,7 @@ class IterativeSolver final : public LinearSolver {
   /// `stays`: with the preconditioner that is there.
   bool compute(bool stays) {
     solver_.preconditioner().stays = stays;
-    if (!stays) first_ = last_ = 0;
+    if (!stays) least_ = last_ = 0;
     solver_.compute(negative_);
     return solver_.info() == Eigen::Success;
   }
@@ -116,13 +116,13 @@ class IterativeSolver final : public LinearSolver {
     x = solver_.solve(Vector(-rhs));
     if (solver_.info() != Eigen::Success) return false;
     last_ = std::max<Eigen::Index>(solver_.iterations(), 1);
-    if (first_ == 0) first_ = last_;
+    least_ = least_ == 0 ? last_ : std::min(least_, last_);
     return true;
   }
 
   Matrix negative_;
   Eigen::BiCGSTAB<Matrix, SymmetricPart> solver_;
-  Eigen::Index first_ = 0, last_ = 0;  // iterations with this preconditioner: at first, last time
+  Eigen::Index least_ = 0, last_ = 0;  // iterations with this preconditioner: fewest, last
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ class LinearSolver {
   using Matrix = Eigen::SparseMatrix<double>;
 
   virtual ~LinearSolver() = default;
-  /// Makes ready for this matrix, which must live until the last solve; false: singular.
+  /// Makes ready for this matrix, which must live until the last solve; false: singular, where that
+  /// is looked at: not while something kept of an earlier matrix serves.
   virtual bool prepare(const Matrix& matrix) = 0;
   /// x of matrix x = rhs; not finite where no x was found.
   virtual void solve(const Vector& rhs, Vector& x) = 0;

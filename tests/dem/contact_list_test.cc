@@ -55,7 +55,7 @@ TEST(ContactList, MemoriesAreFoundAgainFromEitherSide) {
   EXPECT_FALSE(list.kept_walls(ids, [](int) { return true; }).find(wall_key(5, 1)));
 
   PairsBefore<List::Pair> before;
-  before.take(list.pairs, {1, 0, 2});
+  before.take(list.pairs, {1, 0, 2}, true);
   const auto found = before.find(1, 0), turned = before.find(0, 1);
   ASSERT_TRUE(found.pair && turned.pair);
   EXPECT_EQ(found.pair->memory.size, 1.5);
@@ -65,6 +65,77 @@ TEST(ContactList, MemoriesAreFoundAgainFromEitherSide) {
   EXPECT_EQ(before.find(2, 0).pair->memory.size, -4);
   EXPECT_TRUE(before.find(2, 0).turned);
   EXPECT_TRUE(before.find(1, 2).pair->memory.empty());
+}
+
+TEST(ContactList, PairsOfLongRowsAreFoundAmongMany) {
+  Random random(7);
+  for (int seed = 0; seed < 20; ++seed) {
+    const int grains = 200;
+    List list;
+    list.clear();
+    std::vector<std::vector<double>> sizes(grains, std::vector<double>(grains, 0));
+    for (int i = 0; i < grains; ++i) {
+      const double share = i < 3 ? 0.9 : 0.03;  // the first three are large
+      for (int j = i + 1; j < grains; ++j) {
+        if (random.uniform() > share) continue;
+        sizes[i][j] = 1 + i + 1000.0 * j;
+        list.pairs.add({{sizes[i][j]}, j, {}});
+      }
+      list.pairs.end_row();
+    }
+    for (int row = 0; row < grains; ++row) list.walls.end_row();
+    list.finish();
+    std::vector<std::int64_t> ids(grains);
+    for (int i = 0; i < grains; ++i) ids[i] = (i * 37 + seed) % grains;  // another order
+    PairsBefore<List::Pair> before;
+    before.take(list.pairs, ids, seed % 2 == 0);
+    for (int i = 0; i < grains; ++i) {
+      for (int j = 0; j < grains; ++j) {
+        if (i == j) continue;
+        const auto found = before.find(ids[i], ids[j]);
+        const double size = sizes[std::min(i, j)][std::max(i, j)];
+        ASSERT_EQ(found.pair != nullptr, size != 0);
+        if (size == 0) continue;
+        ASSERT_EQ(found.pair->memory.size, size);
+        ASSERT_EQ(found.turned, i > j);
+      }
+    }
+  }
+}
+
+// A pair across a face adds to its second grain's account: by the thread that has that grain.
+TEST(ContactList, PairsWithImagesAreTheSecondGrainsThreads) {
+  const int grains = 120, threads = 4;
+  List list;
+  list.clear();
+  for (int i = 0; i < grains; ++i) {
+    list.images.push_back({});
+    list.pairs.add({{1}, std::min(i + 30, grains - 1), {}});
+    if (i < 60) {
+      list.images.push_back({1, 0, 0, 0});
+      list.pairs.add({{1}, i + 60, {}});
+    }
+    list.pairs.end_row();
+    list.walls.end_row();
+  }
+  list.finish(true);
+  list.divide(grains, threads);
+  int images = 0, others = 0;
+  for (int rank = 0; rank < threads; ++rank) {
+    const PairsInOrder& crossing = list.blocks.crossing(rank);
+    for (int n = 0; n < crossing.count; ++n) {
+      const int j = crossing.second[n];
+      const bool own = list.blocks.first(rank) <= j && j < list.blocks.last(rank);
+      if (is_image(list.images[crossing.pair[n]])) {
+        EXPECT_TRUE(own);
+        ++images;
+      } else {
+        others += own ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(images, 60);
+  EXPECT_GT(others, 20);
 }
 
 TEST(ContactList, NonsenseFromAnImageIsSeen) {

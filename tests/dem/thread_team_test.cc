@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -81,6 +82,30 @@ TEST(ThreadTeam, OneHandsOutPartsOfItsTask) {
     });
     EXPECT_EQ(by_hand, 40);
     EXPECT_THAT(done, testing::Each(1 + 39 * 40 / 2));
+  }
+}
+
+TEST(ThreadTeam, WhatAPartThrowsArrivesAndTheTeamGoesOn) {
+  for (const int size : {1, 3}) {
+    ThreadTeam team(size);
+    const auto fail = [&](int rank) {
+      if (rank == size - 1) throw std::bad_alloc();
+    };
+    EXPECT_THROW(team.together(fail), std::bad_alloc);
+    int caught = 0;
+    team.run([&](int rank) {
+      team.alone(rank, [&] {
+        try {
+          team.together(fail);
+        } catch (const std::bad_alloc&) {
+          ++caught;
+        }
+      });
+    });
+    EXPECT_EQ(caught, 1);
+    std::atomic<int> done = 0;
+    team.together([&](int) { ++done; });
+    EXPECT_EQ(done, size);
   }
 }
 
