@@ -45,7 +45,7 @@ class Blocks {
   /// looked at.
   template <class Rows, class IsAcross>
   void divide(const Rows& rows, int grains, int threads, int behind, IsAcross is_across) {
-    place_bounds(rows, grains, threads);
+    place_bounds(rows, grains, threads, is_across);
     threads_.resize(threads);
     for (Thread& t : threads_) t.clear();
     for (int from = 0; from < threads; ++from) {
@@ -105,18 +105,20 @@ class Blocks {
     }
   };
 
-  template <class Rows>
-  void place_bounds(const Rows& rows, int grains, int threads) {
+  template <class Rows, class IsAcross>
+  void place_bounds(const Rows& rows, int grains, int threads, IsAcross is_across) {
     bounds_.assign(threads + 1, grains);
     bounds_[0] = 0;
-    // Half a pair belongs to each of its grains; a grain's motion takes as long as two pairs.
+    // Half a pair belongs to each of its grains, one with an image to the second, whose thread
+    // evaluates it; a grain's motion takes as long as two pairs.
     std::vector<long long> work(static_cast<std::size_t>(grains) + 1, 0);  // of all grains before
     for (int i = 0; i < grains; ++i) {
       work[i + 1] += 4;
       for (int k = rows.first(i); k < rows.last(i); ++k) {
         const int j = rows[k].j;
-        ++work[i + 1];
-        ++work[(j < grains ? j : i) + 1];
+        const int first = is_across(k) ? 0 : 1;
+        work[i + 1] += first;
+        work[(j < grains ? j : i) + 1] += 2 - first;
       }
     }
     for (int i = 0; i < grains; ++i) work[i + 1] += work[i];
