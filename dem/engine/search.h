@@ -292,8 +292,8 @@ class Search {
       lengths_[i] = static_cast<int>(near.size() - before);
     }
   }
-  /// Contacts of grains that have woken remember what was frozen; a sleeper
-  /// feels what was frozen anew from now on.
+  /// Contacts of grains that have woken remember what was frozen; a sleeper feels what was frozen
+  /// anew from now on.
   void thaw_pairs() {
     auto& pairs = world_.contacts.pairs;
     auto& sleepers = world_.sleepers;
