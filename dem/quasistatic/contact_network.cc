@@ -18,6 +18,14 @@ void ContactNetwork::strain(const Eigen::Matrix3d& /*gradient*/) {
   throw std::logic_error("a contact network in the plane is not strained");
 }
 
+std::unique_ptr<ContactNetwork> ContactNetwork::part(const std::vector<int>& /*free*/) const {
+  throw std::logic_error("a contact network in the plane has no parts");
+}
+
+void ContactNetwork::adopt(const ContactNetwork& /*part*/) {
+  throw std::logic_error("a contact network in the plane has no parts");
+}
+
 double ContactNetwork::mean_resultant(const Vector& r) const {
   double sum = 0;
   for (int k = 0; k < size(); k += per_grain()) {

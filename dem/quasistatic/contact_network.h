@@ -66,6 +66,12 @@ class ContactNetwork {
   /// Whether a strain waits for its commit.
   virtual bool strains() const { return false; }
 
+  /// A copy in which of the free grains those with these numbers alone, ascending, are free; what
+  /// strains this one strains it. Throws std::logic_error in the plane.
+  virtual std::unique_ptr<ContactNetwork> part(const std::vector<int>& free) const;
+  /// The committed state of such a part becomes the one of this network.
+  virtual void adopt(const ContactNetwork& part);
+
   struct Balance {
     double mean_contact_force = 0, mean_unbalanced_force = 0;
     double mean_unbalanced_moment = 0;  ///< over the radii, N

@@ -16,6 +16,9 @@ namespace {
 // dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
 constexpr double kPivotThreshold = 0.01;
 constexpr int kMostIterations = 500;
+// What so many iterations may leave of the right side where a fresh preconditioner does no better:
+// Newton's method gets on with it.
+constexpr double kMostLeft = 0.1;
 // A preconditioner of an earlier matrix is made anew when it needs so many iterations more than it
 // has: making one takes as long as some hundred of them.
 constexpr int kMostMore = 50;
@@ -99,8 +102,9 @@ class IterativeSolver final : public LinearSolver {
     return compute(fits && least_ > 0 && last_ <= least_ + kMostMore);
   }
   void solve(const Vector& rhs, Vector& x) override {
-    if (try_to_solve(rhs, x)) return;
-    if (solver_.preconditioner().stays && compute(false) && try_to_solve(rhs, x)) return;
+    const bool kept = solver_.preconditioner().stays;
+    if (try_to_solve(rhs, x, kept ? kLinearTolerance : kMostLeft)) return;
+    if (kept && compute(false) && try_to_solve(rhs, x, kMostLeft)) return;
     x.setConstant(rhs.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
@@ -112,9 +116,9 @@ class IterativeSolver final : public LinearSolver {
     solver_.compute(negative_);
     return solver_.info() == Eigen::Success;
   }
-  bool try_to_solve(const Vector& rhs, Vector& x) {
+  bool try_to_solve(const Vector& rhs, Vector& x, double most_left) {
     x = solver_.solve(Vector(-rhs));
-    if (solver_.info() != Eigen::Success) return false;
+    if (!(solver_.error() <= most_left)) return false;
     last_ = std::max<Eigen::Index>(solver_.iterations(), 1);
     least_ = least_ == 0 ? last_ : std::min(least_, last_);
     return true;

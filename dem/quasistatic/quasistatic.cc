@@ -1,8 +1,6 @@
 // Load stepping. A load step is first tried by Newton's method alone. When that fails, the step is
 // halved; when it is small already, contacts are rearranging, and the packing is let flow to its
-// next equilibrium: each grain is held back by a drag against its displacement (implicit Euler of
-// overdamped motion), which makes every step solvable, and the drag is taken away as it succeeds.
-// Either way a step ends at the tolerance or not at all.
+// next equilibrium (equilibrium.h).
 #include "dem/quasistatic/quasistatic.h"
 
 #include <fmt/format.h>
@@ -12,36 +10,15 @@
 #include <limits>
 
 #include "dem/quasistatic/contact_network.h"
-#include "dem/quasistatic/sparse_newton.h"
+#include "dem/quasistatic/equilibrium.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/wall_forces.h"
 
 namespace grainfield::dem {
 namespace {
 
-// Newton aims below the ratio asked for by this factor: the mean contact force that scales it is
-// the one before the step.
-constexpr double kAim = 0.2;
-// A residual that Newton cannot lower further will do when its mean meets the ratio and its largest
-// entry is below this many times the ratio.
-constexpr double kMostOver = 1000;
-// A step that moves a grain further, in radii or radians, could jump over a contact.
-constexpr double kMostStep = 0.25;
 // Load steps longer than this share of the change are shortened to it before the flow is tried.
 constexpr double kFlowBelow = 0.25;
-// The flow's drag, as a share of a contact's stiffness: where it begins, below which it is taken
-// for none, where it gives up; its factors after success, after quick success and after failure.
-constexpr double kFirstDrag = 1e-4, kLeastDrag = 1e-7, kMostDrag = 1e3;
-constexpr double kEase = 0.5, kQuickEase = 0.2, kBrake = 8;
-constexpr int kQuick = 5;
-// Unknowns of a packing in space up to which the tangent is factorized. In the plane factors fill
-// little, and it always is.
-constexpr int kMostForFactors = 6000;
-// Grains that hold up Newton: those with this share of the largest residual where it stopped.
-constexpr double kCulprit = 0.03;
-// A step of the flow is solved to this share of its first residual.
-constexpr double kFlowTolerance = 1e-2;
-constexpr int kFlowIterations = 25, kMostFlowSteps = 300;
 // A strain beyond this is not small: contact normals turn.
 constexpr double kMostStrain = 0.01;
 // After the last load step: solves again with the scale of the new state.
@@ -151,24 +128,15 @@ class Relaxation {
       : start_(start),
         settings_(settings),
         network_(make_contact_network(start, materials)),
-        solver_(network_->per_force() == 3 && network_->size() > kMostForFactors
-                    ? make_iterative_solver()
-                    : make_direct_solver()),
+        equilibrium_(*network_, settings,
+                     [this] {
+                       if (settings_.go_on && !settings_.go_on(share_)) throw RelaxationStopped();
+                     }),
         gravity_(gravity),
         gradient_(gradient),
         before_{loaded_in(start, start.loaded_grain, start.also_loaded), start.applied_force},
         after_{loaded_in(start, force.id, beside), Vec3(force.fx, force.fy, force.fz)},
-        beside_(beside) {
-    problem_.residual = [this](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
-      if (!network_->residual(z, r)) return false;
-      r -= drag_.cwiseProduct(unit_).cwiseProduct(z);
-      return true;
-    };
-    problem_.tangent = [this](const Eigen::VectorXd& z, const Eigen::VectorXd& r,
-                              Eigen::SparseMatrix<double>& matrix) {
-      network_->tangent(z, r, drag_.cwiseProduct(unit_), matrix);
-    };
-  }
+        beside_(beside) {}
 
   QuasistaticResult run() {
     double& share = share_;
@@ -179,7 +147,7 @@ class Relaxation {
       network_->keep();
       if (!gradient_.isZero(0)) network_->strain((next - share) * gradient_);
       set_load(next);
-      if (settle(step > kFlowBelow)) {
+      if (equilibrium_.settle(step > kFlowBelow)) {
         share = next;
         step *= 2;
         continue;
@@ -193,82 +161,11 @@ class Relaxation {
   }
 
  private:
-  double tolerance() const { return kAim * settings_.unbalanced_force_ratio; }
-
   void set_load(double share) {
     network_->set_load(
         start_.gravity + share * (gravity_ - start_.gravity),
         {{before_.grains, (1 - share) * before_.force}, {after_.grains, share * after_.force}});
-    rescale();
-  }
-
-  /// Residuals are measured in mean contact forces, or in mean resultants while those are larger.
-  void rescale() {
-    network_->set_scale(1);
-    const ContactNetwork::Balance b = network_->balance();
-    const double scale = std::max(b.mean_contact_force, b.mean_unbalanced_force);
-    network_->set_scale(scale > 0 && std::isfinite(scale) ? scale : 1);
-    unit_ = network_->drag_unit();
-    drag_ = Eigen::VectorXd::Zero(network_->size());
-  }
-
-  /// To equilibrium under the present load, by Newton's method alone (`at_once`) or with drag where
-  /// it is needed. Commits what it reaches.
-  bool settle(bool at_once) {
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_->size());
-    Eigen::VectorXd r;
-    for (int k = 0; k < kMostFlowSteps; ++k) {
-      if (settings_.go_on && !settings_.go_on(share_)) throw RelaxationStopped();
-      const bool free = drag_.maxCoeff() == 0;
-      if (!network_->residual(zero, r)) return false;
-      const double now = r.cwiseAbs().maxCoeff();
-      if (!network_->strains() && (now <= tolerance() || (k > 0 && enough(r)))) return true;
-      const double wanted = free ? tolerance() : std::max(tolerance(), kFlowTolerance * now);
-      const int limit = free ? settings_.max_iterations : kFlowIterations;
-      Eigen::VectorXd z = zero;
-      problem_.enough = nullptr;
-      if (free) problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
-      const NewtonReport report = newton(problem_, {wanted, limit, kMostStep}, *solver_, z);
-      iterations_ += report.iterations;
-      const bool good = report.converged && z.cwiseAbs().maxCoeff() <= kMostStep;
-      if (good) {
-        network_->commit(z);
-        ++steps_;
-        if (free) return true;
-        drag_ *= report.iterations <= kQuick ? kQuickEase : kEase;
-        drag_ = (drag_.array() < kLeastDrag).select(0.0, drag_);
-        continue;
-      }
-      if (at_once) return false;
-      brake(z);
-      if (drag_.maxCoeff() > kMostDrag) return false;
-    }
-    return false;
-  }
-
-  /// The mean resultant meets the ratio asked for, and no grain is far above it. Newton aims lower,
-  /// but disks that form a roller bearing creep on the last digits and never get there.
-  bool enough(const Eigen::VectorXd& r) const {
-    return network_->mean_resultant(r) <= 0.5 * settings_.unbalanced_force_ratio &&
-           r.cwiseAbs().maxCoeff() <= kMostOver * settings_.unbalanced_force_ratio;
-  }
-
-  /// More drag on the grains that hold up Newton's method, which stopped at z.
-  void brake(const Eigen::VectorXd& z) {
-    Eigen::VectorXd r;
-    const bool known = problem_.residual(z, r);
-    const double most = known ? r.cwiseAbs().maxCoeff() : 0;
-    const double far = z.cwiseAbs().maxCoeff();
-    bool any = false;
-    const int per = network_->per_grain();
-    for (int k = 0; k < network_->size(); k += per) {
-      const bool holds = (known && r.segment(k, per).cwiseAbs().maxCoeff() >= kCulprit * most) ||
-                         (far > kMostStep && z.segment(k, per).cwiseAbs().maxCoeff() >= 0.5 * far);
-      if (!holds) continue;
-      drag_.segment(k, per).setConstant(std::max(drag_[k] * kBrake, kFirstDrag));
-      any = true;
-    }
-    if (!any) drag_ = (drag_ * kBrake).cwiseMax(kFirstDrag);
+    equilibrium_.rescale();
   }
 
   bool balanced(const ContactNetwork::Balance& b) const {
@@ -280,8 +177,8 @@ class Relaxation {
     for (int k = 0; k < kMostFinish; ++k) {
       b = network_->balance();
       if (balanced(b)) break;
-      rescale();
-      if (!settle(false)) break;
+      equilibrium_.rescale();
+      if (!equilibrium_.settle(false)) break;
       b = network_->balance();
     }
     if (!balanced(b)) fail(1, std::max(b.ratio, b.moment_ratio));
@@ -295,8 +192,9 @@ class Relaxation {
     out.state.also_loaded = beside_;
     out.unbalanced_force_ratio = b.ratio;
     out.unbalanced_moment_ratio = b.moment_ratio;
-    out.steps = steps_;
-    out.iterations = iterations_;
+    out.steps = equilibrium_.steps();
+    out.iterations = equilibrium_.iterations();
+    out.times_apart = equilibrium_.times_apart();
     const ContactChanges changes = compare_contacts(start_, out.state);
     out.contacts_gained = changes.gained;
     out.contacts_lost = changes.lost;
@@ -310,22 +208,19 @@ class Relaxation {
         "unbalanced force ratio of {:.2g} (asked for: {:.2g}) after {} iterations in all: contacts "
         "rearrange; lower least_step (now {:g}), raise max_iterations (now {}), make the change "
         "smaller, or use damped dynamics",
-        share, ratio, settings_.unbalanced_force_ratio, iterations_, settings_.least_step,
-        settings_.max_iterations));
+        share, ratio, settings_.unbalanced_force_ratio, equilibrium_.iterations(),
+        settings_.least_step, settings_.max_iterations));
   }
 
   const Snapshot& start_;
   const QuasistaticSettings& settings_;
   std::unique_ptr<ContactNetwork> network_;
-  std::unique_ptr<LinearSolver> solver_;
+  Equilibrium equilibrium_;
   Vec3 gravity_;
   Eigen::Matrix3d gradient_;  // of the strain
   ContactNetwork::Load before_, after_;
   std::vector<std::int64_t> beside_;
-  SparseProblem problem_;
-  Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness
-  double share_ = 0;             // of the change that is done
-  int steps_ = 0, iterations_ = 0;
+  double share_ = 0;  // of the change that is done
 };
 
 }  // namespace

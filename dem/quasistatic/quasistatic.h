@@ -38,6 +38,7 @@ struct QuasistaticResult {
   double unbalanced_force_ratio = 0;   ///< reached
   double unbalanced_moment_ratio = 0;  ///< reached: mean of |moment| / radius, likewise
   int steps = 0, iterations = 0;
+  int times_apart = 0;  ///< that loose grains were settled apart from the others
   int contacts_gained = 0, contacts_lost = 0, newly_sliding = 0;  ///< against the start
 };
 

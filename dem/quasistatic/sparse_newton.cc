@@ -1,6 +1,7 @@
 #include "dem/quasistatic/sparse_newton.h"
 
 #include <cmath>
+#include <limits>
 
 namespace grainfield::dem {
 namespace {
@@ -11,13 +12,16 @@ constexpr std::size_t kPatience = 6;
 constexpr double kProgress = 0.9;
 // Slow convergence: an iteration that leaves more than this share of the residual.
 constexpr double kSlow = 0.1;
+// One that has hardly helped leaves more than this.
+constexpr double kHardly = 0.5;
 
 }  // namespace
 
 NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings,
                     LinearSolver& solver, Eigen::VectorXd& z) {
   SparseProblem::Matrix matrix;
-  double last = 0;  // 2-norm of the last iteration's residual
+  double last = 0;      // 2-norm of the last iteration's residual
+  bool hardly = false;  // lowered by it
 
   NewtonProblem core;
   core.residual = problem.residual;
@@ -28,13 +32,19 @@ NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings
   core.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     solver.solve(rhs, x);
     const double longest = x.cwiseAbs().maxCoeff();
+    const bool doubtful = hardly || longest > settings.most_step;
+    if (doubtful && problem.stop && problem.stop(x)) {
+      x.setConstant(std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
     if (longest > settings.most_step) x *= settings.most_step / longest;
   };
   core.enough = [&](const Eigen::VectorXd& r) {
     const double now = r.norm();
     const bool slow = last > 0 && now > kSlow * last;
+    hardly = last > 0 && now > kHardly * last;
     last = now;
-    return slow && problem.enough && problem.enough(r);
+    return (slow || settings.dear) && problem.enough && problem.enough(r);
   };
   NewtonSettings how;
   how.tolerance = settings.tolerance;

@@ -16,14 +16,19 @@ struct SparseProblem {
   std::function<bool(const Vector& z, Vector& r)> residual;
   /// Its derivative at z, where the residual is r.
   std::function<void(const Vector& z, const Vector& r, Matrix& matrix)> tangent;
-  /// A residual that will do when Newton's convergence has become slow there; empty: none.
+  /// A residual that will do, when Newton's convergence has become slow there or each step is dear;
+  /// empty: none.
   std::function<bool(const Vector& r)> enough;
+  /// Asked for a step that has to be shortened, and for one after an iteration that has hardly
+  /// lowered the residual; true: give up. Empty: never asked.
+  std::function<bool(const Vector& step)> stop;
 };
 
 struct SparseSettings {
   double tolerance = 1e-10;  ///< largest |r| to be reached
   int max_iterations = 50;
   double most_step = 0.25;  ///< a longer step (largest |dz|) is shortened
+  bool dear = false;        ///< linear equations are: what is enough is not bettered
 };
 
 /// Improves z, the first guess. Without convergence z is the last iterate. `solver` serves one

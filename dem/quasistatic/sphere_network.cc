@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <tuple>
 
@@ -310,6 +311,41 @@ void SphereNetwork::take_back() {
   searched_ = kept_.searched;
   cell_ = kept_.cell;
   gradient_.setZero();
+}
+
+bool SphereNetwork::any_free(const Pair& pair) const {
+  return spheres_[pair.i].unknown >= 0 || (pair.j >= 0 && spheres_[pair.j].unknown >= 0);
+}
+
+/// Pairs of two that are held are left out unless a strain moves them, too.
+std::unique_ptr<ContactNetwork> SphereNetwork::part(const std::vector<int>& free) const {
+  auto out = std::make_unique<SphereNetwork>(*this);
+  out->kept_ = {};
+  out->free_ = 0;
+  auto next = free.begin();
+  for (Sphere& s : out->spheres_) {
+    if (s.unknown < 0) continue;
+    const bool stays = next != free.end() && *next == s.unknown / 6;
+    if (stays) ++next;
+    s.unknown = stays ? 6 * out->free_++ : -1;
+  }
+  if (!strains()) std::erase_if(out->pairs_, [&](const Pair& p) { return !out->any_free(p); });
+  return out;
+}
+
+void SphereNetwork::adopt(const ContactNetwork& part) {
+  const auto& from = dynamic_cast<const SphereNetwork&>(part);
+  committed_ = from.committed_;
+  turned_ = from.turned_;
+  cell_ = from.cell_;
+  gradient_ = from.gradient_;
+  std::erase_if(pairs_, [&](const Pair& p) { return from.any_free(p); });
+  std::vector<Pair> all;
+  std::set_union(from.pairs_.begin(), from.pairs_.end(), pairs_.begin(), pairs_.end(),
+                 std::back_inserter(all),
+                 [](const Pair& a, const Pair& b) { return order(a) < order(b); });
+  pairs_.swap(all);
+  search(Vector::Zero(size()));
 }
 
 void SphereNetwork::ensure_candidates(const Vector& z) {

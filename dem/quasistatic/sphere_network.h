@@ -4,6 +4,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,8 @@ class SphereNetwork final : public ContactNetwork {
   Snapshot snapshot(const Snapshot& like) override;
   void strain(const Eigen::Matrix3d& gradient) override { gradient_ = gradient; }
   bool strains() const override { return !gradient_.isZero(0); }
+  std::unique_ptr<ContactNetwork> part(const std::vector<int>& free) const override;
+  void adopt(const ContactNetwork& part) override;
 
  private:
   struct Pair {
@@ -46,6 +49,7 @@ class SphereNetwork final : public ContactNetwork {
     Eigen::Matrix<double, 12, 12> slopes;
   };
 
+  bool any_free(const Pair& pair) const;
   void add_contact_forces(double& sum, int& contacts) const override;
   Vec3 displacement(int grain, const Vector& z) const;
   Vec3 turn(int grain, const Vector& z) const;

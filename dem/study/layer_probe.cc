@@ -54,8 +54,7 @@ constexpr double kMostLost = 0.2;
 
 LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, double height,
                          double strain)
-    : layer_(layer),
-      settings_(settings),
+    : settings_(settings),
       strain_(strain),
       low_(kSlabLow * height),
       high_(kSlabHigh * height),
@@ -79,12 +78,32 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
     };
     if (!held(c.i) || (c.j >= 0 && !held(c.j))) return false;
     if (c.j < 0) return true;  // with a wall
-    const double z = layer_.grains[static_cast<std::size_t>(c.i)].position.z();
-    if (share_within(z, second_place(layer_, c).z(), low_, high_) > kMostLost)
+    const double z = held_.grains[static_cast<std::size_t>(c.i)].position.z();
+    if (share_within(z, second_place(held_, c).z(), low_, high_) > kMostLost)
       refuse_thin_layer(height);
     return true;
   });
-  before_ = stress_of(layer, Eigen::Matrix3d::Zero());
+}
+
+void LayerProber::fail(const std::string& what, const std::exception& failure) const {
+  throw ComputationFailed(fmt::format(
+      "load.probe_strain = {:g}, {}: {}; or set load.probe_strain = 0, or a smaller one", strain_,
+      what, failure.what()));
+}
+
+bool LayerProber::settle(const std::function<bool(double)>& go_on) {
+  QuasistaticSettings how;
+  how.unbalanced_force_ratio = kProbeBalance;
+  how.go_on = go_on;
+  try {
+    held_ = relax(held_, settings_, held_.gravity, {}, how).state;
+  } catch (const RelaxationStopped&) {
+    return false;
+  } catch (const std::exception& failure) {
+    fail("before any strain", failure);
+  }
+  before_ = stress_of(held_, Eigen::Matrix3d::Zero());
+  return true;
 }
 
 int LayerProber::count() { return 2 * static_cast<int>(kLayerDirections.size()); }
@@ -114,10 +133,7 @@ std::optional<ProbeOutcome> LayerProber::probe(int number,
   } catch (const RelaxationStopped&) {
     return std::nullopt;
   } catch (const std::exception& failure) {
-    throw ComputationFailed(
-        fmt::format("load.probe_strain = {:g}, along {}: {}; or set "
-                    "load.probe_strain = 0, or a smaller one",
-                    strain_, direction(number), failure.what()));
+    fail("along " + direction(number), failure);
   }
 }
 
@@ -128,7 +144,7 @@ Eigen::Matrix3d LayerProber::stress_of(const Snapshot& state,
     if (c.j < 0) continue;
     const auto i = static_cast<std::size_t>(c.i);
     const double share =
-        share_within(layer_.grains[i].position.z(), second_place(layer_, c).z(), low_, high_);
+        share_within(held_.grains[i].position.z(), second_place(held_, c).z(), low_, high_);
     if (share == 0) continue;
     sum += share * c.force * (second_place(state, c) - state.grains[i].position).transpose();
   }
@@ -142,8 +158,8 @@ Eigen::Matrix3d LayerProber::gradient_of(const Snapshot& state,
   double volume = 0, height = 0, square = 0;
   Vec3 moved = Vec3::Zero(), slope = Vec3::Zero();
   const auto each = [&](const auto& add) {
-    for (std::size_t k = 0; k < layer_.grains.size(); ++k) {
-      const Grain& g = layer_.grains[k];
+    for (std::size_t k = 0; k < held_.grains.size(); ++k) {
+      const Grain& g = held_.grains[k];
       const double z = g.position.z();
       if (g.fixed || z < low_ || z >= high_) continue;
       add(g.volume, z, Vec3(state.grains[k].position - g.position - across * g.position));

@@ -79,8 +79,9 @@ class SpaceLoadRun final : public ArchivedRun {
   std::unique_ptr<Engine> engine_;
   Phases<Phase> phases_;
   std::optional<Snapshot> unloaded_, loaded_;
-  int probed_ = 0;   // probes that are done
-  Reached reached_;  // by Newton's method
+  std::optional<LayerProber> prober_;  // settled; made anew after a resume
+  int probed_ = 0;                     // probes that are done
+  Reached reached_;                    // by Newton's method
 };
 
 SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
@@ -182,15 +183,23 @@ void SpaceLoadRun::decide_rest() {
   }
 }
 
-// One more probe, or the load. Told to stop it leaves the run as it was.
+// The rest before the probes, one more probe, or the load. Told to stop it leaves the run as it
+// was.
 void SpaceLoadRun::probe() {
-  if (probed_ == LayerProber::count()) return begin_load();
-  const LayerProber prober(*unloaded_, settings_, space_surface(*unloaded_, setup_.packing),
-                           setup_.load.probe_strain);
-  const auto outcome = prober.probe(probed_, watch_of("probe"));
+  if (probed_ == LayerProber::count()) {
+    prober_.reset();
+    return begin_load();
+  }
+  if (!prober_) {
+    LayerProber prober(*unloaded_, settings_, space_surface(*unloaded_, setup_.packing),
+                       setup_.load.probe_strain);
+    if (prober.settle(watch_of("probe"))) prober_.emplace(std::move(prober));
+    return;
+  }
+  const auto outcome = prober_->probe(probed_, watch_of("probe"));
   if (!outcome) return;
   StateProbes all = probes_of(unloaded_->attributes, kProbedLayer);
-  all.stress = prober.stress_before();
+  all.stress = prober_->stress_before();
   const std::string direction = LayerProber::direction(probed_);
   const auto known = std::find_if(all.probes.begin(), all.probes.end(),
                                   [&](const Probe& p) { return p.direction == direction; });

@@ -110,6 +110,49 @@ TEST(SphereNetwork, TangentIsTheDerivativeOfTheResidual) {
   EXPECT_LE(wrong, columns / 200) << columns;
 }
 
+// A part is the network with the other grains held, and what it commits becomes the network's.
+TEST(SphereNetwork, PartsAreTheNetworkWithTheOthersHeld) {
+  Random random(13);
+  for (int trial = 0; trial < 24; ++trial) {
+    const Cluster c =
+        cluster(random, laws()[trial % laws().size()], trial % 3 == 0, trial % 2 == 0);
+    SphereNetwork network(c.start, c.materials), whole(c.start, c.materials);
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    if (trial % 4 < 2) gradient = 1e-4 * Eigen::Matrix3d::Random();
+    const Vector first = random_step(random, network.size(), 1e-3);
+    for (SphereNetwork* one : {&network, &whole}) {
+      one->set_load({0, 0, -9.81});
+      one->set_scale(10);
+      one->commit(first);
+      one->strain(gradient);
+    }
+    std::vector<int> free;
+    for (int k = 0; k < network.free_grains(); ++k)
+      if (random.uniform() < 0.4) free.push_back(k);
+    const auto part = network.part(free);
+    ASSERT_EQ(part->size(), 6 * static_cast<int>(free.size()));
+    const Vector of_part = random_step(random, part->size(), 1e-3);
+    Vector z = Vector::Zero(network.size()), r, all;
+    for (std::size_t k = 0; k < free.size(); ++k)
+      z.segment<6>(6 * free[k]) = of_part.segment<6>(static_cast<Eigen::Index>(6 * k));
+    ASSERT_TRUE(part->residual(of_part, r) && whole.residual(z, all));
+    const double most = all.cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < free.size(); ++k)
+      EXPECT_LT(
+          (r.segment<6>(static_cast<Eigen::Index>(6 * k)) - all.segment<6>(6 * free[k])).norm(),
+          1e-13 * most);
+    part->commit(of_part);
+    whole.commit(z);
+    network.adopt(*part);
+    EXPECT_FALSE(network.strains());
+    const Vector next = random_step(random, network.size(), 1e-3);
+    for (const Vector& at : {Vector(Vector::Zero(network.size())), next}) {
+      ASSERT_TRUE(network.residual(at, r) && whole.residual(at, all));
+      EXPECT_LT((r - all).norm(), 1e-12 * most) << trial;
+    }
+  }
+}
+
 TEST(SphereNetwork, InternalForcesAndMomentsSumToZero) {
   Random random(3);
   for (int trial = 0; trial < 12; ++trial) {

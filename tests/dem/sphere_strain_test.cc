@@ -134,7 +134,8 @@ const Layer& layer() {
 
 TEST(SphereStrain, ALayerIsStrainedAsItsCellAndHasAPotential) {
   const Layer& l = layer();
-  const LayerProber prober(l.rest, l.settings, l.height, kStrain);
+  LayerProber prober(l.rest, l.settings, l.height, kStrain);
+  ASSERT_TRUE(prober.settle(nullptr));
   ASSERT_EQ(LayerProber::count(), 12);
   const double stiff = 5e6 * 0.1;
   Eigen::Matrix3d modulus = Eigen::Matrix3d::Zero();
@@ -161,7 +162,8 @@ TEST(SphereStrain, ALayerIsStrainedAsItsCellAndHasAPotential) {
 TEST(SphereStrain, SmallStrainsAreLinear) {
   const Layer& l = layer();
   const auto change = [&](double strain) {
-    const LayerProber prober(l.rest, l.settings, l.height, strain);
+    LayerProber prober(l.rest, l.settings, l.height, strain);
+    EXPECT_TRUE(prober.settle(nullptr));
     const auto forth = prober.probe(4, nullptr), back = prober.probe(5, nullptr);
     return Eigen::Matrix3d((forth->stress - back->stress) / strain);
   };
@@ -171,8 +173,11 @@ TEST(SphereStrain, SmallStrainsAreLinear) {
 
 TEST(SphereStrain, IsToldToStopAndRefusesWhatItDoesNotKnow) {
   const Layer& l = layer();
-  const LayerProber prober(l.rest, l.settings, l.height, kStrain);
-  EXPECT_FALSE(prober.probe(0, [](double) { return false; }).has_value());
+  LayerProber prober(l.rest, l.settings, l.height, kStrain);
+  const auto stop = [](double) { return false; };
+  EXPECT_FALSE(prober.settle(stop));
+  ASSERT_TRUE(prober.settle(nullptr));
+  EXPECT_FALSE(prober.probe(0, stop).has_value());
   const auto complaint = [&](const Snapshot& s, const Eigen::Matrix3d& gradient) {
     try {
       strain(s, l.settings, gradient, {});
