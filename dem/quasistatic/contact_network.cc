@@ -34,6 +34,14 @@ double ContactNetwork::mean_resultant(const Vector& r) const {
   return sum / free_;
 }
 
+double ContactNetwork::mean_moment(const Vector& r) const {
+  double sum = 0;
+  for (int k = 0; k < size(); k += per_grain()) {
+    sum += dim_ == 2 ? std::fabs(r[k + 2]) : r.segment<3>(k + 3).norm();
+  }
+  return sum / free_;
+}
+
 ContactNetwork::Balance ContactNetwork::balance() {
   const Vector zero = Vector::Zero(size());
   Vector r;

@@ -66,10 +66,11 @@ class ContactNetwork {
   /// Whether a strain waits for its commit.
   virtual bool strains() const { return false; }
 
-  /// A copy in which of the free grains those with these numbers alone, ascending, are free; what
-  /// strains this one strains it. Throws std::logic_error in the plane.
+  /// A copy, with load, scale, committed state and the strain that waits, in which only the free
+  /// grains with these numbers, ascending, are free. Throws std::logic_error in the plane.
   virtual std::unique_ptr<ContactNetwork> part(const std::vector<int>& free) const;
-  /// The committed state of such a part becomes the one of this network.
+  /// The committed state of such a part becomes the one of this network, which must not have
+  /// changed since.
   virtual void adopt(const ContactNetwork& part);
 
   struct Balance {
@@ -81,8 +82,9 @@ class ContactNetwork {
   };
   /// Of the committed state, from the same forces as the residual.
   Balance balance();
-  /// Mean size of the resultants in a residual.
+  /// Mean size of the resultants in a residual, and of the moments over the radii.
   double mean_resultant(const Vector& r) const;
+  double mean_moment(const Vector& r) const;
 
   /// The committed state as a snapshot: `like` with new positions, velocities 0 and contacts.
   virtual Snapshot snapshot(const Snapshot& like) = 0;

@@ -28,10 +28,16 @@ constexpr double kCulprit = 0.03;
 // A step of the flow, and all grains beside loose ones, are solved to this share of the residual.
 constexpr double kFlowTolerance = 1e-2;
 constexpr int kFlowIterations = 25, kMostFlowSteps = 300;
-// Loose is a grain that a step of Newton's method moves by this, in radii or radians, and by so
-// many times what it moves all but this share of the grains by.
+// Loose is a grain that a step of Newton's method moves by more than this, in radii or radians, and
+// by more than so many times what it moves all but this share of the grains by.
 constexpr double kLooseStep = 1e-3, kLooseTimes = 30, kLooseShare = 0.01;
-// So often loose grains are settled apart.
+// At most this share of the grains is settled apart, found in so many turns.
+constexpr double kMostLoose = 0.05;
+constexpr int kMostTurns = 10;
+// Where steps are dear, enough is this share of what is enough elsewhere: a small load on many
+// grains must not be lost in what they lack of balance.
+constexpr double kDearShare = 0.1;
+// At most so often loose grains are settled apart on the way to one equilibrium.
 constexpr int kMostTimesApart = 20;
 
 /// How far each grain goes in z, in radii or radians.
@@ -94,13 +100,15 @@ void Equilibrium::reset_drag() {
 bool Equilibrium::settle(bool at_once) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(network_.size());
   Eigen::VectorXd r;
+  int times_apart = 0;
+  bool ignores = about_loose_ == Loose::ignored;
   for (int k = 0; k < kMostFlowSteps; ++k) {
     if (go_on_) go_on_();
     const bool free = drag_.maxCoeff() == 0;
     if (!network_.residual(zero, r)) return false;
     const double now = r.cwiseAbs().maxCoeff();
     if (!network_.strains() && (now <= tolerance() || (k > 0 && enough(r)))) return true;
-    const bool fully = free && about_loose_ != Loose::told;
+    const bool fully = free && about_loose_ != Loose::reported;
     const double wanted = fully ? tolerance() : std::max(tolerance(), kFlowTolerance * now);
     const int limit = free ? settings_.max_iterations : kFlowIterations;
     Eigen::VectorXd z = zero;
@@ -109,7 +117,7 @@ bool Equilibrium::settle(bool at_once) {
     problem_.stop = nullptr;
     if (free) {
       problem_.enough = [this](const Eigen::VectorXd& q) { return enough(q); };
-      if (about_loose_ != Loose::ignored) {
+      if (!ignores) {
         problem_.stop = [this](const Eigen::VectorXd& step) {
           loose_ = loose_in(step);
           return !loose_.empty();
@@ -118,20 +126,21 @@ bool Equilibrium::settle(bool at_once) {
     }
     const NewtonReport report = newton(problem_, {wanted, limit, kMostStep, large_}, *solver_, z);
     iterations_ += report.iterations;
-    const bool done = report.converged ||
-                      (problem_.enough && problem_.residual(z, r) && r.allFinite() && enough(r));
+    const bool done = report.converged || (large_ && free && report.iterations > 0 &&
+                                           problem_.residual(z, r) && r.allFinite() && enough(r));
     const bool good = done && z.cwiseAbs().maxCoeff() <= kMostStep;
     if (good) {
       network_.commit(z);
       ++steps_;
+      loose_.clear();
       if (free) return true;
       drag_ *= report.iterations <= kQuick ? kQuickEase : kEase;
       drag_ = (drag_.array() < kLeastDrag).select(0.0, drag_);
       continue;
     }
     if (!loose_.empty()) {
-      if (about_loose_ == Loose::told) return false;
-      if (times_apart_ == kMostTimesApart || !settle_apart()) about_loose_ = Loose::ignored;
+      if (about_loose_ == Loose::reported) return false;
+      ignores = times_apart++ == kMostTimesApart || !settle_apart();
       continue;
     }
     if (at_once) return false;
@@ -157,16 +166,19 @@ std::vector<int> Equilibrium::loose_in(const Eigen::VectorXd& step) const {
   return out;
 }
 
-/// First all others while the loose grains are held, then these between the others. What it reached
-/// is committed when it fails, too. Afterwards the loose ones may be firm, and all are for Newton.
+/// First all others while the loose grains are held, then these between the others; what comes to
+/// rest is committed. Afterwards the loose ones may be firm, and all are for Newton's method again.
 bool Equilibrium::settle_apart() {
   ++times_apart_;
   std::vector<int> loose = loose_;
-  for (bool all_known = false; !all_known;) {
+  bool all_known = false;
+  for (int turn = 0; !all_known; ++turn) {
+    const auto most = static_cast<std::size_t>(kMostLoose * network_.free_grains());
+    if (turn == kMostTurns || loose.size() > most) return false;
     const std::vector<int> firm = others(network_.free_grains(), loose);
     const auto bulk = network_.part(firm);
     Equilibrium of_bulk(*bulk, settings_, go_on_);
-    of_bulk.about_loose_ = Loose::told;
+    of_bulk.about_loose_ = Loose::reported;
     const bool rests = settle_part(*bulk, of_bulk, true);
     all_known = of_bulk.loose_.empty();
     if (all_known && !rests) return false;
@@ -190,8 +202,9 @@ bool Equilibrium::settle_part(ContactNetwork& part, Equilibrium& of_part, bool a
 /// The mean resultant meets the ratio asked for, and no grain is far above it. Newton aims lower,
 /// but disks that form a roller bearing creep on the last digits and never get there.
 bool Equilibrium::enough(const Eigen::VectorXd& r) const {
-  return network_.mean_resultant(r) <= 0.5 * settings_.unbalanced_force_ratio &&
-         r.cwiseAbs().maxCoeff() <= kMostOver * settings_.unbalanced_force_ratio;
+  const double ratio = (large_ ? kDearShare : 1) * settings_.unbalanced_force_ratio;
+  return network_.mean_resultant(r) <= 0.5 * ratio && network_.mean_moment(r) <= ratio &&
+         r.cwiseAbs().maxCoeff() <= kMostOver * ratio;
 }
 
 /// More drag on the grains that hold up Newton's method, which stopped at z.

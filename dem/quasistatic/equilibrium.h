@@ -2,8 +2,8 @@
 //
 // Newton's method alone, or, where contacts rearrange, a flow to the next equilibrium: each grain
 // is held back by a drag against its displacement (implicit Euler of overdamped motion), which
-// makes every step solvable, and the drag is taken away as it succeeds. Either way a step ends at
-// the tolerance or not at all.
+// makes every step solvable, and the drag is taken away as it succeeds. Either way it ends at the
+// tolerance, or well below the ratio asked for where further steps are slow or dear, or not at all.
 //
 // Loose grains: in a large packing a few hang so softly that a force of the tolerance moves them
 // far. What they do is not linear, and Newton's method would shorten the steps of all grains for
@@ -27,12 +27,14 @@ class Equilibrium {
   /// stop; empty: never asked.
   Equilibrium(ContactNetwork& network, const QuasistaticSettings& settings,
               std::function<void()> go_on);
+  Equilibrium(const Equilibrium&) = delete;
+  Equilibrium& operator=(const Equilibrium&) = delete;
 
   /// Residuals are measured in mean contact forces, or in mean resultants while those are larger.
   /// No drag is left.
   void rescale();
-  /// By Newton's method alone (`at_once`) or with drag where it is needed. Commits what it reaches;
-  /// false: it came to no rest.
+  /// By Newton's method alone (`at_once`; loose grains with drag all the same) or with drag where
+  /// it is needed. Commits what it reaches; false: it came to no rest.
   bool settle(bool at_once);
 
   int steps() const { return steps_; }
@@ -54,9 +56,9 @@ class Equilibrium {
   std::function<void()> go_on_;
   bool large_ = false;  // equations are solved by iteration
   std::unique_ptr<LinearSolver> solver_;
-  /// What is done about loose grains: a large packing settles them apart, of its part, in which the
-  /// known ones are held, further ones are only told.
-  enum class Loose { ignored, told, apart } about_loose_ = Loose::ignored;
+  /// What is done about loose grains: a large packing settles them apart. Of its bulk, in which
+  /// those that are known are held, further ones are only reported.
+  enum class Loose { ignored, reported, apart } about_loose_ = Loose::ignored;
   std::vector<int> loose_;  // numbers of free grains, ascending
   SparseProblem problem_;
   Eigen::VectorXd drag_, unit_;  // share of the contacts' stiffness, and that stiffness

@@ -121,6 +121,7 @@ class IterativeSolver final : public LinearSolver {
     if (!(solver_.error() <= most_left)) return false;
     last_ = std::max<Eigen::Index>(solver_.iterations(), 1);
     least_ = least_ == 0 ? last_ : std::min(least_, last_);
+    if (solver_.info() != Eigen::Success) least_ = last_ = 0;  // it does not serve
     return true;
   }
 

@@ -27,7 +27,7 @@ std::unique_ptr<LinearSolver> make_direct_solver();
 /// definite tangents that friction makes unsymmetric here and there.
 std::unique_ptr<LinearSolver> make_iterative_solver();
 
-/// Of the residual; Newton's steps lower theirs by no more than that.
+/// Of the right side, of a solution by iteration that is not taken for want of a better one.
 inline constexpr double kLinearTolerance = 1e-4;
 
 }  // namespace grainfield::dem

@@ -31,6 +31,7 @@ NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings
   };
   core.solve = [&](const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     solver.solve(rhs, x);
+    if (!x.allFinite()) return;
     const double longest = x.cwiseAbs().maxCoeff();
     const bool doubtful = hardly || longest > settings.most_step;
     if (doubtful && problem.stop && problem.stop(x)) {
@@ -41,10 +42,10 @@ NewtonReport newton(const SparseProblem& problem, const SparseSettings& settings
   };
   core.enough = [&](const Eigen::VectorXd& r) {
     const double now = r.norm();
-    const bool slow = last > 0 && now > kSlow * last;
-    hardly = last > 0 && now > kHardly * last;
+    const bool moved = last > 0, slow = moved && now > kSlow * last;
+    hardly = moved && now > kHardly * last;
     last = now;
-    return (slow || settings.dear) && problem.enough && problem.enough(r);
+    return (slow || (settings.dear && moved)) && problem.enough && problem.enough(r);
   };
   NewtonSettings how;
   how.tolerance = settings.tolerance;

@@ -28,7 +28,7 @@ struct SparseSettings {
   double tolerance = 1e-10;  ///< largest |r| to be reached
   int max_iterations = 50;
   double most_step = 0.25;  ///< a longer step (largest |dz|) is shortened
-  bool dear = false;        ///< linear equations are: what is enough is not bettered
+  bool dear = false;        ///< a step is: after the first one what is enough is not bettered
 };
 
 /// Improves z, the first guess. Without convergence z is the last iterate. `solver` serves one

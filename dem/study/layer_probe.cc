@@ -86,9 +86,10 @@ LayerProber::LayerProber(const Snapshot& layer, const EngineSettings& settings, 
 }
 
 void LayerProber::fail(const std::string& what, const std::exception& failure) const {
-  throw ComputationFailed(fmt::format(
-      "load.probe_strain = {:g}, {}: {}; or set load.probe_strain = 0, or a smaller one", strain_,
-      what, failure.what()));
+  throw ComputationFailed(
+      fmt::format("load.probe_strain = {:g}, {}: {}; or set "
+                  "load.probe_strain = 0{}",
+                  strain_, what, failure.what(), before_ ? ", or a smaller one" : ""));
 }
 
 bool LayerProber::settle(const std::function<bool(double)>& go_on) {
@@ -112,8 +113,14 @@ std::string LayerProber::direction(int number) {
   return kLayerDirections[static_cast<std::size_t>(number / 2)];
 }
 
+const Eigen::Matrix3d& LayerProber::stress_before() const {
+  if (!before_) throw std::logic_error("LayerProber: not settled");
+  return *before_;
+}
+
 std::optional<ProbeOutcome> LayerProber::probe(int number,
                                                const std::function<bool(double)>& go_on) const {
+  stress_before();
   const Eigen::Matrix3d imposed =
       imposed_gradient(direction(number), number % 2 == 0 ? strain_ : -strain_);
   QuasistaticSettings how;

@@ -38,11 +38,12 @@ class LayerProber {
   /// Brings the grains between the held ones to the balance that probes end with. False when go_on
   /// said no (quasistatic.h). Throws ComputationFailed naming load.probe_strain.
   bool settle(const std::function<bool(double)>& go_on);
-  /// Stress in the slab before any probe, tension positive, Pa. Settled, as below.
-  const Eigen::Matrix3d& stress_before() const { return before_; }
+  /// Stress in the slab before any probe, tension positive, Pa. Throws std::logic_error before
+  /// settle.
+  const Eigen::Matrix3d& stress_before() const;
   /// The direction of the probe with this number.
   static std::string direction(int number);
-  /// That probe's outcome; none when go_on said no. Throws as settle.
+  /// That probe's outcome; none when go_on said no. Throws as settle and stress_before.
   std::optional<ProbeOutcome> probe(int number, const std::function<bool(double)>& go_on) const;
 
  private:
@@ -50,13 +51,13 @@ class LayerProber {
   Eigen::Matrix3d stress_of(const Snapshot& state, const Eigen::Matrix3d& gradient) const;
   Eigen::Matrix3d gradient_of(const Snapshot& state, const Eigen::Matrix3d& imposed) const;
 
-  /// Throws ComputationFailed in the words of the case.
+  /// Throws ComputationFailed naming load.probe_strain.
   [[noreturn]] void fail(const std::string& what, const std::exception& failure) const;
 
   const EngineSettings& settings_;
   double strain_, low_, high_, area_;
-  Snapshot held_;  // with the held grains fixed
-  Eigen::Matrix3d before_ = Eigen::Matrix3d::Zero();
+  Snapshot held_;                          // with the held grains fixed
+  std::optional<Eigen::Matrix3d> before_;  // none: not yet settled
 };
 
 }  // namespace grainfield::dem

@@ -3,7 +3,7 @@
 #   disks            10,000 settled ones beside LAMMPS gran/hooke/history, the same packing and law
 #   heptagons        5,000 settled ones, all awake, beside LAMMPS' disks
 #   spheres, hertz   10,000 settled ones beside LAMMPS' own, linear and Hertz-Mindlin
-#   superellipsoids  1,609 packed ones, Hertz' elliptic law, beside LAMMPS' disks
+#   superellipsoids  1,609 packed ones, Hertz' elliptic law, beside LAMMPS' disks; super_10k 10,000
 # The ratios are held against those of this processor in figures/PROCESSOR.csv: one that is more than
 # 10 % lower is named, and the exit code is 1. --keep writes them there instead.
 # Usage: tests/benchmarks/against_lammps.sh [--keep] [build/release [ROUNDS]]
@@ -51,7 +51,7 @@ IN
 export GRAINFIELD_SPHERES=$work/spheres.h5  # settled once, read by every round
 "$program" --benchmark_filter='spheres_10k/1/' --benchmark_min_time=0.01 > /dev/null 2>&1
 export GRAINFIELD_PACKINGS=$work  # likewise
-"$shapes" --benchmark_filter=superellipsoids_hertz/1/ --benchmark_min_time=0.01 > /dev/null 2>&1
+"$shapes" --benchmark_filter='superellipsoids_hertz(_10k)?/1/' --benchmark_min_time=0.01 > /dev/null 2>&1
 spheres() { # NAME, file of grains, pair style with its numbers
   awk -F, '{n++; line[n]=sprintf("%d 1 %s %s %s %s %s", n, 2*$4, 2500, $1, $2, $3)}
     END {print "spheres\n\n" n " atoms\n1 atom types\n\n-0.01 0.21 xlo xhi\n-0.01 0.21 ylo yhi\n-0.01 0.3 zlo zhi\n\nAtoms\n"
@@ -99,7 +99,9 @@ for round in $(seq "$rounds"); do
   own hertz_spheres_10k 1 >> "$work/hertz_one"; own hertz_spheres_10k 2 >> "$work/hertz_two"
   own superellipsoids_hertz 1 "$shapes" >> "$work/super_one"
   own superellipsoids_hertz 2 "$shapes" >> "$work/super_two"
-  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two"); LAMMPS' spheres $(tail -1 "$work/lammps_spheres"), spheres 1 thread $(tail -1 "$work/spheres_one"), 2 threads $(tail -1 "$work/spheres_two"); LAMMPS' Hertz spheres $(tail -1 "$work/lammps_hertz"), Hertz spheres 1 thread $(tail -1 "$work/hertz_one"), 2 threads $(tail -1 "$work/hertz_two"); superellipsoids 1 thread $(tail -1 "$work/super_one"), 2 threads $(tail -1 "$work/super_two") million grain-steps/s"
+  own superellipsoids_hertz_10k 1 "$shapes" >> "$work/many_one"
+  own superellipsoids_hertz_10k 2 "$shapes" >> "$work/many_two"
+  echo "round $round: LAMMPS $(tail -1 "$work/lammps"), disks 1 thread $(tail -1 "$work/one"), 2 threads $(tail -1 "$work/two"), heptagons 1 thread $(tail -1 "$work/seven"), 2 threads $(tail -1 "$work/seven_two"); LAMMPS' spheres $(tail -1 "$work/lammps_spheres"), spheres 1 thread $(tail -1 "$work/spheres_one"), 2 threads $(tail -1 "$work/spheres_two"); LAMMPS' Hertz spheres $(tail -1 "$work/lammps_hertz"), Hertz spheres 1 thread $(tail -1 "$work/hertz_one"), 2 threads $(tail -1 "$work/hertz_two"); superellipsoids 1 thread $(tail -1 "$work/super_one"), 2 threads $(tail -1 "$work/super_two"), 10,000 of them 1 thread $(tail -1 "$work/many_one"), 2 threads $(tail -1 "$work/many_two") million grain-steps/s"
 done
 ratios=$work/ratios.csv
 echo "scene,beside,million_grain_steps_per_s,ratio,two_threads_over_one" > "$ratios"
@@ -112,6 +114,7 @@ line heptagons disks lammps seven seven_two
 line spheres spheres lammps_spheres spheres_one spheres_two
 line hertz hertz lammps_hertz hertz_one hertz_two
 line superellipsoids disks lammps super_one super_two
+line super_10k disks lammps many_one many_two
 column -s, -t < "$ratios" 2>/dev/null || cat "$ratios"
 processor=$(awk -F': ' '/^model name/ {print $2; exit}' /proc/cpuinfo | tr -cs 'A-Za-z0-9.\n' '_')
 stored=$here/figures/$processor.csv
