@@ -18,7 +18,7 @@ constexpr double kPivotThreshold = 0.01;
 constexpr int kMostIterations = 500;
 // What so many iterations may leave of the right side where a fresh preconditioner does no better:
 // Newton's method gets on with it.
-constexpr double kMostLeft = 0.1;
+constexpr double kMostLeft = 0.5;
 // A preconditioner of an earlier matrix is made anew when it needs so many iterations more than it
 // has: making one takes as long as some hundred of them.
 constexpr int kMostMore = 50;

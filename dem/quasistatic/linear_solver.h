@@ -21,7 +21,7 @@ class LinearSolver {
 
 /// Sparse unsymmetric factors of Eigen; the order of elimination stays while the pattern does.
 std::unique_ptr<LinearSolver> make_direct_solver();
-/// BiCGSTAB to kLinearTolerance of the right side, or where that takes too long to a tenth of it,
+/// BiCGSTAB to kLinearTolerance of the right side, or where that takes too long to half of it,
 /// preconditioned by an incomplete Cholesky
 /// factorization of the symmetric part, which later matrices use while it serves them. For negative
 /// definite tangents that friction makes unsymmetric here and there.
