@@ -2,13 +2,12 @@
 // from.
 //
 // Grains whose centres are within a mean diameter of the floor, or of the surface, are held, and
-// the others come to rest between them first, since a strain changes forces by little more than
-// what a layer at rest may lack of balance. All grains and the edges of the cell move by a
-// homogeneous displacement gradient, the grains between the held ones relax, and stress and
-// displacement gradient are read from the slab in the middle: of its contacts, those whose branch
-// crosses it by the share within, and along z by regression of its grains' displacements on their
-// height (the layer is stiffer below than above, so it does not strain as its ends are moved);
-// along x and y the cell says the gradient.
+// the others come to rest between them first: what a layer lacks of balance is then in no probe.
+// All grains and the edges of the cell move by a homogeneous displacement gradient, the grains
+// between the held ones relax, and stress and displacement gradient are read from the slab in the
+// middle: of its contacts, those whose branch crosses it by the share within, and along z by
+// regression of its grains' displacements on their height (the layer is stiffer below than above,
+// so it does not strain as its ends are moved); along x and y the cell says the gradient.
 #pragma once
 #include <exception>
 #include <functional>

@@ -6,14 +6,17 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "dem/engine/engine.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
+#include "dem/study/layer_probe.h"
 
 namespace grainfield::benchmarks {
 namespace {
@@ -133,26 +136,60 @@ dem::Snapshot copied(const dem::Snapshot& layer, int n) {
   return out;
 }
 
-// As point-load-3d has its spheres.
-void small_load_on_a_layer_of_a_run(benchmark::State& state) {
+// Of GRAINFIELD_LAYER, FILE:GROUP, the layer and GRAINFIELD_COPIES by as many, with spheres as
+// point-load-3d has them; none where it is not set.
+struct RunLayer {
+  dem::Snapshot layer;
+  dem::EngineSettings settings;
+};
+std::optional<RunLayer> layer_of_a_run(benchmark::State& state) {
   const char* place = std::getenv("GRAINFIELD_LAYER");
   if (place == nullptr) {
     state.SkipWithError("GRAINFIELD_LAYER: not set");
-    return;
+    return std::nullopt;
   }
   const std::string text = place;
   const std::size_t colon = text.rfind(':');
   const char* copies = std::getenv("GRAINFIELD_COPIES");
-  const dem::Snapshot layer =
-      copied(dem::read_snapshot(text.substr(0, colon), text.substr(colon + 1)),
-             copies == nullptr ? 1 : std::stoi(copies));
-  dem::EngineSettings settings = hertz_settings(1);
+  RunLayer out{copied(dem::read_snapshot(text.substr(0, colon), text.substr(colon + 1)),
+                      copies == nullptr ? 1 : std::stoi(copies)),
+               hertz_settings(1)};
   const char* young = std::getenv("GRAINFIELD_YOUNG");
-  settings.law = dem::HertzLaw{young == nullptr ? 2e7 : std::stod(young), 0.3, 0.3};
-  settings.cell = layer.cell;
-  load(state, layer, settings, 1e-8);
+  out.settings.law = dem::HertzLaw{young == nullptr ? 2e7 : std::stod(young), 0.3, 0.3};
+  out.settings.cell = out.layer.cell;
+  return out;
+}
+
+void small_load_on_a_layer_of_a_run(benchmark::State& state) {
+  const auto run = layer_of_a_run(state);
+  if (run) load(state, run->layer, run->settings, 1e-8);
 }
 BENCHMARK(small_load_on_a_layer_of_a_run)->Unit(benchmark::kSecond)->Iterations(1);
+
+// The rest before the strains of 1e-6 (settle_s), and four of the twelve (strain_s: the mean). Its
+// surface is taken for that of its highest sphere.
+void strains_of_a_layer_of_a_run(benchmark::State& state) {
+  const auto run = layer_of_a_run(state);
+  if (!run) return;
+  double height = 0;
+  for (const dem::Grain& g : run->layer.grains)
+    height = std::max(height, g.position.z() + g.radius);
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto since = [&](auto start) {
+    return std::chrono::duration<double>(now() - start).count();
+  };
+  constexpr int kStrains = 4;
+  for (auto _ : state) {
+    dem::LayerProber prober(run->layer, run->settings, height, 1e-6);
+    const auto start = now();
+    prober.settle(nullptr);
+    state.counters["settle_s"] = since(start);
+    const auto settled = now();
+    for (int k = 0; k < kStrains; ++k) benchmark::DoNotOptimize(prober.probe(k, nullptr));
+    state.counters["strain_s"] = since(settled) / kStrains;
+  }
+}
+BENCHMARK(strains_of_a_layer_of_a_run)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
 }  // namespace grainfield::benchmarks
