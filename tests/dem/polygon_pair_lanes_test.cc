@@ -98,9 +98,10 @@ TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
   const double dt = 1e-3;
   Random random(7);
   int apart = 0, touching = 0, left = 0, sliding = 0;
-  for (int n = 0; n < 150; ++n) {
-    const int least = n % 3 == 0 ? 8 : 3, most = n % 3 == 0 ? 40 : n % 3 == 1 ? 7 : 12;
-    const Pairs scene(random, least, most);
+  // Blocks of any length, of 8 numbers, of up to 12 with nobody of more than 8 corners, and others.
+  const int least[] = {8, 3, 6, 3}, most[] = {40, 7, 8, 12};
+  for (int n = 0; n < 152; ++n) {
+    const Pairs scene(random, least[n % 4], most[n % 4]);
     PlaneOverlapBatch overlaps;
     crossing_overlaps(scene.rows(), scene.batch, overlaps);
     PlaneForceBatch forces;
