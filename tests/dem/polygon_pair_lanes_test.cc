@@ -104,6 +104,8 @@ TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
     const Pairs scene(random, least[n % 4], most[n % 4]);
     PlaneOverlapBatch overlaps;
     crossing_overlaps(scene.rows(), scene.batch, overlaps);
+    PlaneOverlapBatch two;  // no width leaves more than another
+    crossing_overlaps_of<2>(scene.rows(), scene.batch, two);
     PlaneForceBatch forces;
     for (int k = 0; k < overlaps.count; ++k) {
       const int slot = overlaps.slot[k];
@@ -113,6 +115,7 @@ TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
     }
     area_forces(rule.law.area_numbers(rule.friction, dt), overlaps, forces);
     for (int slot = 0; slot < kBatch; ++slot) {
+      ASSERT_EQ(overlaps.state[slot], two.state[slot]) << n << " " << slot;
       PairFeature feature = scene.pairs[slot].feature;
       Overlap o;
       const int j = kBatch + slot;
