@@ -70,13 +70,16 @@ TEST(ContactList, MemoriesAreFoundAgainFromEitherSide) {
 TEST(ContactList, PairsOfLongRowsAreFoundAmongMany) {
   Random random(7);
   for (int seed = 0; seed < 20; ++seed) {
-    const int grains = 200;
+    const int grains = 200, awake = seed % 3 == 0 ? 200 : 150;
+    const bool sleepers_first = seed % 4 < 2;
     List list;
     list.clear();
     std::vector<std::vector<double>> sizes(grains, std::vector<double>(grains, 0));
-    for (int i = 0; i < grains; ++i) {
+    for (int i = 0; i < awake; ++i) {
       const double share = i < 3 ? 0.9 : 0.03;  // the first three are large
-      for (int j = i + 1; j < grains; ++j) {
+      for (int n = i + 1; n < grains; ++n) {
+        const int sleepers = grains - awake;
+        const int j = !sleepers_first ? n : n <= i + sleepers ? awake + n - i - 1 : n - sleepers;
         if (random.uniform() > share) continue;
         sizes[i][j] = 1 + i + 1000.0 * j;
         list.pairs.add({{sizes[i][j]}, j, {}});
@@ -88,7 +91,7 @@ TEST(ContactList, PairsOfLongRowsAreFoundAmongMany) {
     std::vector<std::int64_t> ids(grains);
     for (int i = 0; i < grains; ++i) ids[i] = (i * 37 + seed) % grains;  // another order
     PairsBefore<List::Pair> before;
-    before.take(list.pairs, ids, seed % 2 == 0);
+    before.take(list.pairs, ids, seed % 2 == 0, sleepers_first);
     for (int i = 0; i < grains; ++i) {
       for (int j = 0; j < grains; ++j) {
         if (i == j) continue;
@@ -154,21 +157,23 @@ TEST(ContactList, NonsenseFromAnImageIsSeen) {
   EXPECT_FALSE(list.fits(true, 2, 2, 0));
 }
 
-TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
+void blocks_share_the_work(bool sleepers_first) {
   Random random(3);
   for (const int threads : {1, 2, 3, 8}) {
     const int grains = 300, all = 330;  // 30 asleep behind
     List list;
     list.clear();
     for (int i = 0; i < grains; ++i) {
-      for (int n = 0; n < 3; ++n) {
-        const int j = i + 1 + static_cast<int>(40 * random.uniform());
+      std::vector<int> row;
+      for (int n = 0; n < 3; ++n) row.push_back(i + 1 + static_cast<int>(40 * random.uniform()));
+      if (sleepers_first) std::partition(row.begin(), row.end(), [](int j) { return j >= grains; });
+      for (const int j : row) {
         if (j < all) list.pairs.add({{1}, j, {}});
       }
       list.pairs.end_row();
     }
     list.finish();
-    list.divide(grains, threads);
+    list.divide(grains, threads, sleepers_first);
     EXPECT_EQ(list.blocks.first(0), 0);
     EXPECT_EQ(list.blocks.last(threads - 1), grains);
     std::vector<int> done(list.pairs.size(), 0), swept = done, summed = done, expected = done;
@@ -193,7 +198,10 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
         if (tail.row < 0) continue;
         EXPECT_TRUE(tail.before == 0 || inside.first[tail.before - 1] <= tail.row);
         EXPECT_TRUE(tail.before == inside.count || inside.first[tail.before] > tail.row);
-        for (int k = tail.from; k < list.pairs.last(tail.row); ++k) ++swept[k];
+        for (int k = tail.from; k < list.pairs.last(tail.row); ++k) {
+          ++swept[k];
+          EXPECT_TRUE(!sleepers_first || list.pairs[k].j < grains);
+        }
       }
       EXPECT_TRUE(list.blocks.across(rank).empty());
       const PairsInOrder& incoming = list.blocks.incoming(rank);
@@ -225,6 +233,11 @@ TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) {
     EXPECT_EQ(summed, expected);
   }
 }
+
+TEST(ContactList, BlocksShareTheWorkAndLoseNoPair) { blocks_share_the_work(false); }
+
+// Pairs with sleepers go side by side with the others, and only those with later blocks are left.
+TEST(ContactList, SleepersThatComeFirstAreInNoTail) { blocks_share_the_work(true); }
 
 TEST(ContactList, MarginsAreLeftByMovingAndByTurning) {
   Margin<2> m;

@@ -98,11 +98,14 @@ TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
   const double dt = 1e-3;
   Random random(7);
   int apart = 0, touching = 0, left = 0, sliding = 0;
-  for (int n = 0; n < 150; ++n) {
-    const int least = n % 3 == 0 ? 8 : 3, most = n % 3 == 0 ? 40 : n % 3 == 1 ? 7 : 12;
-    const Pairs scene(random, least, most);
+  // Blocks of any length, of 8 numbers, of up to 12 with nobody of more than 8 corners, and others.
+  const int least[] = {8, 3, 6, 3}, most[] = {40, 7, 8, 12};
+  for (int n = 0; n < 152; ++n) {
+    const Pairs scene(random, least[n % 4], most[n % 4]);
     PlaneOverlapBatch overlaps;
     crossing_overlaps(scene.rows(), scene.batch, overlaps);
+    PlaneOverlapBatch two;  // no width leaves more than another
+    crossing_overlaps_of<2>(scene.rows(), scene.batch, two);
     PlaneForceBatch forces;
     for (int k = 0; k < overlaps.count; ++k) {
       const int slot = overlaps.slot[k];
@@ -112,6 +115,7 @@ TEST_P(PolygonPairLanes, OverlapAndForceAreThoseOfOnePair) {
     }
     area_forces(rule.law.area_numbers(rule.friction, dt), overlaps, forces);
     for (int slot = 0; slot < kBatch; ++slot) {
+      ASSERT_EQ(overlaps.state[slot], two.state[slot]) << n << " " << slot;
       PairFeature feature = scene.pairs[slot].feature;
       Overlap o;
       const int j = kBatch + slot;

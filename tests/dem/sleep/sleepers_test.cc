@@ -120,17 +120,51 @@ TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {
   EXPECT_DOUBLE_EQ(s.residual(0, 50).unbalanced(1), 3);
   EXPECT_DOUBLE_EQ(s.residual(0, 50).load, 11.5);
   EXPECT_DOUBLE_EQ(s.residual(0, 500).unbalanced(1), 0.3);
-  s.set_judged(0);
+  s.set_judged(0, true);
   EXPECT_FALSE(s.is_stirred(0));
   felt = {};
   felt.torque = 100;
   s.touch(0, felt);
   EXPECT_TRUE(s.is_stirred(0));
   EXPECT_DOUBLE_EQ(s.residual(0, 50).unbalanced(0.5), 4);  // 2 N m a step
-  s.set_judged(0);
+  s.set_judged(0, true);
   s.release(0, from_below);  // the support is gone
   EXPECT_TRUE(s.is_stirred(0));
   EXPECT_EQ(s.residual(0, 50).unbalanced(1), 10);
+}
+
+// A push that comes and goes leaves nothing in the mean, one that stays is in it.
+TEST(Sleepers, RememberWhatStaysOutOfBalance) {
+  Plane2 s;
+  s.add({0, 0}, 0, 0, false);
+  s.put_to_sleep(0, {0, -10});
+  const auto pushed = [](double force, double torque) {
+    Plane2::Residual r;
+    r.force = {force, 0};
+    r.torque = torque;
+    r.load = 10;
+    return r;
+  };
+  EXPECT_EQ(s.add_to_mean(0, pushed(0, 0), 0.1).unbalanced(1), 0);
+  EXPECT_DOUBLE_EQ(s.add_to_mean(0, pushed(4, 2), 0.1).unbalanced(1), 0.6);
+  EXPECT_NEAR(s.add_to_mean(0, pushed(-4, -2), 0.1).unbalanced(1), 0.06, 1e-12);
+  double before = 0;
+  for (int n = 0; n < 50; ++n) {
+    const auto mean = s.add_to_mean(0, pushed(4, 0), 0.1);
+    EXPECT_GT(mean.force.x(), before);
+    EXPECT_EQ(mean.load, 10);
+    before = mean.force.x();
+  }
+  EXPECT_NEAR(before, 4, 0.05);  // 4.06 e^-5 is missing
+  s.put_to_sleep(0, {0, -10});   // anew: nothing of before
+  EXPECT_DOUBLE_EQ(s.add_to_mean(0, pushed(1, 0), 0.1).unbalanced(1), 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(s.add_to_mean(0, pushed(nan, 0), 0.1).unbalanced(1) < 1e300);
+  // It is judged again until the mean is what is out of balance now.
+  s.set_judged(0, false);
+  EXPECT_TRUE(s.is_stirred(0));
+  s.set_judged(0, true);
+  EXPECT_FALSE(s.is_stirred(0));
 }
 
 // What is out of balance, and of what load, is the same whichever way the axes lie.
