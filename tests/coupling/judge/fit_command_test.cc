@@ -137,6 +137,19 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
               " --heights 0,0.2 --model hydrostatic --model ife -o " + (folder / "base"));
   ASSERT_EQ(base.code, 0) << base.err;
   EXPECT_THAT(testing::read_text(folder / "base/profiles.csv"), HasSubstr("sigma_yy"));
+  // How many heaps would distinguish models that are not, and what another kernel says.
+  const Output power = program("power " + heaps + " --model osl --model osl_yield --model bcc -o " +
+                               (folder / "power"));
+  ASSERT_EQ(power.code, 0) << power.err;
+  EXPECT_THAT(power.out, HasSubstr("To distinguish these models from osl at 95 %"));
+  EXPECT_THAT(power.out, HasSubstr("piles needed"));
+  expect_refusal(program("power " + heaps + " --model osl -o " + (folder / "power")),
+                 "--model: found one model, allowed: two or more");
+  const Output wider =
+      program("fit " + heaps + models + (folder / "wider") + " --set 'fit.kernel=[1, 50]'");
+  ASSERT_EQ(wider.code, 0) << wider.err;
+  EXPECT_THAT(wider.out, HasSubstr("The verdict is the same at kernel widths of 1 diameters."));
+  EXPECT_THAT(wider.out, HasSubstr("Kernel widths of 50 diameters leave too few values."));
   expect_refusal(program("compare " + (folder / "field.h5") + " --heights=-0.1 --model ife -o " +
                          (folder / "none")),
                  "--heights: found -0.1, allowed: 0 (the base) to 1, shares of the height");
