@@ -1,4 +1,5 @@
-// The documentation itself: links lead somewhere, pictures say how they were made, versions agree.
+// The documentation itself: links lead somewhere, works cited are in the bibliography, pictures say
+// how they were made, versions agree.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -121,6 +122,103 @@ TEST(Docs, BrokenLinksAreFound) {
   int links = 0;
   EXPECT_EQ(broken_links(page, &links).size(), 2U);
   EXPECT_EQ(links, 4);
+}
+
+/// What stands between `[@` and `]` on the pages: keys of docs/references.bib.
+std::set<std::string> cited_keys(const std::string& text) {
+  std::set<std::string> out;
+  if (text.find("[@") == std::string::npos) return out;
+  const std::string told = prose(text);
+  const std::regex citation(R"(\[@([^\]\s]+)\])");
+  for (auto at = std::sregex_iterator(told.begin(), told.end(), citation);
+       at != std::sregex_iterator(); ++at) {
+    out.insert((*at)[1]);
+  }
+  return out;
+}
+
+struct Work {
+  std::string key, text;
+};
+
+/// The entries of a bibliography in the order of the file: from a line @kind{key, to a line }.
+std::vector<Work> works(const std::string& bibliography) {
+  std::vector<Work> out;
+  std::istringstream lines(bibliography);
+  std::string line;
+  bool inside = false;
+  while (std::getline(lines, line)) {
+    if (!inside && !line.empty() && line.front() == '@') {
+      const std::size_t brace = line.find('{');
+      out.push_back({line.substr(brace + 1, line.rfind(',') - brace - 1), ""});
+      inside = true;
+    } else if (line == "}") {
+      inside = false;
+    } else if (inside) {
+      out.back().text += line + "\n";
+    }
+  }
+  return out;
+}
+
+std::set<std::string> keys_of(const std::string& bibliography) {
+  std::set<std::string> out;
+  for (const Work& work : works(bibliography)) out.insert(work.key);
+  return out;
+}
+
+/// "page: key" for every citation of a work that is not known.
+std::vector<std::string> unknown_works(const path& page, const std::set<std::string>& known,
+                                       int* citations) {
+  std::vector<std::string> out;
+  for (const std::string& key : cited_keys(read_text(page.string()))) {
+    ++*citations;
+    if (known.count(key) == 0) {
+      out.push_back(testing::fs::relative(page, kRoot).string() + ": " + key);
+    }
+  }
+  return out;
+}
+
+TEST(Docs, CitedWorksAreInTheBibliography) {
+  const auto known = keys_of(read_text((kRoot / "docs/references.bib").string()));
+  int citations = 0;
+  for (const path& page : pages()) {
+    EXPECT_THAT(unknown_works(page, known, &citations), ::testing::IsEmpty());
+  }
+  EXPECT_GT(citations, 30);
+}
+
+TEST(Docs, CitationsOfUnknownWorksAreFound) {
+  const testing::Folder folder;
+  const path page = folder.write("a.md", "See [@love1927], [@none2000] and `[@key]`.\n");
+  int citations = 0;
+  const auto known = keys_of("@book{love1927,\n  year = {1927}\n}\n");
+  EXPECT_THAT(unknown_works(page, known, &citations),
+              ::testing::ElementsAre(::testing::EndsWith("a.md: none2000")));
+  EXPECT_EQ(citations, 2);
+}
+
+// A key ends in its work's year; a DOI has the form of one, without the resolver's address.
+TEST(Docs, BibliographyIsComplete) {
+  const std::string bibliography = read_text((kRoot / "docs/references.bib").string());
+  std::set<std::string> keys;
+  for (const Work& work : works(bibliography)) {
+    EXPECT_TRUE(keys.insert(work.key).second) << work.key << " twice";
+    std::smatch year;
+    ASSERT_TRUE(std::regex_match(work.key, year, std::regex("[a-z]+([0-9]{4})[a-z]?"))) << work.key;
+    for (const std::string& field : {std::string("author += "), std::string("title += "),
+                                     "year += \\{" + year[1].str() + "\\}"}) {
+      EXPECT_TRUE(std::regex_search("\n" + work.text, std::regex("\n  " + field)))
+          << work.key << ": " << field;
+    }
+    std::smatch doi;
+    if (std::regex_search(work.text, doi, std::regex(R"(\n  doi += \{(.*)\})"))) {
+      EXPECT_TRUE(std::regex_match(doi[1].str(), std::regex(R"(10\.[0-9]{4,5}/[^{}\s]+)")))
+          << work.key << ": " << doi[1];
+    }
+  }
+  EXPECT_GT(keys.size(), 100U);
 }
 
 TEST(Docs, NameTheThresholdOfHeapsThatAreNoWedges) {

@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <regex>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "coupling/output/tables.h"
 #include "tests/coupling/guide_scene.h"
@@ -126,8 +130,17 @@ TEST(Experiments, EveryCommandRuns) {
   folder.write("vanel_point.csv", table(true, 0.08, 30, 15000));
   folder.write("vanel_rain.csv", table(true, 0.08, 30, 15000));
   folder.write("ai.csv", table(true, 0.3, 28, 20000));
+  folder.write("apex.csv", "x,y,z\n0,0,-1\n");
   const Page page = read_and_run(folder, "experiments.md");
-  EXPECT_EQ(page.commands, 14);
+  EXPECT_EQ(page.commands, 19);
+  // The dips of cone_fpa, cone_osl by its default and with two mu, and cone_bcc, as in the table.
+  std::vector<double> dips;
+  const std::regex ratio("# dip_ratio = ([0-9.]+)");
+  for (auto at = std::sregex_iterator(page.said.begin(), page.said.end(), ratio);
+       at != std::sregex_iterator(); ++at) {
+    dips.push_back(std::round(100 * (1 - std::stod((*at)[1]))));
+  }
+  EXPECT_THAT(dips, ::testing::ElementsAre(41, 26, 20, 30, 0));
 }
 
 }  // namespace
