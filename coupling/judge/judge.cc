@@ -231,13 +231,9 @@ Judgement judge(const Evidence& e, std::vector<Candidate> candidates) {
       m.heights_error = heights.error / signal;
       if (single && any_free) m.aic_behind = c.akaike - nearest.akaike;
     }
-    apart.push_back(c.forecast.size() == 0 ? kNan
-                                           : (spread_out(c.forecast, e.samples.cols()) -
-                                              spread_out(nearest.forecast, e.samples.cols()))
-                                                     .colwise()
-                                                     .squaredNorm()
-                                                     .mean() /
-                                                 signal);
+    apart.push_back(any_free ? kInfinity
+                             : squared_distance(c.forecast, nearest.forecast, e.samples.cols()) /
+                                   signal);
     out.models.push_back(std::move(m));
   }
   if (judged) {

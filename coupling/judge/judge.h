@@ -10,12 +10,13 @@
 // more, without its error.)
 //
 // A model is distinguishable from the nearest when it is behind by more than chance in the first
-// test, the second does not have it ahead, and the two models differ by more than chance:
-//   behind > t error,   heights behind >= 0,   |model - nearest|^2 > t error / 2.
-// With nothing free the last two lines mean that the data are beyond the middle between both models
-// by more than t standard errors, which are less than the models' distance. A model that is at
-// least as far behind in both tests as a distinguishable one is distinguishable too: a larger
-// deficit with a larger error is no better support than a smaller one.
+// test and the second does not have it ahead:
+//   behind > t error,   heights behind >= 0.
+// With nothing free the data are then beyond the middle between both models by more than t standard
+// errors. These must be less than the models' distance, |model - nearest|^2 > t error / 2: models
+// that are given may be nearer to each other than the data are to either. A model that is at least
+// as far behind in both tests as a distinguishable one is distinguishable too: a larger deficit
+// with a larger error is no better support than a smaller one.
 //
 // The constants of a single field with errors are fitted to the very noise that judges them. There
 // a model must be behind in Akaike's criterion too, chi2 + 2 x free numbers with these errors, by
@@ -60,7 +61,7 @@ inline constexpr double kSame = 1e-7;
 double least_errors(int realizations);
 
 /// Fills `distinguishable` of models with their differences to the nearest, which is the first.
-/// `apart`: |model - nearest|^2, in the same unit, one per model.
+/// `apart`: |model - nearest|^2, in the same unit, one per model; infinite where numbers are free.
 void mark_distinguishable(std::vector<JudgedModel>& models, const std::vector<double>& apart,
                           double least_errors);
 
