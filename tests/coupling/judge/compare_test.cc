@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "coupling/judge/words.h"
 #include "tests/coupling/compare_scene.h"
 
 namespace grainfield::coupling {
@@ -118,7 +119,7 @@ void say_that_none_agrees(int trials) {
       }
       s.models = {s.models[1]};
       const auto says = [&](const Scene& one) {
-        return compared(one).verdict.sentence.find("No model agrees") != std::string::npos;
+        return compared(one).judgement.best_model().agrees() == Answer::no;
       };
       alarms += says(s) ? 1 : 0;
       for (auto& values : s.models[0].values) values *= 1.4;
@@ -138,15 +139,22 @@ void say_that_none_agrees(int trials) {
 TEST(Compare, NoModelAgreesIsSaidOfATrueModelRarely) { say_that_none_agrees(200); }
 TEST(Compare, DISABLED_ManyTrialsSayThatNoModelAgrees) { say_that_none_agrees(2000); }
 
+std::string said(const Comparison& c) { return sentence(c.judgement); }
+
 TEST(Compare, VerdictOfAClearCase) {
   const Comparison c = compared(scene(8, 0.92, 0.05));
-  EXPECT_EQ(c.verdict.best_model, "layer_smooth");
-  EXPECT_TRUE(c.verdict.distinguishable);
-  EXPECT_NEAR(c.verdict.position, 1, 4 * c.verdict.position_error);
-  EXPECT_EQ(c.verdict.ranked_by, "chi2_per_dof");
-  EXPECT_THAT(c.verdict.ranking, testing::ElementsAre("layer_smooth", "layer_rough", "flamant"));
-  EXPECT_THAT(c.verdict.sentence,
-              testing::StartsWith("The grains support the finite layer, not the half plane"));
+  const Judgement& j = c.judgement;
+  EXPECT_EQ(j.best, "layer_smooth");
+  EXPECT_EQ(j.distinguishable, Answer::yes);
+  EXPECT_NEAR(j.position.value, 1, 4 * j.position.error);
+  ASSERT_EQ(j.models.size(), 3U);
+  EXPECT_EQ(j.models[1].name, "layer_rough");
+  EXPECT_EQ(j.models[2].name, "flamant");
+  EXPECT_EQ(j.models[0].supported(), Answer::yes);
+  EXPECT_EQ(j.models[2].supported(), Answer::no);
+  EXPECT_THAT(said(c), testing::StartsWith("The grains support the finite layer, not the half "
+                                           "plane (8 realizations, 95 %). smooth layer agrees "
+                                           "within the errors: misfit "));
 }
 
 TEST(Compare, VerdictWhenNoModelFits) {
@@ -156,9 +164,9 @@ TEST(Compare, VerdictWhenNoModelFits) {
     p.samples *= 10;
     p.error *= 10;
   }
-  EXPECT_THAT(compared(s).verdict.sentence,
-              testing::AllOf(testing::StartsWith("None of the models describes these grains"),
-                             HasSubstr("nearer to the"), Not(HasSubstr("support"))));
+  EXPECT_THAT(said(compared(s)),
+              testing::AllOf(testing::StartsWith("No model describes the grains: the nearest, "),
+                             HasSubstr("No model agrees"), Not(HasSubstr("support"))));
 }
 
 // The nearer family is not called supported where it does not agree either.
@@ -168,21 +176,20 @@ TEST(Compare, WhatDoesNotAgreeIsNearerAndNotSupported) {
     p.mean *= 1.4;
     p.samples *= 1.4;
   }
-  EXPECT_THAT(
-      compared(s).verdict.sentence,
-      testing::AllOf(
-          testing::StartsWith("The grains are nearer to the finite layer than to the half plane: "),
-          HasSubstr("No model agrees within the errors"), Not(HasSubstr("support"))));
+  EXPECT_THAT(said(compared(s)),
+              testing::AllOf(testing::StartsWith("The finite layer is nearer to the grains than "
+                                                 "the half plane (8 realizations, 95 %). No "
+                                                 "model agrees within the errors: the misfit of "),
+                             Not(HasSubstr("support"))));
   for (Profile& p : s.profiles) p.measured = true;
-  EXPECT_THAT(compared(s).verdict.sentence,
-              testing::StartsWith("The measurement is nearer to the finite layer than to the"));
+  EXPECT_THAT(said(compared(s)),
+              testing::StartsWith("The finite layer is nearer to the measurement than the half"));
 }
 
 TEST(Compare, ModelsAreListedInTheVerdictsOrderAndDrawnBetweenThePlaces) {
   Scene s = scene(8, 0.92, 0.05);
   Comparison c = compared(s);
-  EXPECT_EQ(c.models[ranked(c).front()].key, c.verdict.best_model);
-  EXPECT_EQ(ranking_note(c), "In order of chi2/dof, by which the verdict ranks.");
+  EXPECT_EQ(c.models[ranked(c).front()].key, c.judgement.best);
   EXPECT_EQ(drawn_line(c, 0, 0).y, c.models[0].values[0]);
   c.models[0].line_x = {Eigen::Vector2d(0, 1)};
   c.models[0].line = {Eigen::Vector2d(2, 3)};
@@ -200,15 +207,14 @@ TEST(Compare, ModelsAreListedInTheVerdictsOrderAndDrawnBetweenThePlaces) {
 TEST(Compare, OneFamilyIsToldWhenItDoesNotFit) {
   Scene s = scene(8, 0.92, 0.05);
   s.models = {s.models[1]};
-  EXPECT_THAT(compared(s).verdict.sentence, Not(HasSubstr("No model agrees")));
+  EXPECT_THAT(said(compared(s)), testing::StartsWith("smooth layer agrees with the grains ("));
   Scene off = s;
   for (auto& values : off.models[0].values) values *= 1.3;
-  EXPECT_THAT(compared(off).verdict.sentence,
-              testing::AllOf(testing::StartsWith("Of the finite layer models"),
+  EXPECT_THAT(said(compared(off)),
+              testing::AllOf(testing::StartsWith("smooth layer does not agree with the grains ("),
                              HasSubstr("No model agrees within the errors")));
   for (auto& values : off.models[0].values) values *= 3;
-  EXPECT_THAT(compared(off).verdict.sentence,
-              testing::StartsWith("None of the models describes these grains"));
+  EXPECT_THAT(said(compared(off)), testing::StartsWith("No model describes the grains"));
 }
 
 TEST(Compare, EqualRealizationsProveNothing) {
@@ -218,9 +224,9 @@ TEST(Compare, EqualRealizationsProveNothing) {
     p.error.setZero();
   }
   const Comparison c = compared(s);
-  EXPECT_FALSE(c.verdict.distinguishable);
-  EXPECT_EQ(c.verdict.ranked_by, "rel_l2");
-  EXPECT_THAT(c.verdict.sentence, testing::StartsWith("All 4 realizations are equal"));
+  EXPECT_EQ(c.judgement.distinguishable, Answer::unknown);
+  EXPECT_TRUE(std::isnan(c.results[0].overall.chi2_per_dof));
+  EXPECT_THAT(said(c), testing::StartsWith("All 4 realizations are equal"));
 }
 
 TEST(Compare, FilesWithoutSamplesKeepTheirCount) {
@@ -228,26 +234,29 @@ TEST(Compare, FilesWithoutSamplesKeepTheirCount) {
   for (Profile& p : s.profiles) p.samples.resize(0, 0);
   const Comparison c = compare(s.profiles, s.models, 300, 0.15, 8);
   EXPECT_EQ(c.realizations, 8);
-  EXPECT_EQ(c.verdict.ranked_by, "chi2_per_dof");
   // Their standard errors stand in for them.
-  EXPECT_GT(c.verdict.position_error, 0);
-  EXPECT_TRUE(c.verdict.distinguishable) << c.verdict.sentence;
+  EXPECT_EQ(c.judgement.errors_from, ErrorsFrom::data);
+  EXPECT_GT(c.judgement.position.error, 0);
+  EXPECT_EQ(c.judgement.distinguishable, Answer::yes) << said(c);
 }
 
 TEST(Compare, VerdictWithinTheSpread) {
   const Comparison c = compared(scene(4, 0.8, 4));
-  EXPECT_FALSE(c.verdict.distinguishable);
-  EXPECT_THAT(c.verdict.sentence, HasSubstr("not distinguishable"));
+  EXPECT_EQ(c.judgement.distinguishable, Answer::no);
+  EXPECT_THAT(said(c), HasSubstr("cannot be distinguished (4 realizations, 95 %)"));
 }
 
 TEST(Compare, DistinguishableMeansBeyondStudentsT) {
   int yes = 0, no = 0;
   for (unsigned seed = 0; seed < 30; ++seed) {
-    const Verdict v = compared(scene(4, 0.85, 0.2, seed)).verdict;
+    Scene s = scene(4, 0.85, 0.2, seed);
+    s.models.pop_back();
+    const Judgement j = compared(s).judgement;
     // 3.1824: two-sided 95 % of Student's t with 3 degrees of freedom.
-    const double spread = 3.1824463 * v.position_error;
-    EXPECT_EQ(v.distinguishable, v.position - 0.5 > spread && spread < 1) << seed;
-    ++(v.distinguishable ? yes : no);
+    const double spread = 3.1824463 * j.position.error;
+    const bool apart = j.distinguishable == Answer::yes;
+    EXPECT_EQ(apart, j.position.value - 0.5 > spread && spread < 1) << seed;
+    ++(apart ? yes : no);
   }
   EXPECT_GT(yes, 0);
   EXPECT_GT(no, 0);
@@ -259,29 +268,30 @@ TEST(Compare, CurvesThatHardlyDifferAreNotTold) {
   Scene s = scene(4, 1.1, 0.1);
   s.models = {{"flamant", "half plane", "half plane", {bell(s.profiles[0].x, 0, 1, 0.9)}},
               {"layer", "layer", "finite layer", {bell(s.profiles[0].x, 0, 1, 0.92)}}};
-  const Verdict near = compared(s).verdict;
-  EXPECT_GT(near.position, 3);
-  EXPECT_GT(near.position - 0.5, 3.1824463 * near.position_error)
+  const Judgement near = compared(s).judgement;
+  EXPECT_GT(near.position.value, 3);
+  EXPECT_GT(near.position.value - 0.5, 3.1824463 * near.position.error)
       << "beyond the middle all the same";
-  EXPECT_FALSE(near.distinguishable);
-  EXPECT_THAT(near.sentence, testing::AllOf(HasSubstr("not distinguishable"),
-                                            HasSubstr("(beyond both: the two differ less")));
+  EXPECT_EQ(near.distinguishable, Answer::no);
+  EXPECT_THAT(sentence(near), HasSubstr("cannot be distinguished"));
+  EXPECT_THAT(note_lines(near).front(), HasSubstr("They differ less from each other than"));
   // With errors far below their distance they are told, but the number is still no share.
   Scene sharp = scene(4, 1.1, 0.001);
   sharp.models = s.models;
-  const Verdict told = compared(sharp).verdict;
-  EXPECT_TRUE(told.distinguishable);
-  EXPECT_THAT(told.sentence, HasSubstr("(beyond both"));
-  EXPECT_THAT(compared(scene(8, 0.92, 0.05)).verdict.sentence, Not(HasSubstr("beyond both")));
+  const Judgement told = compared(sharp).judgement;
+  EXPECT_EQ(told.distinguishable, Answer::yes);
+  EXPECT_THAT(note_lines(told).front(), HasSubstr("(beyond both)"));
+  EXPECT_THAT(note_lines(compared(scene(8, 0.92, 0.05)).judgement).front(),
+              Not(HasSubstr("beyond both")));
 }
 
 TEST(Compare, OneRealizationRanksByRelativeDifference) {
   const Comparison c = compared(scene(1, 0.92, 0.05));
-  EXPECT_EQ(c.verdict.ranked_by, "rel_l2");
-  EXPECT_EQ(c.verdict.best_model, "layer_smooth");
-  EXPECT_FALSE(c.verdict.distinguishable);
+  EXPECT_EQ(c.judgement.best, "layer_smooth");
+  EXPECT_EQ(c.judgement.distinguishable, Answer::unknown);
   EXPECT_TRUE(std::isnan(c.results[0].overall.chi2_per_dof));
-  EXPECT_THAT(c.verdict.sentence, HasSubstr("One realization, spread unknown"));
+  EXPECT_THAT(said(c), testing::StartsWith("One realization cannot distinguish models: the finite "
+                                           "layer is nearest ("));
 }
 
 // A measurement, say: no realizations, but an error at every place. The true model is refused about
@@ -303,17 +313,16 @@ TEST(Compare, OneFieldIsJudgedByItsOwnErrors) {
       p.error = Eigen::VectorXd::Constant(p.x.size(), noise * top);
       p.mean = s.models[1].values[0];
       for (double& v : p.mean) v += noise * top * normal(random);
-      const Verdict v = compared(s).verdict;
-      EXPECT_EQ(v.ranked_by, "chi2_per_dof");
+      const Judgement j = compared(s).judgement;
+      EXPECT_EQ(j.errors_from, ErrorsFrom::data);
       if (noise > 0.5) {
-        told_in_noise += v.distinguishable;
+        told_in_noise += j.distinguishable == Answer::yes;
         continue;
       }
-      told += v.distinguishable;
-      wrong += v.best_model != s.models[1].key;
-      alarms += v.sentence.find("No model agrees") != std::string::npos;
-      within += std::fabs(v.position - 1) < 1.96 * v.position_error;
-      EXPECT_THAT(v.sentence, Not(HasSubstr("spread")));
+      told += j.distinguishable == Answer::yes;
+      wrong += j.best != s.models[1].key;
+      alarms += j.best_model().agrees() == Answer::no;
+      within += std::fabs(j.position.value - 1) < 1.96 * j.position.error;
     }
   }
   EXPECT_GT(told, 0.95 * kTrials);
@@ -327,15 +336,17 @@ TEST(Compare, OneFamilyHasNoPosition) {
   Scene s = scene(6, 0.92, 0.05);
   s.models.erase(s.models.begin());
   const Comparison c = compared(s);
-  EXPECT_TRUE(std::isnan(c.verdict.position));
-  EXPECT_THAT(c.verdict.sentence, HasSubstr("Of the finite layer models"));
+  EXPECT_TRUE(std::isnan(c.judgement.position.value));
+  EXPECT_THAT(said(c),
+              testing::StartsWith("smooth layer and rough layer cannot be distinguished (6 "));
 }
 
 TEST(Compare, SummaryHasTheAgreedKeys) {
   const auto figures = summary_figures(compared(scene(6, 0.92, 0.05)), 0);
-  for (const char* key : {"compare.flamant.rel_l2", "compare.flamant.max",
-                          "compare.flamant.chi2_per_dof", "compare.layer_smooth.depth_0.1.rel_l2",
-                          "response.peak", "response.width", "response.peaks", "verdict.position"})
+  for (const char* key :
+       {"compare.flamant.rel_l2", "compare.flamant.max", "compare.flamant.chi2_per_dof",
+        "compare.layer_smooth.depth_0.1.rel_l2", "compare.flamant.chance", "response.peak",
+        "response.width", "response.peaks"})
     EXPECT_TRUE(figures.count(key)) << key;
   EXPECT_EQ(figures.at("response.peaks"), 1);
   for (const char* key : {"response.peak", "response.width", "response.integral"})

@@ -127,8 +127,8 @@ TEST(Fit, SelectionNamesTheModelThatMadeTheData) {
       const Weights c = weights_of(data);
       std::vector<Fit> fits;
       for (const FitModel& m : models) fits.push_back(fit(data, c, m, options));
-      const Selection s = select(data, c, models, fits);
-      named += s.distinguishable && s.ranking.front().name == name;
+      const Judgement s = select(data, c, models, fits);
+      named += s.distinguishable == Answer::yes && s.best == name;
     }
     return named;
   };

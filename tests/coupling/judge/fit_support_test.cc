@@ -6,18 +6,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/judge/words.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
 namespace {
 
-Score score(double heights, double behind, double error) {
-  Score s;
+JudgedModel score(double heights, double behind, double error) {
+  JudgedModel s;
   s.heights_behind = heights;
   s.behind = behind;
   s.behind_error = error;
   return s;
 }
+
+// Of models that are far apart.
+void mark(std::vector<JudgedModel>& ranking) {
+  mark_distinguishable(ranking, std::vector<double>(ranking.size(), 1e9), 2);
+}
+bool kept(const JudgedModel& m) { return m.distinguishable == Answer::no; }
 
 std::vector<Fit> fits_of(const FitData& data, const Weights& weights,
                          const std::vector<FitModel>& models) {
@@ -29,37 +36,66 @@ std::vector<Fit> fits_of(const FitData& data, const Weights& weights,
 }
 
 TEST(Support, ALargerDeficitWithALargerErrorIsNoBetter) {
-  std::vector<Score> ranking{score(0, 0, 0), score(0.02, 0.034, 0.014), score(0.03, 0.098, 0.052)};
-  mark_supported(ranking, 2);
-  EXPECT_TRUE(ranking[0].supported);
-  EXPECT_FALSE(ranking[1].supported);
-  EXPECT_FALSE(ranking[2].supported);
+  std::vector<JudgedModel> ranking{score(0, 0, 0), score(0.02, 0.034, 0.014),
+                                   score(0.03, 0.098, 0.052)};
+  mark(ranking);
+  EXPECT_TRUE(kept(ranking[0]));
+  EXPECT_FALSE(kept(ranking[1]));
+  EXPECT_FALSE(kept(ranking[2]));
 }
 
 TEST(Support, WhatIsAheadInOneJudgeStays) {
-  std::vector<Score> ranking{score(0, 0, 0), score(0.1, 0.1, 0.01), score(-0.1, 0.2, 0.01)};
-  mark_supported(ranking, 2);
-  EXPECT_FALSE(ranking[1].supported);
-  EXPECT_TRUE(ranking[2].supported);
+  std::vector<JudgedModel> ranking{score(0, 0, 0), score(0.1, 0.1, 0.01), score(-0.1, 0.2, 0.01)};
+  mark(ranking);
+  EXPECT_FALSE(kept(ranking[1]));
+  EXPECT_TRUE(kept(ranking[2]));
   // Without scores nothing is left out.
   const double none = std::nan("");
   ranking = {score(none, none, none), score(none, none, none)};
-  mark_supported(ranking, 2);
-  EXPECT_TRUE(ranking[1].supported);
+  mark(ranking);
+  EXPECT_TRUE(kept(ranking[1]));
 }
 
-TEST(Support, OutputsCallNoModelSupportedThatDisagrees) {
-  Score s = score(0, 0, 0);
-  Fit fit;
-  fit.chi2_per_dof = 3;
-  fit.chance = 2;
-  EXPECT_EQ(standing(s, fit), "no");
-  s.supported = true;
-  EXPECT_EQ(standing(s, fit), "no, though not behind");
-  fit.chi2_per_dof = 2;
-  EXPECT_EQ(standing(s, fit), "yes");
-  fit.chi2_per_dof = fit.chance = std::nan("");  // nothing is known of errors
-  EXPECT_EQ(standing(s, fit), "yes");
+TEST(Support, NoModelIsSupportedThatDisagrees) {
+  JudgedModel m = score(0, 0, 0);
+  m.misfit = 3;
+  m.chance = 2;
+  m.distinguishable = Answer::no;
+  EXPECT_EQ(m.supported(), Answer::no);
+  m.misfit = 2;
+  EXPECT_EQ(m.supported(), Answer::yes);
+  m.distinguishable = Answer::yes;
+  EXPECT_EQ(m.supported(), Answer::no);
+  m.distinguishable = Answer::no;
+  m.description = true;
+  EXPECT_EQ(m.supported(), Answer::no);
+  m.misfit = m.chance = std::nan("");  // nothing is known of errors
+  EXPECT_EQ(m.supported(), Answer::unknown);
+}
+
+// The models are further apart than the noise, or the nearer one is not named.
+TEST(Support, CurvesThatHardlyDifferAreNotDistinguished) {
+  std::vector<JudgedModel> ranking{score(0, 0, 0), score(0, 0.1, 0.01)};
+  mark_distinguishable(ranking, {0, 0.0101}, 2);
+  EXPECT_FALSE(kept(ranking[1]));
+  mark_distinguishable(ranking, {0, 0.0099}, 2);
+  EXPECT_TRUE(kept(ranking[1]));
+}
+
+// Constants without equilibrium follow the noise best, and are listed last.
+TEST(Support, ADescriptionWinsNoVerdict) {
+  const auto all = heap_models({kSlope, kRhoG, kHeight});
+  const std::vector<FitModel> models{find_fit_model(all, "cantelaube"),
+                                     find_fit_model(all, "hydrostatic")};
+  FitData data = places(9);
+  dem::Random random(5);
+  fill(data, predict(data, find_fit_model(all, "cantelaube_minus"), Eigen::VectorXd(0)), 8, 0.03,
+       0.03, random);
+  const Weights w = weights_of(data);
+  const Judgement j = select(data, w, models, fits_of(data, w, models));
+  EXPECT_EQ(j.best, "hydrostatic");
+  EXPECT_EQ(j.models.back().name, "cantelaube");
+  EXPECT_LT(j.models.back().score, j.models.front().score);
 }
 
 // The best of wrong models is not passed off as right.
@@ -72,39 +108,39 @@ TEST(Support, SaysWhenNoModelAgrees) {
   fill(data, predict(data, minus[0], Eigen::VectorXd(0)), 8, 0.03, 0.03, random);
   const Weights c = weights_of(data);
   const auto sentence = [&](const std::vector<FitModel>& models) {
-    return select(data, c, models, fits_of(data, c, models)).sentence;
+    return coupling::sentence(select(data, c, models, fits_of(data, c, models)));
   };
-  EXPECT_EQ(sentence(minus), "cantelaube_minus is the only model.");
-  EXPECT_EQ(sentence(wrong).find("hydrostatic is the only model. No model agrees within the "
-                                 "errors: the nearest misses by "),
-            0U)
-      << sentence(wrong);
-  EXPECT_NE(sentence(wrong).find("times what the spread explains"), std::string::npos);
+  EXPECT_THAT(sentence(minus),
+              testing::StartsWith("cantelaube_minus agrees with the grains (8 realizations, 95 %). "
+                                  "cantelaube_minus agrees within the errors: misfit "));
+  EXPECT_THAT(sentence(wrong),
+              testing::StartsWith("No model describes the grains: the nearest, hydrostatic, misses "
+                                  "by 52 % (8 realizations). No model agrees within the errors: "));
 }
 
 TEST(Support, NoSupportedModelIsFurtherBehindInBothThanOneThatIsNot) {
   dem::Random random(3);
-  int refused = 0, kept = 0;
+  int refused = 0, left = 0;
   for (int trial = 0; trial < 5000; ++trial) {
-    std::vector<Score> ranking{score(0, 0, 0)};
+    std::vector<JudgedModel> ranking{score(0, 0, 0)};
     const int models = 1 + static_cast<int>(8 * random.uniform());
     for (int k = 0; k < models; ++k) {
       // Ties are in: deficits in whole steps.
       ranking.push_back(score(std::floor(10 * random.uniform(-0.3, 1)) / 10,
                               std::floor(10 * random.uniform()) / 10, 0.3 * random.uniform()));
     }
-    mark_supported(ranking, 2);
-    EXPECT_TRUE(ranking.front().supported);
-    for (const Score& s : ranking) {
-      (s.supported ? kept : refused) += 1;
-      for (const Score& other : ranking) {
-        if (&s == &ranking.front() || !s.supported || other.supported) continue;
+    mark(ranking);
+    EXPECT_TRUE(kept(ranking.front()));
+    for (const JudgedModel& s : ranking) {
+      (kept(s) ? left : refused) += 1;
+      for (const JudgedModel& other : ranking) {
+        if (&s == &ranking.front() || !kept(s) || kept(other)) continue;
         EXPECT_TRUE(s.heights_behind < other.heights_behind || s.behind < other.behind);
       }
     }
   }
   EXPECT_GT(refused, 1000);
-  EXPECT_GT(kept, 1000);
+  EXPECT_GT(left, 1000);
 }
 
 // bcc and cantelaube_zero are one field, osl_yield and cantelaube_continuous one family: what is
@@ -115,7 +151,7 @@ TEST(Support, ModelsThatAreOneFieldShareTheirMark) {
                                        "cantelaube_continuous", "hydrostatic"};
   std::vector<FitModel> models;
   for (const std::string& name : names) models.push_back(find_fit_model(all, name));
-  int refused = 0, kept = 0;
+  int refused = 0, left = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     dem::Random random(seed);
     FitData data = places(9);
@@ -125,21 +161,18 @@ TEST(Support, ModelsThatAreOneFieldShareTheirMark) {
     fill(data, truth, 8, 0.05, 0.03, random);
     const Weights w = weights_of(data);
     const std::vector<FitModel> two{models[0], models[1]};
-    const Selection alone = select(data, w, two, fits_of(data, w, two));
-    EXPECT_FALSE(alone.distinguishable) << alone.sentence;
-    EXPECT_THAT(alone.sentence, testing::HasSubstr(" is the same stress here;"));
-    const Selection s = select(data, w, models, fits_of(data, w, models));
-    const auto supported = [&](const std::string& name) {
-      return std::find_if(s.ranking.begin(), s.ranking.end(),
-                          [&](const Score& score) { return score.name == name; })
-          ->supported;
-    };
-    EXPECT_EQ(supported("bcc"), supported("cantelaube_zero")) << s.sentence;
-    EXPECT_EQ(supported("osl_yield"), supported("cantelaube_continuous")) << s.sentence;
-    for (const Score& score : s.ranking) (score.supported ? kept : refused) += 1;
+    const Judgement alone = select(data, w, two, fits_of(data, w, two));
+    EXPECT_EQ(alone.distinguishable, Answer::no) << sentence(alone);
+    EXPECT_TRUE(alone.find(alone.rival)->power.same);
+    EXPECT_THAT(note_lines(alone).back(), testing::HasSubstr("they are the same stress here"));
+    const Judgement s = select(data, w, models, fits_of(data, w, models));
+    const auto marked = [&](const std::string& name) { return kept(*s.find(name)); };
+    EXPECT_EQ(marked("bcc"), marked("cantelaube_zero")) << sentence(s);
+    EXPECT_EQ(marked("osl_yield"), marked("cantelaube_continuous")) << sentence(s);
+    for (const JudgedModel& one : s.models) (kept(one) ? left : refused) += 1;
   }
   EXPECT_GT(refused, 20);
-  EXPECT_GT(kept, 20);
+  EXPECT_GT(left, 20);
 }
 
 // One field alone, whose errors are known: a model far off is excluded, one within them is not.
@@ -158,14 +191,13 @@ TEST(Support, OneFieldWithErrorsExcludesAModel) {
       data.error = Eigen::VectorXd::Constant(data.values(), noise * kRhoG * kHeight);
       const Weights w = weights_of(data);
       const std::vector<Fit> fits = fits_of(data, w, models);
-      const Selection s = select(data, w, models, fits);
-      const bool alone = s.distinguishable && s.ranking.front().name == "osl_yield";
+      const Judgement s = select(data, w, models, fits);
+      const bool alone = s.distinguishable == Answer::yes && s.best == "osl_yield";
       (noise < 0.1 ? named : named_in_noise) += alone ? 1 : 0;
-      alarms += s.sentence.find("No model agrees") != std::string::npos ? 1 : 0;
+      alarms += s.best_model().agrees() == Answer::no ? 1 : 0;
       if (noise < 0.1) {
-        // The best of wrong ones misses by the error: there is no spread.
-        const Selection wrong = select(data, w, {models[1]}, {fits[1]});
-        EXPECT_NE(wrong.sentence.find("times what the error explains"), std::string::npos);
+        const Judgement wrong = select(data, w, {models[1]}, {fits[1]});
+        EXPECT_THAT(sentence(wrong), testing::HasSubstr("(one field with errors, 95 %)"));
         EXPECT_GT(fits[1].chi2_per_dof, fits[1].chance);
         EXPECT_TRUE(std::isfinite(fits[0].parameters[0].error));
       }
@@ -177,13 +209,13 @@ TEST(Support, OneFieldWithErrorsExcludesAModel) {
 }
 
 TEST(Support, OneFieldNeedsAkaikesDifferenceToo) {
-  std::vector<Score> ranking{score(0, 0, 0), score(0, 0.1, 0.01), score(0, 0.2, 0.01)};
+  std::vector<JudgedModel> ranking{score(0, 0, 0), score(0, 0.1, 0.01), score(0, 0.2, 0.01)};
   ranking[0].aic_behind = 0;
   ranking[1].aic_behind = kNoSupport;
   ranking[2].aic_behind = 1.01 * kNoSupport;
-  mark_supported(ranking, 2);
-  EXPECT_TRUE(ranking[1].supported);
-  EXPECT_FALSE(ranking[2].supported);
+  mark(ranking);
+  EXPECT_TRUE(kept(ranking[1]));
+  EXPECT_FALSE(kept(ranking[2]));
 }
 
 // The constants follow the noise that judges them: models that nearly agree with one another are
@@ -201,11 +233,10 @@ TEST(Support, OneFieldOfATrueModelDoesNotExcludeIt) {
     fill(data, truth, 1, 0.05, 1e-6, random);
     data.error = Eigen::VectorXd::Constant(data.values(), 0.05 * kRhoG * kHeight);
     const Weights w = weights_of(data);
-    const Selection s = select(data, w, models, fits_of(data, w, models));
-    for (const Score& one : s.ranking) {
-      if (!one.supported) (one.name == "osl" ? wrong : others) += 1;
+    const Judgement s = select(data, w, models, fits_of(data, w, models));
+    for (const JudgedModel& one : s.models) {
+      if (!kept(one)) (one.name == "osl" ? wrong : others) += 1;
     }
-    EXPECT_EQ(s.sentence.find("realizations left out"), std::string::npos) << s.sentence;
   }
   fmt::print("one field of osl: it is excluded {} times of 60, others {} times\n", wrong, others);
   EXPECT_LE(wrong, 1);
@@ -232,11 +263,11 @@ TEST(Support, SaysWhoseSignHangsOnOneRealization) {
   data.samples.resize(data.values(), 4);
   data.samples << at(0.05), at(0.06), at(0.04), at(-0.3);
   const Weights w = weights_of(data);
-  const Selection s = select(data, w, models, {fit(data, w, models[0])});
-  EXPECT_NE(s.sentence.find("The sign of osl_yield hangs on single realizations: mu is -0.0"),
-            std::string::npos)
-      << s.sentence;
-  EXPECT_NE(s.sentence.find("without realization 4 +0.05"), std::string::npos) << s.sentence;
+  const Judgement s = select(data, w, models, {fit(data, w, models[0])});
+  ASSERT_EQ(s.doubts.size(), 1U);
+  EXPECT_THAT(s.doubts[0],
+              testing::HasSubstr("The sign of osl_yield hangs on single realizations: mu is -0.0"));
+  EXPECT_THAT(s.doubts[0], testing::HasSubstr("without realization 4 +0.05"));
 }
 
 }  // namespace

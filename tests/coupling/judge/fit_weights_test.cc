@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coupling/judge/words.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {
@@ -43,8 +44,7 @@ Tally tally(int realizations) {
       inside = inside && p.low < truth[k] && truth[k] < p.high;
     }
     out.inside += inside ? 1 : 0;
-    const std::string sentence = select(data, c, {osl}, {f}).sentence;
-    out.none_agrees += sentence.find("No model agrees") != std::string::npos ? 1 : 0;
+    out.none_agrees += select(data, c, {osl}, {f}).best_model().agrees() == Answer::no ? 1 : 0;
   }
   return out;
 }
@@ -72,7 +72,7 @@ TEST(FitWeights, HalfwayBetweenTwoModelsNeitherIsNamed) {
       const Weights c = weights_of(data);
       std::vector<Fit> fits;
       for (const FitModel& m : two) fits.push_back(fit(data, c, m, plain()));
-      named += select(data, c, two, fits).distinguishable ? 1 : 0;
+      named += select(data, c, two, fits).distinguishable == Answer::yes ? 1 : 0;
     }
     EXPECT_LE(named, 2 * kTrials * 15 / 100) << realizations;
   }
@@ -91,12 +91,12 @@ TEST(FitWeights, OneRealizationIsRankedByItsDistance) {
   const Weights c = weights_of(data);
   std::vector<Fit> fits;
   for (const FitModel& m : scaled) fits.push_back(fit(data, c, m, plain()));
-  const Selection s = select(data, c, scaled, fits);
-  EXPECT_EQ(s.ranking.front().name, "osl");
-  EXPECT_FALSE(s.distinguishable);
-  EXPECT_THAT(
-      s.sentence,
-      testing::StartsWith("Not distinguishable: osl, hydrostatic; the nearest misses by 0.0 %"));
+  const Judgement s = select(data, c, scaled, fits);
+  EXPECT_EQ(s.best, "osl");
+  EXPECT_EQ(s.distinguishable, Answer::unknown);
+  EXPECT_THAT(sentence(s),
+              testing::StartsWith("One realization cannot distinguish models: osl is nearest (0.0 "
+                                  "%), then hydrostatic ("));
   EXPECT_TRUE(std::isnan(fits[0].chi2_per_dof));
 }
 
@@ -114,9 +114,9 @@ TEST(FitWeights, EqualRealizationsHaveNoSpread) {
   std::vector<Fit> fits;
   const Weights c = weights_of(data);
   for (const FitModel& m : two) fits.push_back(fit(data, c, m, plain()));
-  const Selection s = select(data, c, two, fits);
-  EXPECT_FALSE(s.distinguishable);
-  EXPECT_EQ(s.ranking.front().name, "osl");
+  const Judgement s = select(data, c, two, fits);
+  EXPECT_EQ(s.distinguishable, Answer::unknown);
+  EXPECT_EQ(s.best, "osl");
 }
 
 // A component that is 0 in every realization (shear of a perfectly even heap) is no exact one.

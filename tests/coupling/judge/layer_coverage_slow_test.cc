@@ -72,11 +72,11 @@ Count verdicts(const LayerTruth& truth, double noise, int trials, bool among_all
     for (const FitModel& m : models) fits.push_back(fit(data, weights, m, options));
     SelectionOptions selection;
     selection.by_level = false;
-    const FitVerdict v =
-        layer_verdict(fits, select(data, weights, models, fits, selection), kRealizations);
-    out.named += v.alone && v.model == truth.model ? 1 : 0;
+    const Judgement v = select(data, weights, models, fits, selection);
+    const bool alone = v.distinguishable == Answer::yes;
+    out.named += alone && v.best == truth.model ? 1 : 0;
     out.type += v.equations == find_fit_model(scene().models, truth.model).equations ? 1 : 0;
-    out.undecided += v.equations == "not distinguishable" && !v.alone ? 1 : 0;
+    out.undecided += v.equations == "not distinguishable" && !alone ? 1 : 0;
   }
   return out;
 }

@@ -57,6 +57,7 @@ TEST(LayerVerdict, ContainsByWhatModelsAreAndNotByTheirNames) {
     Fit out;
     out.name = name;
     out.kind = kind;
+    out.equations = "elliptic";
     out.parameters.resize(static_cast<std::size_t>(free));
     return out;
   };
@@ -135,93 +136,6 @@ TEST(LayerFit, FiniteElementsTakeTheBestFitsConstants) {
   EXPECT_NEAR(std::stod(choice->settings.at("r")) / std::sqrt(t), 0.2, 1e-9);  // shear - nu_ratio
   EXPECT_NEAR(std::stod(choice->settings.at("nu_xy")) / std::sqrt(t), 0.4, 1e-9);
   EXPECT_FALSE(finite_element_choice("fe_elastic_half_space", models, fits, 0.2, of));
-}
-
-Selection ranking(const std::vector<std::pair<std::string, bool>>& names) {
-  Selection out;
-  double behind = 0;
-  for (const auto& [name, supported] : names) {
-    Score s;
-    s.name = name;
-    s.supported = supported;
-    s.heights_behind = s.heights_error = std::nan("");
-    s.behind = 0.1 * behind;
-    s.behind_error = 0.01;
-    behind += 10;
-    out.ranking.push_back(s);
-  }
-  return out;
-}
-
-std::vector<Fit> fits_named(const std::vector<std::string>& names) {
-  std::vector<Fit> out;
-  for (const std::string& name : names) {
-    out.push_back(with_parameters(
-        name, Eigen::VectorXd::Constant(
-                  static_cast<Eigen::Index>(find_fit_model(scene().models, name).parameters.size()),
-                  0.3)));
-    out.back().dof = 50;
-    out.back().chi2_per_dof = 1;
-    out.back().chance = 1.6;
-    out.back().rel_l2 = 0.1 * static_cast<double>(out.size());
-  }
-  return out;
-}
-
-TEST(LayerVerdict, RicherModelsDoNotOutbidTheirSpecialCase) {
-  const auto fits = fits_named({"layer_smooth", "orthotropic_layer_smooth", "osl_layer_absorbing"});
-  const FitVerdict v = layer_verdict(fits,
-                                     ranking({{"orthotropic_layer_smooth", true},
-                                              {"layer_smooth", true},
-                                              {"osl_layer_absorbing", false}}),
-                                     8);
-  EXPECT_EQ(v.model, "layer_smooth");
-  EXPECT_TRUE(v.alone);
-  EXPECT_EQ(v.equations, "elliptic");
-  EXPECT_THAT(v.sentence, HasSubstr("Supported: layer_smooth (chi2/dof 1, relative L2 10.0 %)"));
-  EXPECT_THAT(v.sentence,
-              HasSubstr("The response is elliptic: the best hyperbolic model, "
-                        "osl_layer_absorbing, is behind by 2 +- 0.01 on realizations left out"));
-}
-
-TEST(LayerVerdict, WhatDisagreesIsNotSupported) {
-  auto fits = fits_named({"layer_smooth", "osl_layer_absorbing"});
-  fits.front().chi2_per_dof = 4;
-  const FitVerdict v =
-      layer_verdict(fits, ranking({{"layer_smooth", true}, {"osl_layer_absorbing", false}}), 8);
-  EXPECT_FALSE(v.agrees);
-  EXPECT_THAT(v.sentence, HasSubstr("Nearest of those asked: layer_smooth (chi2/dof 4, "));
-  EXPECT_THAT(v.sentence, ::testing::Not(HasSubstr("upported")));
-}
-
-TEST(LayerVerdict, EllipticAndHyperbolicTogetherAreNotDistinguishable) {
-  const auto fits = fits_named({"layer_smooth", "osl_layer_absorbing"});
-  const FitVerdict v =
-      layer_verdict(fits, ranking({{"osl_layer_absorbing", true}, {"layer_smooth", true}}), 8);
-  EXPECT_EQ(v.equations, "not distinguishable");
-  EXPECT_FALSE(v.alone);
-  EXPECT_THAT(v.sentence, HasSubstr("Not distinguishable: osl_layer_absorbing and layer_smooth"));
-  EXPECT_THAT(v.sentence, HasSubstr("Elliptic or hyperbolic: not distinguishable."));
-}
-
-TEST(LayerVerdict, SaysWhenNothingAgrees) {
-  auto fits = fits_named({"osl_layer_absorbing", "flamant"});
-  fits[0].chi2_per_dof = 4;
-  const FitVerdict v =
-      layer_verdict(fits, ranking({{"osl_layer_absorbing", true}, {"flamant", false}}), 8);
-  EXPECT_EQ(v.equations, "hyperbolic");
-  EXPECT_FALSE(v.agrees);
-  EXPECT_THAT(v.sentence, HasSubstr("No agreement within the errors: chi2/dof 4, where up to 1.6"));
-}
-
-TEST(LayerVerdict, OneRealizationHasNoSpread) {
-  const auto fits = fits_named({"layer_smooth", "osl_layer_absorbing"});
-  const FitVerdict v =
-      layer_verdict(fits, ranking({{"osl_layer_absorbing", true}, {"layer_smooth", true}}), 1);
-  EXPECT_EQ(v.model, "layer_smooth");
-  EXPECT_EQ(v.equations, "not distinguishable");
-  EXPECT_THAT(v.sentence, HasSubstr("1 realization: without a spread nothing is distinguishable. "
-                                    "Nearest is layer_smooth (relative L2 10.0 %)"));
 }
 
 TEST(Posteriors, DrawEveryParameterWithAnError) {

@@ -115,7 +115,7 @@ TEST_F(ReportTest, TheResidualMapIsOfTheNearestModel) {
                           2, 0.06);
   in.models = {{"far=flamant", Eigen::VectorXd::Constant(66, -1)},
                {"near=layer", Eigen::VectorXd::Constant(66, -2)}};
-  ASSERT_EQ(in.comparison.verdict.best_model, "near");
+  ASSERT_EQ(in.comparison.judgement.best, "near");
   const Report report = point_load_report(in);
   int maps = 0;
   for (const Section& section : report.sections) {
@@ -135,7 +135,7 @@ TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   for (dem::Grain& g : moved.grains) g.position.y() *= 0.999;
   PileReport in;
   in.title = "heap";
-  in.sentence = "A pressure dip";
+  in.comparison.judgement.findings = {"A pressure dip"};
   in.pile = &heap;
   in.changed = {{"g = 5 m/s2", &moved}};
   Profile p;

@@ -7,6 +7,7 @@
 #include "coupling/case/declare.h"
 #include "coupling/case/study.h"
 #include "coupling/output/tables.h"
+#include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/ranks.h"
@@ -60,12 +61,13 @@ StudyResult analyse_stack(const Case& value, const std::vector<std::string>& fil
   const double ratio = figures["stack.base_force_over_weight"].front();
   const bool carried = std::abs(ratio - 1) < value.get<StackSetup>().tolerance;
   out.summary["stack.carried"] = carried ? "yes" : "no";
-  out.comparison.verdict.sentence = fmt::format("The base carries {:.6g} of the weight.", ratio);
+  out.comparison.judgement.findings = {
+      fmt::format("The base carries {:.6g} of the weight.", ratio)};
   out.overview = {{"base force / weight", "stack.base_force_over_weight", ""}};
   out.page = [](const StudyResult& result, const Realization* first) {
     Report page;
     page.title = "A stack of " + std::to_string((*first)["pile"].grains.size()) + " disks";
-    page.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+    add_verdict(page, result.comparison.judgement);
     Table table{"Figures", "", {}, {}};
     for (const auto& [name, text] :
          figure_rows(result.summary, {"stack.base_force_over_weight", "stack.carried"})) {

@@ -8,6 +8,7 @@
 #include "coupling/heap/dip.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
+#include "coupling/judge/words.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
@@ -282,26 +283,26 @@ TEST(PileAnalysis, FindsAPlantedDipAndAPlantedPeak) {
   EXPECT_GT(number(dip, "dip.difference"), 3 * number(dip, "dip.standard_error"));
   EXPECT_LT(number(dip, "dip.ratio"), 0.85);
   EXPECT_LT(number(dip, "dip.window_ratio"), 0.85);
-  EXPECT_THAT(dip.comparison.verdict.sentence, HasSubstr("A pressure dip: "));
+  EXPECT_THAT(sentence(dip.comparison.judgement), HasSubstr("The heaps have a pressure dip (8 realizations, 95 %)."));
 
   const StudyResult peak = planted(-0.4, 8, 100);
   EXPECT_EQ(std::get<std::string>(peak.summary.at("dip.verdict")), "peak");
   EXPECT_GT(number(peak, "dip.p_value"), 0.95);
   EXPECT_LT(number(peak, "dip.difference"), 0);
   EXPECT_GT(number(peak, "dip.window_ratio"), 1.1);
-  EXPECT_THAT(peak.comparison.verdict.sentence, HasSubstr("No dip but a pressure peak"));
+  EXPECT_THAT(sentence(peak.comparison.judgement), HasSubstr("The heaps have a pressure peak and no dip (8 "));
 }
 
 TEST(PileAnalysis, FewRealizationsGiveNoVerdict) {
   const StudyResult two = planted(0.4, 2, 7);
   EXPECT_EQ(std::get<std::string>(two.summary.at("dip.verdict")), "undecided");
   EXPECT_TRUE(std::isnan(number(two, "dip.p_value")));
-  EXPECT_THAT(two.comparison.verdict.sentence, HasSubstr("needs at least 3 that differ"));
+  EXPECT_THAT(sentence(two.comparison.judgement), HasSubstr("needs at least 3 realizations that differ; there are 2."));
   // 1/sqrt(2 (n - 1)) = 0.5 of three, 0.41 of four; with eight nothing is said.
-  EXPECT_THAT(planted(0.4, 3, 7).comparison.verdict.sentence,
-              HasSubstr("; of 3 realizations that error itself is uncertain by 50 %"));
-  EXPECT_THAT(planted(0.4, 4, 7).comparison.verdict.sentence, HasSubstr("uncertain by 41 %"));
-  EXPECT_THAT(planted(0.4, 8, 100).comparison.verdict.sentence,
+  EXPECT_THAT(sentence(planted(0.4, 3, 7).comparison.judgement),
+              HasSubstr(", an error that is itself uncertain by 50 %"));
+  EXPECT_THAT(sentence(planted(0.4, 4, 7).comparison.judgement), HasSubstr("uncertain by 41 %"));
+  EXPECT_THAT(sentence(planted(0.4, 8, 100).comparison.judgement),
               ::testing::Not(HasSubstr("uncertain")));
 }
 
@@ -342,7 +343,7 @@ TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {
   EXPECT_LT(ridge, 1000 * result.comparison.depth);
   EXPECT_GT(ridge, 900 * result.comparison.depth);
   EXPECT_TRUE(result.summary.count("compare.hydrostatic.rel_l2"));
-  EXPECT_TRUE(result.summary.count("verdict.best_model"));
+  EXPECT_FALSE(result.comparison.judgement.best.empty());
   EXPECT_FALSE(result.summary.count("response.peak"));
 }
 

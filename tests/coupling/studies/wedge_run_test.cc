@@ -9,6 +9,7 @@
 #include "continuum/model.h"
 #include "coupling/heap/base_shape.h"
 #include "coupling/heap/slip_lines.h"
+#include "coupling/judge/words.h"
 #include "coupling/output/triangles_vtu.h"
 #include "tests/coupling/shipped.h"
 
@@ -175,7 +176,7 @@ TEST(WedgeRun, HeapsAlone) {
                "model.at_once.cells=8", "model.at_once.dilation_deg=28", "model.grow.cells=8",
                "model.grow.layers=4", "model.grow.dilation_deg=28"});
   EXPECT_THAT(
-      word(result, "verdict.sentence"),
+      sentence(result.comparison.judgement),
       MatchesRegex("at_once: peak .0.8[0-9]* rho g h on the axis.; grow: peak .0.8[0-9]* rho "
                    "g h on the axis.."));
   EXPECT_EQ(result.summary.count("wedge.at_once.nearest"), 0U);
