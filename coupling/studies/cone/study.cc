@@ -169,6 +169,7 @@ Study cone_study() {
   out.sections = {kGrainFilesKeys, kMaterialKeys, kMotionKeys,  kRestKeys,
                   kConeKeys,       kSleepKeys,    kAverageKeys, kHeapKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::ConeSetup>().material; };
+  out.grain_radius = [](const Case& c) { return c.get<dem::ConeSetup>().plan.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::ConeSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::ConeSetup>().rest; };
   out.figures = {cone_figures};

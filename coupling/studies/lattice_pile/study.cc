@@ -348,6 +348,7 @@ Study lattice_pile_study() {
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::LatticePileSetup>().material;
   };
+  out.grain_radius = [](const Case& c) { return c.get<dem::LatticePileSetup>().lattice.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::LatticePileSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::LatticePileSetup>().rest; };
   out.figures = {lattice_pile_figures, measured_figures};

@@ -202,6 +202,7 @@ Study pair_study() {
     out.needs.push_back({key, "pair.kind", {"collision"}});
   }
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::PairSetup>().material; };
+  out.grain_radius = [](const Case& c) { return c.get<dem::PairSetup>().radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::PairSetup>().motion; };
   out.figures = {pair_figures};
   out.without = {"material.floor_friction", "material.wall_friction", "material.gravity",

@@ -311,6 +311,9 @@ Study point_load_study() {
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::PointLoadSetup>().material;
   };
+  out.grain_radius = [](const Case& c) {
+    return dem::mean_radius(c.get<dem::PointLoadSetup>().packing);
+  };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::PointLoadSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::PointLoadSetup>().rest; };
   out.check = check_point_load;

@@ -365,6 +365,7 @@ Study sample_study() {
   out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys, kBlockKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
+  out.grain_radius = [](const Case& c) { return c.get<dem::SampleSetup>().plan.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
   out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
