@@ -92,10 +92,11 @@ TEST(Judge, WhatDisagreesIsNearerAndNotSupported) {
   for (Candidate& c : all) c.model.chance = 3.3;
   const Judgement j = judge(evidence(16, 0.05), all);
   EXPECT_EQ(j.find("finite layer")->supported(), Answer::no);
-  EXPECT_EQ(sentence(j),
-            "finite layer is nearer to the grains than half plane (16 realizations, 95 %). No "
-            "model agrees within the errors: the misfit of finite layer is 3.7, and a true model "
-            "exceeds 3.3 in 1 of 100 ensembles.");
+  EXPECT_EQ(
+      sentence(j),
+      "The finite layer is nearer to the grains than the half plane (16 realizations, 95 %). No "
+      "model agrees within the errors: the misfit of finite layer is 3.7, and a true model "
+      "exceeds 3.3 in 1 of 100 ensembles.");
 }
 
 // Every kind of first line, with names as the shipped models have them.
