@@ -7,6 +7,7 @@
 
 #include "coupling/averaging/layer.h"
 #include "coupling/files/placement.h"
+#include "coupling/strain/motion.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -55,6 +56,7 @@ StrainOutcome strain_files(const StrainRequest& request) {
   StrainResult found = strain(before, after, placed.to_packing(points), options);
   StrainOutcome out;
   out.report = found.report();  // names places in the packing
+  out.doubt = doubtful_images(before, after);
   out.field = std::move(found.field);
   out.field.points = points;
   out.field.nx = grid ? nx : 0;
