@@ -1,5 +1,6 @@
 // Keys of [material] that follow from others, and what is said of the contacts.
 #include <filesystem>
+#include <regex>
 
 #include "check_scene.h"
 #include "coupling/case/material.h"
@@ -146,10 +147,18 @@ TEST(CaseMaterial, ShippedCasesLeaveNothingToADefaultThatFollows) {
     for (const Key& key : keys()) {
       if (key.follows.empty() || !key_applies(key, value.study)) continue;
       if (is_without_effect(key, value)) continue;
+      const dem::MaterialSetup& m = find_study(value.study)->material(const_cast<Case&>(value));
+      const bool dashpots = key.name == "normal_damping" || key.name == "tangential_damping";
+      if (dashpots && m.law == "hertz" && m.damping_model == "critical") continue;
       EXPECT_TRUE(value.given.contains(key.path())) << name << ": " << key.path();
     }
   };
+  // Laws with such keys; their words or a study that has one by default stand in the file.
+  const std::regex laws(R"re("(linear|penalty|viscoelastic|sample|lattice-pile)")re");
+  int read = 0;
   for (const auto& file : shipped_cases()) {
+    if (!std::regex_search(testing::read_text(file.string()), laws)) continue;
+    ++read;
     for (const bool quick : {false, true}) {
       const Case value = read_case(file.string(), quick, {});
       for (const SweepCase& one : sweep_cases(value)) {
@@ -157,6 +166,7 @@ TEST(CaseMaterial, ShippedCasesLeaveNothingToADefaultThatFollows) {
       }
     }
   }
+  EXPECT_GT(read, 10);
 }
 
 }  // namespace
