@@ -85,6 +85,7 @@ void add_fit(CLI::App& app, Action& action) {
       }
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       say("fitted to {}\n", shown(outcome.packings));
+      if (!outcome.carried.empty()) say("{}\n", outcome.carried);
       if (!outcome.coverage.empty()) say("{}", outcome.coverage);
       say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,
           printable_name(wanted.folder));

@@ -12,6 +12,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/compare/compare.h"
+#include "coupling/files/measured_share.h"
 #include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/models/subject.h"
@@ -279,6 +280,17 @@ void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std:
   }
 }
 
+void add_shares(const std::vector<SceneField>& scenes, CompareOutcome& out) {
+  for (const SceneField& scene : scenes) {
+    const auto share = carried_share(scene.field);
+    if (!share) continue;
+    out.carried.push_back(share_text(*share));
+    if (std::string doubt = share_doubt(*share); !doubt.empty()) {
+      out.carried_doubts.push_back(std::move(doubt));
+    }
+  }
+}
+
 }  // namespace
 
 CompareOutcome compare_field(const CompareRequest& request) {
@@ -301,6 +313,8 @@ CompareOutcome compare_field(const CompareRequest& request) {
   }
   const SceneField& scene = scenes.front();
   const bool measured = scene.field.is_measured();
+  CompareOutcome out;
+  if (measured) add_shares(scenes, out);
   RunFacts facts = scene.facts;
   facts.depth = lines.front().profile.depth;
   std::vector<PointSet> sets;
@@ -361,7 +375,8 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_figures_of(scene, comparison, main, summary);
   require_documented(summary);
 
-  CompareOutcome out{comparison.verdict.sentence, "", "", "", measured};
+  out.verdict = comparison.verdict.sentence;
+  out.measured = measured;
   if (kernels.size() > 1) {
     out.note = fmt::format(
         "fields seen through different kernels, models through each one's own: "

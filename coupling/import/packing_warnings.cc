@@ -100,8 +100,15 @@ GrainSizes grain_sizes(const dem::Snapshot& packing) {
 
 std::string tension_in(const PackingCheck& check) {
   const double all = check.pairs_along_gravity + check.walls_along_gravity;
-  if (!(all > 0)) return "";
+  const double trace = (check.pairs + check.walls).trace();
   const std::string remedy = "forces count on grain i, by j; turn their sign";
+  if (!(all > 0) && trace > 0) {
+    return fmt::format(
+        "the contacts pull: the mean stress is tension (its trace times the volume is {:.3g} N m, "
+        "compression is negative); {} (import --flip-forces)",
+        trace, remedy);
+  }
+  if (!(all > 0)) return "";
   if (check.walls_along_gravity < 0) {
     return fmt::format(
         "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "

@@ -9,9 +9,9 @@
 
 namespace grainfield::coupling {
 
-/// Why the contacts of a packing under gravity pull where grains push: the stress along gravity,
-/// pairs and walls together, is tension (positive); one sentence with the remedy. Empty: it is
-/// compression, or there is no gravity or no contact.
+/// Why the contacts of a packing pull where grains push: the stress along gravity, pairs and walls
+/// together, is tension (positive), or whatever gravity is the mean stress; one sentence with the
+/// remedy. Empty: it is compression, or there is no contact.
 std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and

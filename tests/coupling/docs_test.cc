@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "coupling/files/measured_share.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/version.h"
 #include "program.h"
@@ -126,7 +127,8 @@ TEST(Docs, BrokenLinksAreFound) {
 TEST(Docs, NameTheThresholdOfHeapsThatAreNoWedges) {
   const std::string page = read_text((kRoot / "docs/fits.md").string());
   EXPECT_THAT(page, HasSubstr(fmt::format("weigh {:g} times their wedge", kMostOverWedge)));
-  EXPECT_THAT(page, HasSubstr(fmt::format("carry {:g} times the weight", kMostOverWedge)));
+  EXPECT_THAT(page, HasSubstr(fmt::format("carry less than {:g} or more than {:g} times the weight",
+                                          kLeastShare, kMostShare)));
 }
 
 // docs/images/pictures.toml: a table for every picture with the command that makes it.
