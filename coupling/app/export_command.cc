@@ -42,7 +42,8 @@ std::string chosen_group(const ExportRequest& given) {
                                     [](const std::string& g) { return g.ends_with("unloaded"); });
     if (found != groups.end()) return *found;
     if (!groups.empty()) return groups.front();
-    throw std::invalid_argument(given.snapshots + ": holds no snapshot");
+    throw std::invalid_argument(given.snapshots +
+                                ": holds no snapshot (grainfield import makes one)");
   }
   const std::string wanted = given.group.front() == '/' ? given.group : "/" + given.group;
   if (std::find(groups.begin(), groups.end(), wanted) == groups.end()) {
@@ -126,7 +127,9 @@ int export_file(const ExportRequest& given) {
   }
   const std::vector<std::string> packings = dem::list_snapshots(file);
   const std::vector<std::string> fields = packings.empty() ? list_fields(file) : packings;
-  if (fields.empty()) throw std::invalid_argument(file + ": holds neither packings nor fields");
+  if (fields.empty())
+    throw std::invalid_argument(
+        file + ": holds neither packings nor fields (import and import-field make them)");
   if (packings.empty() ? exporter.field == nullptr : exporter.packing == nullptr) {
     throw std::invalid_argument(fmt::format("--to {}: {} holds {}, found no form for these",
                                             given.to, file,
@@ -163,38 +166,52 @@ int export_file(const ExportRequest& given) {
   return 0;
 }
 
-int export_deck(ExportRequest given) {
-  if (given.files.size() != 2) {
-    throw std::invalid_argument(
-        fmt::format("--to lammps: found {} file(s), expected two: the case with law, friction and "
-                    "damping, and the "
-                    "snapshots",
-                    given.files.size()));
+/// What the case says of law, damping and time step; without a case the deck asks for them.
+LammpsSetup deck_setup(const ExportRequest& given) {
+  LammpsSetup setup;
+  setup.copies = {given.copies.front(), given.copies.back()};
+  if (given.case_file.empty()) {
+    setup.known = false;
+    return setup;
   }
-  given.case_file = given.files.front();
-  given.snapshots = given.files.back();
   Case value = read_case(find_case(given.case_file), given.quick, given.sets);
   const Study& study = study_of(value);
   if (study.material == nullptr || study.motion == nullptr || study.foresee == nullptr) {
     throw std::invalid_argument(
         fmt::format("study: found \"{}\", allowed: one with grains of a [material]", study.name));
   }
-  const std::string group = chosen_group(given);
-  const dem::Snapshot packing = dem::read_snapshot(given.snapshots, group);
-  LammpsSetup setup;
   setup.material = study.material(value);
   if (study.rest != nullptr) {
     setup.background_damping = study.rest(value).background_damping;
     setup.kinetic_to_elastic_energy = study.rest(value).kinetic_to_elastic_energy;
   }
-  setup.copies = {given.copies.front(), given.copies.back()};
   setup.local_damping = study.motion(value).local_damping;
   constexpr std::int64_t kDraws = 1000;
   setup.time_step = study.foresee(value, kDraws).time_step;
+  return setup;
+}
+
+int export_deck(ExportRequest given) {
+  if (given.files.size() == 2) given.case_file = given.files.front();
+  given.snapshots = given.files.back();
+  if (given.case_file.empty() && (given.quick || !given.sets.empty())) {
+    throw std::invalid_argument(
+        "--set, --quick: found without a case, allowed: with CASE.toml before the packing");
+  }
+  const std::size_t colon = given.snapshots.rfind(':');
+  if (colon != std::string::npos && !std::filesystem::exists(given.snapshots)) {
+    given.group = given.snapshots.substr(colon + 1);
+    given.snapshots.resize(colon);
+  }
+  const std::string group = chosen_group(given);
+  const dem::Snapshot packing = dem::read_snapshot(given.snapshots, group);
+  LammpsSetup setup = deck_setup(given);
   take_load(given.snapshots, group, packing, setup);
   const LammpsDeck deck = lammps_deck(packing, setup);
   OutputFolder folder(given.output, "grainfield export");
-  folder.require_other_than({given.case_file, given.snapshots});
+  std::vector<std::string> inputs{given.snapshots};
+  if (!given.case_file.empty()) inputs.push_back(given.case_file);
+  folder.require_other_than(inputs);
   write_text_file(folder.staging("packing.data"), deck.data);
   write_text_file(folder.staging("in.lammps"), deck.input);
   const auto written = folder.staged();
@@ -204,8 +221,8 @@ int export_deck(ExportRequest given) {
       packing.walls.size(),
       setup.loaded.empty() ? "" : fmt::format(", load on {}", setup.loaded.size()));
   for (const std::string& line : deck.notes) note("note: {}", line);
-  say("{}\nin {}: lmp -in in.lammps; its first lines say how to come back\n", listed(written),
-      given.output);
+  say("{}\nin {}: lmp -in in.lammps; its first lines say what it needs and how to come back\n",
+      listed(written), given.output);
   return 0;
 }
 
@@ -218,7 +235,8 @@ void add_export(CLI::App& app, Action& action) {
   auto given = std::make_shared<ExportRequest>();
   command
       ->add_option("files", given->files,
-                   "FILE.h5 (all in it) or FILE.h5:NAME; for lammps: CASE.toml FILE.h5")
+                   "FILE.h5 (all in it) or FILE.h5:NAME; for lammps: CASE.toml FILE.h5, "
+                   "or FILE.h5 alone where the deck may ask for the law")
       ->required()
       ->expected(1, 2);
   std::string forms = "lammps: packing and input deck";

@@ -1,6 +1,7 @@
 // average and compare: the steps of a run on their own.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -13,12 +14,14 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
+#include "coupling/averaging/upright.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/compare_field.h"
 #include "coupling/files/places.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/field_csv.h"
 #include "coupling/output/judgement.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
@@ -32,18 +35,33 @@ void print_gaps(const Gaps& gaps, const Field& field) {
   for (std::string line; std::getline(lines, line);) note("{}", line);
 }
 
-bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }
+// Before a balance says how far it is.
+constexpr std::chrono::seconds kBalancePatience{2};
 
 // Every averaging on each snapshot, side by side.
-void print_balance(const std::vector<SnapshotName>& names, AverageOptions options, double width) {
-  for (const auto& name : names) {
-    const dem::Snapshot snapshot = dem::read_snapshot(name.file, name.group);
+void print_balance(const AverageRequest& request) {
+  AverageOptions options = request.options;
+  const double width = options.width;
+  for (const auto& name : request.snapshots) {
+    const auto read = snapshot_of(name);
+    const dem::Vec3 up = up_of(*read, request.up);
+    const auto held = up.isZero() ? read : upright(read, up);
+    const dem::Snapshot& snapshot = *held;
     const double diameter = mean_diameter(snapshot);
     options.width = width > 0 ? width / diameter : 1;
+    ProgressLine line(false);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto rows = balance_table(snapshot, options, [&](double share) {
+      if (std::chrono::steady_clock::now() - begin < kBalancePatience) return;
+      line.show([&] {
+        return fmt::format("balance of {}  {:.0f} %", printable_name(name.group), 100 * share);
+      });
+    });
+    line.end();
     say("{}:{}: {} grains, {} contacts, mean diameter {:.4g} m; residual of div sigma + rho "
         "g over rho g\n{}",
         printable_name(name.file), name.group, snapshot.grains.size(), snapshot.contacts.size(),
-        diameter, balance_markdown(balance_table(snapshot, options)));
+        diameter, balance_markdown(rows));
   }
 }
 
@@ -108,28 +126,28 @@ void add_average(CLI::App& app, Action& action) {
       if (given->output.empty() && !given->balance) {
         throw std::invalid_argument("average: give -o FIELD.h5, or --balance, or both");
       }
+      if (!given->output.empty()) require_field_ending("-o", given->output);
       request.snapshots = parse_snapshot_names(given->snapshots);
       std::vector<std::string> inputs{given->where.points};
       for (const SnapshotName& name : request.snapshots) inputs.push_back(name.file);
       require_other_file("-o", given->output, inputs);
       request.points = given->where.read(request.snapshots);
       request.frame = given->where.frame;
+      request.up = given->where.up;
       request.nx = given->where.columns;
       request.ny = given->where.rows;
       request.nz = given->where.layers;
       request.rings = given->where.rings;
       if (given->balance) {
-        print_balance(request.snapshots, request.options, request.options.width);
+        print_balance(request);
       }
       if (given->output.empty()) return 0;
       Gaps gaps;
       std::vector<std::string> warnings;
       const NamedFields fields = average_files(request, &gaps, &warnings);
       for (const std::string& warning : warnings) note("warning: {}", warning);
-      if (is_csv(given->output))
-        write_field_csv(given->output, fields.front().second);
-      else
-        write_fields(given->output, fields);
+      const std::string left_out = write_field_file(given->output, fields);
+      if (!left_out.empty()) note("{}", left_out);
       for (const auto& [name, field] : fields) {
         say("{}: {} points, {} realization{}\n", name, field.points.rows(), field.realizations,
             field.realizations == 1 ? "" : "s");
@@ -149,7 +167,8 @@ void add_compare(CLI::App& app, Action& action) {
       ->add_option("--model", *models,
                    "NAME, NAME:p=v,... or LABEL=NAME:p=v,...; what the file knows is filled in: F, "
                    "h; of heaps rho_g, phi_deg, left_deg, right_deg, h")
-      ->required();
+      ->required()
+      ->allow_extra_args(false);
   command->add_option("--field", request->fields, "only these fields of the file")
       ->allow_extra_args(false);
   command
@@ -181,6 +200,9 @@ void add_compare(CLI::App& app, Action& action) {
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
+      for (const std::string& doubt : outcome.carried_doubts) note("warning: {}", doubt);
+      for (const std::string& line : outcome.carried) say("{}\n", line);
+      if (!outcome.note.empty()) say("{}\n", outcome.note);
       say("{}\nreport: {}/report.html\n", judgement_text(outcome.judgement),
           printable_name(request->folder));
       return 0;

@@ -18,6 +18,7 @@
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/file_lock.h"
 #include "dem/snapshot/number.h"
@@ -222,6 +223,7 @@ void add_import(CLI::App& app, Action& action) {
       parse(*given);
       ImportOptions& options = given->options;
       require_other_file("-o", given->output, options.files);
+      require_ending("-o", given->output, {".h5", ".hdf5"}, "HDF5");
       // Who adds reads first what is there: two of them at once would each lose the other's.
       std::unique_ptr<FileLock> lock;
       if (given->add) lock = lock_for_adding(given->output);

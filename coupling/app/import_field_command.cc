@@ -9,7 +9,8 @@
 #include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/files/measured_field.h"
-#include "coupling/output/field_io.h"
+#include "coupling/files/measured_share.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
 
 namespace grainfield::coupling {
@@ -25,14 +26,17 @@ void add_import_field(CLI::App& app, Action& action) {
   MeasuredRequest& r = given->request;
   command
       ->add_option("file", r.file,
-                   fmt::format("CSV with columns x (UNIT), component, value (UNIT), error (UNIT) "
-                               "and, off the base, y (UNIT), in 3D z (UNIT), up; lengths in {}; "
+                   fmt::format("CSV with columns x (UNIT), or r (UNIT) of a cone, component, value "
+                               "(UNIT), error (UNIT) and, off the base, y (UNIT), in 3D z (UNIT), "
+                               "up; lengths in {}; "
                                "stresses in {}; components pressure, shear or sigma_xx ...",
                                fmt::join(length_units(), " "), fmt::join(stress_units(), " ")))
       ->required();
-  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
+  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it; or FIELD.csv, a table")
+      ->required();
   command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
-  command->add_option("--dim", r.dim, "2 (default, where 1 Pa counts as 1 N/m) | 3");
+  command->add_option("--dim", r.dim,
+                      "2 (default without a column z or r; 1 Pa counts as 1 N/m) | 3");
   add_quantity(*command, "--height", r.height, option_length(),
                "of the heap or layer, m or \"80 mm\"");
   auto* slope = add_quantity(*command, "--slope", given->slope, option_angle(),
@@ -58,15 +62,20 @@ void add_import_field(CLI::App& app, Action& action) {
         request.rho_g = quantity_of("--rho-g", given->rho_g, weight_per_volume(request.dim));
       }
       require_other_file("-o", given->output, {request.file});
+      require_field_ending("-o", given->output);
+      const std::string assumed = settle(request);
       const Field field = measured_field(request);
       const std::string name = given->name.empty() ? name_of_measured(field) : given->name;
-      write_fields(given->output, {{name, field}});
-      say("{}: {} points, h = {} m\n", name, field.points.rows(), field.attributes.at("h"));
+      write_field_file(given->output, {{name, field}});
+      say("{}: {} points{}, h = {} m\n", name, field.points.rows(),
+          field.points.cols() == 3 ? " in space" : "", field.attributes.at("h"));
       for (const Column& column : field.columns) {
         say("  {}: {} values, {} with errors ({})\n", column.name,
             column.value.array().isFinite().count(), column.error.array().isFinite().count(),
             column.unit);
       }
+      if (!assumed.empty()) say("  {}\n", assumed);
+      if (const auto share = carried_share(field)) say("  {}\n", share_text(*share));
       for (const std::string& doubt : measured_doubts(field)) note("warning: {}: {}", name, doubt);
       return 0;
     };

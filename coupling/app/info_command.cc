@@ -61,7 +61,9 @@ void add_info(CLI::App& app, Action& action) {
       const auto snapshots = dem::list_snapshots(*file);
       const auto fields = list_fields(*file);
       if (snapshots.empty() && fields.empty()) {
-        throw std::invalid_argument(*file + ": holds no snapshot and no field of grainfield");
+        throw std::invalid_argument(*file +
+                                    ": holds no snapshot and no field of grainfield (import and "
+                                    "import-field make them of other files)");
       }
       for (const auto& group : snapshots) show_snapshot(*file, group);
       for (const auto& name : fields) show_field(*file, name);

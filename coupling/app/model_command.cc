@@ -16,6 +16,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
 
 namespace grainfield::coupling {
@@ -92,8 +93,13 @@ void add_model(CLI::App& app, Action& action) {
         list_parameters(info);
         return 0;
       }
-      if (given->points.empty()) throw std::invalid_argument("model: --points is missing");
-      if (!given->output.empty()) require_other_file("-o", given->output, {given->points});
+      if (given->points.empty())
+        throw std::invalid_argument(
+            "model: --points is missing, a CSV with columns x,y or x,y,z (m)");
+      if (!given->output.empty()) {
+        require_other_file("-o", given->output, {given->points});
+        require_ending("-o", given->output, {".csv", ".txt", ".dat"}, "a table as CSV");
+      }
       const auto settings = parse_settings(given->sets, "--set");
       auto progress = std::make_unique<SolverProgress>();
       const auto model = continuum::make_model(given->name, settings);

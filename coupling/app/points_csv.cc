@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 // The optimizer warns of the package's deliberate cutting of long file names in its own messages.
@@ -19,6 +21,8 @@
 #include <libfccp/csv.h>
 #pragma GCC diagnostic pop
 
+#include "coupling/import/format.h"
+#include "coupling/system/printable.h"
 #include "coupling/system/read_input.h"
 #include "dem/snapshot/number.h"
 
@@ -40,11 +44,54 @@ double number(const char* text, const char* column, const std::string& file, uns
   return *value;
 }
 
+// What a column of lengths is times: in m, or as it is where no unit or h stands behind its name.
+double factor_of(const Heading& heading, const std::string& file) {
+  if (heading.unit.empty() || heading.unit == "h" || heading.unit == "m") return 1;
+  for (const auto& [unit, factor] : {std::pair{"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}})
+    if (heading.unit == unit) return factor;
+  throw std::invalid_argument(
+      fmt::format("{}:1: column {}: found the unit \"{}\", allowed: m, cm, mm, um, h", file,
+                  heading.name, heading.unit));
+}
+
+// Takes the units out of the header, "x (mm)": those of these columns are returned as factors.
+template <unsigned dim>
+std::array<double, dim> take_units(std::string& content, const std::string& file,
+                                   const std::array<const char*, dim>& names) {
+  std::array<double, dim> factors;
+  factors.fill(1);
+  std::size_t begin = 0;
+  while (begin < content.size() && (content[begin] == '#' || content[begin] == '\n'))
+    begin = std::min(content.find('\n', begin), content.size() - 1) + 1;
+  const std::size_t end = std::min(content.find('\n', begin), content.size());
+  const std::string line = content.substr(begin, end - begin);
+  if (line.find('(') == std::string::npos) return factors;
+  std::string plain;
+  int index = 0;
+  for (std::size_t from = 0; from <= line.size();) {
+    const std::size_t to = std::min(line.find(',', from), line.size());
+    const Heading heading = heading_of(line.substr(from, to - from), index++);
+    plain += (index > 1 ? "," : "") + heading.name;
+    for (unsigned k = 0; k < dim; ++k)
+      if (heading.name == names[k]) factors[k] = factor_of(heading, file);
+    from = to + 1;
+  }
+  content.replace(begin, end - begin, plain);
+  return factors;
+}
+
+// For messages.
+std::string first_line(const std::string& content) {
+  constexpr std::size_t most = 80;
+  return one_line(content.substr(0, content.find_first_of("\r\n")), most);
+}
+
 // The named columns.
 template <unsigned dim>
 Eigen::MatrixXd read(const std::string& file, const std::array<const char*, dim>& names) {
-  const std::string content = read_input(file, "a CSV file"),
-                    header = fmt::format("{}", fmt::join(names, ","));
+  std::string content = read_input(file, "a CSV file");
+  const std::string header = fmt::format("{}", fmt::join(names, ","));
+  const std::array<double, dim> factors = take_units<dim>(content, file, names);
   std::vector<double> values;
   unsigned line = 0;
   try {
@@ -57,10 +104,11 @@ Eigen::MatrixXd read(const std::string& file, const std::array<const char*, dim>
     };
     while (next())
       for (unsigned k = 0; k < dim; ++k)
-        values.push_back(number(texts[k], names[k], file, in.get_file_line()));
+        values.push_back(factors[k] * number(texts[k], names[k], file, in.get_file_line()));
   } catch (const io::error::missing_column_in_header& e) {
     throw std::invalid_argument(
-        fmt::format("{}:1: no column \"{}\", expected the header {}", file, e.column_name, header));
+        fmt::format("{}:1: no column \"{}\", expected the header {}; found: {}", file,
+                    e.column_name, header, first_line(content)));
   } catch (const io::error::header_missing&) {
     throw std::invalid_argument(fmt::format("{}: is empty, expected the header {}", file, header));
   } catch (const io::error::too_few_columns&) {

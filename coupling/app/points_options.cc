@@ -8,7 +8,10 @@ namespace grainfield::coupling {
 void PointsOptions::add_to(CLI::App& command) {
   command.add_option("--frame", frame,
                      "layer: load at 0,0, surface y = 0; heap: apex at 0,0, lengths over its "
-                     "height; packing: as it is; in 3D z is up");
+                     "height, both with the last axis up; packing: as it is");
+  command.add_option("--up", up,
+                     "x | -x | y | -y | z | -z: up in the packing's axes; default against its "
+                     "gravity, or its load");
   command.add_option("--points", points, "CSV with columns x,y (3D: x,y,z) in the frame");
   command.add_option("--grid", grid,
                      "COLUMNSxROWS over the packing; default 81x31; 3D: COLUMNSxROWSxLAYERS");

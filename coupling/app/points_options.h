@@ -9,7 +9,7 @@
 namespace grainfield::coupling {
 
 struct PointsOptions {
-  std::string frame = "layer", points, grid;
+  std::string frame = "layer", up, points, grid;
   int columns = 0, rows = 0, layers = 0;  ///< 0 where --grid does not say
   bool rings = false;                     ///< points are radius and height
 

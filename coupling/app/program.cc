@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "continuum/model.h"
 #include "coupling/app/commands.h"
+#include "coupling/app/list_words.h"
 #include "coupling/app/manual.h"
 #include "coupling/app/terminal.h"
 #include "coupling/system/failure.h"
@@ -67,7 +70,7 @@ int parse_and_act(int argc, char** argv) {
   add_info(app, action);
   add_samples(app, action);
   add_manual(app, action);
-  if (argc > 1 && argv[1][0] != '-') {
+  if (argc > 1 && argv[1][0] != '-' && argv[1][0] != 0) {
     const auto called = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
     if (app.get_subcommands(called).empty()) {
       std::vector<std::string> names;
@@ -76,8 +79,16 @@ int parse_and_act(int argc, char** argv) {
                                      argv[1], continuum::nearest(argv[1], names)));
     }
   }
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && !words.front().empty() && words.front().front() != '-') {
+    CLI::App& command = *app.get_subcommand(words.front());
+    const std::vector<std::string> rest(words.begin() + 1, words.end());
+    words.resize(1);
+    for (std::string& word : spread_lists(command, rest)) words.push_back(std::move(word));
+  }
+  std::reverse(words.begin(), words.end());  // CLI11 takes them from the end
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) {  // --help, --version
       std::ostringstream text;

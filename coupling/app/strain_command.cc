@@ -11,7 +11,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/files/strain_files.h"
-#include "coupling/output/field_io.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
 
 namespace grainfield::coupling {
@@ -40,7 +40,8 @@ void add_strain(CLI::App& app, Action& action) {
   StrainOptions& options = given->request.options;
   command->add_option("before", given->before, "FILE.h5:group")->required();
   command->add_option("after", given->after, "FILE.h5:group")->required();
-  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it")->required();
+  add_output(*command, given->output, "FIELD.h5; FIELD.xdmf comes beside it; or FIELD.csv, a table")
+      ->required();
   command->add_option("--measure", options.measure,
                       fmt::format("{} (docs/strain.md)", fmt::join(strain_measures(), " | ")));
   auto* width = add_quantity(
@@ -55,6 +56,7 @@ void add_strain(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       StrainRequest& request = given->request;
+      require_field_ending("-o", given->output);
       settle(request, support->count() > 0, width->count() > 0);
       request.before = one_snapshot(given->before);
       request.after = one_snapshot(given->after);
@@ -62,11 +64,12 @@ void add_strain(CLI::App& app, Action& action) {
                          {request.before.file, request.after.file, given->where.points});
       request.points = given->where.read({request.before});
       request.frame = given->where.frame;
+      request.up = given->where.up;
       request.nx = given->where.columns;
       request.ny = given->where.rows;
       request.nz = given->where.layers;
       const StrainOutcome outcome = strain_files(request);
-      write_fields(given->output, {{"strain", outcome.field}});
+      write_field_file(given->output, {{"strain", outcome.field}});
       say("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
           request.options.measure, outcome.field.attributes.at("width"));
       if (!outcome.doubt.empty()) note("warning: {}", outcome.doubt);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -138,7 +139,8 @@ BalanceResidual balance_residual(const dem::Snapshot& snapshot, const MatrixXd& 
   return result;
 }
 
-std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options) {
+std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options,
+                                      const std::function<void(double)>& progress) {
   const double diameter = mean_diameter(snapshot), width = options.width;
   const int up = up_axis(snapshot.dim);
   if (!(snapshot.gravity[up] < 0))
@@ -147,14 +149,24 @@ std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOpti
         "weight along -{}",
         fmt::join(snapshot.gravity.data(), snapshot.gravity.data() + snapshot.dim, " "),
         "xyz"[up]));
+  if (snapshot.cell.periodic[static_cast<std::size_t>(up)])
+    throw std::invalid_argument(
+        fmt::format("the packing repeats along {}: no height has a weight above it", "xyz"[up]));
   const Region region(snapshot);
   const LayerFrame frame = layer_frame(snapshot);
   const Places places = places_over(region, diameter);
   if (places.inside.rows() == 0)
     throw std::invalid_argument(
         "the packing is nowhere four mean diameters high; too low to "
-        "compare averagings on");
+        "compare averagings on (without --balance it is averaged all the same)");
   std::vector<BalanceRow> out;
+  constexpr int cuts = 9;
+  double rows = 0, done = 0;
+  for (const Method& method : methods()) rows += static_cast<double>(method.kernels().size());
+  const auto tell = [&] {
+    done += 1 / (rows * (cuts + 1));
+    if (progress) progress(std::min(done, 1.0));
+  };
   for (const Method& method : methods())
     for (const std::string& kernel : method.kernels()) {
       options.method = method.name;
@@ -172,12 +184,14 @@ std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOpti
       row.base = balance_residual(snapshot, places.base, options, step, order);
       row.inside = balance_residual(snapshot, places.inside, options, step, order);
       row.surface = balance_residual(snapshot, places.surface, options, step, order);
-      for (int k = 0; k < 9; ++k) {
+      tell();
+      for (int k = 0; k < cuts; ++k) {
         const double share = 0.1 * k;
         const CutForce cut =
             cut_force(snapshot, frame.floor + share * (region.highest() - frame.floor), options);
         worse(row.worst_cut, cut.error());
         worse(row.worst_sharp, cut.force / cut.sharp - 1);
+        tell();
       }
       out.push_back(row);
     }

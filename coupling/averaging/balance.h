@@ -1,6 +1,7 @@
 // What every averaging is asked: does its field carry the weight?
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,11 @@ struct CutForce {
 
 /// Integrates the averaged field itself along the cut at height y with a midpoint rule of spacing
 /// `step` (0: width / 40, in space a ninth of a kernel's range or a sixth
-/// of an element's width, and not more than 400,000 places). coarse_graining:
-/// along the whole line, and `weight` is the weight smeared with the kernel, exact for packings in
-/// equilibrium. The RVE methods: between the packing's ends, over the points with a value, and
-/// `weight` is weight_above, where the contacts carry it through each height, averaged over the
-/// part of the RVE inside the packing. Throws as average().
+/// of an element's width, and not more than 400,000 places); along an axis that repeats over
+/// exactly one period. coarse_graining: along the whole line, and `weight` is the weight smeared
+/// with the kernel, exact for packings in equilibrium. The RVE methods: between the packing's ends,
+/// over the points with a value, and `weight` is weight_above, where the contacts carry it through
+/// each height, averaged over the part of the RVE inside the packing. Throws as average().
 CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions& options,
                    double step = 0);
 
@@ -64,9 +65,11 @@ struct BalanceRow {
 /// walls would differ only in where the traction is: `options` decides). Widths: `options.width`
 /// mean diameters for the kernels' w, and RVEs of 2.5 times as much. Cuts at 0,
 /// 0.1, ..., 0.8 of the height. Throws as average(), and std::invalid_argument for a packing less
-/// than four mean diameters high or without gravity along -y (-z). In space the points reach from
-/// side to side.
-std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options);
+/// than four mean diameters high or without gravity along -y (-z), or that repeats along it. In
+/// space the points reach from side to side. `progress` (may be empty) is told the share of the
+/// work that is done.
+std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options,
+                                      const std::function<void(double)>& progress = {});
 /// The table as Markdown.
 std::string balance_markdown(const std::vector<BalanceRow>& rows);
 

@@ -1,5 +1,6 @@
 // Vertical force through horizontal cuts.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "coupling/averaging/clip.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/kernel.h"
+#include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
 
 namespace grainfield::coupling {
@@ -18,6 +20,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
+
+// Index of a cell among n that repeat, or the nearest of them.
+Index cell_index(double k, Index n, bool repeats) {
+  const auto count = static_cast<double>(n);
+  if (repeats) k -= count * std::floor(k / count);
+  return static_cast<Index>(std::clamp(k, 0.0, count - 1));
+}
 
 // Share of a sphere above z: a cap, 2 (1 - c)^2 (2 + c) / 8 with c = height over the radius.
 double share_of_sphere_above(const dem::Grain& grain, double z) {
@@ -63,6 +72,7 @@ double weight(const dem::Snapshot& snapshot, const BranchEnds& ends, OfGrain&& o
 // centroid) is spread over the width as the height of the packing above.
 RowMatrix force_through(const dem::Snapshot& snapshot, const Region& region, const MatrixXd& cut,
                         double dx, const Eigen::VectorXd& heights) {
+  const bool repeats = snapshot.cell.periodic[0];
   const Index rows = heights.size(), cells = cut.rows();
   RowMatrix force = RowMatrix::Zero(rows, cells);
   const double dy = rows > 1 ? heights[1] - heights[0] : 1;
@@ -75,8 +85,7 @@ RowMatrix force_through(const dem::Snapshot& snapshot, const Region& region, con
     for (Index r = row_from(low); r < row_from(high); ++r) {
       const double x = a.x() + (heights[r] - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
       const double k = std::floor((x - cut(0, 0)) / dx + 0.5);
-      force(r, static_cast<Index>(std::clamp(k, 0.0, static_cast<double>(cells - 1)))) +=
-          a.y() > b.y() ? f.y() : -f.y();
+      force(r, cell_index(k, cells, repeats)) += a.y() > b.y() ? f.y() : -f.y();
     }
   };
   for_each_branch(snapshot, {true, region.floor(), 0}, cross,
@@ -116,10 +125,14 @@ double weight_through_rve(const dem::Snapshot& snapshot, const Region& region, d
     double half = width;
     if (support.distance({width, width, 0}) > width)
       half = std::sqrt(std::max(0.0, width * width - (heights[r] - y) * (heights[r] - y)));
-    const auto until = [&](double x) {  // of the force left of x
-      const double k = std::clamp((x - cut(0, 0)) / dx + 0.5, 0.0, static_cast<double>(cut.rows()));
+    const auto n = static_cast<double>(cut.rows());
+    const auto until = [&](double x) {  // of the force left of x, of a period after the other
+      double k = (x - cut(0, 0)) / dx + 0.5, periods = 0;
+      if (snapshot.cell.periodic[0]) periods = std::floor(k / n);
+      k = std::clamp(k - periods * n, 0.0, n);
       const auto whole = std::min(static_cast<Index>(k), cut.rows() - 1);
-      return running[whole] + (k - static_cast<double>(whole)) * force(r, whole) * dy;
+      return periods * running[cut.rows()] + running[whole] +
+             (k - static_cast<double>(whole)) * force(r, whole) * dy;
     };
     for (Index p = 0; p < cut.rows(); ++p)
       sum[p] += until(cut(p, 0) + half) - until(cut(p, 0) - half);
@@ -144,7 +157,8 @@ double counted_share(const dem::Snapshot& snapshot, const MatrixXd& cut, Average
   return inside > 0 ? solid("particle_centre") / inside : 1;
 }
 
-// Midpoints of cells of the horizontal cut, as far out as branches into walls go.
+// Midpoints of cells of the horizontal cut: as far out as branches into walls go, and along an axis
+// that repeats exactly one period.
 struct Cut {
   MatrixXd points;
   double cell = 0;                       // m, in space m2
@@ -152,27 +166,36 @@ struct Cut {
   double column_size = 0, row_size = 0;  // m
 };
 
-Cut cut_through(const Region& region, double height, double range, double step) {
+Cut cut_through(const dem::Snapshot& snapshot, const Region& region, double height, double range,
+                double step) {
   struct Side {
     double first, last;
     int n;
     double size;
   };
-  const auto side = [&](double low, double high) {
-    const double from = low - 4 * range, to = high + 4 * range;
+  const dem::Cell<3>& cell = snapshot.cell;
+  const auto ends = [&](int axis) {
+    if (cell.periodic[axis])
+      return std::pair{cell.low[axis], cell.low[axis] + cell.edges(axis, axis)};
+    const double low = axis == 0 ? region.left() : region.front();
+    const double high = axis == 0 ? region.right() : region.back();
+    return std::pair{low - 4 * range, high + 4 * range};
+  };
+  const auto side = [&](int axis) {
+    const auto [from, to] = ends(axis);
     const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step)));
     const double size = (to - from) / n;
     return Side{from + size / 2, to - size / 2, n, size};
   };
   if (region.dim() == 2) {
-    const Side x = side(region.left(), region.right());
+    const Side x = side(0);
     return {line_points(x.first, x.last, x.n, height), x.size};
   }
   constexpr double most = 4e5;
-  const double area =
-      (region.right() - region.left() + 8 * range) * (region.back() - region.front() + 8 * range);
-  step = std::max(step, std::sqrt(area / most));
-  const Side x = side(region.left(), region.right()), y = side(region.front(), region.back());
+  const auto [left, right] = ends(0);
+  const auto [front, back] = ends(1);
+  step = std::max(step, std::sqrt((right - left) * (back - front) / most));
+  const Side x = side(0), y = side(1);
   return {cut_points({x.first, y.first}, {x.last, y.last}, x.n, y.n, {height}),
           x.size * y.size,
           x.n,
@@ -186,11 +209,12 @@ Cut cut_through(const Region& region, double height, double range, double step) 
 // branch crosses the height; what weight_above has beyond them is spread as the packing above.
 class ElementsOfCut {
  public:
-  ElementsOfCut(const Region& region, const AverageOptions& options, const Cut& cut,
-                const std::vector<bool>& known)
+  ElementsOfCut(const dem::Snapshot& snapshot, const Region& region, const AverageOptions& options,
+                const Cut& cut, const std::vector<bool>& known)
       : support_(*find_support(options.kernel)),
         width_(options.width),
         cut_(cut),
+        repeats_{snapshot.cell.periodic[0], snapshot.cell.periodic[1]},
         inverse_(Eigen::VectorXd::Zero(cut.points.rows())) {
     for (Index p = 0; p < cut.points.rows(); ++p)
       if (known[static_cast<std::size_t>(p)])
@@ -201,17 +225,24 @@ class ElementsOfCut {
   double seen(const Eigen::Vector3d& at) const {
     const auto range = [&](int axis, double size, Index n) {
       const double middle = (at[axis] - cut_.points(0, axis)) / size, half = width_ / size;
-      const auto most = static_cast<double>(n - 1);
-      return std::pair{static_cast<Index>(std::clamp(std::ceil(middle - half), 0.0, most)),
-                       static_cast<Index>(std::clamp(std::floor(middle + half), 0.0, most))};
+      double first = std::ceil(middle - half), last = std::floor(middle + half);
+      if (!repeats_[axis]) {
+        const auto most = static_cast<double>(n - 1);
+        first = std::clamp(first, 0.0, most);
+        last = std::clamp(last, 0.0, most);
+      }
+      return std::pair{static_cast<Index>(first), static_cast<Index>(last)};
     };
     const auto [x0, x1] = range(0, cut_.column_size, cut_.columns);
     const auto [y0, y1] = range(1, cut_.row_size, cut_.rows);
     double sum = 0;
     for (Index y = y0; y <= y1; ++y)
       for (Index x = x0; x <= x1; ++x) {
-        const Index p = x + cut_.columns * y;
-        if (support_.distance(at - cut_.points.row(p).transpose()) < width_) sum += inverse_[p];
+        const Eigen::Vector3d middle(cut_.points(0, 0) + static_cast<double>(x) * cut_.column_size,
+                                     cut_.points(0, 1) + static_cast<double>(y) * cut_.row_size,
+                                     cut_.points(0, 2));
+        if (!(support_.distance(at - middle) < width_)) continue;
+        sum += inverse_[within(x, cut_.columns) + cut_.columns * within(y, cut_.rows)];
       }
     return sum;
   }
@@ -254,9 +285,13 @@ class ElementsOfCut {
   }
 
  private:
+  // Cells beyond the cut are those of the next period; only asked for where that axis repeats.
+  static Index within(Index k, Index n) { return (k % n + n) % n; }
+
   const Support& support_;
   double width_;
   const Cut& cut_;
+  std::array<bool, 2> repeats_;
   Eigen::VectorXd inverse_;
 };
 
@@ -278,12 +313,12 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
   AverageOptions options = given;
   options.quantities = {"sigma", "kinetic"};
   options.least_grains = 0;
-  const Region region(snapshot);
   const bool kernels = options.method == "coarse_graining";
+  const Region bare(snapshot);
   // Inclined walls carry their branches on beyond the packing: the line goes as far.
   const double range = kernels ? make_kernel(options.kernel, options.width, dim)->range() : 0;
   if (step <= 0) step = dim == 2 ? options.width / 40 : kernels ? range / 9 : options.width / 6;
-  const Cut places = cut_through(region, y, range, step);
+  const Cut places = cut_through(snapshot, bare, y, range, step);
   const MatrixXd& line = places.points;
   const Field field = average(snapshot, line, options);
   const std::string vertical = dim == 2 ? "_yy" : "_zz";
@@ -301,14 +336,18 @@ CutForce cut_force(const dem::Snapshot& snapshot, double y, const AverageOptions
     const auto kernel = make_kernel(options.kernel, options.width, dim);
     const auto share = [&](double height) { return kernel->beyond(y - height); };
     cut.weight = weight(
-        snapshot, {options.extend_into_walls, region.floor(), 2 * range},
+        snapshot, {options.extend_into_walls, bare.floor(), 2 * range},
         [&](const dem::Grain& grain) { return share(grain.position[up]); }, share);
   } else {
+    // What the elements hold of a packing that repeats is inside its images, too.
+    const bool repeats = snapshot.cell.is_periodic();
+    const Region region(repeats ? surround(snapshot, line, options.width).snapshot : snapshot);
     const double counted = counted_share(snapshot, line, options);
     cut.weight =
-        counted * (dim == 2
-                       ? weight_through_rve(snapshot, region, y, options, line, places.cell, known)
-                       : ElementsOfCut(region, options, places, known).weight(snapshot, region, y));
+        counted *
+        (dim == 2
+             ? weight_through_rve(snapshot, region, y, options, line, places.cell, known)
+             : ElementsOfCut(snapshot, region, options, places, known).weight(snapshot, region, y));
   }
   return cut;
 }

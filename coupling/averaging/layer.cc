@@ -152,7 +152,7 @@ LayerFrame layer_frame(const dem::Snapshot& snapshot, std::int64_t loaded_grain)
   if (std::none_of(snapshot.grains.begin(), snapshot.grains.end(), between))
     throw std::invalid_argument(fmt::format(
         "no free grain lies between the packing's sides at x = {:g} and {:g} m: are the "
-        "walls \"left\" and \"right\" where they say?",
+        "walls \"left\" and \"right\" where they say (import --wall left:x=...)?",
         frame.left, frame.right));
   frame.floor = rough_floor(snapshot, frame.floor);
   frame.surface = mean_surface(snapshot, frame.left, frame.right, 2 * diameter);

@@ -6,6 +6,7 @@
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "dem/snapshot/images.h"
@@ -31,8 +32,21 @@ void require(bool good, const std::string& what) {
   if (!good) throw std::invalid_argument("export to LAMMPS: " + what);
 }
 
+void check_law(const dem::MaterialSetup& m) {
+  require(m.law == "linear" || m.law == "hertz",
+          fmt::format("material.law: found {}, allowed: linear, hertz", m.law));
+  require(m.law != "linear" || m.normal_damping > 0 || m.tangential_damping == 0,
+          fmt::format("material.normal_damping: found 0 beside tangential_damping = {:g}, allowed: "
+                      "above 0 (LAMMPS takes the tangential one as a multiple of it)",
+                      m.tangential_damping));
+}
+
+bool is_flat(const dem::Wall& w) {
+  return w.shape == "plane" && w.normal.cwiseAbs().maxCoeff() == 1 && w.material.empty();
+}
+
 void check(const dem::Snapshot& s, const LammpsSetup& setup) {
-  require(s.dim == 3, "found a packing in the plane, allowed: spheres in space");
+  require(s.dim == 3 || !setup.known, "found a packing in the plane, allowed: spheres in space");
   require(!s.grains.empty(), "found no grain");
   for (const dem::Grain& g : s.grains) {
     require(g.axes.isZero(0) && g.outline.empty(),
@@ -47,27 +61,21 @@ void check(const dem::Snapshot& s, const LammpsSetup& setup) {
                         "there",
                         setup.copies[a], kAxes[a]));
   }
-  const dem::MaterialSetup& m = setup.material;
-  require(m.law == "linear" || m.law == "hertz",
-          fmt::format("material.law: found {}, allowed: linear, hertz", m.law));
-  require(m.law != "linear" || m.normal_damping > 0 || m.tangential_damping == 0,
-          fmt::format("material.normal_damping: found 0 beside tangential_damping = {:g}, allowed: "
-                      "above 0 (LAMMPS takes the tangential one as a multiple of it)",
-                      m.tangential_damping));
+  if (setup.known) check_law(setup.material);
   if (s.cell.is_periodic()) {
     Eigen::Matrix3d off = s.cell.edges;
     off.diagonal().setZero();
     require(off.isZero(0), "found a sheared cell, allowed: one with edges along the axes");
     require(s.cell.velocity_gradient.isZero(0), "found a cell that flows, allowed: one at rest");
   }
+  if (!setup.known) return;
   require(s.gravity.norm() > 0, "found no gravity, allowed: packings that rest under their weight");
   for (const dem::Wall& w : s.walls) {
     require(w.velocity.isZero(0) && w.angular_velocity.isZero(0),
             fmt::format("wall {}: found one that moves, allowed: walls at rest", w.name));
-    require(w.shape == "plane" && w.normal.cwiseAbs().maxCoeff() == 1 && w.material.empty(),
-            fmt::format("wall {}: found a {}, allowed: planes across an axis without a material of "
-                        "their own",
-                        w.name, w.shape));
+    require(is_flat(w), fmt::format("wall {}: found a {}, allowed: planes across an axis without a "
+                                    "material of their own",
+                                    w.name, w.shape));
   }
 }
 
@@ -89,6 +97,11 @@ Box box_of(const dem::Snapshot& s) {
   return box;
 }
 
+// In the plane LAMMPS' grains are spheres, too: they get our masses.
+double volume_of(const dem::Snapshot& s, const dem::Grain& g) {
+  return s.dim == 3 ? g.volume : 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
+}
+
 std::string data_of(const dem::Snapshot& s) {
   const Box box = box_of(s);
   std::string out =
@@ -99,7 +112,7 @@ std::string data_of(const dem::Snapshot& s) {
   out += "\nAtoms # sphere\n\n";
   for (const dem::Grain& g : s.grains) {
     out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", g.id + 1, g.fixed ? 2 : 1,
-                       2 * g.radius, g.mass / g.volume, g.position.x(), g.position.y(),
+                       2 * g.radius, g.mass / volume_of(s, g), g.position.x(), g.position.y(),
                        g.position.z());
   }
   return out;
@@ -120,7 +133,9 @@ double elastic_energy(const dem::Snapshot& s, const std::string& law) {
 }
 
 // As pair_coeff and fix wall/gran have it.
-std::string law_of(const dem::MaterialSetup& m, double friction, LammpsDeck& deck) {
+std::string law_of(const LammpsSetup& setup, double friction, LammpsDeck& deck) {
+  if (!setup.known) return "${law}";
+  const dem::MaterialSetup& m = setup.material;
   std::string out;
   if (m.law == "linear") {
     const double along = m.normal_damping > 0 ? m.tangential_damping / m.normal_damping : 0;
@@ -170,7 +185,18 @@ std::string name_of(const dem::Wall& wall, std::size_t number) {
   return out;
 }
 
-std::string walls_of(const dem::Snapshot& s, const dem::MaterialSetup& m, LammpsDeck& deck) {
+// Those that LAMMPS has not.
+void leave_out_walls(dem::Snapshot& s, LammpsDeck& deck) {
+  std::erase_if(s.walls, [&](const dem::Wall& w) {
+    if (is_flat(w)) return false;
+    deck.notes.push_back(
+        fmt::format("wall {} is left out: in.lammps has planes across an axis alone, this is a {}",
+                    w.name, w.shape == "plane" ? "plane of another direction" : w.shape));
+    return true;
+  });
+}
+
+std::string walls_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDeck& deck) {
   std::string out;
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
@@ -179,7 +205,7 @@ std::string walls_of(const dem::Snapshot& s, const dem::MaterialSetup& m, Lammps
     const std::string place = fmt::format("{:.17g}", w.point[axis]);
     const bool low = w.normal[axis] > 0;
     out += fmt::format("fix wall_{} all wall/gran granular {} {}plane {} {} contacts\n",
-                       name_of(w, k), law_of(m, w.friction, deck), kAxes[axis],
+                       name_of(w, k), law_of(setup, w.friction, deck), kAxes[axis],
                        low ? place : "NULL", low ? "NULL" : place);
   }
   return out;
@@ -237,6 +263,7 @@ std::string rest(const char* label) {
 std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDeck& deck) {
   const dem::MaterialSetup& m = setup.material;
   const double gravity = s.gravity.norm();
+  const bool flat = s.dim == 2;
   double largest = 0, weight = 0;
   for (const dem::Grain& g : s.grains) {
     largest = std::max(largest, g.radius);
@@ -246,10 +273,16 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   if (!(elastic > 0)) elastic = 1e-4 * weight * largest;  // of spheres that do not touch yet
   const int copies = setup.copies[0] * setup.copies[1];
   const double quiet = setup.kinetic_to_elastic_energy * copies * elastic;
-  std::string out =
-      "# lmp -in in.lammps, or mpirun -n 8 lmp -in in.lammps. Back:\n"
-      "# " +
-      import_command(s, "unloaded") + " -o lammps.h5\n";
+  const char* variables =
+      setup.known ? "" : " -var law \"hooke K_N GAMMA_N ...\" -var step SECONDS";
+  std::string out = fmt::format(
+      "# lmp -in in.lammps{0}, or mpirun -n 8 lmp -in in.lammps{0}. Back:\n# {1} -o lammps.h5\n",
+      variables, import_command(s, "unloaded"));
+  if (!setup.known) {
+    deck.notes.push_back(
+        "the packing does not tell its law: in.lammps takes it and the time step from the command "
+        "line, as its first line says; with CASE.toml before the packing the deck has both");
+  }
   if (!setup.loaded.empty()) {
     std::string ids;
     out += "# " + import_command(s, "loaded") +
@@ -257,16 +290,18 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
                        setup.loaded.front() + 1, setup.force.x(), setup.force.y(), setup.force.z());
   }
   out += fmt::format(
-      "units si\natom_style sphere\natom_modify map array\nnewton off\nboundary {} {} {}\n"
+      "units si\n{}atom_style sphere\natom_modify map array\nnewton off\nboundary {} {} {}\n"
       "comm_modify vel yes\nread_data packing.data\n{}neighbor {:.6g} bin\n"
       "neigh_modify delay 0 every 1 check yes\ngroup free type 1\ngroup fixed type 2\n"
       "pair_style granular\npair_coeff * * {}\n",
-      s.cell.periodic[0] ? "p" : "f", s.cell.periodic[1] ? "p" : "f",
-      s.cell.periodic[2] ? "p" : "f",
+      flat ? "dimension 2\n" : "", s.cell.periodic[0] ? "p" : "f", s.cell.periodic[1] ? "p" : "f",
+      flat || s.cell.periodic[2] ? "p" : "f",
       copies > 1 ? fmt::format("replicate {} {} 1\n", setup.copies[0], setup.copies[1]) : "",
-      0.2 * largest, law_of(m, m.friction, deck));
-  out += walls_of(s, m, deck);
-  out += fmt::format("timestep {:.17g}\nfix move free nve/sphere\n", setup.time_step);
+      0.2 * largest, law_of(setup, m.friction, deck));
+  out += walls_of(s, setup, deck);
+  out += fmt::format("timestep {}\nfix move free nve/sphere{}\n",
+                     setup.known ? fmt::format("{:.17g}", setup.time_step) : "${step}",
+                     flat ? " disc\nfix plane all enforce2d" : "");
   if (gravity > 0) {
     out += fmt::format("fix weight free gravity {:.17g} vector {:.17g} {:.17g} {:.17g}\n", gravity,
                        s.gravity.x() / gravity, s.gravity.y() / gravity, s.gravity.z() / gravity);
@@ -321,9 +356,11 @@ double tsuji_restitution(double alpha) {
   return 0.5 * (low + high);
 }
 
-LammpsDeck lammps_deck(const dem::Snapshot& packing, const LammpsSetup& setup) {
-  check(packing, setup);
+LammpsDeck lammps_deck(const dem::Snapshot& given, const LammpsSetup& setup) {
+  check(given, setup);
   LammpsDeck deck;
+  dem::Snapshot packing = given;
+  if (!setup.known) leave_out_walls(packing, deck);
   deck.data = data_of(packing);
   deck.input = input_of(packing, setup, deck);
   std::sort(deck.notes.begin(), deck.notes.end());

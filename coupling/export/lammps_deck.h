@@ -13,6 +13,9 @@ namespace grainfield::coupling {
 
 /// What a snapshot does not tell.
 struct LammpsSetup {
+  /// Whether material, damping and time step are: of an imported packing they may not be, and the
+  /// deck then asks for them (`lmp -var law "..." -var step ...`).
+  bool known = true;
   dem::MaterialSetup material;
   double background_damping = 0;             ///< 1/s, of velocities
   double local_damping = 0;                  ///< Cundall's; LAMMPS has none: a note says so
@@ -31,6 +34,7 @@ struct LammpsDeck {
   std::vector<std::string> notes;
 };
 
+/// Where the law is not known, what LAMMPS has not of walls and gravity is left out with a note.
 /// Throws std::invalid_argument naming what LAMMPS has not: packings in the plane, other shapes
 /// than spheres, other laws than linear and hertz, walls that are no planes across an axis, cells
 /// that are sheared, several materials; copies along a side that does not repeat.

@@ -19,6 +19,7 @@
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/rings.h"
+#include "coupling/averaging/upright.h"
 #include "coupling/files/placement.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/import/packing_warnings.h"
@@ -34,7 +35,59 @@ constexpr int kColumns = 81, kRows = 31, kSide = 31, kLayers = 21;
 // A state, or with a response the loaded state and the unloaded one.
 struct Item {
   SnapshotName state, unloaded;
+  dem::Vec3 up{0, 0, 0};
 };
+
+dem::Vec3 usual_up(int dim) { return dem::Vec3::Unit(up_axis(dim)); }
+
+// The item's packing as the frame sees it: in frame packing as it is.
+std::shared_ptr<const dem::Snapshot> packing_of(const SnapshotName& name, const Item& item,
+                                                const AverageRequest& request) {
+  const auto held = snapshot_of(name);
+  return request.frame == "packing" ? held : upright(held, item.up);
+}
+
+// Which way is up in a packing.
+dem::Vec3 up_for(const dem::Snapshot& s, const AverageRequest& request, const std::string& packing,
+                 std::vector<std::string>& warnings) {
+  const bool levels = request.rings || !request.cuts.empty();
+  const char last = "xyz"[up_axis(s.dim)];
+  if (request.frame == "packing" && !levels && request.up.empty()) {
+    // Points are as they are given: up is asked for the load alone.
+    if (!request.response) return usual_up(s.dim);
+    const dem::Vec3 load = dem::total_applied_force(s);
+    if (!(load.norm() > 0)) return usual_up(s.dim);
+  }
+  const dem::Vec3 up = up_of(s, request.up);
+  if (up.isZero()) {
+    if (request.frame == "heap") {
+      throw std::invalid_argument(fmt::format(
+          "{}: has no gravity, and a heap needs it: import --gravity keeps it with the packing",
+          packing));
+    }
+    if (request.frame == "layer" && warnings.empty()) {  // of the first one
+      warnings.push_back(fmt::format(
+          "{}: neither gravity nor a load says which way is up; {} is taken (--up changes it)",
+          packing, last));
+    }
+    return usual_up(s.dim);
+  }
+  if (request.frame == "packing" && levels && up != usual_up(s.dim)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: in frame packing {} go by {}, and up is another axis; use --frame layer or heap",
+        packing, request.rings ? "rings" : "cuts", last));
+  }
+  return up;
+}
+
+// Names of the request's snapshots, the first ones.
+std::string groups_of(const AverageRequest& request) {
+  constexpr std::size_t most = 6;
+  std::string out;
+  for (std::size_t k = 0; k < request.snapshots.size() && k < most; ++k)
+    out += (k == 0 ? "" : ", ") + request.snapshots[k].group;
+  return out + (request.snapshots.size() > most ? ", ..." : "");
+}
 
 // Pairs by what stands before "/loaded" and "/unloaded".
 std::vector<Item> items_of(const AverageRequest& request) {
@@ -57,9 +110,11 @@ std::vector<Item> items_of(const AverageRequest& request) {
   for (const auto& prefix : order) {
     const auto& [loaded, unloaded] = pairs[prefix];
     if (loaded.file.empty() || unloaded.file.empty()) {
-      throw std::invalid_argument(fmt::format(
-          "{}: --response needs the snapshots \"loaded\" and \"unloaded\"; {} is missing", prefix,
-          loaded.file.empty() ? "loaded" : "unloaded"));
+      throw std::invalid_argument(
+          fmt::format("{}: --response needs the snapshots \"loaded\" and \"unloaded\"; {} is "
+                      "missing; there: {} "
+                      "(import --group NAME/unloaded and NAME/loaded name them so)",
+                      prefix, loaded.file.empty() ? "loaded" : "unloaded", groups_of(request)));
     }
     out.push_back({loaded, unloaded});
   }
@@ -124,7 +179,7 @@ void add_warnings(const SnapshotName& name, const dem::Snapshot& s, std::size_t 
   }
 }
 
-Extents measure(const std::vector<Item>& items, const AverageRequest& request,
+Extents measure(std::vector<Item>& items, const AverageRequest& request,
                 std::vector<std::string>& warnings) {
   Extents out;
   PackingWarnings of_forces;
@@ -133,13 +188,17 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
   const bool forces =
       wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
   const auto n = static_cast<double>(items.size());
-  for (const auto& item : items) {
+  for (Item& item : items) {
     std::size_t idle = 0;
-    const auto held = snapshot_of(item.state, &idle);
+    const auto read = snapshot_of(item.state, &idle);
+    item.up = up_for(*read, request, item.state.file + ":" + item.state.group, warnings);
+    const auto held = packing_of(item.state, item, request);
     const dem::Snapshot& s = *held;
     if (&item != &items.front() && s.dim != out.dim)
-      throw std::invalid_argument(fmt::format("{}:{} is {}D, the snapshot before it {}D",
-                                              item.state.file, item.state.group, s.dim, out.dim));
+      throw std::invalid_argument(
+          fmt::format("{}:{} is {}D, the snapshot before it {}D; average "
+                      "them apart",
+                      item.state.file, item.state.group, s.dim, out.dim));
     out.dim = s.dim;
     independence.add(item.state, s);
     const Placement placed = place(s, request.frame);
@@ -163,11 +222,12 @@ Extents measure(const std::vector<Item>& items, const AverageRequest& request,
             fmt::format("{}:{}: {}", item.state.file, item.state.group, placed.heap.in_flight));
       }
     }
-    const double force = -dem::total_applied_force(s)[up_axis(s.dim)];
+    const double force = -dem::total_applied_force(*read).dot(item.up);
     if (request.response && &item != &items.front() && force != out.load) {
-      throw std::invalid_argument(
-          fmt::format("{}:{}: its load is {:g} N, that of the others {:g} N", item.state.file,
-                      item.state.group, force, out.load));
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: its load is {:g} N, that of the others {:g} N; name those of one load, "
+          "as FILE.h5:GROUP",
+          item.state.file, item.state.group, force, out.load));
     }
     out.load = &item == &items.front() || force == out.load ? force : 0;
   }
@@ -248,10 +308,10 @@ Eigen::MatrixXd rings_in_packing(const Eigen::MatrixXd& rings, const Eigen::Vect
 // The field of one item on the frame's points.
 Field field_of(const Item& item, const AverageRequest& request, const Eigen::MatrixXd& points,
                const Eigen::Vector2d& axis, Gaps* gaps) {
-  const auto held = snapshot_of(item.state);
+  const auto held = packing_of(item.state, item, request);
   const dem::Snapshot& state = *held;
   const Placement placed = place(state, request.frame);
-  const auto before = request.response ? snapshot_of(item.unloaded) : held;
+  const auto before = request.response ? packing_of(item.unloaded, item, request) : held;
   const dem::Snapshot& unloaded = *before;
   if (!request.rings) {
     const Eigen::MatrixXd there = placed.to_packing(points);
@@ -271,7 +331,8 @@ Field field_of(const Item& item, const AverageRequest& request, const Eigen::Mat
 // What the request asks for is there in this dimension.
 void require_dimension(const AverageRequest& request, int dim) {
   if (request.rings && dim == 2)
-    throw std::invalid_argument("the snapshot is 2D; averages over rings need a 3D one");
+    throw std::invalid_argument(
+        "the snapshot is 2D; averages over rings need a 3D one; leave --rings out");
   if (!request.axis.empty() && request.frame != "packing")
     throw std::invalid_argument(
         fmt::format("--axis: frame {} has its own axis; it is for frame packing", request.frame));
@@ -348,7 +409,11 @@ std::vector<SnapshotName> parse_snapshot_names(const std::vector<std::string>& t
       continue;
     }
     const auto groups = dem::list_snapshots(text);
-    if (groups.empty()) throw std::invalid_argument(text + ": holds no snapshot");
+    if (groups.empty())
+      throw std::invalid_argument(
+          text +
+          ": holds no snapshot (grainfield info shows what it holds; averaged and measured "
+          "fields are for fit and compare)");
     for (const auto& group : groups) out.push_back({text, group, {}});
   }
   require_each_once(out);
@@ -385,7 +450,7 @@ void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen) {
 }
 
 NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::string>* warnings) {
-  const std::vector<Item> items = items_of(request);
+  std::vector<Item> items = items_of(request);
   if (items.empty()) throw std::invalid_argument("no snapshot to average");
   require_frame(request.frame);
   std::vector<std::string> found;
@@ -402,11 +467,13 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     request.ny = box ? kSide : kRows;
     request.nz = box && request.cuts.empty() ? kLayers : 0;
   }
-  const Field where = points_of(request, all, *snapshot_of(items.front().state));
+  const Field where =
+      points_of(request, all, *packing_of(items.front().state, items.front(), request));
   const Eigen::MatrixXd& points = where.points;
   const Eigen::Vector2d axis = request.rings ? axis_of(request, all) : Eigen::Vector2d(0, 0);
   const bool base = request.response && options.method == "coarse_graining" && all.dim == 2 &&
-                    request.frame == "layer" && has_base(*snapshot_of(items.front().state));
+                    request.frame == "layer" &&
+                    has_base(*packing_of(items.front().state, items.front(), request));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
     field.attributes["method"] = options.method;
@@ -435,10 +502,10 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     field.nz = where.nz;
     fields.add(field);
     if (base) {
-      const auto state = snapshot_of(item.state);
-      Field line =
-          base_response(*snapshot_of(item.unloaded), *state, x.array() + layer_frame(*state).load_x,
-                        *make_kernel(options.kernel, options.width));
+      const auto state = packing_of(item.state, item, request);
+      Field line = base_response(*packing_of(item.unloaded, item, request), *state,
+                                 x.array() + layer_frame(*state).load_x,
+                                 *make_kernel(options.kernel, options.width));
       line.points.resize(x.size(), 2);
       line.points << x, Eigen::VectorXd::Constant(x.size(), -all.depth);
       base_fields.add(line);

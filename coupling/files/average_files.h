@@ -35,8 +35,11 @@ struct AverageRequest {
   AverageOptions options;  ///< width 0: one mean diameter (RVE methods: 2.5)
   /// "layer": models' frame, load or middle at x = 0, surface at y = 0, m. "heap": origin at the
   /// apex, in units of each heap's own height (points.h, cone.h). "packing": the packing's own
-  /// axes, m. In space x and y are horizontal, z up.
+  /// axes, m. In space the frames' x and y are horizontal, z up.
   std::string frame = "layer";
+  /// Which way is up: "y", "-z" and so on; empty: against the packing's gravity, or its load
+  /// (upright.h). In the frames layer and heap the field's last axis is up whatever the packing's.
+  std::string up;
   /// In the frame; or empty. With `rings`: radius and height, n x 2.
   Eigen::MatrixXd points;
   std::vector<double> cuts;  ///< horizontal cuts, as shares of the height above the floor, nx

@@ -12,6 +12,7 @@
 
 #include "continuum/settings.h"
 #include "coupling/compare/compare.h"
+#include "coupling/files/measured_share.h"
 #include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/models/subject.h"
@@ -277,6 +278,17 @@ void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std:
   }
 }
 
+void add_shares(const std::vector<SceneField>& scenes, CompareOutcome& out) {
+  for (const SceneField& scene : scenes) {
+    const auto share = carried_share(scene.field);
+    if (!share) continue;
+    out.carried.push_back(share_text(*share));
+    if (std::string doubt = share_doubt(*share); !doubt.empty()) {
+      out.carried_doubts.push_back(std::move(doubt));
+    }
+  }
+}
+
 }  // namespace
 
 CompareOutcome compare_field(const CompareRequest& request) {
@@ -299,6 +311,8 @@ CompareOutcome compare_field(const CompareRequest& request) {
   }
   const SceneField& scene = scenes.front();
   const bool measured = scene.field.is_measured();
+  CompareOutcome out;
+  if (measured) add_shares(scenes, out);
   RunFacts facts = scene.facts;
   facts.depth = lines.front().profile.depth;
   std::vector<PointSet> sets;
@@ -367,7 +381,14 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_judgement(summary, comparison.judgement);
   require_documented(summary);
 
-  CompareOutcome out{comparison.judgement, "", "", measured};
+  out.judgement = comparison.judgement;
+  out.measured = measured;
+  if (kernels.size() > 1) {
+    out.note = fmt::format(
+        "fields seen through different kernels, models through each one's own: "
+        "{}",
+        fmt::join(seen, "; "));
+  }
   const ReportRows made{{"fields", request.file},
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
                         {"version", version_and_commit()}};

@@ -20,7 +20,10 @@ struct CompareRequest {
 
 struct CompareOutcome {
   Judgement judgement;
-  std::string lacks;      ///< of the report (ReportResult::complaint)
+  std::string note;   ///< fields seen through different kernels; empty: all through one
+  std::string lacks;  ///< of the report (ReportResult::complaint)
+  /// Of what was measured, by field: share_text(), and share_doubt() where there is one.
+  std::vector<std::string> carried, carried_doubts;
   std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none
   bool measured = false;  ///< the field is of no grains (Field::is_measured)
 };

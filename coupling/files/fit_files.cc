@@ -12,10 +12,12 @@
 #include "coupling/case/apply.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
+#include "coupling/files/measured_share.h"
 #include "coupling/fit/coverage.h"
 #include "coupling/fit/fits.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/fit/setup.h"
+#include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
@@ -170,7 +172,11 @@ Overrides fit_overrides(const std::vector<std::string>& models, const std::vecto
                         const std::vector<std::string>& components,
                         std::optional<double> width_diameters) {
   Overrides set;
-  if (!models.empty()) set.push_back("fit.models=" + quoted_list(models));
+  std::vector<std::string> choices;
+  for (const std::string& text : models) {
+    for (std::string& one : split_choices(text)) choices.push_back(std::move(one));
+  }
+  if (!choices.empty()) set.push_back("fit.models=" + quoted_list(choices));
   if (!heights.empty()) set.push_back(fmt::format("fit.heights=[{}]", fmt::join(heights, ", ")));
   if (!components.empty()) set.push_back("fit.components=" + quoted_list(components));
   if (width_diameters) set.push_back(fmt::format("fit.width_diameters={}", *width_diameters));
@@ -248,6 +254,7 @@ FitOutcome fit_files(const FitRequest& request) {
     if (measured) take_what_was_measured(field, request, value.get<FitSetup>());
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
     if (measured) {
+      if (const auto share = carried_share(field)) out.carried = share_text(*share);
       const std::vector<std::string> doubts = measured_doubts(field);
       data.warnings.insert(data.warnings.end(), doubts.begin(), doubts.end());
     }

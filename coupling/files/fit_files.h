@@ -33,6 +33,7 @@ struct FitOutcome {
   std::string lacks;                  ///< of the report (ReportResult::complaint)
   Judgement judgement;
   std::string coverage;   ///< tables; empty: not asked for
+  std::string carried;    ///< share_text() of what was measured; empty: grains, or not known
   std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none
   bool measured = false;  ///< the field is of no grains (Field::is_measured)
 };

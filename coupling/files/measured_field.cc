@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "continuum/model.h"
+#include "coupling/files/measured_share.h"
 #include "coupling/files/placement.h"
-#include "coupling/heap/pile_frame.h"
 #include "coupling/import/format.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
@@ -22,10 +22,8 @@
 namespace grainfield::coupling {
 namespace {
 
-// What is plausible of measured heaps: places up to so many feet from the axis, and the
-// base's pressures carrying such a share of the weight or more: places may leave out the feet.
-constexpr double kOutside = 1.1, kLeastCarried = 0.5;
-constexpr double kDegree = 3.14159265358979323846 / 180;
+// What is plausible of measured heaps: places up to so many feet from the axis.
+constexpr double kOutside = 1.1;
 // A wrong unit, or another heap's size: no arching carries so much, or leaves so little of the
 // weight above the places.
 constexpr double kImpossible = 5, kTooLight = 0.05;
@@ -88,13 +86,20 @@ class Reader {
       headings_.push_back(heading_of((*table.columns)[k], static_cast<int>(k)));
   }
 
+  bool has(const std::string& name) const { return find(name) != nullptr; }
+  /// The unit of a column; empty: none, or no such column.
+  std::string unit(const std::string& name) const {
+    const Heading* found = find(name);
+    return found == nullptr ? "" : found->unit;
+  }
   ForeignColumn need(const std::string& name) const {
     if (const Heading* found = find(name)) return {name, found->index, std::nullopt, std::nullopt};
     std::vector<std::string> there;
     for (const Heading& h : headings_) there.push_back(h.name);
     refuse(fmt::format(
         "no column \"{}\"; found: {}; nearest: {}; expected are x (UNIT), component, value (UNIT), "
-        "error (UNIT), with empty cells where an error is unknown",
+        "error (UNIT) and, for cones, r (UNIT) instead of x, with empty cells where an error is "
+        "unknown",
         name, fmt::join(there, ", "), continuum::nearest(name, there)));
   }
   Measure length(const std::string& name, bool needed) const {
@@ -175,17 +180,26 @@ void check(const MeasuredRequest& r) {
     throw std::invalid_argument(
         fmt::format("--geometry: found \"{}\", allowed: heap, layer; nearest: {}", r.geometry,
                     continuum::nearest(r.geometry, {"heap", "layer"})));
-  if (r.dim != 2 && r.dim != 3)
+  if (r.dim != 0 && r.dim != 2 && r.dim != 3)
     throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", r.dim));
   require_above_zero("--height", r.height, "the height of the heap or layer, m");
   if (!(r.width >= 0 && r.width <= kWidestCell * r.height))
     throw std::invalid_argument(fmt::format(
         "--width: found {:g}, allowed: above 0, up to {:g} (a quarter of --height), in m", r.width,
         kWidestCell * r.height));
+  const auto refuse_given = [&](const char* option, double value, const char* geometry) {
+    if (std::isnan(value)) return;
+    throw std::invalid_argument(
+        fmt::format("{}: found {:g}, allowed with --geometry {} alone", option, value, geometry));
+  };
   if (r.geometry == "layer") {
+    refuse_given("--slope, --left-deg", r.left_deg, "heap");
+    refuse_given("--slope, --right-deg", r.right_deg, "heap");
+    refuse_given("--rho-g", r.rho_g, "heap");
     if (!std::isnan(r.load)) require_above_zero("--load", r.load, "");
     return;
   }
+  refuse_given("--load", r.load, "layer");
   require_above_zero("--rho-g", r.rho_g, "the weight per volume of the heap, N/m3 (2D: N/m2)");
   for (const auto& [option, slope] :
        {std::pair{"--left-deg", r.left_deg}, {"--right-deg", r.right_deg}}) {
@@ -226,65 +240,9 @@ std::string name_of_measured(const Field& field) {
 
 namespace {
 
-// A measured heap in the plane, as its field tells it.
-struct MeasuredHeap {
-  double left, right;  ///< from the apex to the feet, m
-  double weight;       ///< of the wedge, N/m
-
-  /// Of what stands above [from, to], N/m.
-  double weight_above(double from, double to) const {
-    const auto until = [&](double x) {  // from the left foot, of a wedge of weight 1
-      const double length = left + right;
-      if (x <= 0) return std::pow(std::max(0.0, x + left), 2) / (left * length);
-      return 1 - std::pow(std::max(0.0, right - x), 2) / (right * length);
-    };
-    return weight * (until(to) - until(from));
-  }
-};
-
-std::optional<MeasuredHeap> heap_of(const Field& field) {
-  if (field.points.cols() != 2 || field.attributes.count("left_deg") == 0 ||
-      field.find("sigma_yy") == nullptr) {
-    return std::nullopt;
-  }
-  const auto number = [&](const char* key) { return std::stod(field.attributes.at(key)); };
-  const double h = number("h");
-  const double left = h / std::tan(number("left_deg") * kDegree);
-  const double right = h / std::tan(number("right_deg") * kDegree);
-  return MeasuredHeap{left, right, 0.5 * number("rho_g_h") * (left + right)};
-}
-
 Eigen::Index places_outside(const Field& field, const MeasuredHeap& heap) {
   const auto x = field.points.col(0).array();
   return (x < -kOutside * heap.left || x > kOutside * heap.right).count();
-}
-
-// Places and pressures on the base between the feet, from left to right.
-std::vector<std::pair<double, double>> base_pressures(const Field& field,
-                                                      const MeasuredHeap& heap) {
-  const Column& pressure = *field.find("sigma_yy");
-  const double h = std::stod(field.attributes.at("h"));
-  std::vector<std::pair<double, double>> base;
-  for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
-    const double x = field.points(k, 0);
-    const bool low = std::fabs(field.points(k, 1) + h) < 1e-6 * h;
-    if (low && x >= -heap.left && x <= heap.right && std::isfinite(pressure.value[k])) {
-      base.emplace_back(x, -pressure.value[k]);
-    }
-  }
-  std::sort(base.begin(), base.end());
-  return base;
-}
-
-// What the pressures on the base carry of the weight above them; nan: too few of them.
-double carried_share(const Field& field, const MeasuredHeap& heap) {
-  const std::vector<std::pair<double, double>> base = base_pressures(field, heap);
-  if (base.size() < kEnoughToCarry) return kNan;
-  double sum = 0;
-  for (std::size_t k = 1; k < base.size(); ++k) {
-    sum += 0.5 * (base[k].second + base[k - 1].second) * (base[k].first - base[k - 1].first);
-  }
-  return sum / heap.weight_above(base.front().first, base.back().first);
 }
 
 std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Index outside) {
@@ -292,14 +250,10 @@ std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Inde
                      outside, field.points.rows(), -heap.left, heap.right);
 }
 
-std::string of_share(double share) {
-  return fmt::format("the pressures on the base carry {:.3g} of the weight above them", share);
-}
-
 void refuse_narrow(const Field& field, const MeasuredHeap& heap) {
-  const std::vector<std::pair<double, double>> base = base_pressures(field, heap);
+  const std::vector<LevelPressure> base = base_pressures(field, heap);
   if (base.size() < kEnoughToCarry) return;
-  const double outermost = std::max(-base.front().first, base.back().first);
+  const double outermost = std::max(-base.front().x, base.back().x);
   const double foot = std::min(heap.left, heap.right);
   if (outermost >= kNarrow * foot) return;
   throw std::invalid_argument(fmt::format(
@@ -309,7 +263,7 @@ void refuse_narrow(const Field& field, const MeasuredHeap& heap) {
 }
 
 void refuse_impossible(const Field& field) {
-  const std::optional<MeasuredHeap> heap = heap_of(field);
+  const std::optional<MeasuredHeap> heap = measured_heap(field);
   if (!heap) return;
   if (const Eigen::Index outside = places_outside(field, *heap);
       4 * outside > field.points.rows()) {
@@ -318,25 +272,55 @@ void refuse_impossible(const Field& field) {
         ", allowed: a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   }
   refuse_narrow(field, *heap);
-  const double share = carried_share(field, *heap);
+  const std::optional<CarriedShare> carried = carried_share(field);
+  if (!carried) return;
+  const double share = carried->share;
   const bool heavy = share > kImpossible, light = share > 0 && share < kTooLight;
   if (!heavy && !light) return;
   throw std::invalid_argument(fmt::format(
       "{}, allowed: {}; correct the unit of the values, or --height, --slope, --rho-g",
-      of_share(share),
+      share_text(*carried),
       heavy ? fmt::format("up to {:g}", kImpossible) : fmt::format("{:g} or more", kTooLight)));
 }
 
 }  // namespace
 
-Field measured_field(const MeasuredRequest& request) {
-  check(request);
+std::string settle(MeasuredRequest& r) {
+  check(r);
+  const std::vector<ForeignTable> tables = csv_format().scan(r.file);
+  const Reader columns(r, tables.front());
+  for (const char* name : {"z", "r"}) {
+    if (!columns.has(name)) continue;
+    if (r.dim == 2)
+      throw std::invalid_argument(
+          fmt::format("--dim: found 2 with the column {} in {}, allowed: 3", name, r.file));
+    r.dim = 3;
+  }
+  const std::string unit = columns.unit("value");
+  if (r.dim != 0) return "";
+  r.dim = unit == "F/h2" ? 3 : 2;
+  static const std::vector<std::string> of_areas{"Pa", "kPa", "MPa", "N/m2", "kN/m2", "mbar"};
+  if (std::find(of_areas.begin(), of_areas.end(), unit) == of_areas.end()) return "";
+  if (r.geometry == "layer" && !std::isnan(r.load))
+    throw std::invalid_argument(fmt::format(
+        "--dim: is missing, and values in {} under a load in N are those of three dimensions: give "
+        "--dim 3, or --dim 2 for a slice whose --load is N per metre of its thickness",
+        unit));
+  return fmt::format("values in {} are those of a {} (2D: 1 Pa counts as 1 N/m); of a {}: --dim 3",
+                     unit, r.geometry == "heap" ? "long heap" : "slice",
+                     r.geometry == "heap" ? "cone" : "layer in space");
+}
+
+Field measured_field(const MeasuredRequest& given) {
+  MeasuredRequest request = given;
+  settle(request);
   const double h = request.height;
   const std::vector<ForeignTable> tables = csv_format().scan(request.file);
   const ForeignTable& table = tables.front();
   const Reader columns(request, table);
   const bool space = request.dim == 3;
-  const Measure x = columns.length("x", true), side = columns.length("y", false),
+  const bool radial = columns.has("r") && !columns.has("x");
+  const Measure x = columns.length(radial ? "r" : "x", true), side = columns.length("y", false),
                 up = columns.length("z", false), value = columns.stress("value", true),
                 error = columns.stress("error", true);
   const ForeignColumn component = columns.need("component");
@@ -346,7 +330,10 @@ Field measured_field(const MeasuredRequest& request) {
   reader.read(table, [&](const ForeignRow& row) {
     const Measure& height = space ? up : side;
     const double at = height && !row.empty(height.column) ? height.of(row) : -h;
-    const double beside = space && side ? side.of(row) : 0;
+    const double beside = space && side && !radial ? side.of(row) : 0;
+    if (radial && x.of(row) < 0)
+      row.refuse(fmt::format("column r: found {}, allowed: 0 or more, a distance from the axis",
+                             row.text(x.column)));
     const auto round = [&](double length) { return std::round(length / h / kSamePlace); };
     const auto [name, sign] = component_of(row, row.text(component), request.dim);
     Value one{sign * value.of(row), kNan, row.line};
@@ -409,15 +396,21 @@ Field measured_field(const MeasuredRequest& request) {
 }
 
 std::vector<std::string> measured_doubts(const Field& field) {
-  const std::optional<MeasuredHeap> heap = heap_of(field);
-  if (!heap) return {};
+  const std::optional<MeasuredHeap> heap = measured_heap(field);
+  const std::optional<CarriedShare> carried = carried_share(field);
   std::vector<std::string> out;
+  if (!heap) {
+    if (carried) out.push_back(share_doubt(*carried));
+    std::erase(out, "");
+    return out;
+  }
   if (const Eigen::Index outside = places_outside(field, *heap); outside > 0) {
     out.push_back(of_outside(field, *heap, outside) +
                   ": is the unit of x right, and its origin, 0 below the apex?");
   }
-  const std::vector<std::pair<double, double>> base = base_pressures(field, *heap);
-  const auto pulls = std::count_if(base.begin(), base.end(), [](auto p) { return p.second < 0; });
+  const std::vector<LevelPressure> base = base_pressures(field, *heap);
+  const auto pulls =
+      std::count_if(base.begin(), base.end(), [](const auto& p) { return p.pressure < 0; });
   if (2 * pulls > static_cast<long>(base.size())) {
     out.push_back(
         fmt::format("{} of {} pressures are negative: a pressure is positive where the "
@@ -441,10 +434,8 @@ std::vector<std::string> measured_doubts(const Field& field) {
     out.push_back(fmt::format(
         "errors are {:.2g} times their values in the median: is their unit right?", error));
   }
-  const double share = carried_share(field, *heap);
-  if (share < kLeastCarried || share > kMostOverWedge) {
-    out.push_back(of_share(share) + ": are the units, --height, --slope and --rho-g right?");
-  }
+  if (carried) out.push_back(share_doubt(*carried));
+  std::erase(out, "");
   return out;
 }
 

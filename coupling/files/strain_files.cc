@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "coupling/averaging/layer.h"
+#include "coupling/averaging/upright.h"
 #include "coupling/files/placement.h"
 #include "coupling/strain/motion.h"
 #include "dem/snapshot/snapshot.h"
@@ -29,7 +30,14 @@ void settle(StrainRequest& request, bool support_chosen, bool width_chosen) {
 
 StrainOutcome strain_files(const StrainRequest& request) {
   require_frame(request.frame);
-  const auto held_before = snapshot_of(request.before), held_after = snapshot_of(request.after);
+  auto held_before = snapshot_of(request.before), held_after = snapshot_of(request.after);
+  if (request.frame != "packing") {
+    const dem::Vec3 up = up_of(*held_before, request.up);
+    if (!up.isZero()) {
+      held_before = upright(held_before, up);
+      held_after = upright(held_after, up);
+    }
+  }
   const dem::Snapshot &before = *held_before, &after = *held_after;
   StrainOptions options = request.options;
   if (options.width == 0) options.width = kWidth * mean_diameter(before);
@@ -55,7 +63,7 @@ StrainOutcome strain_files(const StrainRequest& request) {
   const Eigen::MatrixXd points = grid ? on_grid() : request.points;
   StrainResult found = strain(before, after, placed.to_packing(points), options);
   StrainOutcome out;
-  out.report = found.report();  // names places in the packing
+  out.report = found.report();  // names places in the packing, with its height upright
   out.doubt = doubtful_images(before, after);
   out.field = std::move(found.field);
   out.field.points = points;

@@ -13,6 +13,7 @@ struct StrainRequest {
   SnapshotName before, after;
   StrainOptions options;        ///< width 0: three mean diameters
   std::string frame = "layer";  ///< as AverageRequest::frame; heights and apex are those before,
+  std::string up;               ///< as AverageRequest::up
                                 ///< the load that of either state
   Eigen::MatrixXd points;       ///< in the frame; or empty
   /// Grid over the packing, where points are empty; nz in space. 0: 81 x 31, in space 21 x 21 x 21.

@@ -14,6 +14,23 @@ constexpr const char* kLabelLetters =
 
 }  // namespace
 
+std::vector<std::string> split_choices(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    const std::string part = text.substr(from, to - from);
+    const std::size_t equals = part.find('='), colon = part.find(':');
+    const bool setting = equals != std::string::npos && equals < colon;
+    if (!out.empty() && setting && out.back().find(':') != std::string::npos) {
+      out.back() += "," + part;
+    } else {
+      out.push_back(part);
+    }
+    from = to + 1;
+  }
+  return out;
+}
+
 // "layer:nu=0.3,base=rough" or "rough=layer:nu=0.3": label, name and settings.
 ModelChoice parse_choice(const std::string& text, const std::string& where) {
   const std::size_t colon = text.find(':');
@@ -67,9 +84,11 @@ std::vector<ModelChoice> parse_choices(const std::vector<std::string>& texts) {
   std::vector<ModelChoice> out;
   std::set<std::string> seen;
   for (const auto& text : texts) {
-    ModelChoice choice = parse_choice(text);
-    choice.label = label_beside(seen, choice.label);
-    out.push_back(std::move(choice));
+    for (const std::string& one : split_choices(text)) {
+      ModelChoice choice = parse_choice(one);
+      choice.label = label_beside(seen, choice.label);
+      out.push_back(std::move(choice));
+    }
   }
   return out;
 }

@@ -15,6 +15,13 @@ bool on_rings(const Field& field) {
   return frame != field.attributes.end() && frame->second.find("rings") != std::string::npos;
 }
 
+// Lengths of a heap's frame are over its height.
+bool over_height(const Field& field) {
+  const auto frame = field.attributes.find("frame");
+  return frame != field.attributes.end() &&
+         frame->second.find("lengths over its height") != std::string::npos;
+}
+
 bool has_error(const Field& field, const Column& column) {
   return column.error.size() > 0 &&
          (field.realizations > 1 || column.error.array().isFinite().any());
@@ -23,10 +30,19 @@ bool has_error(const Field& field, const Column& column) {
 }  // namespace
 
 std::string field_csv(const Field& field) {
-  std::string out = field.points.cols() == 3 ? "x,y,z" : on_rings(field) ? "r,z" : "x,y";
+  // As import-field reads them: the unit in brackets behind the name.
+  const std::string length = over_height(field) ? "h" : "m";
+  std::string out;
+  for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
+                                     : on_rings(field)        ? "rz"
+                                                              : "xy")) {
+    out += fmt::format("{}{} ({})", out.empty() ? "" : ",", axis, length);
+  }
   for (const Column& column : field.columns) {
-    out += "," + column.name;
-    if (has_error(field, column)) out += "," + column.name + "_error";
+    const bool plain = column.unit.empty() || column.unit == "1" || column.unit == "-";
+    const std::string unit = plain ? "" : fmt::format(" ({})", column.unit);
+    out += fmt::format(",{}{}", column.name, unit);
+    if (has_error(field, column)) out += fmt::format(",{}_error{}", column.name, unit);
   }
   out += '\n';
   const auto add = [&](double value, const char* before) {

@@ -81,14 +81,15 @@ struct AverageOutcome {
 AverageOutcome average(const std::vector<Source>& sources, const std::vector<Source>& unloaded,
                        const py::object& points, const std::string& grid,
                        const std::vector<double>& cuts, const std::string& frame,
-                       const std::string& method, const std::optional<std::string>& kernel,
-                       const std::optional<double>& width, const std::string& free_surface,
-                       int least_grains, const std::vector<std::string>& quantities, bool response,
-                       bool rings, const std::vector<double>& axis, bool end_at_walls,
-                       int threads) {
+                       const std::string& up, const std::string& method,
+                       const std::optional<std::string>& kernel, const std::optional<double>& width,
+                       const std::string& free_surface, int least_grains,
+                       const std::vector<std::string>& quantities, bool response, bool rings,
+                       const std::vector<double>& axis, bool end_at_walls, int threads) {
   coupling::AverageRequest request;
   request.response = response || !unloaded.empty();
   request.frame = frame;
+  request.up = up;
   request.cuts = cuts;
   request.rings = rings;
   request.axis = axis;
@@ -124,12 +125,14 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
 
 std::pair<HeldField, std::string> strain(const Source& before, const Source& after,
                                          const py::object& points, const std::string& grid,
-                                         const std::string& frame, const std::string& measure,
+                                         const std::string& frame, const std::string& up,
+                                         const std::string& measure,
                                          const std::optional<std::string>& support,
                                          const std::optional<double>& width, int least_grains,
                                          int threads) {
   coupling::StrainRequest request;
   request.frame = frame;
+  request.up = up;
   request.options.measure = measure;
   if (support) request.options.support = *support;
   if (width) request.options.width = *width;
@@ -307,6 +310,7 @@ py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& 
   out["verdict"] = coupling::sentence(outcome.judgement);
   out["judgement"] = coupling::judgement_json(outcome.judgement);
   out["coverage"] = outcome.coverage;
+  out["carried"] = outcome.carried;
   out["measured"] = outcome.measured;
   return out;
 }
@@ -334,12 +338,16 @@ py::dict compare(const std::string& file,
   out["verdict"] = coupling::sentence(outcome.judgement);
   out["judgement"] = coupling::judgement_json(outcome.judgement);
   out["lacks"] = outcome.lacks;
+  out["carried"] = outcome.carried;
+  out["doubts"] = outcome.carried_doubts;
   out["measured"] = outcome.measured;
   return out;
 }
 
-HeldField import_field(const std::string& file, const std::string& geometry, int dim, double height,
-                       double left_deg, double right_deg, double rho_g, double load, double width) {
+std::pair<HeldField, std::string> import_field(const std::string& file, const std::string& geometry,
+                                               int dim, double height, double left_deg,
+                                               double right_deg, double rho_g, double load,
+                                               double width) {
   coupling::MeasuredRequest request;
   request.file = file;
   request.geometry = geometry;
@@ -350,7 +358,8 @@ HeldField import_field(const std::string& file, const std::string& geometry, int
   request.rho_g = rho_g;
   request.load = load;
   request.width = width;
-  return held(coupling::measured_field(request));
+  const std::string assumed = coupling::settle(request);
+  return {held(coupling::measured_field(request)), assumed};
 }
 
 py::dict progress_dict(const coupling::EnsembleProgress& p) {
@@ -457,13 +466,14 @@ void add_commands(py::module_& module) {
       .def_readonly("gaps", &AverageOutcome::gaps)
       .def_readonly("seconds", &AverageOutcome::seconds);
   module.def("average", average, py::kw_only(), py::arg("sources"), py::arg("unloaded"),
-             py::arg("points"), py::arg("grid"), py::arg("cuts"), py::arg("frame"),
+             py::arg("points"), py::arg("grid"), py::arg("cuts"), py::arg("frame"), py::arg("up"),
              py::arg("method"), py::arg("kernel"), py::arg("width"), py::arg("free_surface"),
              py::arg("least_grains"), py::arg("quantities"), py::arg("response"), py::arg("rings"),
              py::arg("axis"), py::arg("end_at_walls"), py::arg("threads"));
   module.def("strain", strain, py::kw_only(), py::arg("before"), py::arg("after"),
-             py::arg("points"), py::arg("grid"), py::arg("frame"), py::arg("measure"),
-             py::arg("support"), py::arg("width"), py::arg("least_grains"), py::arg("threads"));
+             py::arg("points"), py::arg("grid"), py::arg("frame"), py::arg("up"),
+             py::arg("measure"), py::arg("support"), py::arg("width"), py::arg("least_grains"),
+             py::arg("threads"));
   module.def("structure", structure);
   module.def("import_field", import_field);
   module.def("measured_doubts",

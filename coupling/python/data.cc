@@ -11,7 +11,7 @@
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/output/atomic_file.h"
-#include "coupling/output/field_csv.h"
+#include "coupling/output/field_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/python/bindings.h"
@@ -399,13 +399,9 @@ void add_field(py::module_& module) {
   module.def("write_fields", [](const std::string& file,
                                 const std::vector<std::pair<std::string, HeldField>>& fields) {
     const Released released(true);
-    if (std::filesystem::path(file).extension() == ".csv") {
-      coupling::write_field_csv(file, *fields.front().second.field);
-      return;
-    }
     coupling::NamedFields named;
     for (const auto& [name, field] : fields) named.emplace_back(name, *field.field);
-    coupling::write_fields(file, named);
+    coupling::write_field_file(file, named);
   });
 }
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "check_scene.h"
+#include "coupling/case/apply.h"
 #include "coupling/case/material.h"
 #include "coupling/case/shipped_cases.h"
 #include "dem/laws/material_defaults.h"
@@ -146,17 +147,35 @@ TEST(CaseMaterial, ShippedCasesLeaveNothingToADefaultThatFollows) {
     for (const Key& key : keys()) {
       if (key.follows.empty() || !key_applies(key, value.study)) continue;
       if (is_without_effect(key, value)) continue;
+      const dem::MaterialSetup& m = find_study(value.study)->material(const_cast<Case&>(value));
+      const bool dashpots = key.name == "normal_damping" || key.name == "tangential_damping";
+      if (dashpots && m.law == "hertz" && m.damping_model == "critical") continue;
       EXPECT_TRUE(value.given.contains(key.path())) << name << ": " << key.path();
     }
   };
+  // As written, without what finish() draws.
+  int read = 0;
   for (const auto& file : shipped_cases()) {
-    for (const bool quick : {false, true}) {
-      const Case value = read_case(file.string(), quick, {});
-      for (const SweepCase& one : sweep_cases(value)) {
-        look(file.filename().string() + " " + one.suffix, one.value);
+    const std::vector<Assignment> all = read_document(file.string());
+    Draft draft;
+    for (const bool study : {true, false}) {
+      for (const Assignment& a : all) {
+        if (a.path.starts_with("quick") || (a.path == "study") != study) continue;
+        apply(draft, a);
       }
     }
+    if (find_study(draft.value.study)->material == nullptr) continue;
+    ++read;
+    const std::vector<Variant> variants = draft.value.variants;
+    draft.value.sweep = {};
+    if (variants.empty()) look(file.filename().string(), draft.value);
+    for (const Variant& variant : variants) {
+      Draft one = draft;
+      for (const std::string& key : variant.keys) apply(one, parse_override(key));
+      look(file.filename().string() + " " + variant.name, one.value);
+    }
   }
+  EXPECT_GT(read, 20);
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ def average(
     grid: Any = None,
     cuts: Sequence[float] = (),
     frame: str = "layer",
+    up: str = "",
     method: str = "coarse_graining",
     kernel: str | None = None,
     width: float | None = None,
@@ -95,7 +96,8 @@ def average(
     each; the field then is the response, loaded - unloaded; so is it with response=True of files
     that hold both under these names. points (k, dim) in the frame (layer, packing: m; heap: shares of
     the height, from the apex), or a grid (81, 31), or cuts, shares of the height. frame: layer, heap
-    or packing. width: m in every frame; default one mean diameter (particle_centre, area_exact: 2.5).
+    or packing. up: "y", "-z" and so on, in the packing's axes; by default against its gravity, or its
+    load. width: m in every frame; default one mean diameter (particle_centre, area_exact: 2.5).
     rings: in 3D, points are radius and height.
 
     The field's warnings are also given as Python warnings. Raises ValueError.
@@ -108,6 +110,7 @@ def average(
         grid=_grid(grid),
         cuts=[float(share) for share in cuts],
         frame=frame,
+        up=up,
         method=method,
         kernel=kernel,
         width=width,
@@ -136,6 +139,7 @@ def strain(
     points: Any = None,
     grid: Any = None,
     frame: str = "layer",
+    up: str = "",
     measure: str = "cambou",
     support: str | None = None,
     width: float | None = None,
@@ -153,6 +157,7 @@ def strain(
         points=_points(points),
         grid=_grid(grid),
         frame=frame,
+        up=up,
         measure=measure,
         support=support,
         width=width,
@@ -241,19 +246,20 @@ def import_field(
     rho_g: float | None = None,
     load: float | None = None,
     width: float = 0,
-    dim: int = 2,
+    dim: int | None = None,
 ) -> Field:
     """Stresses measured in a laboratory as a field (docs/import.md), as `grainfield import-field`.
 
     file: CSV with columns x, component, value, error (and y, in 3D z, off the base), each number
     with its unit in brackets. height: m, of the heap or layer. Of heaps slope, degrees, one or (left,
-    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. width: radius of the cells, m. What the
+    right), and rho_g, N/m3 (2D: N/m2); of layers load, N. dim: 2 or 3; by default 3 where the file has a
+    column z or r. width: radius of the cells, m. What the
     command warns of is given as Python warnings. Raises ValueError.
     """
     nan = float("nan")
     left, right = slope if isinstance(slope, tuple) else (slope, slope)
-    core = _core.import_field(
-        os.fspath(file), geometry, dim, float(height),
+    core, _ = _core.import_field(
+        os.fspath(file), geometry, dim or 0, float(height),
         *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
     name = _core.name_of_measured(core)
     for line in _core.measured_doubts(core):
@@ -296,7 +302,7 @@ def compare(
             folder=place,
         )
         result = CompareResult(found, place, None if folder is None else place)
-    _warn([found["lacks"]])
+    _warn([found["lacks"], *found["doubts"]])
     return result
 
 

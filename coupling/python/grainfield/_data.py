@@ -358,7 +358,7 @@ def _number(text: str) -> float | None:
 
 
 def read_table(path: str | os.PathLike) -> Table:
-    """A CSV file with '#' comments and a header whose names may end with a unit: "x_m"."""
+    """A CSV file with '#' comments and a header whose names may end with a unit: "x_m", "x (m)"."""
     notes, rows = [], []
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.reader(line for line in file if line.strip()):
@@ -368,11 +368,17 @@ def read_table(path: str | os.PathLike) -> Table:
                 rows.append(row)
     columns, units = {}, {}
     for name, *cells in zip(*rows):
-        start, _, unit = name.rpartition("_")
-        if unit in _UNITS and start:
-            name = start
+        start, bracket, unit = name.rpartition(" (")
+        if bracket and unit.endswith(")"):
+            name, unit = start, unit[:-1]
+        else:
+            start, _, unit = name.rpartition("_")
+            if unit in _UNITS and start:
+                name = start
+            else:
+                unit = "1"
         numbers = [_number(cell) for cell in cells]
         columns[name] = np.array(cells if None in numbers else numbers)
-        units[name] = unit if unit in _UNITS else "1"
+        units[name] = unit
     return Table(columns, units, notes)
 

@@ -84,8 +84,9 @@ TEST(AverageSpace, GridsCutsAndTables) {
   const Output cuts = program(start + "--cuts 0,0.5 --grid 3x4 -o " + (folder / "c.csv"));
   ASSERT_EQ(cuts.code, 0) << cuts.err;
   const std::string table = testing::read_text(folder / "c.csv");
-  EXPECT_THAT(table, StartsWith("x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_zy,sigma_xz,"
-                                "sigma_zx,sigma_xy,sigma_yx,density\n-0.03,-0.03,-0."));
+  EXPECT_THAT(table, StartsWith("x (m),y (m),z (m),sigma_xx (Pa),sigma_yy (Pa),sigma_zz (Pa),"
+                                "sigma_yz (Pa),sigma_zy (Pa),sigma_xz (Pa),sigma_zx (Pa),"
+                                "sigma_xy (Pa),sigma_yx (Pa),density (kg/m3)\n-0.03,-0.03,-0."));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 25);
   const Output balance = program("average " + (folder / "s.h5") + " --balance");
   ASSERT_EQ(balance.code, 0) << balance.err;
@@ -112,7 +113,7 @@ TEST(AverageSpace, RingsAboutTheAxisOfAFrame) {
                                  " -o " + (folder / "p.out.csv"));
   ASSERT_EQ(packing.code, 0) << packing.err;
   EXPECT_THAT(testing::read_text(folder / "p.out.csv"),
-              StartsWith("r,z,sigma_rr,sigma_tt,sigma_zz,"));
+              StartsWith("r (m),z (m),sigma_rr (Pa),sigma_tt (Pa),sigma_zz (Pa),"));
   expect_refusal(program(start + "--frame packing --axis 0.2,0.03 -o " + (folder / "x.h5")),
                  "--axis: (0.2, 0.03) is outside the packing");
 }

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "coupling/files/measured_share.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/version.h"
 #include "tests/coupling/program.h"
@@ -224,7 +225,8 @@ TEST(Docs, BibliographyIsComplete) {
 TEST(Docs, NameTheThresholdOfHeapsThatAreNoWedges) {
   const std::string page = read_text((kRoot / "docs/fits.md").string());
   EXPECT_THAT(page, HasSubstr(fmt::format("weigh {:g} times their wedge", kMostOverWedge)));
-  EXPECT_THAT(page, HasSubstr(fmt::format("carry {:g} times the weight", kMostOverWedge)));
+  EXPECT_THAT(page, HasSubstr(fmt::format("carry less than {:g} or more than {:g} times the weight",
+                                          kLeastShare, kMostShare)));
 }
 
 // docs/images/pictures.toml: a table for every picture with the command that makes it.

@@ -155,7 +155,8 @@ TEST(ExportForms, AMeasuredFieldBecomesProfilesWithBars) {
   // One realization with errors of its own.
   exported(field + " --to csv -o " + (folder / "csv"));
   EXPECT_THAT(read_text(folder / "csv/base.csv"),
-              StartsWith("x,y,sigma_yy,sigma_yy_error,sigma_xy,sigma_xy_error\n"));
+              StartsWith("x (m),y (m),sigma_yy (N/m),sigma_yy_error (N/m),sigma_xy (N/m),"
+                         "sigma_xy_error (N/m)\n"));
 }
 
 TEST(ExportForms, AFieldThatIsNoPictureIsLeftOut) {
@@ -231,6 +232,27 @@ TEST(ExportForms, PicturesOfPackings) {
   }
 }
 
+// An imported packing has no case: its grains, walls and gravity are written, and LAMMPS asks for
+// the law.
+TEST(ExportForms, ADeckWithoutACaseAsksForTheLaw) {
+  const Folder folder;
+  for (const std::string& packing :
+       {kLayer + ":" + first_of(kLayer), kBox + ":" + first_of(kBox)}) {
+    const bool flat = packing.starts_with(kLayer);
+    const Output done = program("export " + packing + " --to lammps -o " + (folder / "deck"));
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("note: the packing does not tell its law"));
+    const std::string data = read_text(folder / "deck/packing.data"),
+                      input = read_text(folder / "deck/in.lammps");
+    EXPECT_THAT(data, HasSubstr(" atoms\n2 atom types\n"));
+    EXPECT_THAT(input, HasSubstr("pair_style granular\npair_coeff * * ${law}\n"));
+    EXPECT_THAT(input, HasSubstr("timestep ${step}\n"));
+    EXPECT_THAT(input, HasSubstr("-var law \"hooke K_N GAMMA_N ...\" -var step SECONDS"));
+    EXPECT_EQ(input.find("dimension 2\n") != input.npos, flat);
+    EXPECT_EQ(input.find("fix plane all enforce2d") != input.npos, flat);
+  }
+}
+
 // A folder keeps the results of one command: what goes is named, what is the user's stays.
 TEST(ExportForms, SaysWhatOfAnEarlierCommandIsGone) {
   const Folder folder;
@@ -264,7 +286,8 @@ TEST(ExportForms, WhatIsNoFormOrNoNameIsSaid) {
   EXPECT_THAT(refusal(kLayer + ":nothing --to csv"), HasSubstr("found no \"nothing\", allowed: /"));
   EXPECT_THAT(refusal(kLayer + " " + kLayer + " --to csv"),
               HasSubstr("found 2 files, expected one"));
-  EXPECT_THAT(refusal(kLayer + " --to lammps"), HasSubstr("expected two: the case"));
+  EXPECT_THAT(refusal(kLayer + " --to lammps --quick"),
+              HasSubstr("--set, --quick: found without a case, allowed: with CASE.toml before"));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Folder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Output;
 using testing::program;
 
@@ -267,23 +268,116 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
     EXPECT_EQ(out.code, 0) << out.err;
     return out.err;
   };
-  EXPECT_EQ(told("x (mm)", 1, heap_options()), "");
+  EXPECT_EQ(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 12800"), "");
   EXPECT_THAT(told("x (mm)", 1, " --height 0.06 --slope 30 --rho-g 20000"),
               HasSubstr("warning: base: 2 of 13 places lie outside the heap, whose feet are at "
                         "-0.104 and 0.104 m: is the unit of x right, and its origin"));
   EXPECT_THAT(told("x (mm)", -1, heap_options()),
               HasSubstr("13 of 13 pressures are negative: a pressure is positive"));
-  // From kMostOverWedge on, as heaps of grains: these carry 1.16 and 1.28 of it.
-  EXPECT_EQ(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 11000"), "");
+  // Outside of 0.9 to 1.1: these carry 1.07, 1.28 and 0.8 of it.
+  EXPECT_EQ(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 12000"), "");
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 10000"),
-              HasSubstr("carry 1.28 of the weight above them"));
+              HasSubstr("carry 1.28 +- 0.012 of the weight above them"));
+  EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 16000"),
+              HasSubstr("carry 0.799"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
               HasSubstr("of the weight above them: are the units"));
   // The verdict says it again.
   const std::string file = folder / "f";
   const Output out = program("fit " + file + " --model osl --model bcc -o " + (folder / "fit"));
   EXPECT_EQ(out.code, 0) << out.err;
-  EXPECT_THAT(out.out, HasSubstr("- The pressures on the base carry 3.2 of the weight above"));
+  EXPECT_THAT(
+      out.err,
+      HasSubstr("warning: the pressures on the base carry 3.2 +- 0.031 of the weight above"));
+  EXPECT_THAT(out.out,
+              HasSubstr("- The pressures on the base carry 3.2 +- 0.031 of the weight above"));
+  const Output compared = program("compare " + file + " --model osl -o " + (folder / "compare"));
+  EXPECT_EQ(compared.code, 0) << compared.err;
+  EXPECT_THAT(compared.err, HasSubstr("warning: the pressures on the base carry 3.2 +- 0.031"));
+}
+
+// The share that the values carry, with its error, of heaps, cones and responses.
+TEST(ImportField, SaysHowMuchTheValuesCarry) {
+  const Folder folder;
+  const auto told = [&](const std::string& text, const std::string& options) {
+    return program("import-field " + folder.write("m.csv", text) + options + " -o " +
+                   (folder / "f.h5"));
+  };
+  // A wedge and a cone that carry what stands above: rho g times the height there.
+  std::string wedge = "x (m),component,value (N/m),error (N/m)\n",
+              cone = "r (m),component,value (Pa),error (Pa)\n";
+  for (int k = -10; k <= 10; ++k) {
+    wedge += fmt::format("{},pressure,{},10\n", 0.1 * k, 0.83 * 1000 * (1 - 0.1 * std::abs(k)));
+    if (k >= 0) cone += fmt::format("{},pressure,{},10\n", 0.1 * k, 1000 * (1 - 0.1 * k));
+  }
+  const std::string heap = " --height 1 --slope 45 --rho-g 1000";
+  Output out = told(wedge, heap);
+  EXPECT_EQ(out.code, 0) << out.err;
+  // sqrt(19 + 2/4) * 0.1 * 10 over 1000.
+  EXPECT_THAT(out.out,
+              HasSubstr("the pressures on the base carry 0.83 +- 0.0044 of the weight above them"));
+  EXPECT_THAT(out.err, HasSubstr("warning: base: the pressures on the base carry 0.83"));
+  out = told(cone, heap);
+  EXPECT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.out, HasSubstr("base: 11 points in space, h = 1 m"));
+  EXPECT_THAT(out.out, HasSubstr("carry 1 +- 0.0"));
+  EXPECT_EQ(out.err, "");
+  EXPECT_DOUBLE_EQ(read_field(folder / "f.h5", "base").points(3, 0), 0.3);
+  // Boussinesq's response on the depth 1: 3 F/(2 pi) (1 + r^2)^-5/2, and half of it.
+  const auto response = [](double share) {
+    std::string text = "r (m),z (m),component,value (Pa),error (Pa)\n";
+    for (int k = 0; k <= 80; ++k) {
+      const double r = 0.05 * k;
+      text += fmt::format("{},-1,pressure,{},0.1\n", r,
+                          share * 150 / std::numbers::pi * std::pow(1 + r * r, -2.5));
+    }
+    return text;
+  };
+  const std::string layer = " --geometry layer --height 1 --load 100";
+  out = told(response(1), layer);
+  EXPECT_THAT(out.out, HasSubstr("the pressures on the base carry 0.98"));
+  EXPECT_THAT(out.out, HasSubstr("of the load, within 4 m of its axis"));
+  EXPECT_EQ(out.err, "");
+  out = told(response(0.5), layer);
+  EXPECT_THAT(out.err, HasSubstr("warning: base: the pressures on the base carry 0.49"));
+  EXPECT_THAT(out.err, HasSubstr("of the load, within 4 m of its axis: are the units, --load"));
+  out = program("compare " + (folder / "f.h5") + " --model boussinesq:nu=0.3 -o " +
+                (folder / "compare"));
+  EXPECT_EQ(out.code, 0) << out.err;
+  EXPECT_THAT(out.err, HasSubstr("warning: the pressures on the base carry 0.49"));
+}
+
+// What the file says of dimensions is not ignored, and options of the other geometry neither.
+TEST(ImportField, DimensionsAndOptionsThatContradictAreSaid) {
+  const Folder folder;
+  const auto told = [&](const std::string& head, const std::string& options) {
+    return program("import-field " + folder.write("m.csv", head + "0.1,-1,pressure,1,0.1\n") +
+                   options + " -o " + (folder / "f.h5"));
+  };
+  const std::string z = "x (m),z (m),component,value (Pa),error (Pa)\n",
+                    y = "x (m),y (m),component,value (kPa),error (kPa)\n";
+  const std::string heap = " --height 1 --slope 45 --rho-g 1000";
+  Output out = told(z, heap);
+  EXPECT_EQ(out.code, 0) << out.err;
+  EXPECT_EQ(read_field(folder / "f.h5", "base").points.cols(), 3);
+  out = told(z, heap + " --dim 2");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("--dim: found 2 with the column z"));
+  out = told(y, heap);
+  EXPECT_THAT(out.out, HasSubstr("values in kPa are those of a long heap (2D: 1 Pa counts as 1 "
+                                 "N/m); of a cone: --dim 3"));
+  EXPECT_THAT(told(y, heap + " --dim 2").out, Not(HasSubstr("--dim 3")));
+  out = told(y, " --geometry layer --height 1 --load 30");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("--dim: is missing, and values in kPa under a load in N are those "
+                                 "of three dimensions"));
+  EXPECT_EQ(told(y, " --geometry layer --height 1 --load 30 --dim 2").code, 0);
+  out = told(y, " --geometry layer --height 1 --slope 30");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("found 30, allowed with --geometry heap alone"));
+  out = told(y, heap + " --load 30");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("--load: found 30, allowed with --geometry layer alone"));
 }
 
 TEST(ImportField, SaysWhatIsWrongInOneLine) {
@@ -314,6 +408,8 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
   refused("position (mm),pressure (kPa)\n", good,
           "no column \"x\"; found: position, pressure; nearest: position; expected are x (UNIT), "
           "component, value (UNIT), error (UNIT)");
+  refused("r (mm),component,value (kPa),error (kPa)\n-1,pressure,1,0.1\n", good,
+          "column r: found -1, allowed: 0 or more, a distance from the axis");
   refused(head + "0,pressure,1e299,1\n", good, "m.csv:2: column value: found 1e299");
   refused(head + "0,pressure,1,1e299\n", good, "m.csv:2: column error: found 1e299");
   refused(
