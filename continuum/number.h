@@ -1,5 +1,7 @@
 // Numbers from texts, as they stand in settings and tables.
 #pragma once
+#include <locale.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -21,7 +23,8 @@ inline std::optional<double> parse_number(std::string_view text) {
   if (stop != end || digits.empty()) return std::nullopt;
   if (error == std::errc()) return value;
   if (error != std::errc::result_out_of_range) return std::nullopt;
-  value = std::strtod(std::string(digits).c_str(), nullptr);
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);  // "," in no locale
+  value = strtod_l(std::string(digits).c_str(), nullptr, plain);
   return std::fabs(value) < 1 ? std::optional(value) : std::nullopt;
 }
 

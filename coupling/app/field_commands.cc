@@ -18,6 +18,7 @@
 #include "coupling/files/places.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/field_csv.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
@@ -180,9 +181,8 @@ void add_compare(CLI::App& app, Action& action) {
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
-      if (!outcome.note.empty()) say("{}\n", outcome.note);
-      say("{}\n", outcome.verdict);
-      say("report: {}/report.html\n", printable_name(request->folder));
+      say("{}\nreport: {}/report.html\n", judgement_text(outcome.judgement),
+          printable_name(request->folder));
       return 0;
     };
   });

@@ -319,6 +319,7 @@ void apply(Draft& draft, const Assignment& a) {
   if (a.table || a.other) wrong_type(*key, a);
   set(*key, a, draft.value);
   draft.last.insert_or_assign(a.path, a);
+  draft.value.given.insert(a.path);
 }
 
 }  // namespace grainfield::coupling

@@ -118,7 +118,7 @@ std::string write_case(const Case& value) {
     // A written-out case says what holds: keys without effect are there for those who look.
     const bool no_effect = is_without_effect(key, value);
     if (no_effect) remark = fmt::format("only with {}; {}", condition(key), remark);
-    out += fmt::format("# {}\n{}{} = {}\n", remark, no_effect ? "# " : "", key.name,
+    out += fmt::format("# {}\n{}{} = {}\n", remark, no_effect || key.remarked ? "# " : "", key.name,
                        value_text(key, value));
   }
   for (const auto& model : value.models) {

@@ -1,6 +1,7 @@
 // A study as the user describes it in a TOML file, with every default filled in.
 #pragma once
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct Case {
   SweepSetup sweep;
   std::vector<Variant> variants;    ///< members of a sweep whose key is "variant"
   std::vector<ModelChoice> models;  ///< in the order of compare.models
+  std::set<std::string> given;      ///< paths of the keys that somebody wrote
   /// Warnings of keys that were written: those without effect with what the case chooses elsewhere,
   /// and values that are hardly meant (case/doubts.h), a line each: "FILE:LINE: KEY: ...".
   std::vector<std::string> without_effect;

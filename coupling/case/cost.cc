@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "coupling/case/material.h"
 #include "coupling/case/study.h"
 #include "coupling/system/memory.h"
 
@@ -117,6 +118,10 @@ std::string outlook_text(const Case& value) {
   if (o.time_step > 0) out += fmt::format(", steps of {:.3g} s", o.time_step);
   if (!value.sweep.key.empty()) out += " (of the case as it is)";
   out += "\n";
+  if (const std::string material = material_text(value); !material.empty()) {
+    out += fmt::format("  contacts: {}\n", material);
+  }
+  if (!o.step_bound.empty()) out += fmt::format("  the step follows {}\n", o.step_bound);
   if (o.bytes > kLarge) {
     out += fmt::format("  about {:.2g} GB of memory for every realization at a time\n",
                        1e-9 * o.bytes);

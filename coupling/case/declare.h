@@ -66,6 +66,10 @@ class SectionKeys {
   /// The last key's words are shapes of grains in the plane: one of three dimensions is refused as
   /// such.
   void plane_shapes() { keys_.back().plane_shapes = true; }
+  /// The default of the last key follows another key: "2/7 of normal_stiffness".
+  void follows(const std::string& what) { keys_.back().follows = what; }
+  /// The last key is a remark in a case that is written out: another one there says the same.
+  void remarked() { keys_.back().remarked = true; }
   /// The last key means something in three dimensions only.
   void space() { keys_.back().space = true; }
   /// Of the last key's words, those that hold in two or in three dimensions only.

@@ -4,15 +4,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
+
+#include "coupling/case/material.h"
+#include "coupling/case/study.h"
 
 namespace grainfield::coupling {
 namespace {
 
 constexpr double kLargeGrain = 0.5;                // m, of a radius or side: a boulder's
 constexpr double kLightest = 10, kHeaviest = 1e5;  // kg/m3, kg/m2
-constexpr double kDeepFall = 1000;                 // grain diameters
+// Roul's formula as printed amounts to 11, which is a study of its own.
+constexpr double kLeastRatio = 0.09, kMostRatio = 1.5;  // k_t/k_n
+constexpr double kLeastRestitution = 0.05, kMostRestitution = 0.99;
+constexpr double kDeepFall = 1000;  // grain diameters
 
 constexpr std::array kSizes{"shape.radius",       "shape.side",         "packing.radius",
                             "packing.radius_min", "packing.radius_max", "packing.radius_small",
@@ -42,6 +50,44 @@ std::string in_millimetres(double value) {
   return fmt::format("the unit is m; {0:g} mm is written \"{0:g} mm\"", value);
 }
 
+// Stiffness along a contact over that across it, and what the dashpots leave, outside of what the
+// laws' users take.
+template <class Add>
+void add_material_doubts(const Draft& draft, const Add& add) {
+  const auto grain = nominal_grain(draft.value);
+  const Study* study = find_study(draft.value.study);
+  if (!grain || !(grain->radius > 0)) return;
+  const dem::MaterialSetup& m = study->material(const_cast<Case&>(draft.value));  // only read
+  const bool frictionless = m.friction == 0 && m.floor_friction == 0 && m.wall_friction == 0;
+  const double ratio = dem::stiffness_ratio(m);
+  for (const char* path : {"material.tangential_stiffness", "material.tangential_ratio"}) {
+    if (frictionless || !written_value(draft, path) ||
+        (ratio >= kLeastRatio && ratio <= kMostRatio)) {
+      continue;
+    }
+    const bool absolute = std::string_view(path) == "material.tangential_stiffness";
+    add(path,
+        fmt::format("found {:g}, k_t/k_n = {:.3g}; usual: {:g} to {:g}{}{}",
+                    *written_value(draft, path), ratio, kLeastRatio, kMostRatio,
+                    ratio > kMostRatio ? fmt::format("; the time step is {:.3g} times shorter "
+                                                     "than with the normal spring alone",
+                                                     std::sqrt(ratio))
+                                       : "",
+                    absolute ? fmt::format("; without this key it is 2/7 of k_n, {:.4g} N/m",
+                                           2 * m.normal_stiffness / 7)
+                             : "; 2/7 by default"));
+  }
+  const char* damping = "material.normal_damping";
+  const auto found = written_value(draft, damping);
+  if (!found || *found == 0 || m.law != "linear") return;
+  if (m.restitution >= kLeastRestitution && m.restitution <= kMostRestitution) return;
+  add(damping,
+      fmt::format("found {:g} 1/s, which leaves a restitution of {:.3g} of two grains of "
+                  "radius {:.3g} mm; usual: {:g} to {:g}; without this key it follows "
+                  "material.restitution",
+                  *found, m.restitution, 1e3 * grain->radius, kLeastRestitution, kMostRestitution));
+}
+
 }  // namespace
 
 std::vector<Doubt> doubts(const Draft& draft) {
@@ -67,6 +113,7 @@ std::vector<Doubt> doubts(const Draft& draft) {
     add(path, fmt::format("found {:g} m, a fall of {:.0f} grain diameters; {}", *height,
                           *height / (2 * *grain), in_millimetres(*height)));
   }
+  add_material_doubts(draft, add);
   return out;
 }
 

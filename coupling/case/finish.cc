@@ -14,6 +14,7 @@
 #include "coupling/case/cost.h"
 #include "coupling/case/dimensions.h"
 #include "coupling/case/doubts.h"
+#include "coupling/case/material.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
@@ -269,6 +270,7 @@ void finish(Draft& draft) {
   check_sections(draft);
   check_dimensions(draft);
   check_units(draft);
+  blame(draft, [&] { follow_material(draft.value); });
   choose_models(draft);
   check_lists(draft);
   if (const Study& study = study_of(draft.value); study.check != nullptr) {

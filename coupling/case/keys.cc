@@ -75,6 +75,7 @@ struct Defaults {
 };
 
 std::string default_of(const Key& key, const Study& study) {
+  if (!key.follows.empty()) return key.follows;
   Case value;
   value.study = study.name;
   return value_text(key, value);

@@ -44,6 +44,9 @@ struct Key {
 
   bool plane_shapes = false;  ///< its words are shapes of grains in the plane
 
+  std::string follows;    ///< what the default follows: "2/7 of normal_stiffness"; empty: nothing
+  bool remarked = false;  ///< written-out cases have it as a remark: another key says the same
+
   bool space = false;                    ///< only in three dimensions
   std::vector<std::string> plane_words;  ///< of the choices, those of two dimensions only
   std::vector<std::string> space_words;  ///< ... and of three

@@ -66,6 +66,9 @@ struct Study {
   bool varies_models = false;
   /// Where its setup holds what [material], [motion] and [rest] say; null: without these keys.
   dem::MaterialSetup& (*material)(Case&) = nullptr;
+  /// The nominal radius of its grains, m, by which a restitution becomes a dashpot; set where
+  /// material is.
+  double (*grain_radius)(const Case&) = nullptr;
   dem::MotionSetup& (*motion)(Case&) = nullptr;
   dem::RestSetup& (*rest)(Case&) = nullptr;
   /// The realization of grains of this number, from 0; null: a study without grains. Throws

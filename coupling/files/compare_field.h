@@ -19,8 +19,7 @@ struct CompareRequest {
 };
 
 struct CompareOutcome {
-  std::string verdict;
-  std::string note;       ///< fields seen through different kernels; empty: all through one
+  Judgement judgement;
   std::string lacks;      ///< of the report (ReportResult::complaint)
   std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none
   bool measured = false;  ///< the field is of no grains (Field::is_measured)

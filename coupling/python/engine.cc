@@ -13,6 +13,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/python/bindings.h"
 #include "dem/heap/grain_family.h"
+#include "dem/laws/material_defaults.h"
 #include "dem/study/common.h"
 
 namespace grainfield::python {
@@ -28,10 +29,14 @@ struct Setup {
   dem::MaterialSetup material;
   dem::MotionSetup motion;
 };
-Setup read_setup(const std::vector<std::string>& keys) {
+Setup read_setup(const std::vector<std::string>& keys, const dem::RoundGrain& grain) {
   coupling::Draft draft;
   draft.value.study.clear();  // of no study: the sections' own setups
   for (const std::string& text : keys) coupling::apply(draft, coupling::parse_override(text));
+  const auto given = [&](std::string_view member) {
+    return draft.value.given.contains("material." + std::string(member));
+  };
+  dem::follow_defaults(draft.value.get<dem::MaterialSetup>(), dem::MaterialSetup(), given, grain);
   return {draft.value.get<dem::MaterialSetup>(), draft.value.get<dem::MotionSetup>()};
 }
 
@@ -68,6 +73,17 @@ dem::GrainExtremes extremes_of(const Snapshot& s, dem::ShapeKind shape) {
   return dem::extremes_of(shaped, least_density);
 }
 
+// Of the mean radius of the free grains.
+dem::RoundGrain mean_grain(const Snapshot& s) {
+  double sum = 0, count = 0;
+  for (const dem::Grain& g : s.grains) {
+    if (g.fixed) continue;
+    sum += g.radius;
+    ++count;
+  }
+  return {s.dim, count > 0 ? sum / count : 0};
+}
+
 class Engine {
  public:
   Engine(const Packing& start, const std::vector<std::string>& keys, int threads) {
@@ -77,7 +93,7 @@ class Engine {
             fmt::format("Engine: wall {} has no friction; gf.packing(..., friction=...) sets that "
                         "of walls without their own",
                         wall.name));
-    const Setup setup = read_setup(keys);
+    const Setup setup = read_setup(keys, mean_grain(*start.state));
     const dem::ShapeKind shape = shape_of(*start.state);
     const dem::EngineSettings settings = dem::engine_settings(
         setup.material, setup.motion, extremes_of(*start.state, shape), threads, false, 1, shape);

@@ -20,6 +20,7 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/system/signals.h"
 #include "dem/cannot_read_now.h"
+#include "dem/snapshot/number.h"
 #include "dem/storage_failed.h"
 #include "dem/study/run.h"
 
@@ -183,7 +184,7 @@ class Worker {
       const double now = thread_seconds();
       cpu += engine_threads * (now - counted_at);
       counted_at = now;
-      std::ofstream(cpu_file(task.file)) << cpu << '\n';
+      std::ofstream(cpu_file(task.file)) << fmt::format("{:g}\n", cpu);
     };
     const auto save = [&] {
       const std::lock_guard lock(files);
@@ -361,9 +362,10 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
 }
 
 double cpu_seconds(const std::string& file) {
-  double seconds = 0;
   std::ifstream in(cpu_file(file));
-  return in >> seconds ? seconds : std::numeric_limits<double>::quiet_NaN();
+  std::string seconds;
+  in >> seconds;
+  return dem::parse_number(seconds).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace grainfield::coupling

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "coupling/case/declare.h"
+#include "dem/laws/material_defaults.h"
 #include "dem/laws/registry.h"
 #include "dem/motion/registry.h"
 
@@ -116,14 +117,23 @@ void declare_material_keys(SectionKeys s) {
   s.number("tangential_stiffness", "N/m", +MATERIAL(double, tangential_stiffness), {0, 1e15},
            "tangential spring; 2/7 of the normal one for spheres, 1/3 for disks, makes both swing "
            "in step");
+  s.follows(dem::followed_by("tangential_stiffness"));
   s.only("material.law", {"linear", "penalty"});
+  s.number("restitution", "-", +MATERIAL(double, restitution), {1e-12, 1},
+           "share of the speed that two equal round grains of the nominal size keep when they meet "
+           "head on: the normal dashpot follows from it. linear and viscoelastic hertz dashpots "
+           "have a scale and follow the default, too; where the dashpot is given, this follows it");
+  s.only("material.law", {"linear", "penalty", "hertz", "hertz_elliptic"});
+  s.remarked();
   s.number("normal_damping", "1/s (hertz: 1/(m s))", +MATERIAL(double, normal_damping), kRate,
            "normal force of the dashpot per reduced mass and approach velocity; hertz: and per "
            "radius of the contact, with damping_model \"viscoelastic\"");
+  s.follows(dem::followed_by("normal_damping"));
   s.only("material.law", {"linear", "hertz"});
   s.number("tangential_damping", "1/s (hertz: 1/(m s))", +MATERIAL(double, tangential_damping),
            kRate,
            "tangential force of the dashpot per reduced mass and slip velocity; hertz: likewise");
+  s.follows(dem::followed_by("tangential_damping"));
   s.only("material.law", {"linear", "hertz"});
   s.number(
       "friction", "-", +MATERIAL(double, friction), {0, 10},

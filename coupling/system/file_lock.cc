@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "coupling/system/printable.h"
+#include "dem/snapshot/number.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -45,7 +46,9 @@ Holder read_holder(int descriptor) {
   const ssize_t n = pread(descriptor, text.data(), text.size() - 1, 0);
   std::istringstream in(std::string(text.data(), n > 0 ? static_cast<std::size_t>(n) : 0));
   Holder out;
-  if (in >> out.process >> out.host) std::getline(in >> std::ws, out.command);
+  std::string process;
+  if (in >> process >> out.host) std::getline(in >> std::ws, out.command);
+  out.process = dem::parse_integer(process).value_or(0);
   return out;
 }
 

@@ -9,6 +9,8 @@
 #include <limits>
 #include <string>
 
+#include "dem/snapshot/number.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -19,8 +21,10 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 // The number in such a file; "max" and no file are no limit.
 double number_in(const fs::path& file) {
   std::ifstream in(file);
-  double bytes = 0;
-  return in >> bytes && bytes > 0 ? bytes : kUnlimited;
+  std::string text;
+  in >> text;
+  const double bytes = dem::parse_number(text).value_or(0);
+  return bytes > 0 ? bytes : kUnlimited;
 }
 
 // Of this process's control group and all above it.

@@ -72,27 +72,39 @@ void refuse_rolling_superellipsoids() {
       "resist rolling)");
 }
 
-double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius) {
+namespace {
+
+struct StepLimit {
+  double step = std::numeric_limits<double>::infinity();
+  StepBound bound = StepBound::spring;
+
+  void lower(double other, StepBound why) {
+    if (other < step) *this = {other, why};
+  }
+};
+
+StepLimit limit_of_grains(const EngineSettings& settings, double least_mass, double least_radius) {
   const double viscous_limit =
       settings.integrator.visit([](auto kind) { return kind.viscous_limit; });
-  double limit = std::numeric_limits<double>::infinity();
+  StepLimit limit;
   visit_laws(settings, [&](const auto& law, const RollingLaw& rolling) {
     if (rolling.twists() && !(least_radius > 0)) {
       throw std::invalid_argument(
           "stable_time_step: found no least radius, needed: above 0, as grains resist twisting");
     }
-    const double stiffness =
-        std::max(law.stiffness(least_radius), rolling.step_stiffness(least_radius));
-    limit = std::min(limit, 0.1 * std::numbers::pi * std::sqrt(least_mass / stiffness));
+    const double spring = law.stiffness(least_radius);
+    const double resistance = rolling.step_stiffness(least_radius);
+    limit.lower(0.1 * std::numbers::pi * std::sqrt(least_mass / std::max(spring, resistance)),
+                resistance > spring ? StepBound::rolling : StepBound::spring);
     const double rate =
         law.viscous_rate(least_mass, least_radius) + rolling.step_rate(least_mass, least_radius);
-    if (rate > 0) limit = std::min(limit, viscous_limit / rate);
+    if (rate > 0) limit.lower(viscous_limit / rate, StepBound::dashpots);
   });
   return limit;
 }
 
-double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes) {
-  double limit = stable_time_step(settings, extremes.least_mass, extremes.least_radius);
+StepLimit limit_of(const EngineSettings& settings, const GrainExtremes& extremes) {
+  StepLimit limit = limit_of_grains(settings, extremes.least_mass, extremes.least_radius);
   if (!(extremes.steepest_edge > 0)) return limit;
   const double share = settings.integrator.visit([](auto kind) { return kind.edge_limit; });
   visit_laws(settings, [&](const auto& law, const RollingLaw&) {
@@ -102,9 +114,23 @@ double stable_time_step(const EngineSettings& settings, const GrainExtremes& ext
     // Positive root of c dt + k dt^2/2 = share.
     const double k = law.edge_stiffness(edge) / mass;
     const double c = law.edge_rate(mass, edge);
-    limit = std::min(limit, 2 * share / (c + std::sqrt(c * c + 2 * k * share)));
+    limit.lower(2 * share / (c + std::sqrt(c * c + 2 * k * share)), StepBound::edges);
   });
   return limit;
+}
+
+}  // namespace
+
+double stable_time_step(const EngineSettings& settings, double least_mass, double least_radius) {
+  return limit_of_grains(settings, least_mass, least_radius).step;
+}
+
+double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes) {
+  return limit_of(settings, extremes).step;
+}
+
+StepBound step_bound(const EngineSettings& settings, const GrainExtremes& extremes) {
+  return limit_of(settings, extremes).bound;
 }
 
 void Engine::set_wall_motion(const std::string& name, const WallMotion& motion) {

@@ -30,7 +30,8 @@ namespace grainfield::dem {
 /// Laws and friction (Materials), motion, and what the engine is made for.
 struct EngineSettings : Materials {
   IntegratorKind integrator;
-  double time_step = 1e-5;                                 ///< s
+  double time_step = 1e-5;  ///< s
+  std::string step_bound;   ///< what sets it, for people: "the dashpots"; empty: not known
   double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s2
   double skin = 0;  ///< m; gap kept in the neighbour list; 0 = chosen from the radii
   int threads = 1;
@@ -228,9 +229,13 @@ struct GrainExtremes {
 /// mass); 0.7 of it is allowed. Irregular grains hardly ever lie like this: kMostOfLimit.
 double stable_time_step(const EngineSettings& settings, const GrainExtremes& extremes);
 
+/// What sets that limit.
+enum class StepBound { spring, rolling, dashpots, edges };
+StepBound step_bound(const EngineSettings& settings, const GrainExtremes& extremes);
+
 /// Shares of that limit up to this are accepted for polygons: piles of 200 RAND1 polygons came to
 /// rest at 2.8 times the limit and not at 3.5; at 2.5 impacts keep the same energy as at a tenth to
-/// 0.5 % (tests/dem/time_step_test.cc). A packing that is not stable does not come to rest, which
+/// 0.5 % (tests/dem/engine/time_step_test.cc). A packing that is not stable does not come to rest, which
 /// is reported.
 inline constexpr double kMostOfLimit = 2.5;
 

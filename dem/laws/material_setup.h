@@ -20,6 +20,7 @@ struct MaterialSetup {
   double normal_damping = 500;              ///< 1/s; linear: force m_eff * gamma_n * v_n; hertz,
                                             ///< viscoelastic: 1/(m s), force a m_eff gamma_n v_n
   double tangential_damping = 250;          ///< likewise
+  double restitution = 0.9;                 ///< material_defaults.h: what the dashpots follow
   double friction = 0.5;                    ///< grain on grain
   double floor_friction = 0.5;              ///< grain on flat floor
   double wall_friction = 0;                 ///< grain on side walls
@@ -40,7 +41,8 @@ struct MaterialSetup {
                     normal_stiffness, tangential_stiffness, normal_damping, tangential_damping,
                     friction, floor_friction, wall_friction, gravity, tangential_memory,
                     damping_model, least_radius, most_radius, rolling_stiffness, rolling_damping,
-                    rolling_friction, twisting_stiffness, twisting_damping, twisting_friction);
+                    rolling_friction, twisting_stiffness, twisting_damping, twisting_friction,
+                    restitution);
   }
 };
 

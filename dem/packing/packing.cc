@@ -107,6 +107,14 @@ double largest_radius(const PackingSetup& p) {
   return p.sizes == "uniform" ? p.radius_max : p.radius;
 }
 
+double mean_radius(const PackingSetup& p) {
+  if (draws_pentagons(p)) return 0.85 * p.side;
+  if (p.sizes == "bidisperse") {
+    return p.fraction_small * p.radius_small + (1 - p.fraction_small) * p.radius;
+  }
+  return p.sizes == "uniform" ? 0.5 * (p.radius_min + p.radius_max) : p.radius;
+}
+
 double smallest_radius(const PackingSetup& p) {
   if (draws_pentagons(p)) return kPentagonInradius * p.side;
   if (p.sizes == "bidisperse") return std::min(p.radius, p.radius_small);

@@ -59,6 +59,8 @@ double draw_radius(const PackingSetup& packing, Random& random);
 /// Bounds of the radii, of pentagons: of their circumscribed and inscribed circles.
 double largest_radius(const PackingSetup& packing);
 double smallest_radius(const PackingSetup& packing);
+/// m; of pentagons that of the circle their corners lie on, about.
+double mean_radius(const PackingSetup& packing);
 
 /// Whether the grains are pentagons, drawn before the layer is built, and how many are drawn.
 bool draws_pentagons(const PackingSetup& packing);

@@ -14,6 +14,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+
+#include "dem/snapshot/number.h"
 
 namespace grainfield::dem {
 namespace {
@@ -43,7 +46,9 @@ double memory_in_use() {
   const ssize_t count = read(in, text.data(), text.size() - 1);
   close(in);
   if (count <= 0) return 0;
-  return std::strtod(text.data(), nullptr) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const std::string_view all(text.data(), static_cast<std::size_t>(count));
+  const auto pages = parse_integer(all.substr(0, all.find(' ')));
+  return static_cast<double>(pages.value_or(0)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 #endif
 

@@ -1,5 +1,7 @@
 // Numbers from texts, as they stand in files and arguments.
 #pragma once
+#include <locale.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -10,8 +12,8 @@
 
 namespace grainfield::dem {
 
-/// The number that the whole text is, also "nan", "inf", a subnormal one, and 0 for one too small;
-/// nothing for other text, none, or a number too large.
+/// The number that the whole text is, in any locale, also "nan", "inf", a subnormal one, and 0 for
+/// one too small; nothing for other text, none, or a number too large.
 inline std::optional<double> parse_number(std::string_view text) {
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   const char* const end = digits.data() + digits.size();
@@ -20,7 +22,8 @@ inline std::optional<double> parse_number(std::string_view text) {
   if (stop != end || digits.empty()) return std::nullopt;
   if (error == std::errc()) return value;
   if (error != std::errc::result_out_of_range) return std::nullopt;
-  value = std::strtod(std::string(digits).c_str(), nullptr);
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);  // "," in no locale
+  value = strtod_l(std::string(digits).c_str(), nullptr, plain);
   return std::fabs(value) < 1 ? std::optional(value) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/laws/restitution.h"
 #include "dem/motion/leaping.h"
 #include "dem/quasistatic/sphere_law.h"
 #include "dem/snapshot/hdf5_file.h"
@@ -14,6 +15,25 @@
 #include "dem/study/run.h"
 
 namespace grainfield::dem {
+namespace {
+
+std::string bound_text(const MaterialSetup& m, const MotionSetup& motion, StepBound bound) {
+  if (motion.time_step > 0) return "motion.time_step";
+  switch (bound) {
+    case StepBound::rolling:
+      return "the resistance against rolling or twisting";
+    case StepBound::dashpots:
+      return "the dashpots";
+    case StepBound::edges:
+      return "polygons edge on edge";
+    case StepBound::spring:
+      break;
+  }
+  return stiffness_ratio(m) > 1 ? "the tangential spring" : "the normal spring";
+}
+
+}  // namespace
+
 EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular,
                                double reserve, ShapeKind shape) {
@@ -82,6 +102,7 @@ EngineSettings engine_settings(const MaterialSetup& m, const MotionSetup& motion
             : fmt::format("motion.time_step_fraction: found {:g}, allowed: at most {:.3g} {}",
                           motion.time_step_fraction, std::floor(1000 * most / limit) / 1000, who));
   }
+  e.step_bound = bound_text(m, motion, step_bound(e, extremes));
   e.friction = m.friction;
   e.gravity_x = 0;
   e.gravity_y = -m.gravity;

@@ -349,7 +349,7 @@ Outlook foresee_cone(const ConeSetup& s, const std::vector<std::uint64_t>& seeds
   const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
     const EngineSettings settings = cone_settings(s, grains, 1, reserve);
     if (out.time_step > 0) return;
-    out.time_step = settings.time_step;
+    out.take_step(settings);
     // What only an engine refuses.
     const std::unique_ptr<Engine> engine = make_engine(settings);
     for (const Wall& wall : cone_walls(s, p.source == "cylinder")) engine->add_wall(wall);

@@ -64,13 +64,6 @@ void add_changes(const ChangeSetup& change, Times& times) {
   times.add("change.ramp_time", change.ramp_time * static_cast<double>(change.gravity.size()));
 }
 
-double mean_radius(const PackingSetup& p) {
-  if (p.sizes == "bidisperse") {
-    return p.fraction_small * p.radius_small + (1 - p.fraction_small) * p.radius;
-  }
-  return p.sizes == "uniform" ? 0.5 * (p.radius_min + p.radius_max) : p.radius;
-}
-
 // Grains of a layer; throws when they are too many.
 double grains_of(const PackingSetup& p) {
   if (p.kind != "layered") {
@@ -192,7 +185,7 @@ Outlook foresee_space_load(const PointLoadSetup& s, const std::vector<std::uint6
   Outlook out;
   check_spheres(p);
   if (!is_angular(p)) {
-    out.time_step = space_load_settings(s, 1).time_step;
+    out.take_step(space_load_settings(s, 1));
   } else {
     const auto draw = [&](Random& random, std::int64_t& left) {
       std::vector<ShapedGrain> shapes;
@@ -205,8 +198,8 @@ Outlook foresee_space_load(const PointLoadSetup& s, const std::vector<std::uint6
       return shapes;
     };
     judge_draws(seeds, most, draw, [&](const std::vector<ShapedGrain>& shapes, double reserve) {
-      const double step = space_load_settings(s, 1, shapes, reserve).time_step;
-      if (out.time_step == 0) out.time_step = step;
+      const EngineSettings settings = space_load_settings(s, 1, shapes, reserve);
+      if (out.time_step == 0) out.take_step(settings);
     });
   }
   out.grains = std::ceil(layer_spheres(p));
@@ -232,7 +225,7 @@ Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint6
   check_method("load.method", s.load.method, s.material, s.motion);
   Outlook out;
   out.grains = grains_of(p);
-  const double radius = draws_pentagons(p) ? 0.85 * p.side : mean_radius(p);
+  const double radius = mean_radius(p);
   if (p.floor == "rough") out.fixed = std::floor(0.5 * layer_width(p) / radius);
   out.bytes = (out.grains + out.fixed) * (draws_pentagons(p) ? kBytesOfPolygon : kBytesOfDisk);
   out.bytes_key = p.kind == "layered"  ? "packing.width"
@@ -240,10 +233,10 @@ Outlook foresee_point_load(const PointLoadSetup& s, const std::vector<std::uint6
                                        : "packing.columns";
 
   const auto judge = [&](const GrainExtremes& extremes, double reserve) {
-    const double step =
-        engine_settings(s.material, s.motion, extremes, 1, draws_pentagons(p), reserve).time_step;
-    check_background_damping(s.rest, step);
-    if (out.time_step == 0) out.time_step = step;
+    const EngineSettings settings =
+        engine_settings(s.material, s.motion, extremes, 1, draws_pentagons(p), reserve);
+    check_background_damping(s.rest, settings.time_step);
+    if (out.time_step == 0) out.take_step(settings);
   };
   if (draws_pentagons(p)) {
     Draws draws(most, seeds.size());
@@ -291,11 +284,10 @@ Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds
     if (s.floor.kind == "rough") draws.fill(s.shape, s.floor.length, random, all);
     // Those that follow are like these: where they are not drawn, a little is kept in reserve.
     const bool whole = draws.all_known();
-    const double step = engine_settings(s.material, s.motion, all.extremes(), 1, irregular,
-                                        whole ? 1 : kStepReserve)
-                            .time_step;
-    check_background_damping(s.rest, step);
-    if (out.time_step == 0) out.time_step = step;
+    const EngineSettings settings = engine_settings(s.material, s.motion, all.extremes(), 1,
+                                                    irregular, whole ? 1 : kStepReserve);
+    check_background_damping(s.rest, settings.time_step);
+    if (out.time_step == 0) out.take_step(settings);
     double area = poured.area();
     if (!whole) {
       const double n = s.source.grains, drawn = static_cast<double>(poured.count());
@@ -325,7 +317,7 @@ Outlook foresee_lattice_pile(const LatticePileSetup& s) {
   out.bytes_key = "lattice.base_grains";
   GrainExtremes extremes;
   extremes.least_mass = s.material.density * disk_grain(s.lattice.radius).area;
-  out.time_step = engine_settings(s.material, s.motion, extremes, 1).time_step;
+  out.take_step(engine_settings(s.material, s.motion, extremes, 1));
   check_background_damping(s.rest, out.time_step);
   return out;
 }

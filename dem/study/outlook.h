@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/engine/engine.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::dem {
@@ -15,13 +16,19 @@ inline constexpr double kMostSteps = 1e12;
 
 /// The size of a realization.
 struct Outlook {
-  double grains = 0;      ///< without fixed ones, an estimate where rows are dropped; 0: not known
-  double fixed = 0;       ///< grains of a rough floor
-  double bytes = 0;       ///< of memory while it runs, about; 0: not known
-  std::string bytes_key;  ///< what that memory is due to: "source.grains"
-  double time_step = 0;   ///< s; 0: not known
-  double time = 0;        ///< s that will be simulated at least; 0: not known
-  std::string time_key;   ///< what most of that time is due to: "source.interval"
+  double grains = 0;       ///< without fixed ones, an estimate where rows are dropped; 0: not known
+  double fixed = 0;        ///< grains of a rough floor
+  double bytes = 0;        ///< of memory while it runs, about; 0: not known
+  std::string bytes_key;   ///< what that memory is due to: "source.grains"
+  double time_step = 0;    ///< s; 0: not known
+  std::string step_bound;  ///< what sets it: "the dashpots"; empty: not known
+  double time = 0;         ///< s that will be simulated at least; 0: not known
+  std::string time_key;    ///< what most of that time is due to: "source.interval"
+
+  void take_step(const EngineSettings& settings) {
+    time_step = settings.time_step;
+    step_bound = settings.step_bound;
+  }
 };
 
 /// Throws std::invalid_argument naming the key, as make_point_load_run would for any of these

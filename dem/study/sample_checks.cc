@@ -388,7 +388,7 @@ Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& s
     const SampleFrame frame =
         sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
     if (out.time_step > 0) return;
-    out.time_step = frame.settings.time_step;
+    out.take_step(frame.settings);
     const double probes = probe_time(s, out.time_step);
     double most = 0;
     for (const auto& [key, time] : {std::pair("sample.drop_damping", frame.drop_time),

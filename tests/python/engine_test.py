@@ -180,3 +180,13 @@ def test_other_threads_run_while_it_steps():
             engine.step(1)
     worker.join()
     assert engine.steps >= 30000
+
+
+def test_what_nobody_gives_follows_the_normal_stiffness():
+    """normal_stiffness alone once left k_t at an absolute 2.857e6 N/m: a twelfth of the time step."""
+    soft, stiff = (gf.Engine(layer(), material=dict(law="linear", normal_stiffness=k)).time_step
+                   for k in (2e4, 2e6))
+    np.testing.assert_allclose(soft / stiff, 10, rtol=1e-9)
+    given = gf.Engine(layer(), material=dict(law="linear", normal_stiffness=2e4,
+                                             tangential_stiffness=2 / 7 * 2e4)).time_step
+    np.testing.assert_allclose(soft, given, rtol=1e-12)

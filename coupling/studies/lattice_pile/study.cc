@@ -62,8 +62,7 @@ class LatticePileAnalysis {
       out.sweep_charts.push_back(*beside);
     }
     add_comparison_of_models(out);
-    out.comparison.verdict.sentence = sentence(out.summary);
-    out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+    out.comparison.judgement.findings = {sentence(out.summary)};
     add_fields(out);
     const double weight = weight_, width = heap_.width, spacing = spacing_;
     out.page = [=](const StudyResult& result, const Realization* first) {
@@ -250,7 +249,6 @@ class LatticePileAnalysis {
     for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
       if (key.compare(0, 8, "compare.") == 0) out.summary[key] = figure;
     }
-    out.summary["verdict.best_model"] = out.comparison.verdict.best_model;
   }
 
   void add_fields(StudyResult& out) const {
@@ -350,6 +348,7 @@ Study lattice_pile_study() {
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::LatticePileSetup>().material;
   };
+  out.grain_radius = [](const Case& c) { return c.get<dem::LatticePileSetup>().lattice.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::LatticePileSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::LatticePileSetup>().rest; };
   out.figures = {lattice_pile_figures, measured_figures};

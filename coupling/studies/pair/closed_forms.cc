@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/laws/restitution.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -58,17 +60,6 @@ PowerForce force_of(const dem::PairSetup& s) {
   return {};
 }
 
-// Time over 1/w0 until the force of a damped spring vanishes.
-double time_of_dashpot(double share) {
-  const double rest = 1 - share * share;
-  if (rest > 0) {
-    const double w = std::sqrt(rest);
-    return (std::numbers::pi - std::atan2(2 * share * w, w * w - share * share)) / w;
-  }
-  const double w = std::sqrt(-rest);
-  return w > 0 ? std::log((share + w) / (share - w)) / w : 2;
-}
-
 // Largest x over x'(0)/w0.
 double peak_of_dashpot(double share) {
   const double rest = 1 - share * share;
@@ -99,8 +90,6 @@ bool head_on(const dem::PairSetup& s) {
 
 }  // namespace
 
-double restitution_of_dashpot(double share) { return std::exp(-share * time_of_dashpot(share)); }
-
 double restitution_of_slip(const dem::PairSetup& setup, double restitution_normal,
                            double angle_deg) {
   if (!head_on(setup) || setup.material.rolling_friction > 0) return PairClosedForm::kNone;
@@ -121,7 +110,7 @@ PairClosedForm pair_closed_form(const dem::PairSetup& s, double speed, double an
   const double half = 0.5 * (f.power + 1);
   const double frequency = std::sqrt(half * f.stiffness / mass);
   const double share = f.dashpot / (2 * mass) / frequency;
-  out.restitution_normal = restitution_of_dashpot(share);
+  out.restitution_normal = dem::restitution_of_dashpot(share);
   out.max_depth = std::pow(peak_of_dashpot(share) * half * approach / frequency, 1 / half);
   if (f.dashpot == 0) {
     const double inverse = 1 / (f.power + 1);
@@ -129,7 +118,7 @@ PairClosedForm pair_closed_form(const dem::PairSetup& s, double speed, double an
                    std::tgamma(1 + inverse) / std::tgamma(0.5 + inverse);
     out.max_force = f.stiffness * std::pow(out.max_depth, f.power);
   } else if (f.power == 1) {
-    out.duration = time_of_dashpot(share) / frequency;
+    out.duration = dem::time_of_dashpot(share) / frequency;
   }
   const dem::MaterialSetup& m = s.material;
   if (m.law == "linear" && angle_deg != 0 && m.normal_damping == 0 && m.tangential_damping == 0 &&

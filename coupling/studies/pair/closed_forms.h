@@ -48,8 +48,4 @@ double restitution_of_slip(const dem::PairSetup& setup, double restitution_norma
 /// Elastic force at this depth (m), N; nan where there is no closed form.
 double pair_elastic_force(const dem::PairSetup& setup, double depth);
 
-/// Restitution of a spring and dashpot of decay `share` times the undamped frequency, 0 or more,
-/// that never pulls.
-double restitution_of_dashpot(double share);
-
 }  // namespace grainfield::coupling

@@ -30,6 +30,7 @@ void describe_piles(Study& out) {
   out.sections = {kGrainFilesKeys, kMaterialKeys, kMotionKeys, kRestKeys,
                   kShapeKeys,      kSourceKeys,   kFloorKeys,  kSleepKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::PileSetup>().material; };
+  out.grain_radius = [](const Case& c) { return c.get<dem::PileSetup>().shape.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::PileSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::PileSetup>().rest; };
   out.figures = {pile_figures};

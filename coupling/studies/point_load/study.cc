@@ -235,6 +235,7 @@ class PointLoadAnalysis {
     }
     out.summary["time.continuum_s"] = seconds;
     out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);
+    out.comparison.judgement.noun = "layer";
   }
 
   void add_own_figures(Summary& summary) const {
@@ -309,6 +310,9 @@ Study point_load_study() {
   out.sections = {kPackingKeys, kMaterialKeys, kMotionKeys, kRestKeys, kLoadKeys, kAverageKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::PointLoadSetup>().material;
+  };
+  out.grain_radius = [](const Case& c) {
+    return dem::mean_radius(c.get<dem::PointLoadSetup>().packing);
   };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::PointLoadSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::PointLoadSetup>().rest; };

@@ -232,7 +232,7 @@ std::vector<MemberCurve> member_curves(const SampleReport& report) {
 }
 
 Report page_of(SampleReport report, const StudyResult& result, const Realization* grains) {
-  report.sentence = result.comparison.verdict.sentence;
+  report.judgement = result.comparison.judgement;
   if (grains != nullptr) {
     report.first = &grains->snapshots.front().second;
     report.last = &grains->snapshots.back().second;
@@ -330,8 +330,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
-  out.comparison.verdict.sentence = sentence(value, table, out.summary);
-  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  out.comparison.judgement.findings = {sentence(value, table, out.summary)};
   out.texts = {{"states.csv", table.csv()},
                {"states_of_realizations.csv", table.csv_of_realizations()}};
   if (value.output.vtu) {
@@ -366,6 +365,7 @@ Study sample_study() {
   out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys, kBlockKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
+  out.grain_radius = [](const Case& c) { return c.get<dem::SampleSetup>().plan.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
   out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
