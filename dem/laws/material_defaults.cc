@@ -15,7 +15,7 @@ namespace {
 // Restitutions written with three digits agree with a dashpot that was computed from them.
 constexpr double kSameRestitution = 5e-4;
 // A restitution that follows is for people: as written, it must not change when it is read again.
-constexpr double kShown = 1e-9;
+constexpr double kShown = 1e9;
 // Of a dashpot that is far beyond critical: what a key still takes.
 constexpr double kLeastRestitution = 1e-12;
 
@@ -69,7 +69,7 @@ void follow_defaults(MaterialSetup& m, const MaterialSetup& usual, const IsGiven
     } else if (given("restitution") || (by_rate && !given(dashpot->name))) {
       held = dashpot_of_restitution(m.restitution) / dashpot->share;
     } else {
-      m.restitution = std::max(std::round(now / kShown) * kShown, kLeastRestitution);
+      m.restitution = std::max(std::round(now * kShown) / kShown, kLeastRestitution);
     }
   }
   if (!given("tangential_damping")) m.tangential_damping = 0.5 * m.normal_damping;
