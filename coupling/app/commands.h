@@ -20,6 +20,7 @@ void add_model(CLI::App& app, Action& action);
 void add_average(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);
+void add_power(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
 void add_import_field(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);

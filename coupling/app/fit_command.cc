@@ -12,6 +12,7 @@
 #include "coupling/app/threads_option.h"
 #include "coupling/case/shipped_cases.h"
 #include "coupling/files/fit_files.h"
+#include "coupling/output/judgement.h"
 #include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
@@ -80,14 +81,12 @@ void add_fit(CLI::App& app, Action& action) {
         const SolverProgress progress;
         return fit_files(wanted);
       }();
-      for (const std::string& text : outcome.warnings) {
-        note("warning: {}", text);
-      }
+      if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.gone.empty()) note("{}", outcome.gone);
-      say("fitted to {}\n", shown(outcome.packings));
+      say("{}\n{}\n", judgement_text(outcome.judgement), outcome.constants);
+      if (!outcome.coverage.empty()) say("{}\n", outcome.coverage);
       if (!outcome.carried.empty()) say("{}\n", outcome.carried);
-      if (!outcome.coverage.empty()) say("{}", outcome.coverage);
-      say("{}\n{}\nreport: {}/report.html\n", outcome.note, outcome.verdict,
+      say("fitted to {}: {}\nreport: {}/report.html\n", shown(outcome.packings), outcome.note,
           printable_name(wanted.folder));
       return 0;
     };

@@ -60,6 +60,7 @@ int parse_and_act(int argc, char** argv) {
   add_average(app, action);
   add_compare(app, action);
   add_fit(app, action);
+  add_power(app, action);
   add_import(app, action);
   add_import_field(app, action);
   add_export(app, action);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
 #include "coupling/case/case.h"
+#include "coupling/output/atomic_file.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/run_request.h"
 #include "coupling/system/printable.h"
@@ -21,12 +23,21 @@ namespace {
 
 void say_result(const Case& value, const std::string& folder) {
   const Summary summary = read_summary(folder + "/summary.json");
-  const auto sentence = summary.find("verdict.sentence");
-  if (sentence != summary.end()) say("{}\n", std::get<std::string>(sentence->second));
-  // Of a sweep, each member's.
+  const std::filesystem::path verdict = std::filesystem::path(folder) / "verdict.md";
+  if (std::filesystem::exists(verdict)) say("{}\n", read_text_file(verdict.string()));
+  // A sweep has one for each member.
   const std::string of = "verdict.sentence.";
-  for (auto at = summary.lower_bound(of); at != summary.end() && at->first.starts_with(of); ++at) {
-    say("{}: {}\n", at->first.substr(of.size()), std::get<std::string>(at->second));
+  const auto is_member = [&](auto at) { return at != summary.end() && at->first.starts_with(of); };
+  const auto first = summary.lower_bound(of);
+  const bool alone = is_member(first) && !is_member(std::next(first));
+  for (auto at = first; is_member(at); ++at) {
+    const std::string member = at->first.substr(of.size());
+    const std::filesystem::path own = std::filesystem::path(folder) / member / "verdict.md";
+    if (alone && std::filesystem::exists(own)) {
+      say("{}\n", read_text_file(own.string()));
+    } else {
+      say("{}: {}\n", member, std::get<std::string>(at->second));
+    }
   }
   const auto differences = summary.find("sweep.sentence");
   if (differences != summary.end()) say("{}\n", std::get<std::string>(differences->second));

@@ -13,11 +13,6 @@
 namespace grainfield::coupling {
 namespace {
 
-// With fewer realizations a point's own variance is too uncertain to divide by: the variances of
-// the points within this many independent lengths on either side are pooled.
-constexpr int least_for_own_variance = 4;
-constexpr double pooled_lengths = 2;
-
 void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles>& models) {
   if (profiles.empty()) throw std::invalid_argument("nothing to compare: no profile");
   for (const Profile& p : profiles) {
@@ -44,82 +39,35 @@ void check(const std::vector<Profile>& profiles, const std::vector<ModelProfiles
   }
 }
 
-// Variance of the mean to divide by at every point; nan where there is none.
-Eigen::VectorXd variances(const Profile& p, int realizations, double& correction) {
-  correction = 1;
-  Eigen::VectorXd own = Eigen::VectorXd::Constant(p.x.size(), kNan);
-  if (p.error.size() == 0) return own;
-  own = p.error.cwiseAbs2();
-  if (realizations < 2) return own;
-  double freedom = realizations - 1;
-  if (realizations < least_for_own_variance && p.independent_length > 0) {
-    const double reach = pooled_lengths * p.independent_length;
-    Eigen::VectorXd pooled = own;
-    for (Eigen::Index k = 0; k < p.x.size(); ++k) {
-      double sum = 0;
-      int count = 0;
-      for (Eigen::Index j = 0; j < p.x.size(); ++j)
-        if (std::abs(p.x[j] - p.x[k]) <= reach && std::isfinite(own[j])) {
-          sum += own[j];
-          ++count;
-        }
-      pooled[k] = count > 0 ? sum / count : kNan;
-    }
-    own = pooled;
-    freedom *= 2 * pooled_lengths;
-  }
-  // The mean of (difference / estimated error)^2 of a true model is f/(f - 2), not 1, because the
-  // error is estimated too (Student's t with f degrees of freedom; Hartlap et al. 2007 for one
-  // point).
-  correction = freedom > 2 ? (freedom - 2) / freedom : kNan;
-  return own;
-}
-
+// Sums over points that both the simulation and a model have.
 struct Totals {
-  double difference = 0, simulation = 0, chi2 = 0, dof = 0, judged = 0;  // judged: of dof, by chi2
+  double difference = 0, simulation = 0;
 };
 
-Measures measure(const Profile& p, const Eigen::VectorXd& model, int realizations, Totals& totals) {
-  double correction = 1;
-  const Eigen::VectorXd variance = variances(p, realizations, correction);
+Measures measure(const Profile& p, const Eigen::VectorXd& model, Totals& totals) {
   Measures m;
   m.largest_in = p.name;
-  double difference = 0, simulation = 0, squares = 0;
-  int points = 0, weighted = 0;
-  double first = kNan, last = kNan;
+  m.chi2_per_dof = m.chance = m.dof = kNan;
+  double difference = 0, simulation = 0;
+  int points = 0;
   for (Eigen::Index k = 0; k < p.x.size(); ++k) {
     const double d = p.mean[k] - model[k];
     if (!std::isfinite(d)) continue;
     ++points;
-    if (!std::isfinite(first)) first = p.x[k];
-    last = p.x[k];
     difference += d * d;
     simulation += p.mean[k] * p.mean[k];
     if (std::abs(d) > m.largest || points == 1) {
       m.largest = std::abs(d);
       m.largest_at = p.x[k];
     }
-    if (variance[k] > 0) {
-      squares += d * d / variance[k];
-      ++weighted;
-    }
   }
   if (points == 0) {
-    m.rel_l2 = m.largest = m.largest_at = m.chi2_per_dof = kNan;
+    m.rel_l2 = m.largest = m.largest_at = kNan;
     return m;
   }
   m.rel_l2 = std::sqrt(difference / simulation);
-  m.dof = p.independent_length > 0
-              ? std::clamp((last - first) / p.independent_length, 1.0, static_cast<double>(points))
-              : points;
-  m.chi2_per_dof = weighted > 0 ? correction * squares / weighted : kNan;
   totals.difference += difference;
   totals.simulation += simulation;
-  totals.dof += m.dof;
-  // A line of a single field that has no errors is not judged by them.
-  if (weighted == 0 && realizations < 2) return m;
-  totals.chi2 += m.dof * m.chi2_per_dof;
-  totals.judged += m.dof;
   return m;
 }
 
@@ -153,7 +101,6 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
   check(profiles, {});
   Comparison c = described(profiles, load, depth, realizations);
   c.profiles = std::move(profiles);
-  c.verdict.position = c.verdict.position_error = kNan;
   return c;
 }
 
@@ -182,9 +129,9 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
     ModelComparison result{model.key, model.label, model.family, {}, {}, {}};
     Totals totals;
     for (std::size_t k = 0; k < profiles.size(); ++k) {
-      result.per_profile.push_back(measure(profiles[k], model.values[k], c.realizations, totals));
+      result.per_profile.push_back(measure(profiles[k], model.values[k], totals));
       const Measures& m = result.per_profile.back();
-      if (m.dof > 0 && !(result.overall.largest >= m.largest)) {
+      if (std::isfinite(m.largest) && !(result.overall.largest >= m.largest)) {
         result.overall.largest = m.largest;
         result.overall.largest_at = m.largest_at;
         result.overall.largest_in = m.largest_in;
@@ -192,8 +139,6 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
       result.shapes.push_back(shape_of(profiles[k].x, model.values[k], {}));
     }
     result.overall.rel_l2 = std::sqrt(totals.difference / totals.simulation);
-    result.overall.dof = totals.dof;
-    result.overall.chi2_per_dof = totals.chi2 / totals.judged;
     c.results.push_back(std::move(result));
   }
   if (std::none_of(c.results.begin(), c.results.end(),
@@ -205,7 +150,7 @@ Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> mod
   }
   c.profiles = std::move(profiles);
   c.models = std::move(models);
-  c.verdict = judge(c);
+  judge_comparison(c);
   return c;
 }
 
@@ -217,19 +162,15 @@ std::string Comparison::label() const {
 std::vector<std::size_t> ranked(const Comparison& c) {
   std::vector<std::size_t> order(c.models.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::vector<std::string>& ranking = c.verdict.ranking;
   const auto place = [&](std::size_t m) {
-    return std::find(ranking.begin(), ranking.end(), c.models[m].key) - ranking.begin();
+    const auto& ranking = c.judgement.models;
+    return std::find_if(ranking.begin(), ranking.end(),
+                        [&](const JudgedModel& j) { return j.name == c.models[m].key; }) -
+           ranking.begin();
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
   return order;
-}
-
-std::string ranking_note(const Comparison& c) {
-  if (c.verdict.ranked_by.empty()) return "";
-  return fmt::format("In order of {}, by which the verdict ranks.",
-                     c.verdict.ranked_by == "rel_l2" ? "relative L2" : "chi2/dof");
 }
 
 Eigen::MatrixXd drawn_places(const Eigen::MatrixXd& points) {
@@ -253,6 +194,7 @@ std::map<std::string, double> summary_figures(const Comparison& c, std::size_t m
     figures[prefix + "rel_l2"] = m.rel_l2;
     figures[prefix + "max"] = m.largest;
     figures[prefix + "chi2_per_dof"] = m.chi2_per_dof;
+    figures[prefix + "chance"] = m.chance;
     figures[prefix + "dof"] = m.dof;
   };
   for (const ModelComparison& result : c.results) {
@@ -261,8 +203,6 @@ std::map<std::string, double> summary_figures(const Comparison& c, std::size_t m
     for (std::size_t k = 0; k < c.profiles.size(); ++k)
       put(prefix + c.profiles[k].key + ".", result.per_profile[k]);
   }
-  figures["verdict.position"] = c.verdict.position;
-  figures["verdict.position_error"] = c.verdict.position_error;
   if (main < c.shapes.size()) {
     const ProfileShape &s = c.shapes[main], &error = c.shape_errors[main];
     const auto put_shape = [&](const std::string& name, double value, double its_error) {

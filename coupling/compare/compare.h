@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/compare/shape.h"
+#include "coupling/judge/judgement.h"
 
 namespace grainfield::coupling {
 
@@ -54,8 +55,9 @@ struct Measures {
   double largest = 0;       ///< largest |simulation - model|, the profile's unit
   double largest_at = 0;    ///< its x, m
   std::string largest_in;   ///< its profile's name
-  double chi2_per_dof = 0;  ///< see docs/comparison.md; nan with one realization
-  double dof = 0;           ///< independent points: length over independent_length
+  double chi2_per_dof = 0;  ///< the misfit of statistics/agreement.h; nan without errors
+  double chance = 0;        ///< the misfit that a true model exceeds in 1 of 100 ensembles
+  double dof = 0;           ///< independent values behind the misfit
 };
 
 struct ModelComparison {
@@ -63,17 +65,6 @@ struct ModelComparison {
   std::vector<Measures> per_profile;
   Measures overall;
   std::vector<ProfileShape> shapes;  ///< of the model, one per profile
-};
-
-/// Where the simulation lies between the best half plane (0) and the best finite layer (1).
-struct Verdict {
-  std::string best_model;        ///< key of the model nearest to the simulation
-  std::string sentence;          ///< for people, one line
-  bool distinguishable = false;  ///< the two nearest families differ by more than the spread
-  double position = 0;  ///< 0 the other family's best, 1 the winner's family; nan: only one family
-  double position_error = 0;         ///< standard error over realizations; nan with one
-  std::string ranked_by;             ///< "chi2_per_dof" | "rel_l2"
-  std::vector<std::string> ranking;  ///< keys, nearest first
 };
 
 /// How lengths and values of a comparison are made dimensionless, in words.
@@ -91,7 +82,7 @@ struct Comparison {
   std::vector<ProfileShape> shapes;        ///< of the simulation, one per profile
   std::vector<ProfileShape> shape_errors;  ///< their standard errors: compare/shape.h
   std::vector<ModelComparison> results;    ///< in the order of models
-  Verdict verdict;
+  Judgement judgement;
   int realizations = 1;
   double load = 0;   ///< F, N
   double depth = 0;  ///< h, m
@@ -120,10 +111,8 @@ Comparison without_models(std::vector<Profile> profiles, double load, double dep
 Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
                    double depth, int realizations = 0);
 
-/// Indices of the models, nearest first; without a verdict in their own order.
+/// Indices of the models in the judgement's order; without models in their own order.
 std::vector<std::size_t> ranked(const Comparison& comparison);
-/// For tables in that order: "In order of chi2/dof, by which the verdict ranks."
-std::string ranking_note(const Comparison& comparison);
 
 struct DrawnLine {
   Eigen::VectorXd x, y;  ///< m, the profile's unit
@@ -131,11 +120,10 @@ struct DrawnLine {
 /// A model on a profile, for pictures: at the points between where they are known, else at its own.
 DrawnLine drawn_line(const Comparison& comparison, std::size_t model, std::size_t profile);
 
-/// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,dof}, also per profile as
-/// compare.MODEL.PROFILE.*, verdict.position, verdict.position_error, and of the profile `main`
-/// (index) response.{peak,peak_at,width,rms_width,peaks,integral}, with .standard_error from two
-/// realizations on (not of peak_at and peaks). verdict.best_model is a word:
-/// see Verdict.
+/// The comparison's summary keys: compare.MODEL.{rel_l2,max,chi2_per_dof,chance,dof}, also per
+/// profile as compare.MODEL.PROFILE.*, and of the profile `main` (index)
+/// response.{peak,peak_at,width,rms_width,peaks,integral}, with .standard_error from two
+/// realizations on (not of peak_at and peaks).
 std::map<std::string, double> summary_figures(const Comparison& comparison, std::size_t main);
 
 }  // namespace grainfield::coupling

@@ -1,10 +1,11 @@
-// Which family of models the grains support. Used by compare.cc only.
+// The evidence that profiles are, for the judge (judge/judge.h).
 #pragma once
 #include "coupling/compare/compare.h"
 
 namespace grainfield::coupling {
 
-/// Needs profiles, models and results filled in.
-Verdict judge(const Comparison& comparison);
+/// Fills chi2_per_dof, chance and dof of comparison.results, per profile and overall, and
+/// comparison.judgement. Needs profiles, models and the rest of the results.
+void judge_comparison(Comparison& comparison);
 
 }  // namespace grainfield::coupling

@@ -17,6 +17,7 @@
 #include "coupling/heap/heap_field.h"
 #include "coupling/models/subject.h"
 #include "coupling/output/field_io.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/study_result.h"
@@ -221,8 +222,6 @@ void add_figures_of(const SceneField& scene, const Comparison& comparison, std::
     // The response.* keys speak of a load.
     if (!starts_with(key, "response.")) summary[key] = figure;
   }
-  summary["verdict.best_model"] = comparison.verdict.best_model;
-  summary["verdict.sentence"] = comparison.verdict.sentence;
   if (scene.scene == Scene::heap) {
     summary["pile.height"] = h;
     summary["heap.rho_g_h"] = scene.unit;
@@ -246,7 +245,6 @@ Report page_of(const CompareRequest& request, const SceneField& scene, const Com
   PileReport page;
   page.title = title;
   page.subtitle = comparison.scale.note;
-  page.sentence = comparison.verdict.sentence;
   page.comparison = comparison;
   page.map = map;
   page.averaged = scene.seen;
@@ -369,24 +367,27 @@ CompareOutcome compare_field(const CompareRequest& request) {
       summary["model." + choice.label + "." + key] = figure;
     }
   }
-  const Comparison comparison = compared(scene, std::move(profiles), std::move(models));
+  Comparison comparison = compared(scene, std::move(profiles), std::move(models));
+  if (scene.scene == Scene::response) comparison.judgement.noun = "layer";
+  if (heap) comparison.judgement.noun = facts.dim == 3 ? "cone" : "pile";
+  if (kernels.size() > 1) {
+    comparison.judgement.notes.push_back(
+        fmt::format("Fields are seen through different kernels, models through each one's own: {}.",
+                    fmt::join(seen, "; ")));
+  }
   summary["version"] = version_and_commit();
   summary["ensemble.realizations"] = static_cast<std::int64_t>(scene.field.realizations);
   add_figures_of(scene, comparison, main, summary);
+  add_judgement(summary, comparison.judgement);
   require_documented(summary);
 
-  out.verdict = comparison.verdict.sentence;
+  out.judgement = comparison.judgement;
   out.measured = measured;
-  if (kernels.size() > 1) {
-    out.note = fmt::format(
-        "fields seen through different kernels, models through each one's own: "
-        "{}",
-        fmt::join(seen, "; "));
-  }
   const ReportRows made{{"fields", request.file},
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
                         {"version", version_and_commit()}};
   write_profiles(results.staging(), comparison);
+  write_judgement(results.staging(), comparison.judgement);
   out.lacks = write_report(results.staging("report.html"),
                            page_of(request, scene, comparison, map, model_maps, made))
                   .complaint();

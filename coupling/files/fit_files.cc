@@ -20,6 +20,7 @@
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/version.h"
@@ -222,7 +223,7 @@ void take_what_was_measured(const Field& field, const FitRequest& request, FitSe
 // A field was averaged before.
 void require_no_width(const Overrides& overrides) {
   for (const Assignment& a : parse_overrides(overrides)) {
-    if (a.path != "fit.width_diameters") continue;
+    if (a.path != "fit.width_diameters" && a.path != "fit.kernel") continue;
     reject(a, a.path, "found a width, but the input is a field, which was averaged over its own");
   }
 }
@@ -256,7 +257,6 @@ FitOutcome fit_files(const FitRequest& request) {
       if (const auto share = carried_share(field)) out.carried = share_text(*share);
       const std::vector<std::string> doubts = measured_doubts(field);
       data.warnings.insert(data.warnings.end(), doubts.begin(), doubts.end());
-      data.no_heap = fmt::format("{}", fmt::join(doubts, "; "));
     }
   } else {
     const HeapReader heaps = reader_of(chosen.heaps);
@@ -271,22 +271,27 @@ FitOutcome fit_files(const FitRequest& request) {
     out.coverage = coverage_of_heaps(value.get<FitSetup>(), data, request);
     write_text_file(results.staging("coverage.md"), out.coverage);
   }
-  StudyResult result = heap_result(value, std::move(data), request.threads, drawn);
-  out.verdict = result.comparison.verdict.sentence;
+  const auto observe = [&](const FitSetup& setup) {
+    return observe_heaps(setup, reader_of(chosen.heaps), request.threads);
+  };
+  StudyResult result = heap_result(value, std::move(data), request.threads, observe, drawn);
+  out.constants = result.constants;
+  out.judgement = result.comparison.judgement;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));
   result.summary["version"] = version_and_commit();
   result.summary["ensemble.realizations"] =
       static_cast<std::int64_t>(result.comparison.realizations);
+  add_judgement(result.summary, result.comparison.judgement);
   require_documented(result.summary);
   const std::string settings = fit_text(value, out.packings);
   result.summary["case.hash"] = hash_text(settings);
 
   write_profiles(results.staging(), result.comparison);
+  write_judgement(results.staging(), result.comparison.judgement);
   for (const auto& [name, text] : result.texts) write_text_file(results.staging(name), text);
   write_text_file(results.staging("fit.toml"), settings);
-  const std::string lacks =
+  out.lacks =
       write_report(results.staging("report.html"), result.page(result, nullptr)).complaint();
-  if (!lacks.empty()) out.warnings.push_back(lacks);
   write_summary(results.staging("summary.json"), result.summary);
   out.gone = told_of_gone(request.folder, results.publish());
   return out;

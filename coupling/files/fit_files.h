@@ -8,6 +8,7 @@
 #include "coupling/field.h"
 #include "coupling/files/average_files.h"
 #include "coupling/fit/setup.h"
+#include "coupling/judge/judgement.h"
 
 namespace grainfield::coupling {
 
@@ -27,8 +28,10 @@ struct FitRequest {
 struct FitOutcome {
   std::vector<std::string> packings;  ///< names of the heaps, or of the field
   std::string note;                   ///< weights and what is missing for better ones
-  std::vector<std::string> warnings;  ///< what makes the constants doubtful
-  std::string verdict;
+  std::vector<std::string> warnings;  ///< what makes the constants doubtful: also judgement.doubts
+  std::string constants;              ///< a table: model, constant, value with error, unit
+  std::string lacks;                  ///< of the report (ReportResult::complaint)
+  Judgement judgement;
   std::string coverage;   ///< tables; empty: not asked for
   std::string carried;    ///< share_text() of what was measured; empty: grains, or not known
   std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none

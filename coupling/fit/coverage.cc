@@ -10,6 +10,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/fit/fit_tables.h"
+#include "coupling/output/text_table.h"
 #include "coupling/statistics/agreement.h"
 #include "coupling/statistics/parallel.h"
 #include "dem/random/random.h"
@@ -70,8 +71,8 @@ Drawn fit_draw(const FitData& data, const std::vector<FitModel>& models,
   }
   SelectionOptions selecting;
   selecting.huber = options.huber;
-  const Selection selection = select(few, own, of_few, out.fits, selecting);
-  if (selection.distinguishable) out.named = selection.ranking.front().name;
+  const Judgement judgement = select(few, own, of_few, out.fits, selecting);
+  if (judgement.distinguishable == Answer::yes) out.named = judgement.best;
   const Eigen::VectorXd apart = own.weight.cwiseProduct(few.mean() - many.mean());
   const Eigen::MatrixXd spread = own.weight.asDiagonal() * (few.samples.colwise() - few.mean());
   const double share = static_cast<double>(size) / static_cast<double>(rest.size());
@@ -153,8 +154,8 @@ Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
   SelectionOptions selecting;
   selecting.huber = options.huber;
   Coverage out;
-  for (const Score& s : select(data, weights, models, all, selecting).ranking) {
-    if (s.supported) out.supported.push_back(s.name);
+  for (const JudgedModel& m : select(data, weights, models, all, selecting).models) {
+    if (m.distinguishable != Answer::yes) out.kept.push_back(m.name);
   }
   for (const int size : options.sizes) {
     std::vector<Drawn> draws(static_cast<std::size_t>(options.draws));
@@ -176,8 +177,7 @@ Coverage coverage_of(const FitData& data, const std::vector<FitModel>& models,
       verdict.false_alarms += d.alarm;
       if (d.named.empty()) continue;
       ++verdict.named;
-      verdict.wrong +=
-          std::find(out.supported.begin(), out.supported.end(), d.named) == out.supported.end();
+      verdict.wrong += std::find(out.kept.begin(), out.kept.end(), d.named) == out.kept.end();
     }
     out.verdicts.push_back(verdict);
   }
@@ -242,8 +242,9 @@ std::string coverage_text(const Coverage& coverage, int realizations) {
   out += "\n" + markdown_table({"drawn", "draws", "one model named", "of these wrong",
                                 "disagrees with the rest by chance"},
                                rows);
-  return out + fmt::format("\nNot behind, of all realizations together: {}\n",
-                           fmt::join(coverage.supported, ", "));
+  return out +
+         fmt::format("\nNot distinguishable from the nearest, all realizations together: {}\n",
+                     fmt::join(coverage.kept, ", "));
 }
 
 }  // namespace grainfield::coupling

@@ -35,8 +35,8 @@ struct ConstantCoverage {
 /// Of the verdict, over the draws of one size.
 struct VerdictCoverage {
   int size = 0, draws = 0;
-  int named = 0;  ///< draws in which one model was supported alone
-  int wrong = 0;  ///< of these, those whose model all realizations together do not support
+  int named = 0;  ///< draws in which the best model was distinguishable from the others
+  int wrong = 0;  ///< of these, those whose model all realizations together have behind
   /// Draws whose mean "disagrees" with the mean of the rest by statistics/agreement.h: by chance.
   int false_alarms = 0;
 };
@@ -44,7 +44,8 @@ struct VerdictCoverage {
 struct Coverage {
   std::vector<ConstantCoverage> constants;
   std::vector<VerdictCoverage> verdicts;
-  std::vector<std::string> supported;  ///< models that all realizations together support
+  /// Models that all realizations together cannot distinguish from the nearest.
+  std::vector<std::string> kept;
 };
 
 /// Throws std::invalid_argument for sizes below 3, or above half of the realizations.

@@ -62,22 +62,26 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.*.*.jackknife_error", "-", "over realizations left out"},
       {"fit.*.*.bootstrap_error", "-", "from draws of the realizations"},
       {"fit.*.chi2_per_dof", "-",
-       "squared misfit over what the realizations' spread makes of a true model's"},
-      {"fit.*.chi2_chance", "-", "chi2/dof that a true model exceeds in about 1 of 100"},
+       "misfit: squared difference over what the errors make of a true model's, 1 in the mean"},
+      {"fit.*.chi2_chance", "-", "the misfit that a true model exceeds in 1 of 100 ensembles"},
       {"fit.*.rel_l2", "-", "|grains - model| / |grains|"},
       {"fit.*.note", "text", "what the reader must know of the fit: bounds, no convergence"},
       {"fit.*.cv_behind", "-",
-       "squared difference on the realization left out less the best model's, over the square of "
+       "squared difference on the realization left out less the nearest model's, over the square "
+       "of "
        "the signal"},
       {"fit.*.cv_behind_error", "-", "its standard error over the realizations"},
       {"fit.*.heights_behind", "-", "the same on the height left out"},
       {"fit.*.heights_behind_error", "-", "its standard error over the realizations"},
       {"fit.*.aic_behind", "-",
-       "of a single field with errors: chi2 + 2 x free numbers less the best model's; above 10 it "
+       "of a single field with errors: chi2 + 2 x free numbers less the nearest model's; above 10 "
+       "it "
        "counts"},
+      {"fit.*.distinguishable", "text",
+       "from the nearest model: yes: behind it by more than chance; no; unknown: no errors"},
+      {"fit.*.agrees", "text", "yes: chi2_per_dof is within chi2_chance; no; unknown: no errors"},
       {"fit.*.supported", "text",
-       "yes; no: behind the best by more than chance; no, though not behind: it disagrees "
-       "with the data"},
+       "yes: it agrees and is not distinguishable from the nearest; no; unknown: no errors"},
       {"fit.*.branch", "text", "branch of Cantelaube's theory with the nearest core angle"},
       {"fit.*.flank_balance_x", "-",
        "flanks: a_xy - a_xx tan(slope), 0 in equilibrium along x; else a description, no field"},
@@ -90,10 +94,6 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fe.*.chi2_per_dof", "-", "of its field, on the fit's points with the fit's weights"},
       {"fe.*.rel_l2", "-", "|grains - it| / |grains|"},
       {"fe.*.from_closed_form", "-", "|it - fitted closed form| / |closed form|"},
-      {"verdict.equations", "text", "elliptic | hyperbolic | not distinguishable"},
-      {"verdict.agrees", "text", "yes: chi2/dof of the best model is what chance allows; no"},
-      {"verdict.distinguishable", "text",
-       "yes: all models but one are behind it by more than chance; no"},
   };
   add_constants(out);
   return out;

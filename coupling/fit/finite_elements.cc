@@ -25,8 +25,8 @@ std::string constants_text(const continuum::Settings& settings) {
 }
 
 // Fills model and distances from the stresses at the data's rows.
-void judge(const FitData& data, const Weights& weights, const Fit& fitted,
-           const Eigen::MatrixXd& stresses, FiniteElementFit& out) {
+void measure(const FitData& data, const Weights& weights, const Fit& fitted,
+             const Eigen::MatrixXd& stresses, FiniteElementFit& out) {
   const FitModel given{out.name,
                        out.name,
                        {},
@@ -88,7 +88,8 @@ std::vector<FiniteElementFit> solve_elements(const std::vector<std::string>& nam
     try {
       const auto model = continuum::make_model(name, filled_settings(*choice, facts));
       const StressFunction stress = [&](const Eigen::MatrixXd& at) { return model->stress(at); };
-      judge(data, weights, fit_named(fits, e.of), seen(stress, family_of(name) == "half plane"), e);
+      measure(data, weights, fit_named(fits, e.of), seen(stress, family_of(name) == "half plane"),
+              e);
     } catch (const continuum::ComputationFailed& failure) {
       e.why = failure.what();
     }
@@ -98,7 +99,7 @@ std::vector<FiniteElementFit> solve_elements(const std::vector<std::string>& nam
 
 const std::vector<std::string>& elements_header() {
   static const std::vector<std::string> header{"finite elements", "constants of", "constants",
-                                               "chi2/dof",        "relative L2",  "from that fit"};
+                                               "misfit",          "relative L2",  "from that fit"};
   return header;
 }
 

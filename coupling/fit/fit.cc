@@ -113,8 +113,8 @@ Straightened straightened(const FitData& data, const Weights& weights, const Fit
 }
 
 // Misfit against what the errors make of a true model, and the criterion.
-void judge(const FitData& data, const Weights& weights, const Straightened& line,
-           const Eigen::VectorXd& off, Fit& out) {
+void measure(const FitData& data, const Weights& weights, const Straightened& line,
+             const Eigen::VectorXd& off, Fit& out) {
   const Eigen::VectorXd difference = weights.weight.cwiseProduct(off);
   out.misfit = out.expected = difference.squaredNorm();
   out.dof = data.values() - static_cast<double>(out.parameters.size());
@@ -203,7 +203,7 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
   out.rel_l2 = off.norm() / mean.norm();
   const Straightened line = straightened(data, weights, model, best);
   out.parameters.resize(static_cast<std::size_t>(k));
-  judge(data, weights, line, off, out);
+  measure(data, weights, line, off, out);
 
   const Eigen::MatrixXd spread = sandwich(data, weights, line, k);
   out.correlation = Eigen::MatrixXd::Constant(k, k, kNan);

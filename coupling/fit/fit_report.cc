@@ -14,6 +14,9 @@
 #include "coupling/fit/heap_rows.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/posteriors.h"
+#include "coupling/output/judgement.h"
+#include "coupling/output/text_table.h"
+#include "coupling/report/judgement.h"
 #include "coupling/structure/yield.h"
 
 namespace grainfield::coupling {
@@ -53,20 +56,6 @@ std::vector<std::vector<std::string>> constants_rows(const EnsembleFits& fits) {
   return rows;
 }
 
-// The shared ranking, of layers with the type of the equations beside the name.
-std::vector<std::string> header_of_ranking(const EnsembleFits& fits) {
-  std::vector<std::string> header = ranking_header(fits.selection);
-  if (!is_heap(fits)) header.insert(header.begin() + 1, "equations");
-  return header;
-}
-
-std::vector<std::vector<std::string>> rows_of_ranking(const EnsembleFits& fits) {
-  auto rows = ranking_rows(fits.fits, fits.selection);
-  if (is_heap(fits)) return rows;
-  for (auto& row : rows) row.insert(row.begin() + 1, fit_named(fits.fits, row.front()).equations);
-  return rows;
-}
-
 std::string weights_note(const EnsembleFits& fits) {
   const auto counted = [](int n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
@@ -99,7 +88,7 @@ std::vector<Line> lines_of(const EnsembleFits& fits) {
     for (const Fit& f : fits.fits) out.push_back({f.name, f.name});
     return out;
   }
-  for (const Score& s : fits.selection.ranking) {
+  for (const JudgedModel& s : fits.judgement.models) {
     const Eigen::VectorXd& values = fit_named(fits.fits, s.name).model;
     const auto same = std::find_if(out.begin(), out.end(), [&](const Line& line) {
       const Eigen::VectorXd& other = fit_named(fits.fits, line.name).model;
@@ -212,35 +201,18 @@ void add_figures(const EnsembleFits& fits, Summary& summary) {
       summary[prefix + "rho.error"] = rho.error;
     }
   }
-  add_ranking(summary, fits.fits, fits.selection);
+  add_ranking(summary, fits.judgement);
   add_elements(summary, fits.elements);
-  summary["verdict.best_model"] = fits.verdict.model;
-  summary["verdict.distinguishable"] = fits.verdict.alone ? "yes" : "no";
-  summary["verdict.sentence"] = fits.verdict.sentence;
-  if (is_heap(fits)) return;
-  summary["verdict.equations"] = fits.verdict.equations;
-  summary["verdict.agrees"] = fits.verdict.agrees ? "yes" : "no";
 }
 
-std::string fits_markdown(const EnsembleFits& fits) {
-  std::string doubts;
-  for (const std::string& text : fits.observed.warnings) doubts += "Warning: " + text + ".\n\n";
-  std::string out =
-      fmt::format("{}\n\n{}.\n\n{}{}\n{}", fits.verdict.sentence, weights_note(fits), doubts,
-                  markdown_table(header_of_ranking(fits), rows_of_ranking(fits)),
-                  markdown_table(parameter_header(), constants_rows(fits)));
-  if (!fits.elements.empty() || !is_heap(fits)) {
-    out += '\n' + markdown_table(elements_header(), element_rows(fits.elements));
-  }
-  return out;
-}
+// One of the two writers of a table.
+using TableWriter = std::string (*)(const std::vector<std::string>&,
+                                    const std::vector<std::vector<std::string>>&);
 
-std::string fits_tex(const EnsembleFits& fits) {
-  std::string out = fmt::format("% {}\n{}\n{}", weights_note(fits),
-                                tex_table(header_of_ranking(fits), rows_of_ranking(fits)),
-                                tex_table(parameter_header(), constants_rows(fits)));
+std::string constants_and_elements(const EnsembleFits& fits, TableWriter table) {
+  std::string out = table(parameter_header(), constants_rows(fits));
   if (!fits.elements.empty() || !is_heap(fits)) {
-    out += '\n' + tex_table(elements_header(), element_rows(fits.elements));
+    out += '\n' + table(elements_header(), element_rows(fits.elements));
   }
   return out;
 }
@@ -249,11 +221,14 @@ std::string fits_tex(const EnsembleFits& fits) {
 
 void add_fits(StudyResult& result, const EnsembleFits& fits) {
   add_figures(fits, result.summary);
-  result.comparison.verdict.best_model = fits.verdict.model;
-  result.comparison.verdict.sentence = fits.verdict.sentence;
-  result.texts = {{"fits.csv", parameters_csv(fits.fits)},
-                  {"fits.md", fits_markdown(fits)},
-                  {"fits.tex", fits_tex(fits)}};
+  result.comparison.judgement = fits.judgement;
+  result.constants = constants_text(fits.fits);
+  result.texts = {
+      {"fits.csv", parameters_csv(fits.fits)},
+      {"fits.md", fmt::format("{}\n{}.\n\n{}", judgement_text(fits.judgement), weights_note(fits),
+                              constants_and_elements(fits, markdown_table))},
+      {"fits.tex", fmt::format("% {}\n{}\n{}", weights_note(fits), judgement_latex(fits.judgement),
+                               constants_and_elements(fits, latex_table))}};
 }
 
 namespace {
@@ -348,7 +323,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
   const bool heap = is_heap(fits);
   const Observations& seen = fits.observed;
   const char* const from = heap ? "x / h (apex at 0)" : "x / h (load at 0)";
-  const std::string best = heap ? lines_of(fits).front().name : fits.verdict.model;
+  const std::string best = fits.judgement.best;
   for (const std::string& component : seen.data.components) {
     std::vector<Frame> frames = profile_frames(fits, component);
     if (frames.empty()) continue;
@@ -388,7 +363,8 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
     }
   }
   std::vector<const Fit*> ranked;
-  for (const Score& s : fits.selection.ranking) ranked.push_back(&fit_named(fits.fits, s.name));
+  for (const JudgedModel& s : fits.judgement.models)
+    ranked.push_back(&fit_named(fits.fits, s.name));
   for (Section& section : posterior_sections(ranked, seen.data.realizations())) {
     out.push_back(std::move(section));
   }
@@ -400,10 +376,7 @@ std::vector<Section> fit_tables(const EnsembleFits& fits, const std::string& of)
   const auto titled = [&](const std::string& title) {
     return of.empty() ? title : of + static_cast<char>(std::tolower(title[0])) + title.substr(1);
   };
-  std::string ranking = ranking_note(fits.selection);
-  if (!is_heap(fits)) ranking += " " + weights_note(fits) + ".";
-  out.emplace_back(
-      Table{titled("Ranking"), ranking, header_of_ranking(fits), rows_of_ranking(fits)});
+  if (!of.empty()) out = judgement_tables(fits.judgement, of);
   out.emplace_back(Table{titled("Fitted constants"), constants_note(), parameter_header(),
                          constants_rows(fits)});
   if (!fits.elements.empty()) {

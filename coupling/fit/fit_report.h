@@ -8,8 +8,8 @@
 
 namespace grainfield::coupling {
 
-/// The figures fit.MODEL.*, fit.*, fe.* and verdict.* (figures.cc), the verdict, and parameters,
-/// ranking and finite elements as fits.csv, fits.md and fits.tex.
+/// The figures fit.MODEL.*, fit.*, fe.* and verdict.*, the judgement, and judgement, constants and
+/// finite elements as fits.csv, fits.md and fits.tex.
 void add_fits(StudyResult& result, const EnsembleFits& fits);
 
 /// The branch of Cantelaube's theory whose core angle is nearest: "minus", "zero" or "plus".
@@ -27,7 +27,8 @@ std::vector<Section> fit_map_sections(const EnsembleFits& fits, const std::strin
                                       const std::string& of = "");
 /// Profiles of every component, maps, of heaps residuals along the heights, posteriors.
 std::vector<Section> fit_pictures(const EnsembleFits& fits);
-/// Ranking, constants, finite elements. `of` stands before the titles: "mono: ".
+/// Constants and finite elements. `of` stands before the titles: "mono: "; with it the models'
+/// table comes first.
 std::vector<Section> fit_tables(const EnsembleFits& fits, const std::string& of = "");
 
 }  // namespace grainfield::coupling

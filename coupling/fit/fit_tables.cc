@@ -7,21 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/judge/words.h"
+#include "coupling/output/text_table.h"
+
 namespace grainfield::coupling {
-namespace {
-
-std::string tex_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '_' || c == '%') out += '\\';
-    out += c;
-  }
-  const std::size_t at = out.find("+-");
-  return at == std::string::npos ? out : out.replace(at, 2, "$\\pm$");
-}
-
-}  // namespace
-
 const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name) {
   const auto at =
       std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
@@ -33,9 +22,7 @@ std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v
 
 std::string with_error(const FittedParameter& p) {
   if (!std::isfinite(p.error)) return fmt::format("{:.3g} (no error)", p.value);
-  const int digits =
-      std::clamp(1 - static_cast<int>(std::floor(std::log10(std::max(p.error, 1e-12)))), 0, 8);
-  return fmt::format("{:.{}f} +- {:.{}f}", p.value, digits, p.error, digits);
+  return with_error(p.value, p.error);
 }
 
 namespace {
@@ -82,61 +69,13 @@ std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fit
   return rows;
 }
 
-namespace {
-
-bool by_akaike(const Selection& selection) {
-  return std::any_of(selection.ranking.begin(), selection.ranking.end(),
-                     [](const Score& s) { return std::isfinite(s.aic_behind); });
-}
-
-// Before which column that of chi2 + 2 x free numbers stands.
-constexpr std::ptrdiff_t kAkaikeAt = 4;
-
-}  // namespace
-
-std::vector<std::string> ranking_header(const Selection& selection) {
-  std::vector<std::string> header{"model",  "free numbers",    "chi2/dof",    "chance to",
-                                  "behind", "behind, heights", "relative L2", "supported"};
-  if (by_akaike(selection)) header.insert(header.begin() + kAkaikeAt, "chi2 + 2k, behind");
-  return header;
-}
-
-std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
-                                                   const Selection& selection) {
-  const auto difference = [](double value, double error) {
-    return std::isfinite(value) ? fmt::format("{:.2g} +- {:.1g}", value, error) : "-";
-  };
+std::string constants_text(const std::vector<Fit>& fits) {
   std::vector<std::vector<std::string>> rows;
-  for (const Score& s : selection.ranking) {
-    const Fit& f = fit_named(fits, s.name);
-    rows.push_back({s.name, fmt::format("{}", f.parameters.size()),
-                    std::isnan(f.chi2_per_dof) ? "-" : fmt::format("{:.3g}", f.chi2_per_dof),
-                    std::isnan(f.chance) ? "-" : fmt::format("{:.3g}", f.chance),
-                    difference(s.behind, s.behind_error),
-                    difference(s.heights_behind, s.heights_error),
-                    fmt::format("{:.1f} %", 100 * f.rel_l2), standing(s, f)});
-    if (by_akaike(selection)) {
-      auto& row = rows.back();
-      row.insert(row.begin() + kAkaikeAt, fmt::format("{:.1f}", s.aic_behind));
-    }
+  for (const auto& row : parameter_rows(fits)) {
+    rows.push_back({row[0], row[1], row[2], row[6], row[8]});
   }
-  return rows;
-}
-
-std::string ranking_note(const Selection& selection) {
-  std::string note =
-      "chi2/dof: squared misfit over what the spread of the realizations makes of a true model's. "
-      "Behind: squared difference on realizations left out, from the best model, over the signal's "
-      "square, with its paired error; heights: the same on heights left out. Supported: not behind "
-      "by more than chance, and chi2/dof within what chance makes of it; where it is not, the "
-      "model is nearest of those asked and no more.";
-  if (by_akaike(selection)) {
-    note += fmt::format(
-        " chi2 + 2k: with k free numbers, less the best's; more than {:g} counts, and a model that "
-        "is not so far behind is not excluded.",
-        kNoSupport);
-  }
-  return note;
+  if (rows.empty()) return "";
+  return markdown_table({"model", "constant", "value", "unit", "note"}, rows);
 }
 
 const std::string& constants_note() {
@@ -146,30 +85,6 @@ const std::string& constants_note() {
       "errors by the values' covariance, by bootstrap "
       "draws of the realizations, and the 95 % interval by the profile of the misfit.";
   return note;
-}
-
-std::string markdown_table(const std::vector<std::string>& header,
-                           const std::vector<std::vector<std::string>>& rows) {
-  std::string out = fmt::format("| {} |\n|{}\n", fmt::join(header, " | "), [&] {
-    std::string rule;
-    for (std::size_t k = 0; k < header.size(); ++k) rule += "---|";
-    return rule;
-  }());
-  for (const auto& row : rows) out += fmt::format("| {} |\n", fmt::join(row, " | "));
-  return out;
-}
-
-std::string tex_table(const std::vector<std::string>& header,
-                      const std::vector<std::vector<std::string>>& rows) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    std::vector<std::string> out;
-    for (const std::string& cell : cells) out.push_back(tex_escaped(cell));
-    return fmt::format("{} \\\\\n", fmt::join(out, " & "));
-  };
-  std::string out = fmt::format("\\begin{{tabular}}{{{}}}\n\\hline\n{}\\hline\n",
-                                std::string(header.size(), 'l'), line(header));
-  for (const auto& row : rows) out += line(row);
-  return out + "\\hline\n\\end{tabular}\n";
 }
 
 std::string parameters_csv(const std::vector<Fit>& fits) {
@@ -206,15 +121,17 @@ void add_parameters(Summary& summary, const std::vector<Fit>& fits) {
   }
 }
 
-void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection) {
-  for (const Score& s : selection.ranking) {
-    const std::string prefix = "fit." + s.name + ".";
-    summary[prefix + "cv_behind"] = s.behind;
-    summary[prefix + "cv_behind_error"] = s.behind_error;
-    summary[prefix + "heights_behind"] = s.heights_behind;
-    summary[prefix + "heights_behind_error"] = s.heights_error;
-    if (std::isfinite(s.aic_behind)) summary[prefix + "aic_behind"] = s.aic_behind;
-    summary[prefix + "supported"] = standing(s, fit_named(fits, s.name));
+void add_ranking(Summary& summary, const Judgement& judgement) {
+  for (const JudgedModel& m : judgement.models) {
+    const std::string prefix = "fit." + m.name + ".";
+    summary[prefix + "cv_behind"] = m.behind;
+    summary[prefix + "cv_behind_error"] = m.behind_error;
+    summary[prefix + "heights_behind"] = m.heights_behind;
+    summary[prefix + "heights_behind_error"] = m.heights_error;
+    if (std::isfinite(m.aic_behind)) summary[prefix + "aic_behind"] = m.aic_behind;
+    summary[prefix + "distinguishable"] = std::string(text_of(m.distinguishable));
+    summary[prefix + "agrees"] = std::string(text_of(m.agrees()));
+    summary[prefix + "supported"] = std::string(text_of(m.supported()));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coupling/fit/fit.h"
-#include "coupling/fit/selection.h"
+#include "coupling/judge/judgement.h"
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {
@@ -14,34 +14,27 @@ const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name);
 
 /// Six digits, or "nan".
 std::string number(double value);
-/// "0.35 +- 0.02", to two digits of the error; "0.35 (no error)".
+/// "0.35 ± 0.02", to two digits of the error; "0.35 (no error)".
 std::string with_error(const FittedParameter& parameter);
 
 const std::vector<std::string>& parameter_header();
 /// One row per parameter of every fit, with its strongest correlation.
 std::vector<std::vector<std::string>> parameter_rows(const std::vector<Fit>& fits);
 
-/// Of one field with errors with a column of chi2 + 2 x free numbers, which judges it too.
-std::vector<std::string> ranking_header(const Selection& selection);
-/// One row per model of the ranking, best first.
-std::vector<std::vector<std::string>> ranking_rows(const std::vector<Fit>& fits,
-                                                   const Selection& selection);
-
-/// What the columns of the two tables say, for captions.
-std::string ranking_note(const Selection& selection);
+/// "model | constant | value | unit | note" of every fitted constant, for terminals. Empty without
+/// constants.
+std::string constants_text(const std::vector<Fit>& fits);
+/// What the columns of the constants say, for captions.
 const std::string& constants_note();
 
-std::string markdown_table(const std::vector<std::string>& header,
-                           const std::vector<std::vector<std::string>>& rows);
-std::string tex_table(const std::vector<std::string>& header,
-                      const std::vector<std::vector<std::string>>& rows);
 /// One row per parameter of every fit: value, error and interval quoted, and every other error.
 std::string parameters_csv(const std::vector<Fit>& fits);
 
 /// fit.MODEL.PARAMETER, .error, .covariance_error, .bootstrap_error, .jackknife_error;
 /// fit.MODEL.{chi2_per_dof,rel_l2,note}.
 void add_parameters(Summary& summary, const std::vector<Fit>& fits);
-/// fit.MODEL.{cv_behind,cv_behind_error,heights_behind,heights_behind_error,supported}.
-void add_ranking(Summary& summary, const std::vector<Fit>& fits, const Selection& selection);
+/// fit.MODEL.{cv_behind,cv_behind_error,heights_behind,heights_behind_error,aic_behind,
+/// distinguishable,agrees,supported}.
+void add_ranking(Summary& summary, const Judgement& judgement);
 
 }  // namespace grainfield::coupling

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -98,6 +99,15 @@ std::vector<FitModel> models_of_layers(const std::vector<std::string>& texts,
 
 namespace {
 
+// A warning with a capital letter, unless a key or a file begins it, and a full stop.
+std::string as_sentence(std::string text) {
+  const std::string first = text.substr(0, text.find(' '));
+  if (first.find_first_of("./_") == std::string::npos) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  }
+  return text + (text.back() == '?' ? "" : ".");
+}
+
 // What constants that are no stress field are called; empty: they are one within the errors.
 std::string imbalance(const Fit& fit, double slope_deg, int realizations) {
   std::vector<std::string> off;
@@ -143,7 +153,8 @@ void fit_all(const std::vector<FitModel>& asked, const FitOptions& options, Ense
   }
   SelectionOptions selection;
   selection.huber = options.huber;
-  out.selection = select(data, out.weights, out.models, out.fits, selection);
+  out.judgement = select(data, out.weights, out.models, out.fits, selection);
+  out.judgement.measured = out.observed.measured;
 }
 
 }  // namespace
@@ -166,21 +177,17 @@ EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
   }
   out.asked = names;
   fit_all(models_of(asked, out.observed), options, out);
-  const Score& first = out.selection.ranking.front();
+  out.judgement.noun = "pile";
   for (Fit& f : out.fits) {
     const std::string off =
         imbalance(f, out.observed.facts.slope_deg, out.observed.data.realizations());
     if (off.empty()) continue;
     f.note += (f.note.empty() ? "" : "; ") + off;
-    if (first.name == f.name) out.selection.sentence += fmt::format(" {}: {}.", f.name, off);
+    out.judgement.doubts.push_back(fmt::format("{} is {}.", f.name, off));
   }
-  if (!out.observed.no_heap.empty()) {
-    const bool asks = out.observed.no_heap.back() == '?';
-    out.selection.sentence += fmt::format(" But {}{}", out.observed.no_heap, asks ? "" : ".");
+  for (const std::string& text : out.observed.warnings) {
+    out.judgement.doubts.push_back(as_sentence(text));
   }
-  out.verdict.model = first.name;
-  out.verdict.alone = out.selection.distinguishable;
-  out.verdict.sentence = out.selection.sentence;
   out.elements = solve_elements(
       setup.finite_elements, out.models, out.fits, out.observed.data, out.weights,
       [&](const StressFunction& stress, bool) { return stress(out.observed.data.points); });
@@ -197,7 +204,7 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
   const auto seen = std::make_shared<const LayerSight>(places_of(data), *out.observed.kernel);
   out.asked = setup.models;
   fit_all(models_of_layers(out.asked, seen, out.observed.height), options, out);
-  out.verdict = layer_verdict(out.fits, out.selection, data.realizations());
+  out.judgement.noun = "layer";
   out.elements =
       solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
                      [&](const StressFunction& stress, bool half_plane) {
@@ -289,6 +296,7 @@ Comparison profiles_of(const EnsembleFits& fits) {
   }
   Comparison out =
       compare(std::move(profiles), std::move(models), unit * h, h, data.realizations());
+  out.judgement = fits.judgement;
   out.scale = {"h", "rho g h", "apex",
                fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
                            "realizations: {}",

@@ -23,7 +23,6 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/finite_elements.h"
 #include "coupling/fit/layer_sight.h"
-#include "coupling/fit/layer_verdict.h"
 #include "coupling/fit/observations.h"
 #include "coupling/fit/selection.h"
 
@@ -35,9 +34,8 @@ struct EnsembleFits {
   Weights weights;
   std::vector<FitModel> models;
   std::vector<Fit> fits;  ///< in the order of models
-  Selection selection;
+  Judgement judgement;
   std::vector<FitModel> absent;  ///< asked for, but there is no such field for this heap
-  FitVerdict verdict;
   std::vector<FiniteElementFit> elements;
 };
 

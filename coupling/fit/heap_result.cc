@@ -8,7 +8,8 @@
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/setup.h"
-#include "coupling/report/report.h"
+#include "coupling/judge/judge.h"
+#include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -24,11 +25,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
     out.subtitle += fmt::format(" ({:.1f} left, {:.1f} right, friction angle {:.1f})",
                                 facts.left_deg, facts.right_deg, facts.friction());
   }
-  out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
-  if (!fits.observed.warnings.empty()) {
-    out.sections.emplace_back(
-        Text{"Doubts", fmt::format("{}", fmt::join(fits.observed.warnings, "\n\n")), false});
-  }
+  add_verdict(out, result.comparison.judgement);
   for (Section& section : fit_pictures(fits)) out.sections.push_back(std::move(section));
   for (Section& section : fit_tables(fits)) out.sections.push_back(std::move(section));
   if (first != nullptr) {
@@ -43,11 +40,20 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
 }  // namespace
 
 StudyResult heap_result(const Case& value, Observations heaps, int threads,
+                        const std::function<Observations(const FitSetup&)>& observe,
                         std::function<dem::Snapshot()> drawn) {
   StudyResult out;
   out.value = value;
-  const auto fits = std::make_shared<const EnsembleFits>(
-      fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
+  const auto fits =
+      std::make_shared<EnsembleFits>(fit_heaps(value.get<FitSetup>(), std::move(heaps), threads));
+  const auto at_width = [&](double width) {
+    FitSetup setup = value.get<FitSetup>();
+    setup.width_diameters = width;
+    setup.finite_elements.clear();
+    setup.bootstrap = 0;
+    return fit_heaps(setup, observe(setup), threads).judgement;
+  };
+  judge_at_widths(value.get<FitSetup>().kernel, at_width, fits->judgement);
   out.comparison = profiles_of(*fits);
   add_fits(out, *fits);
   out.overview = {{"best model", "verdict.best_model", ""},

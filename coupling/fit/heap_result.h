@@ -10,8 +10,10 @@ namespace grainfield::coupling {
 
 /// Fits, tables, summary keys and page. `value`: name, title and fit of the case count. `drawn`: a
 /// heap for the page where no realization is at hand; called while the page is made; may be empty.
-/// Throws as fit_heaps.
+/// `observe`: the heaps with another [fit], for fit.kernel; may be empty without it. Throws as
+/// fit_heaps.
 StudyResult heap_result(const Case& value, Observations heaps, int threads,
+                        const std::function<Observations(const FitSetup&)>& observe,
                         std::function<dem::Snapshot()> drawn = nullptr);
 
 }  // namespace grainfield::coupling

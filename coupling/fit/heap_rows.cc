@@ -182,12 +182,11 @@ void warn_of_round_tops(Observations& out) {
   out.weight_over_wedge = sum / static_cast<double>(out.frames.size());
   if (!(out.weight_over_wedge > kMostOverWedge || out.weight_over_wedge < 1 / kMostOverWedge))
     return;
-  out.no_heap = fmt::format(
+  out.warnings.push_back(fmt::format(
       "the heaps weigh {:.2f} times the wedge of their height and slopes{}, and models of heaps "
       "are "
       "of wedges",
-      out.weight_over_wedge, out.weight_over_wedge > 1 ? ": their tops are round or flat" : "");
-  out.warnings.push_back(out.no_heap);
+      out.weight_over_wedge, out.weight_over_wedge > 1 ? ": their tops are round or flat" : ""));
 }
 
 void warn_of_unlike_heaps(const std::function<std::string(std::size_t)>& name, Observations& out) {

@@ -37,8 +37,7 @@ void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, doub
 /// Depth of a point below the mean flank, over h.
 double depth_below_flank(const HeapFacts& facts, double x, double y);
 
-/// Sets out.weight_over_wedge of out.frames; where the heaps are no wedges out.no_heap says so, and
-/// a warning.
+/// Sets out.weight_over_wedge of out.frames; where the heaps are no wedges a warning says so.
 void warn_of_round_tops(Observations& out);
 
 /// Mean height and unit of stress of out.frames.

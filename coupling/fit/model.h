@@ -49,6 +49,8 @@ struct FitModel {
   std::string equations = {};  ///< "elliptic" or "hyperbolic"; empty: nothing is said of it
   /// The same in the registry: the closed form first, where there is one, then finite elements.
   std::vector<RegistryModel> in_registry = {};
+  /// Its constants are free of equilibrium: a description, which wins no verdict.
+  bool unbalanced = false;
 };
 
 /// The model as these realizations alone have it; itself where it takes nothing from them or where

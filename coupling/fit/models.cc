@@ -101,6 +101,7 @@ RegistryEntry free_cantelaube(const HeapFacts& facts) {
   if (out.starts.empty()) {
     out.absent = fmt::format("flanks of {:.1f} degrees leave no room for a core", facts.slope_deg);
   }
+  out.unbalanced = true;
   out.description = [phi, rho_g = facts.rho_g, blend = facts.blend](const MatrixXd& points,
                                                                     const VectorXd& p) {
     return cantelaube_free(points, p, phi, rho_g, blend);

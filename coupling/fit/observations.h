@@ -39,8 +39,6 @@ struct Observations {
   std::size_t without_error = 0;         ///< values left out of one field beside some with errors
   std::string note;                      ///< what the reader must know; may be empty
   std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each
-  std::string
-      no_heap;  ///< why the data are none of such a heap: said with the verdict; may be empty
   // Of heaps.
   HeapFacts facts;                  ///< in the same units: rho_g = height = 1
   std::vector<PileFrame> frames;    ///< one per realization

@@ -127,6 +127,7 @@ FitModel model_of_entry(const RegistryEntry& entry, const RunFacts& facts,
                         std::shared_ptr<const LayerSight> sight) {
   FitModel out{entry.name,   entry.label,       entry.parameters,
                entry.starts, entry.description, entry.absent};
+  out.unbalanced = entry.unbalanced;
   if (facts.force > 0) out.equations = entry.registry == "osl_layer" ? "hyperbolic" : "elliptic";
   if (entry.description) return out;
   out.kind = kind_of(entry);

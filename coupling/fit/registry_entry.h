@@ -29,6 +29,7 @@ struct RegistryEntry {
   std::string absent = {};  ///< FitModel::absent
   /// A description, which is no model of the registry: points, constants to stresses.
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&, const Eigen::VectorXd&)> description = {};
+  bool unbalanced = false;  ///< FitModel::unbalanced
 };
 
 /// The model with its exact stress; with a sight as it is seen, at the sight's places alone.

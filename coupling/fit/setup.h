@@ -22,6 +22,7 @@ struct FitSetup {
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   std::vector<double> heights = {0.1, 0.25, 0.4};
   std::vector<double> leave_out;  ///< numbers of realizations, from 1
+  std::vector<double> kernel;     ///< widths, diameters, at which it is judged again; may be empty
   double width_diameters = 2;
   double left_deg = 0, right_deg = 0;  ///< slopes of the flanks; 0: measured
   double friction_deg = 0;             ///< of the two-sided models; 0: the steeper slope
@@ -42,6 +43,7 @@ struct VerdictSetup {
   std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   bool base = true;
+  std::vector<double> kernel;    ///< widths, diameters, at which it is judged again; may be empty
   std::vector<double> coverage;  ///< sizes of draws: fit/coverage.h; empty: not done
   std::int64_t coverage_draws = 100;
   std::int64_t bootstrap = 100;

@@ -10,15 +10,9 @@
 #include <string>
 
 #include "coupling/fit/data.h"
+#include "coupling/judge/judgement.h"
 
 namespace grainfield::coupling {
-
-/// Where errors come from.
-enum class ErrorsFrom {
-  realizations,  ///< the spread of two or more
-  data,          ///< standard errors of the mean that came with it (FitData::error)
-  nothing        ///< one realization, or all are equal
-};
 
 struct Weights {
   ErrorsFrom errors_from = ErrorsFrom::nothing;

@@ -15,7 +15,7 @@ constexpr double kLevel = 0.05;  // two-sided
 // Of so few normal numbers the standard error itself is uncertain by 1/sqrt(2 (n - 1)).
 std::string few_realizations(int n) {
   if (n >= 5) return "";
-  return fmt::format("; of {} realizations that error itself is uncertain by {:.0f} %", n,
+  return fmt::format(", an error that is itself uncertain by {:.0f} %",
                      100 / std::sqrt(2.0 * (n - 1)));
 }
 
@@ -54,27 +54,26 @@ Dip judge_dip(const std::vector<BaseWindows>& piles) {
   return out;
 }
 
-std::string dip_sentence(const Dip& dip) {
+std::vector<std::string> dip_lines(const Dip& dip) {
   const std::string numbers =
-      fmt::format("the base carries {:.3f} rho g h under the apex and {:.3f} under the shoulders",
+      fmt::format("The base carries {:.3f} rho g h under the apex and {:.3f} under the shoulders",
                   dip.centre, dip.shoulder);
+  const int n = dip.difference.values;
   if (dip.verdict == "undecided") {
-    return fmt::format("{} realization{}: {}; whether that is a dip needs at least {} that differ.",
-                       dip.difference.values, dip.difference.values == 1 ? "" : "s", numbers,
-                       least_for_significance);
+    return {fmt::format("Whether there is a pressure dip needs at least {} realizations that "
+                        "differ; there {} {}.",
+                        least_for_significance, n == 1 ? "is" : "are", n),
+            numbers + "."};
   }
-  const bool peak = dip.verdict == "peak";
+  const char* const found = dip.verdict == "dip"    ? "The heaps have a pressure dip"
+                            : dip.verdict == "peak" ? "The heaps have a pressure peak and no dip"
+                                                    : "The heaps have no dip and no peak";
   const double p = dip.difference.p_value;
-  const std::string spread = fmt::format(
-                                 "{}; difference {:.3f} +- {:.3f} over {} realizations, p = {:.2g} "
-                                 "(two-sided; dip.p_value "
-                                 "= {:.2g} is one-sided) if there were none",
-                                 numbers, dip.difference.mean, dip.difference.standard_error,
-                                 dip.difference.values, 2 * std::min(p, 1 - p), p) +
-                             few_realizations(dip.difference.values);
-  if (dip.verdict == "dip") return fmt::format("A pressure dip: {}.", spread);
-  if (peak) return fmt::format("No dip but a pressure peak: {}.", spread);
-  return fmt::format("No dip and no peak beyond the spread: {}.", spread);
+  return {fmt::format("{} ({} realizations, 95 %).", found, n),
+          fmt::format("{}: difference {:.3f} ± {:.3f}{}. If there were none, a difference this "
+                      "large would occur by chance in {:.2g} % of ensembles.",
+                      numbers, dip.difference.mean, dip.difference.standard_error,
+                      few_realizations(n), 200 * std::min(p, 1 - p))};
 }
 
 }  // namespace grainfield::coupling

@@ -27,7 +27,7 @@ struct Dip {
 /// A dip where the difference is above 0, a peak where it is below, at 5 % for both together
 /// (two-sided, Student's t); neither in between.
 Dip judge_dip(const std::vector<BaseWindows>& piles);
-/// One line for people.
-std::string dip_sentence(const Dip& dip);
+/// What is found, and the numbers: a line each, for people.
+std::vector<std::string> dip_lines(const Dip& dip);
 
 }  // namespace grainfield::coupling

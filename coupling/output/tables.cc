@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/text_table.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -101,21 +102,6 @@ std::string join(const std::vector<std::string>& cells, const Style& style) {
   std::string line = style.begin;
   for (std::size_t k = 0; k < cells.size(); ++k) line += (k ? style.separator : "") + cells[k];
   return line + style.end + "\n";
-}
-
-std::string escape_latex(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '\\') {
-      out += "\\textbackslash{}";
-    } else if (c == '^' || c == '~') {
-      out += fmt::format("\\{}{{}}", c);
-    } else {
-      if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
-      out += c;
-    }
-  }
-  return out;
 }
 
 // The name of a unit inside $...$.

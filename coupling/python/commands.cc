@@ -16,7 +16,9 @@
 #include "coupling/files/measured_field.h"
 #include "coupling/files/places.h"
 #include "coupling/files/strain_files.h"
+#include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
+#include "coupling/output/judgement.h"
 #include "coupling/python/bindings.h"
 #include "coupling/run/run_request.h"
 #include "coupling/structure/packing_structure.h"
@@ -305,7 +307,8 @@ py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& 
   out["packings"] = outcome.packings;
   out["note"] = outcome.note;
   out["warnings"] = outcome.warnings;
-  out["verdict"] = outcome.verdict;
+  out["verdict"] = coupling::sentence(outcome.judgement);
+  out["judgement"] = coupling::judgement_json(outcome.judgement);
   out["coverage"] = outcome.coverage;
   out["carried"] = outcome.carried;
   out["measured"] = outcome.measured;
@@ -332,8 +335,8 @@ py::dict compare(const std::string& file,
     outcome = coupling::compare_field(request);
   }
   py::dict out;
-  out["verdict"] = outcome.verdict;
-  out["note"] = outcome.note;
+  out["verdict"] = coupling::sentence(outcome.judgement);
+  out["judgement"] = coupling::judgement_json(outcome.judgement);
   out["lacks"] = outcome.lacks;
   out["carried"] = outcome.carried;
   out["doubts"] = outcome.carried_doubts;

@@ -117,7 +117,7 @@ constexpr int kTooLong = -1;        // instead of an exit status
 constexpr int kPoll = 5;            // ms
 constexpr double kLastWords = 0.1;  // s, for what a child that has ended left in its pipes
 
-struct Answer {
+struct Reply {
   int status = 0;  ///< exit status, kTooLong, or kSignal + the signal that ended it
   std::string picture, messages;
 };
@@ -154,7 +154,7 @@ ssize_t write_to_reader(int to, const char* data, std::size_t size) {
 }
 
 // gnuplot reads, draws and complains at the same time.
-Answer converse(const std::string& program, const std::string& text, double seconds) {
+Reply converse(const std::string& program, const std::string& text, double seconds) {
   Pipe script, picture, messages;
   for (const int ours : {script.writing(), picture.reading(), messages.reading()}) {
     fcntl(ours, F_SETFL, O_NONBLOCK);
@@ -164,7 +164,7 @@ Answer converse(const std::string& program, const std::string& text, double seco
   script.shut_reading();
   picture.shut_writing();
   messages.shut_writing();
-  Answer answer;
+  Reply answer;
   std::size_t given = 0;
   auto limit = Clock::now() + std::chrono::duration<double>(seconds);
   bool drawing = true, talking = true, ended = false;
@@ -227,7 +227,7 @@ Drawing draw(const std::string& gnuplot, const std::string& terminal, const std:
   const std::string text =
       "set terminal " + terminal + "\nset output\n" + program + "\nunset output\n";
   Drawing result;
-  Answer answer;
+  Reply answer;
   for (int k = 0; k < kTries; ++k) {
     answer = converse(gnuplot, text, seconds);
     if (!was_meant_for_us(answer.status)) break;

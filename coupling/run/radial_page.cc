@@ -60,17 +60,16 @@ void add_radial_tables(Report& report, const Comparison& c, const std::string& u
   Table distances{
       fmt::format("Distance of the models from the {}", c.subject()),
       fmt::format("Relative L2: root of the sum of squared differences over that of the {}, "
-                  "points evenly spaced in the radius. chi2/dof: squared differences over squared "
-                  "standard errors, corrected for the number of realizations.",
+                  "points evenly spaced in the radius. Misfit and verdict are above.",
                   c.subject()),
-      {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h", "in",
-       "chi2/dof"},
+      {"model", "relative L2", fmt::format("largest difference ({})", unit), "at r/h", "in"},
       {}};
-  for (const ModelComparison& r : c.results) {
+  for (const std::size_t m : ranked(c)) {
+    const ModelComparison& r = c.results[m];
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                               shown_or_dash(r.overall.largest / c.unit()),
                               shown_or_dash(std::fabs(r.overall.largest_at) / c.depth, 2),
-                              r.overall.largest_in, shown_or_dash(r.overall.chi2_per_dof)});
+                              r.overall.largest_in});
   }
   report.sections.emplace_back(std::move(distances));
   Table shapes{

@@ -17,6 +17,7 @@
 #include "coupling/case/keys.h"
 #include "coupling/case/study.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
@@ -284,6 +285,7 @@ StudyResult analyse(const SweepCase& member, const Workplace& place, int threads
   StudyResult out = study.analyse(member.value, realization_files(member, place), threads);
   if (study.has_grains()) out.summary["time.analysis_s"] = seconds_since(start);
   add_warnings(out);
+  add_judgement(out.summary, out.comparison.judgement);
   return out;
 }
 

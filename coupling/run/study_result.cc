@@ -9,7 +9,9 @@
 #include "coupling/case/study.h"
 #include "coupling/export/packing_page.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/vtu.h"
+#include "coupling/report/judgement.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
@@ -55,9 +57,7 @@ void write_grains(const std::string& folder, const StudyResult& result) {
 Report plain_page(const StudyResult& result, const Realization*) {
   Report out;
   out.title = title_of(result.value);
-  if (!result.comparison.verdict.sentence.empty()) {
-    out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
-  }
+  add_verdict(out, result.comparison.judgement);
   std::vector<std::string> keys;
   for (const auto& [key, unused] : result.summary) {
     const bool aside = key.starts_with("case.") || key.starts_with("time.") ||
@@ -185,8 +185,6 @@ void add_comparison(Summary& summary, const Comparison& comparison, std::size_t 
     summary["compare." + model.key + ".peak"] = model.shapes[main].peak;
     summary["compare." + model.key + ".peak_over_F_per_h"] = model.shapes[main].peak / unit;
   }
-  summary["verdict.best_model"] = comparison.verdict.best_model;
-  summary["verdict.sentence"] = comparison.verdict.sentence;
 }
 
 void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures) {
@@ -208,6 +206,7 @@ void add_warnings(StudyResult& result) {
 std::string write_study(const std::string& folder, const StudyResult& result) {
   require_documented(result.summary);
   if (!result.comparison.profiles.empty()) write_profiles(folder, result.comparison);
+  write_judgement(folder, result.comparison.judgement);
   if (result.value.output.fields && !result.fields.empty()) {
     write_fields(folder + "/fields.h5", result.fields);
   }

@@ -38,6 +38,7 @@ struct StudyResult {
   Case value;
   Comparison comparison;
   Summary summary;
+  std::string constants;  ///< those of fits with their errors, a table for terminals
   NamedFields fields;
   std::vector<std::pair<std::string, std::string>> texts;  ///< further files: name, content
   Field base_unloaded, map;                                ///< for the report; may be empty

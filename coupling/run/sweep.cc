@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "coupling/judge/words.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/run/sweep_differences.h"
@@ -238,8 +239,8 @@ std::string write_sweep(const std::string& folder, const Case& value,
     for (const auto& [key, figure] : results[m].summary) {
       all[key + "." + members[m].suffix] = figure;
     }
-    report.sections.emplace_back(
-        Text{names[m], results[m].comparison.verdict.sentence, m == 0 && sentence.empty()});
+    report.sections.emplace_back(Text{names[m], coupling::sentence(results[m].comparison.judgement),
+                                      m == 0 && sentence.empty()});
   }
   std::vector<std::vector<Chart>> charts;
   std::vector<std::string> legends;

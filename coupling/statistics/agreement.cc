@@ -15,7 +15,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // models. Tried on values of 2 to 60 independent ones.
 constexpr double kCaution = 0.4;
 // Fisher's F has lighter tails than sums of unequal variances: with 0.005 the share that chance
-// refuses is 0.1 to 2 of 100 (tests/coupling/agreement_test.cc).
+// refuses is 0.1 to 2 of 100 (tests/coupling/judge/agreement_test.cc).
 constexpr double kNominal = 0.005;
 
 // (tr Sigma)^2 / tr Sigma^2 from the realizations' products, both traces without bias (Bai and

@@ -31,7 +31,7 @@ struct PairsInOrder {
 };
 
 /// The pairs of a row from `from` on are done by themselves: their second grain is in a later
-/// block, asleep or an image.
+/// block, an image, or asleep where such pairs are not the first of a row.
 struct RowTail {
   int row = -1, from = 0;
   int before = 0;  ///< so many pairs of the block are done side by side before them
@@ -42,9 +42,11 @@ class Blocks {
   /// Blocks of about the same work. The rows are those of the first `grains` bodies; a
   /// pair's second grain behind them belongs to no block. is_across(k): the second grain of pair k
   /// is an image; those come last in a row. Behind the last pair of an order `behind` more may be
-  /// looked at.
+  /// looked at. `sleepers_first`: pairs with grains behind the rows' are the first of a row, and go
+  /// side by side with those inside the block.
   template <class Rows, class IsAcross>
-  void divide(const Rows& rows, int grains, int threads, int behind, IsAcross is_across) {
+  void divide(const Rows& rows, int grains, int threads, int behind, bool sleepers_first,
+              IsAcross is_across) {
     place_bounds(rows, grains, threads, is_across);
     threads_.resize(threads);
     for (Thread& t : threads_) t.clear();
@@ -54,7 +56,10 @@ class Blocks {
         int end = rows.last(i);
         while (end > rows.first(i) && is_across(end - 1)) --end;
         int tail = end;
-        while (tail > rows.first(i) && rows[tail - 1].j >= last(from)) --tail;
+        const auto is_alone = [&](int j) {
+          return j >= last(from) && !(sleepers_first && j >= grains);
+        };
+        while (tail > rows.first(i) && is_alone(rows[tail - 1].j)) --tail;
         for (int k = rows.first(i); k < tail; ++k) mine.inside.add(i, rows[k].j, k);
         const RowTail own{i, tail, mine.inside.count};
         if (end < rows.last(i)) {
@@ -86,7 +91,7 @@ class Blocks {
   const PairsInOrder& crossing(int rank) const { return threads_[rank].crossing; }
   /// All pairs from earlier blocks into this one.
   const PairsInOrder& incoming(int rank) const { return threads_[rank].incoming; }
-  /// The pairs of this block's rows but for their tails.
+  /// The pairs of this block's rows but for their tails; second grains may sleep.
   const PairsInOrder& inside(int rank) const { return threads_[rank].inside; }
   /// Of rows without images, and of those that end with some. The first ones end with one of no
   /// row.

@@ -25,7 +25,8 @@ struct NearPair {
   Shape feature;  ///< of the shapes: where the narrow phase starts
 };
 
-/// Of bodies [0, n) in the order of the bodies; a second grain may lie behind them (asleep).
+/// Of bodies [0, n) in the order of the bodies; a second grain may lie behind them (asleep). Such
+/// pairs come first in a row or behind those of the awake.
 template <int D, class Law, class Shape>
 struct ContactList {
   using Pair = NearPair<Law, Shape>;
@@ -46,8 +47,8 @@ struct ContactList {
     wall_normals.clear();
   }
   /// After finish(): what each thread does.
-  void divide(int grains, int threads) {
-    blocks.divide(pairs, grains, threads, kPairsBehind,
+  void divide(int grains, int threads, bool sleepers_first = false) {
+    blocks.divide(pairs, grains, threads, kPairsBehind, sleepers_first,
                   [&](int k) { return !images.empty() && is_image(images[k]); });
   }
   /// After the last pair. `with_images`: in a cell. What was felt has been gathered.

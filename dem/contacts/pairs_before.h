@@ -20,10 +20,13 @@ class PairsBefore {
   };
 
   /// Takes the pairs of bodies with these ids; what is left in `pairs` is to be overwritten.
-  /// `ascend`: in every row, by the second grain (no images are behind).
-  void take(Rows<Pair>& pairs, const std::vector<std::int64_t>& ids, bool ascend) {
+  /// `ascend`: in every row, by the second grain (no images are behind); with `sleepers_first`
+  /// those behind the rows' come first.
+  void take(Rows<Pair>& pairs, const std::vector<std::int64_t>& ids, bool ascend,
+            bool sleepers_first = false) {
     std::swap(pairs_, pairs);
     ascend_ = ascend;
+    before_ = sleepers_first ? static_cast<int>(ids.size()) : 0;
     where_.resize(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) where_[ids[i]] = static_cast<int>(i);
   }
@@ -36,11 +39,11 @@ class PairsBefore {
     if (ascend_) {  // a large grain has a long row
       for (int length = pairs_.last(row) - k; length > kLongRow;) {
         const int half = length / 2;
-        if (pairs_[k + half].j <= other) k += half;
+        if (place_of(pairs_[k + half].j) <= place_of(other)) k += half;
         length -= half;
       }
     }
-    for (; k < pairs_.last(row) && !(ascend_ && pairs_[k].j > other); ++k) {
+    for (; k < pairs_.last(row) && !(ascend_ && place_of(pairs_[k].j) > place_of(other)); ++k) {
       if (pairs_[k].j == other) return {&pairs_[k], a > b};
     }
     return {};
@@ -49,8 +52,12 @@ class PairsBefore {
  private:
   static constexpr int kLongRow = 16;
 
+  /// By which the pairs of a row ascend.
+  int place_of(int j) const { return j < pairs_.rows() ? j : j - before_; }
+
   Rows<Pair> pairs_;
   bool ascend_ = false;
+  int before_ = 0;
   std::vector<int> where_;  // body by id
 };
 

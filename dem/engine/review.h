@@ -1,10 +1,12 @@
 // Sleeping and waking of grains (loads, ways and speeds as in sleep_settings.h).
 //
 // Every kReviewEvery steps:
-//   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours since
-//          the last review are out of balance by more than wake_force of its load, and with it
-//          along its frozen contacts every sleeper to which what is out of balance passes on more
-//          than that of its own load;
+//   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours are out
+//          of balance by more than wake_force of its load in the mean over wake_time, or by more
+//          than wake_shock since the last review, and with it along its frozen contacts every
+//          sleeper to which what is out of balance passes on more than wake_force of its own load.
+//          An elastic wave shakes a sleeper for a millisecond by more than wake_force and leaves
+//          nothing behind; a load that has changed stays;
 //          that an awake neighbour touches at more than wake_speed sqrt(g d); or that lies within
 //          wake_reach d v / sqrt(g d) of a grain that comes near sleepers (has one among its
 //          candidate pairs) at such a speed v: the grains on which it falls must give way, and what
@@ -26,6 +28,7 @@
 // The cost follows the grains awake and the sleepers beside them; only the looks, every kLookEvery
 // reviews, visit all.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -42,8 +45,12 @@ inline constexpr long kReviewEvery = 50;
 // What is left out of balance is added up every so many reviews; ...
 inline constexpr long kLookEvery = 20;
 // ... a sleeper wakes for a look when it would have moved it by this share of its diameter. Less:
-// more looks.
-inline constexpr double kLookWay = 0.2;
+// more looks, and what stays out of balance is passed on sooner (a fiftieth of the load after 50 ms
+// with diameters of 5 mm).
+inline constexpr double kLookWay = 0.05;
+// The mean of what is out of balance no longer changes where it is within this share of wake_force
+// of what it is now.
+inline constexpr double kSettledMean = 0.1;
 // A moving wall wakes what it comes near: within this share of a radius, and its way until the next
 // review.
 inline constexpr double kNearWall = 0.1;
@@ -92,24 +99,29 @@ class Review {
     world_.gather_touches();
     const bool driven = world_.walls.any_driven();
     const bool look = world_.steps % (kReviewEvery * kLookEvery) == 0;
+    const double weight = std::min(1.0, kReviewEvery * world_.time_step / sleep.wake_time);
     for (int j = world_.awake; j < world_.grains.size(); ++j) {
       if (!sleepers.is_stirred(j) && !driven && !look) continue;
+      bool settled = true;
       if (!world_.grains.is_fixed(j)) {
         const double radius = bodies[j].radius;
-        const auto residual = sleepers.residual(j, kReviewEvery);
+        const auto now = sleepers.residual(j, kReviewEvery);
+        const auto& mean = sleepers.add_to_mean(j, now, weight);
         // Also for nan.
-        if (!(residual.unbalanced(radius) <= sleep.wake_force * residual.load)) {
+        const bool shock = !(now.unbalanced(radius) <= sleep.wake_shock * now.load);
+        if (shock || !(mean.unbalanced(radius) <= sleep.wake_force * mean.load)) {
           any |= wake_up(j);
-          any |= pass_on(j, residual.force);
+          any |= pass_on(j, shock ? now.force : mean.force);
         } else if (look && sleepers.is_asleep(j)) {
           const double time = kReviewEvery * kLookEvery * world_.time_step;
-          if (sleepers.creep(j, residual, radius, g, time) > kLookWay * 2 * radius) {
-            any |= sleepers.wake_for_look(j, residual, radius, world_.steps);
+          if (sleepers.creep(j, mean, radius, g, time) > kLookWay * 2 * radius) {
+            any |= sleepers.wake_for_look(j, mean, radius, world_.steps);
           }
         }
         if (driven && is_reached_by_wall(j)) any |= wake_up(j);
+        settled = (now.force - mean.force).norm() <= kSettledMean * sleep.wake_force * now.load;
       }
-      sleepers.set_judged(j);
+      sleepers.set_judged(j, settled);
     }
     return any;
   }

@@ -160,9 +160,13 @@ class RowForces<World> {
       world_.contacts.pair_forces[k] = f;
       return;
     }
-    Sum& b = sums_[pair.j];
-    b.force -= f.force;
-    b.torque += f.torque_j;
+    if (pair.j < world_.awake) [[likely]] {
+      Sum& b = sums_[pair.j];
+      b.force -= f.force;
+      b.torque += f.torque_j;
+    } else {
+      world_.contacts.felt[k].add_second(f);
+    }
     Sum& a = sums_[i];
     a.force += f.force;
     a.torque += f.torque_i;

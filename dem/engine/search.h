@@ -42,7 +42,8 @@ class Search {
     CarryRolling<World> rolling(world_);
     world_.gather_touches();
 
-    before_.take(contacts.pairs, world_.grains.ids, !world_.cell.is_periodic());
+    before_.take(contacts.pairs, world_.grains.ids, !world_.cell.is_periodic(),
+                 World::sleepers_first);
     world_.awake = sleepers.part(world_.awake, [this](int i, int j) { world_.grains.swap(i, j); });
     settle_cell(world_);
     adapt_skin(by_motion);
@@ -81,7 +82,7 @@ class Search {
   /// Blocks of the threads and what else an image does not hold. Part of run(), or after a list has
   /// come from an image.
   void prepare() {
-    world_.contacts.divide(world_.awake, team_.size());
+    world_.contacts.divide(world_.awake, team_.size(), World::sleepers_first);
     if constexpr (dim == 3) {
       world_.round_margins.clear();
       for (const auto& m : world_.margins) {
@@ -282,10 +283,14 @@ class Search {
       const auto add = [&](int j, const PairImage& image) {
         if (!out_of_reach(i, j, image)) near.push_back({j, image});
       };
+      const auto add_sleepers = [&] {
+        asleep.clear();
+        if (sleepers) sleepers_grid_.near(reaches_[i], asleep);
+        for (const int j : asleep) add(n + j, {});
+      };
+      if (World::sleepers_first) add_sleepers();
       for (; next != part.sorted.end() && next->first == i; ++next) add(next->second, {});
-      asleep.clear();
-      if (sleepers) sleepers_grid_.near(reaches_[i], asleep);
-      for (const int j : asleep) add(n + j, {});
+      if (!World::sleepers_first) add_sleepers();
       for (; crossing != crossing_.end() && crossing->i == i; ++crossing) {
         add(crossing->j, crossing->image);
       }

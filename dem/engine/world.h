@@ -51,6 +51,8 @@ struct World {
   using Contacts = ContactList<dim, Memory, typename Acting::Feature>;
   using Pair = typename Contacts::Pair;
   using Frozen = FrozenContact<dim, Memory>;
+  /// In a row of pairs sleepers come before the awake, so that they go side by side with them.
+  static constexpr bool sleepers_first = Shape::outlines;
 
   Acting acting;
   SleepSettings sleep;

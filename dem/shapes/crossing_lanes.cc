@@ -22,7 +22,10 @@ GRAINFIELD_INLINE Corners corners_of(const CrossingRows& rows, int i) {
 }
 
 // Corners or edges of one outline side by side, C at a time. Bit k of a result is of the k-th.
-// `stride`: of the blocks, where it is known before; or 0, for any.
+// `stride`: of the blocks, where it is known before; or 0, for any. Of blocks longer than kShort
+// with a known stride the numbers from kShort on repeat the first corner at most.
+constexpr int kShort = 8;
+constexpr int looked_at(int stride) { return stride < kShort ? stride : kShort; }
 
 GRAINFIELD_INLINE bool has_first(Bits bits, int n) { return (~bits & (~Bits{0} >> (64 - n))) == 0; }
 
@@ -32,7 +35,7 @@ GRAINFIELD_INLINE bool separates(const Corners& shape, int k, const Corners& oth
   const double px = shape.x[k], py = shape.y[k];
   const double ex = shape.x[k + 1] - px, ey = shape.y[k + 1] - py;
   Bits outside = 0;
-  for (int at = 0; at < (stride > 0 ? stride : other.n); at += C) {
+  for (int at = 0; at < (stride > 0 ? looked_at(stride) : other.n); at += C) {
     const Lanes<C> x = loaded<C>(other.x + at), y = loaded<C>(other.y + at);
     outside |= unsigned_bits<C>(ey * (x - px) - ex * (y - py)) << at;
   }
@@ -44,7 +47,7 @@ template <int C, int stride>
 GRAINFIELD_INLINE bool are_inside(const Corners& shape, int size, double x1, double y1, double x2,
                                   double y2) {
   Bits in = 0;
-  for (int at = 0; at < (stride > 0 ? stride : shape.n); at += C) {
+  for (int at = 0; at < (stride > 0 ? looked_at(stride) : shape.n); at += C) {
     const Lanes<C> px = loaded<C>(shape.x + at), py = loaded<C>(shape.y + at);
     Lanes<C> ex, ey;
     if (at + C < (stride > 0 ? stride : size)) {
@@ -89,15 +92,19 @@ GRAINFIELD_INLINE void put_corners(const Corners& a, const Corners& b, const Edg
   put(a.y, b.y, y);
 }
 #if defined(__AVX512F__)
-/// The same of blocks of eight, picked from two vectors.
+/// The same of outlines of up to kShort corners, picked from two vectors.
 GRAINFIELD_INLINE void put_corners_of_8(const Corners& a, const Corners& b, std::uint32_t hint,
                                         double* x, double* y) {
   const __m512i shift = _mm512_set_epi64(18, 18, 12, 12, 6, 6, 0, 0);
-  const __m512i more = _mm512_set_epi64(9, 8, 9, 8, 1, 0, 1, 0);
-  const __m512i edges = _mm512_and_epi64(
-      _mm512_maskz_srlv_epi64(0xFF, _mm512_set1_epi64(static_cast<long long>(hint)), shift),
-      _mm512_set1_epi64(63));
-  const __m512i which = _mm512_add_epi64(edges, more);
+  const __m512i more = _mm512_set_epi64(1, 0, 1, 0, 1, 0, 1, 0);
+  const __m512i of_b = _mm512_set_epi64(8, 8, 8, 8, 0, 0, 0, 0);
+  const __m512i edges =
+      _mm512_maskz_srlv_epi64(0xFF, _mm512_set1_epi64(static_cast<long long>(hint)), shift);
+  // Behind the eighth corner comes the first one.
+  const __m512i which = _mm512_or_epi64(
+      _mm512_and_epi64(_mm512_add_epi64(_mm512_and_epi64(edges, _mm512_set1_epi64(63)), more),
+                       _mm512_set1_epi64(7)),
+      of_b);
   _mm512_storeu_pd(x, _mm512_permutex2var_pd(_mm512_loadu_pd(a.x), which, _mm512_loadu_pd(b.x)));
   _mm512_storeu_pd(y, _mm512_permutex2var_pd(_mm512_loadu_pd(a.y), which, _mm512_loadu_pd(b.y)));
 }
@@ -127,7 +134,7 @@ GRAINFIELD_INLINE bool may_cross(const Corners& a, const Corners& b, int size, s
   c.inner_a[at] = inner_a;
   c.inner_b[at] = inner_b;
 #if defined(__AVX512F__)
-  if constexpr (stride == 8) {
+  if constexpr (stride > 0) {
     put_corners_of_8(a, b, hint, c.x[at], c.y[at]);
     return true;
   }
@@ -295,6 +302,9 @@ template <int W>
 void crossing_overlaps_of(const CrossingRows& rows, const RowBatch& batch, PlaneOverlapBatch& o) {
   constexpr int few = W < 4 ? W : 4;
   if (rows.stride == 8) return overlaps_by<W, W, 8>(rows, batch, o);  // up to seven corners
+  if (rows.stride == 12 && rows.most_corners <= kShort) {
+    return overlaps_by<W, W, 12>(rows, batch, o);
+  }
   overlaps_by<W, few, 0>(rows, batch, o);
 }
 template void crossing_overlaps_of<GRAINFIELD_LANES>(const CrossingRows& rows,

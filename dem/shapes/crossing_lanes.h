@@ -18,6 +18,7 @@ struct CrossingRows {
   const double* blocks = nullptr;
   std::size_t block_size = 0;
   int stride = 0;
+  int most_corners = 0;          ///< of any body
   const int* corners = nullptr;  ///< how many, by body; 0: a disk
   const double* bodies = nullptr;
   const unsigned char* pairs = nullptr;

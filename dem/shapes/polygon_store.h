@@ -1,6 +1,7 @@
 // Polygons (and disks among them) as the engine keeps them: corners in the body frame and where
 // they are now, in blocks of equal length, in the order of the bodies.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -36,6 +37,7 @@ class PolygonStore {
     const int n = static_cast<int>(outline.size());
     if (outline.size() + 1 > stride_) widen(n + 1);
     count_.push_back(n);
+    most_corners_ = std::max(most_corners_, n);
     long_axis_.push_back(long_axis_of(outline));
     any_slender_ |= slender(static_cast<int>(count_.size()) - 1);
     corners_.resize(corners_.size() + kBlocks * stride_, 0.0);
@@ -87,6 +89,7 @@ class PolygonStore {
     rows.blocks = corners_.data();
     rows.block_size = kBlocks * stride_;
     rows.stride = static_cast<int>(stride_);
+    rows.most_corners = most_corners_;
     rows.corners = count_.data();
     return rows;
   }
@@ -188,7 +191,11 @@ class PolygonStore {
     r.get(equal_radius_);
     r.require(count_.size() == grains && equal_radius_.size() == grains &&
               corners_.size() == grains * kBlocks * stride_);
-    for (const int n : count_) r.require(n >= 0 && static_cast<std::size_t>(n) < stride_);
+    most_corners_ = 0;
+    for (const int n : count_) {
+      r.require(n >= 0 && static_cast<std::size_t>(n) < stride_);
+      most_corners_ = std::max(most_corners_, n);
+    }
     long_axis_.clear();
     any_slender_ = false;
     for (int i = 0; i < static_cast<int>(grains); ++i) {
@@ -225,6 +232,7 @@ class PolygonStore {
   }
 
   std::size_t stride_ = 4;
+  int most_corners_ = 0;
   std::vector<int> count_, counts_;
   std::vector<std::array<double, 2>> long_axis_, axes_;  // in the body frame (long_axis_of)
   bool any_slender_ = false;

@@ -44,6 +44,7 @@ class Sleepers {
     quiet_.push_back({position, rotation, position, rotation, step});
     rests_.push_back({});
     touches_.push_back({});
+    lasting_.push_back({});
     hidden_.push_back({});
     changed_ |= asleep;
   }
@@ -64,6 +65,7 @@ class Sleepers {
       std::swap(quiet_[low], quiet_[high]);
       std::swap(rests_[low], rests_[high]);
       std::swap(touches_[low], touches_[high]);
+      std::swap(lasting_[low], lasting_[high]);
       std::swap(hidden_[low], hidden_[high]);
       swap_bodies(low, high);
       changed_ = true;
@@ -129,6 +131,7 @@ class Sleepers {
     rests_[i].force = weight;
     rests_[i].press = weight.norm();
     touches_[i] = {};
+    lasting_[i] = {};
     hidden_[i] = {};
   }
 
@@ -184,8 +187,9 @@ class Sleepers {
   /// Its forces may be other ones than when it was judged last.
   void stir(int i) { stirred_[i] = 1; }
   bool is_stirred(int i) const { return stirred_[i] != 0; }
-  void set_judged(int i) {
-    stirred_[i] = 0;
+  /// `settled`: unless something stirs it, it would be judged as now.
+  void set_judged(int i, bool settled) {
+    stirred_[i] = settled ? 0 : 1;
     touches_[i] = Sum{};
   }
   /// Of weight, frozen contacts and the mean touch of `steps` steps.
@@ -195,6 +199,17 @@ class Sleepers {
     Sum mean;
     mean.press = rest.press + share * touch.press;
     return {rest.force + share * touch.force, rest.torque + share * touch.torque, mean.load()};
+  }
+  /// The residual `now` joins the mean over the last reviews with this weight, at most 1; returns
+  /// the mean, the weights of older ones falling exponentially. The first since it fell asleep is
+  /// its own mean.
+  const Residual& add_to_mean(int i, const Residual& now, double weight) {
+    Residual& mean = lasting_[i];
+    if (!(mean.load > 0)) weight = 1;
+    mean.force += weight * (now.force - mean.force);
+    mean.torque += weight * (now.torque - mean.torque);
+    mean.load += weight * (now.load - mean.load);
+    return mean;
   }
   /// Moves a sleeper in thought for `time`, s, as what is out of balance would move a free grain
   /// with the acceleration `gravity` times its share of the load. Returns how far it would have
@@ -218,11 +233,13 @@ class Sleepers {
     each(self.quiet_);
     each(self.rests_);
     each(self.touches_);
+    each(self.lasting_);
     each(self.hidden_);
   }
   bool fits(std::size_t grains) const {
     return asleep_.size() == grains && stirred_.size() == grains && quiet_.size() == grains &&
-           rests_.size() == grains && touches_.size() == grains && hidden_.size() == grains;
+           rests_.size() == grains && touches_.size() == grains && lasting_.size() == grains &&
+           hidden_.size() == grains;
   }
 
  private:
@@ -246,9 +263,10 @@ class Sleepers {
   std::vector<unsigned char> asleep_;
   std::vector<unsigned char> stirred_;  // of sleepers
   std::vector<Quiet> quiet_;
-  std::vector<Sum> rests_;      // of sleepers: weight and forces of the frozen contacts
-  std::vector<Sum> touches_;    // of sleepers: forces of awake neighbours, summed over the steps
-  std::vector<Hidden> hidden_;  // of sleepers
+  std::vector<Sum> rests_;         // of sleepers: weight and forces of the frozen contacts
+  std::vector<Sum> touches_;       // of sleepers: forces of awake neighbours, summed over the steps
+  std::vector<Residual> lasting_;  // of sleepers: the mean over the last reviews
+  std::vector<Hidden> hidden_;     // of sleepers
 };
 
 }  // namespace grainfield::dem

@@ -153,8 +153,8 @@ void check_superellipsoid_material(const MaterialSetup& material) {
 }
 
 SleepSettings sleep_settings(const SleepSetup& s) {
-  return {s.on,          s.quiet_time, s.quiet_move, s.quiet_creep,
-          s.quiet_force, s.wake_force, s.wake_speed, s.wake_reach};
+  return {s.on,         s.quiet_time, s.quiet_move, s.quiet_creep, s.quiet_force,
+          s.wake_force, s.wake_time,  s.wake_shock, s.wake_speed,  s.wake_reach};
 }
 
 void check_background_damping(const RestSetup& rest, double time_step) {

@@ -1,11 +1,12 @@
 // What sleeping saves on a heap that stands already, while single grains fall on it:
-//   sleep_drop_benchmark GRAINS [DROPS [QUIET_TIME]]
-// Lays so many grains of cases/pile-point-source.toml in rows that narrow upwards, brings them to
-// rest with every grain awake and much damping, and then drops one grain each source.interval from
-// source.height, with sleeping and with every grain awake. Prints the grains awake at every tenth
-// of an interval, and what a snapshot costs, of which a pour makes one for each grain. It needs no
-// pour: pile_sleep_benchmark times the real one. A third time every grain is awake, and at the end
-// of each interval Newton's method is to carry the heap to rest.
+//   sleep_drop_benchmark GRAINS|FILE.h5:/GROUP [DROPS [KEY=VALUE ...]]
+// Lays so many grains of cases/pile-point-source.toml in rows that narrow upwards and brings them
+// to rest with every grain awake and much damping, or takes a heap that was poured. KEY: of
+// [sleep], or `asleep=1` for the first of the three times alone. Then it drops one grain each
+// source.interval from source.height, with sleeping and with every grain awake. Prints the grains
+// awake at every tenth of an interval, and what a snapshot costs, of which a pour makes one for
+// each grain. It needs no pour: pile_sleep_benchmark times the real one. A third time every grain
+// is awake, and at the end of each interval Newton's method is to carry the heap to rest.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
 #include "dem/heap/grain_family.h"
+#include "dem/heap/relaxation.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
@@ -101,6 +103,7 @@ struct Drops {
   double snapshot = 0;            // CPU s for one
   double newton = 0;              // CPU s of the relaxations per grain dropped
   int failed = 0;                 // of them
+  double level = 0;               // largest error of the force through a level, two intervals later
 };
 
 // The heap at rest, or as it was when there is no rest to be found.
@@ -134,9 +137,8 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
   std::vector<ShapedGrain> grains;
   for (const auto& g : heap.grains) grains.push_back({g.outline, g.radius, g.volume, g.angle});
   dem::EngineSettings s = settings_of(setup, grains);
-  const auto& k = setup.sleep;
-  s.sleep = {mode == Mode::sleep, k.quiet_time, k.quiet_move, k.quiet_creep,
-             k.quiet_force,       k.wake_force, k.wake_speed, k.wake_reach};
+  s.sleep = dem::sleep_settings(setup.sleep);
+  s.sleep.on = mode == Mode::sleep;
   auto engine = dem::make_engine(s, heap);
   double top = 0, axis = 0;
   for (const auto& g : heap.grains) {
@@ -176,32 +178,73 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
     if (mode == Mode::newton) engine = dem::make_engine(s, relaxed(engine->snapshot(), s, out));
   }
   out.newton /= drops;
+  engine->step(2 * kSamples * steps);
+  const dem::Snapshot end = engine->snapshot();
+  out.level = dem::measure_relaxation(end, end, d).levels_before;
   return out;
+}
+
+// Numbers of `setup.sleep` by their keys.
+bool set_sleep(PileSetup& setup, const std::string& key, double value) {
+  dem::SleepSetup& k = setup.sleep;
+  const std::pair<const char*, double*> known[] = {
+      {"quiet_time", &k.quiet_time},   {"quiet_move", &k.quiet_move},
+      {"quiet_creep", &k.quiet_creep}, {"quiet_force", &k.quiet_force},
+      {"wake_force", &k.wake_force},   {"wake_time", &k.wake_time},
+      {"wake_shock", &k.wake_shock},   {"wake_speed", &k.wake_speed},
+      {"wake_reach", &k.wake_reach}};
+  for (const auto& [name, number] : known) {
+    if (key == name) {
+      *number = value;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    fmt::print(stderr, "usage: sleep_drop_benchmark GRAINS [DROPS [QUIET_TIME]]\n");
+    fmt::print(stderr,
+               "usage: sleep_drop_benchmark GRAINS|FILE.h5:/GROUP [DROPS [KEY=VALUE ...]]\n");
     return 2;
   }
   try {
     PileSetup setup;
     setup.material.friction = setup.material.floor_friction = 0.54;
     setup.motion.time_step_fraction = 2;
-    if (argc > 3) setup.sleep.quiet_time = std::atof(argv[3]);
+    bool asleep_alone = false;
+    for (int k = 3; k < argc; ++k) {
+      const std::string word = argv[k];
+      const std::size_t at = word.find('=');
+      const std::string key = word.substr(0, at);
+      if (key == "asleep") {
+        asleep_alone = true;
+      } else if (at == std::string::npos ||
+                 !set_sleep(setup, key, std::stod(word.substr(at + 1)))) {
+        throw std::invalid_argument(
+            fmt::format("found \"{}\"; allowed: KEY=VALUE of [sleep]", word));
+      }
+    }
     const int drops = argc > 2 ? std::max(1, std::atoi(argv[2])) : 8;
     dem::Random random(3);
-    const dem::Snapshot heap = heap_of(setup, std::max(100, std::atoi(argv[1])), random);
-    const Drops asleep = drop(setup, heap, drops, Mode::sleep),
-                awake = drop(setup, heap, std::max(1, drops / 4), Mode::awake),
-                newton = drop(setup, heap, std::max(1, drops / 4), Mode::newton);
+    const std::string heap_name = argv[1];
+    const std::size_t colon = heap_name.find(':');
+    const dem::Snapshot heap =
+        colon == std::string::npos
+            ? heap_of(setup, std::max(100, std::atoi(argv[1])), random)
+            : dem::read_snapshot(heap_name.substr(0, colon), heap_name.substr(colon + 1));
+    const Drops asleep = drop(setup, heap, drops, Mode::sleep);
     fmt::print(
-        "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake), {:.3f} with all "
-        "awake, ratio {:.2f}; a snapshot {:.4f}\n",
-        heap.grains.size(), asleep.seconds, asleep.awake, awake.seconds,
-        awake.seconds / asleep.seconds, asleep.snapshot);
+        "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake); levels carry "
+        "their load to {:.2f} %\n",
+        heap.grains.size(), asleep.seconds, asleep.awake, 100 * asleep.level);
+    if (asleep_alone) return 0;
+    const Drops awake = drop(setup, heap, std::max(1, drops / 4), Mode::awake),
+                newton = drop(setup, heap, std::max(1, drops / 4), Mode::newton);
+    fmt::print("{:.3f} with all awake, ratio {:.2f}; a snapshot {:.4f}\n", awake.seconds,
+               awake.seconds / asleep.seconds, asleep.snapshot);
     fmt::print(
         "with Newton's method to {:g} after each grain: {:.3f} and {:.3f} more for it; {} of "
         "{} found no rest\n",

@@ -4,7 +4,6 @@
 
 #include <numbers>
 
-
 namespace grainfield::test {
 
 dem::Snapshot overlapping_layer(unsigned seed, int columns, int rows, bool rough, double load) {
@@ -40,8 +39,7 @@ std::string csv_grains(const dem::Snapshot& s) {
   for (const dem::Grain& g : s.grains)
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", g.id, g.position.x(),
                        g.position.y(), g.velocity.x(), g.velocity.y(), g.angle, g.spin, g.radius,
-                       g.mass, g.inertia, g.volume, g.fixed ? 1 : 0,
-                       outline_text(g.outline));
+                       g.mass, g.inertia, g.volume, g.fixed ? 1 : 0, outline_text(g.outline));
   return out;
 }
 

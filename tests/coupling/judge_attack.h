@@ -13,8 +13,8 @@ namespace grainfield::coupling::test {
 /// What the judge said of ensembles whose truth is known.
 struct JudgeTally {
   int truths = 0;
-  int refused_truth = 0;  ///< the model that made the data counts as not supported
-  int named = 0;          ///< one model supported alone
+  int refused_truth = 0;  ///< the model that made the data counts as behind the nearest
+  int named = 0;          ///< one model distinguishable from all others
   int wrong = 0;          ///< of these: one that cannot be the truth whatever its constants
   int no_agreement = 0;   ///< the true model is said not to agree within the errors
   int constants = 0,
@@ -86,12 +86,10 @@ class JudgeAttack {
     options.profile = false;
     std::vector<Fit> fits;
     for (const FitModel& model : models) fits.push_back(fit(data, weights, model, options));
-    const Selection selection = select(data, weights, models, fits);
+    const Judgement judgement = select(data, weights, models, fits);
 
     ++tally.truths;
-    for (const Score& score : selection.ranking) {
-      tally.refused_truth += score.name == models[truth].name && !score.supported;
-    }
+    tally.refused_truth += judgement.find(models[truth].name)->distinguishable == Answer::yes;
     const Fit& own = fits[truth];
     tally.no_agreement += std::isfinite(own.chance) && own.chi2_per_dof > own.chance;
     for (std::size_t k = 0; k < own.parameters.size(); ++k) {
@@ -101,9 +99,9 @@ class JudgeAttack {
       tally.held += p.low <= constants[static_cast<Eigen::Index>(k)] &&
                     constants[static_cast<Eigen::Index>(k)] <= p.high;
     }
-    if (!selection.distinguishable) return;
+    if (judgement.distinguishable != Answer::yes) return;
     ++tally.named;
-    tally.wrong += !can_be(find_fit_model(models, selection.ranking.front().name), data, exact);
+    tally.wrong += !can_be(find_fit_model(models, judgement.best), data, exact);
   }
 
   // Constants where the models of real heaps lie; again where the model has no field for them.

@@ -11,7 +11,6 @@
 #include "coupling/fit/finite_elements.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/layer_sight.h"
-#include "coupling/fit/layer_verdict.h"
 #include "coupling/fit/models.h"
 #include "coupling/fit/selection.h"
 #include "dem/random/random.h"

@@ -31,8 +31,9 @@ class Fit:
             with open(f"{name}/summary.json") as file:
                 self.summary = json.load(file)
         self.sentence = self.summary.get("verdict.sentence", "")
-        self.supported = [key.split(".")[1] for key, value in self.summary.items()
-                          if key.endswith(".supported") and value != "no"]
+        self.doubts = self.summary.get("verdict.doubts", "")
+        self.kept = [key.split(".")[1] for key, value in self.summary.items()
+                     if key.startswith("fit.") and key.endswith(".distinguishable") and value != "yes"]
         alone = self.summary.get("verdict.distinguishable") == "yes"
         self.alone = self.summary["verdict.best_model"] if alone else ""
 
@@ -55,7 +56,7 @@ class Fit:
     def verdict(self):
         if self.code != 0:
             return "refused"
-        return f"{self.alone} alone" if self.alone else "not distinguishable: " + ", ".join(self.supported)
+        return f"{self.alone} alone" if self.alone else "not distinguishable: " + ", ".join(self.kept)
 
 
 def judge_constants(whole, without):
@@ -67,7 +68,7 @@ def judge_constants(whole, without):
         mean = sum(others) / len(others)
         jackknife = math.sqrt((len(others) - 1) / len(others) * sum((x - mean) ** 2 for x in others))
         print(f"{constant:36} {value:9.3g} {error:9.3g} {jackknife:20.3g}")
-        if model not in whole.supported:
+        if model not in whole.kept:
             continue
         if math.isnan(error):
             check(name in whole.summary[f"fit.{model}.note"], f"{constant} has no error, and no note says why")
@@ -75,15 +76,15 @@ def judge_constants(whole, without):
             check(error >= LEAST_SHARE * jackknife,
                   f"{constant}: error {error:.3g}, fits without one heap make it {jackknife:.3g}")
         turned = [k + 1 for k, x in enumerate(others) if x * value < 0]
-        said = re.search(rf"The sign of {model} hangs on single realizations: [^.]*\b{name} is ", whole.sentence)
+        said = re.search(rf"The sign of {model} hangs on single realizations: [^.]*\b{name} is ", whole.doubts)
         check(not turned or said, f"{constant} = {value:.3g} has another sign without {turned}, and the verdict is silent")
 
 
 def judge_verdicts(whole, without):
     for k, fit in enumerate(without, 1):
-        check(not fit.alone or fit.alone in whole.supported,
+        check(not fit.alone or fit.alone in whole.kept,
               f"without heap {k} {fit.alone} is supported alone, which all heaps together do not support")
-        check(not whole.alone or whole.alone in fit.supported,
+        check(not whole.alone or whole.alone in fit.kept,
               f"all heaps support {whole.alone} alone, those without {k} do not support it")
 
 

@@ -195,6 +195,9 @@ def test_fit_gives_back_the_constants(file, tmp_path):
         assert 0 < error < 0.01
         assert abs(value - true) < 0.02, name  # 25 rows of grains: the steps of the surface count
     assert here.folder is None and "osl" in here.verdict.lower()
+    with open(tmp_path / "f" / "verdict.json", encoding="utf-8") as written:
+        assert here.judgement == json.load(written)
+    assert here.judgement["best_model"] == here.summary["verdict.best_model"]
 
 
 def test_compare(tmp_path):
@@ -208,6 +211,7 @@ def test_compare(tmp_path):
         same_summary(here.summary, there)
         assert here.measures["true"]["rel_l2"] < here.measures["other"]["rel_l2"]
         assert here.verdict == there["verdict.sentence"]
+        assert here.verdict.startswith(here.judgement["headlines"][0])
     assert (tmp_path / "d" / "report.html").exists()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 from typing import Any, Callable, Mapping, Sequence
@@ -69,12 +70,12 @@ class _Profiles:
 
 
 class CompareResult(_Profiles):
-    """verdict (a sentence), note, summary, profiles (a Table of profiles.csv), and measures: of each
+    """verdict (a sentence), judgement (verdict.json as a dict), summary, profiles (a Table of profiles.csv), and measures: of each
     model by its label rel_l2, max, chi2_per_dof, dof. folder: of the report, None if not kept."""
 
     def __init__(self, found: Mapping[str, Any], folder: str, kept: str | None):
         self.verdict: str = found["verdict"]
-        self.note: str = found["note"]
+        self.judgement: dict[str, Any] = json.loads(found["judgement"])
         self.folder = kept
         self.summary = Summary(_core.read_summary(os.path.join(folder, "summary.json")))
         self.profiles = read_table(os.path.join(folder, "profiles.csv"))
@@ -90,12 +91,13 @@ class CompareResult(_Profiles):
 
 
 class FitResult(_Profiles):
-    """verdict, note, warnings, packings (their names), coverage (a text), summary, profiles, and
+    """verdict, judgement (verdict.json as a dict), note, warnings, packings (their names), coverage (a text), summary, profiles, and
     constants: {model: {constant: (value, standard error)}}, the error nan where none is known.
     folder: of the report, None if not kept."""
 
     def __init__(self, found: Mapping[str, Any], folder: str, kept: str | None):
         self.verdict: str = found["verdict"]
+        self.judgement: dict[str, Any] = json.loads(found["judgement"])
         self.note: str = found["note"]
         self.warnings: list[str] = found["warnings"]
         self.packings: list[str] = found["packings"]
@@ -146,6 +148,14 @@ class Result(_Profiles):
     @property
     def verdict(self) -> str | None:
         return self.summary.get("verdict.sentence")
+
+    @property
+    def judgement(self) -> dict[str, Any] | None:
+        """verdict.json: headlines, agreement, models, position, power, notes and doubts."""
+        if not os.path.exists(self._path("verdict.json")):
+            return None
+        with open(self._path("verdict.json"), encoding="utf-8") as file:
+            return json.load(file)
 
     def __repr__(self) -> str:
         return f"<Result {self.folder}: {len(self.summary)} figures>"

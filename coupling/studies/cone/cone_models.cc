@@ -88,7 +88,6 @@ void compare_cones(const ConeEnsemble& cones, StudyResult& out, ConePage& page) 
       // The response.* keys speak of a load.
       if (!key.starts_with("response.")) out.summary[key] = figure;
     }
-    out.summary["verdict.best_model"] = out.comparison.verdict.best_model;
     if (cones.spanned() > kHigherCone) {
       double weight = 0;
       for (const double w : cones.figures().at("cone.model_over_weight")) weight += w / n;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/report/judgement.h"
 #include "coupling/run/radial_page.h"
 
 namespace grainfield::coupling {
@@ -101,7 +102,7 @@ void add_cone_maps(Report& report, const Comparison& c, const ConePage& page) {
   const Eigen::VectorXd grains = -page.inside.find("sigma_zz")->value;
   std::vector<Map> all{{"grains", page.inside.nx, page.inside.nz, half, grains}};
   for (const ConePage::Model& m : page.models) {
-    if (m.key != c.verdict.best_model) continue;
+    if (m.key != c.judgement.best) continue;
     all.push_back({m.label, page.inside.nx, page.inside.nz, half, -m.inside});
     all.push_back({"grains - " + m.label, page.inside.nx, page.inside.nz, half, grains + m.inside});
   }
@@ -121,7 +122,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   report.title = title_of(result.value);
   report.subtitle = fmt::format("{} cone{}, h = {:.4g} m", c.realizations,
                                 c.realizations == 1 ? "" : "s", c.depth);
-  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_verdict(report, c.judgement);
   add_cone_profiles(report, result, page);
   if (first != nullptr) {
     report.sections.emplace_back(slice("The cone, cut in the middle", (*first)["pile"]));

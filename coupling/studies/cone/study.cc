@@ -85,16 +85,15 @@ void add_dip(const ConeEnsemble& cones, StudyResult& out) {
   out.summary["dip.standard_error"] = dip.difference.standard_error;
   out.summary["dip.p_value"] = dip.difference.p_value;
   out.summary["dip.verdict"] = dip.verdict;
-  std::string sentence = dip_sentence(dip);
+  Judgement& judgement = out.comparison.judgement;
+  judgement.noun = "cone";
+  judgement.findings = dip_lines(dip);
   if (std::isnan(dip.centre)) {
-    sentence = fmt::format(
-        "Whether there is a dip cannot be said: of some cone fewer than {} contacts with the "
-        "base are within heap.centre = {:g} of the foot's radius; raise it, or take more grains.",
-        kLeastInDisk, out.value.get<HeapSetup>().centre);
+    judgement.findings = {fmt::format(
+        "Whether there is a dip cannot be said: of some cone fewer than {} contacts with the base "
+        "are within heap.centre = {:g} of the foot's radius; raise it, or take more grains.",
+        kLeastInDisk, out.value.get<HeapSetup>().centre)};
   }
-  if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
-  out.comparison.verdict.sentence = sentence;
-  out.summary["verdict.sentence"] = sentence;
 }
 
 // How the cones were built: as the case says, or as their files do.

@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/hard_disks/keys.h"
@@ -93,8 +94,7 @@ class GasAnalysis {
     }
     out.summary["gas.energy_drift_per_collision"] = drift;
     out.summary["gas.overlap"] = overlap;
-    out.comparison.verdict.sentence = gas_sentence(results_);
-    out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+    out.comparison.judgement.findings = {gas_sentence(results_)};
     out.texts.emplace_back("profiles.csv", gas_csv(results_));
     out.overview = overview();
     out.sweep_charts = gas_charts(results_);
@@ -153,7 +153,7 @@ class GasAnalysis {
     Report out;
     out.title = title_of(result.value);
     out.subtitle = gas_subtitle(results.setup);
-    out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+    add_verdict(out, result.comparison.judgement);
     for (const Chart& chart : gas_charts(results)) out.sections.emplace_back(chart.picture());
     out.sections.emplace_back(gas_table(results));
     const std::string last = dem::name_of_fraction(results.setup.fractions.back());

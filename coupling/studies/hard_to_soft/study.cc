@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/hard_to_soft/keys.h"
@@ -73,7 +74,7 @@ Report switch_page(const StudyResult& result, const Realization* first,
   out.title = title_of(result.value);
   out.subtitle = fmt::format("{} disks, restitution {:g}, softness {:g}",
                              setup.columns * setup.rows, setup.restitution, setup.softness);
-  out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+  add_verdict(out, result.comparison.judgement);
   if (first != nullptr) {
     for (const auto& [name, state] : first->snapshots) {
       const std::string when = fmt::format("t = {:.3g} sqrt(d/g)", state.time / setup.time_unit());
@@ -115,8 +116,7 @@ StudyResult analyse_switch(const Case& value, const std::vector<std::string>& fi
     }
   }
   add_figures(out.summary, figures);
-  out.comparison.verdict.sentence = switch_sentence(out.summary);
-  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  out.comparison.judgement.findings = {switch_sentence(out.summary)};
   std::string csv;
   for (const char* name : dem::kSwitchColumns)
     csv += fmt::format("{}{}", csv.empty() ? "" : ",", name);

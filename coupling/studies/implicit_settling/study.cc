@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "continuum/closed/liffman.h"
+#include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/implicit_settling/keys.h"
@@ -53,8 +54,7 @@ class SettlingAnalysis {
       const Eigen::VectorXd& values = columns_.at(loss);
       out.summary[std::string("settling.") + loss] = values[values.size() - 1];
     }
-    out.comparison.verdict.sentence = sentence(out.summary);
-    out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+    out.comparison.judgement.findings = {sentence(out.summary)};
     const double halved = std::get<double>(out.summary.at("settling.halved"));
     if (halved > 0) {
       out.warnings.push_back(
@@ -217,7 +217,7 @@ class SettlingAnalysis {
     out.subtitle = fmt::format("{} base disks, {:g}°, {} friction, {}", setup.lattice.base_grains,
                                setup.lattice.slope_deg, setup.friction,
                                setup.static_friction > 0 ? "wells" : "no wells");
-    out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+    add_verdict(out, result.comparison.judgement);
     const dem::Snapshot* pile = first != nullptr ? first->find("pile") : nullptr;
     if (pile != nullptr) out.sections.emplace_back(packing("Network of forces", *pile));
     for (const Chart& chart : charts) out.sections.emplace_back(chart.picture());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "coupling/report/force_lines.h"
+#include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {
 
@@ -32,7 +33,7 @@ Report lattice_pile_report(const LatticePileReport& in) {
   Report report;
   report.title = in.title;
   report.subtitle = in.subtitle;
-  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_verdict(report, c.judgement);
   if (in.pile != nullptr) {
     report.sections.emplace_back(packing("Network of forces", *in.pile));
     report.sections.emplace_back(

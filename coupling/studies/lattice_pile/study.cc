@@ -62,8 +62,7 @@ class LatticePileAnalysis {
       out.sweep_charts.push_back(*beside);
     }
     add_comparison_of_models(out);
-    out.comparison.verdict.sentence = sentence(out.summary);
-    out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+    out.comparison.judgement.findings = {sentence(out.summary)};
     add_fields(out);
     const double weight = weight_, width = heap_.width, spacing = spacing_;
     out.page = [=](const StudyResult& result, const Realization* first) {
@@ -250,7 +249,6 @@ class LatticePileAnalysis {
     for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
       if (key.compare(0, 8, "compare.") == 0) out.summary[key] = figure;
     }
-    out.summary["verdict.best_model"] = out.comparison.verdict.best_model;
   }
 
   void add_fields(StudyResult& out) const {

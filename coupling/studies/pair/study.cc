@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/study_result.h"
@@ -125,7 +126,7 @@ Report page_of(const StudyResult& result, const Realization* first, const PairRe
   Report out;
   out.title = title_of(result.value);
   out.subtitle = pair_subtitle(pair.setup);
-  out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+  add_verdict(out, result.comparison.judgement);
   for (const Chart& chart : pair_charts(pair)) out.sections.emplace_back(chart.picture());
   if (const dem::Snapshot* snapshot = hardest(first)) {
     out.sections.emplace_back(packing("Where they push hardest", *snapshot));
@@ -177,8 +178,7 @@ StudyResult analyse_pair(const Case& value, const std::vector<std::string>& file
   StudyResult out = begin_result(value, files);
   add_figures(out.summary, all.figures);
   add_closed_forms(value.get<dem::PairSetup>(), out.summary);
-  out.comparison.verdict.sentence = sentence_of(value, out.summary);
-  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  out.comparison.judgement.findings = {sentence_of(value, out.summary)};
   out.texts.emplace_back("profiles.csv", pair_profiles_csv(all.profiles));
   if (!pair.impacts.empty()) out.texts.emplace_back("impacts.csv", pair_impacts_csv(pair.impacts));
   if (!all.loops.empty()) out.texts.emplace_back("loops.csv", pair_loops_csv(all.loops));

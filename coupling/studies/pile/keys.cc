@@ -124,7 +124,15 @@ void declare_sleep_keys(SectionKeys s) {
            "lengths of all forces on it; 1e-12: none sleeps");
   s.only("sleep.on", {"true"});
   s.number("wake_force", "-", IN(sleep.wake_force), {1e-12, 1e3},
-           "wakes: out of balance by more than this share of its load; less wakes more");
+           "wakes: out of balance by more than this share of its load in the mean over wake_time; "
+           "less wakes more");
+  s.only("sleep.on", {"true"});
+  s.number("wake_time", "s", IN(sleep.wake_time), kTime,
+           "over which that is taken: an elastic wave that passes wakes nobody; below 50 steps: "
+           "these");
+  s.only("sleep.on", {"true"});
+  s.number("wake_shock", "-", IN(sleep.wake_shock), {1e-12, 1e3},
+           "wakes: out of balance by more than this share of its load in the mean over 50 steps");
   s.only("sleep.on", {"true"});
   s.number("wake_speed", "-", IN(sleep.wake_speed), {1e-6, 1e6},
            "wakes: touched at more than this times sqrt(g d)");

@@ -6,6 +6,8 @@
 #include <string>
 #include <tuple>
 
+#include "coupling/report/judgement.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -128,17 +130,15 @@ void add_tables(Report& report, const PileReport& in) {
     Table distances{
         fmt::format("Distance of the models from the {}", c.subject()),
         fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
-                    "chi2/dof: squared differences over squared standard errors. {}",
-                    c.subject(), ranking_note(c)),
-        {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress), "in",
-         "chi2/dof"},
+                    "Misfit and verdict are above.",
+                    c.subject()),
+        {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress), "in"},
         {}};
     for (const std::size_t m : ranked(c)) {
       const ModelComparison& r = c.results[m];
       distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                                 fmt::format("{:.3g}", r.overall.largest / c.unit()),
-                                r.overall.largest_in,
-                                fmt::format("{:.3g}", r.overall.chi2_per_dof)});
+                                r.overall.largest_in});
     }
     report.sections.emplace_back(std::move(distances));
   }
@@ -153,7 +153,7 @@ Report pile_report(const PileReport& in) {
   Report report;
   report.title = in.title;
   report.subtitle = in.subtitle;
-  report.sections.emplace_back(Text{"", in.sentence, true});
+  add_verdict(report, in.comparison.judgement);
   if (in.pile != nullptr) {
     report.sections.emplace_back(grains_by_age("The pile by time of drop", *in.pile));
     report.sections.emplace_back(packing("Network of forces", *in.pile));

@@ -14,7 +14,6 @@ namespace grainfield::coupling {
 
 struct PileReport {
   std::string title, subtitle;
-  std::string sentence;                 ///< the verdict, for people
   const dem::Snapshot* pile = nullptr;  ///< of the realization that is drawn; may be null
   /// The same pile under changed gravity: label ("g = 8.829 m/s2"), snapshot.
   std::vector<std::pair<std::string, const dem::Snapshot*>> changed;

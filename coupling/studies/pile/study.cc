@@ -214,7 +214,6 @@ class PileAnalysis {
         // The response.* keys speak of a load.
         if (key.compare(0, 9, "response.") != 0) out.summary[key] = figure;
       }
-      out.summary["verdict.best_model"] = out.comparison.verdict.best_model;
     }
     for (const PileAverages& a : piles_.methods()) {
       out.comparison.beside.push_back(profile(a.base, "base " + a.method, "base_" + a.method, 0));
@@ -292,18 +291,17 @@ class PileAnalysis {
     out.summary["dip.standard_error"] = dip.difference.standard_error;
     out.summary["dip.p_value"] = dip.difference.p_value;
     out.summary["dip.verdict"] = dip.verdict;
-    std::string sentence = dip_sentence(dip);
+    Judgement& judgement = out.comparison.judgement;
     if (const auto none = no_heaps(); !none.empty()) {
       const std::string count = fmt::format("in {} of {} piles", none.size(), files_.size());
       out.warnings.push_back(fmt::format(
           "no heap formed {}: {}{}; apex, slopes and shoulders mean little there; more grains, or "
           "more friction, make one",
           count, none.front(), none.size() == 1 ? "" : ", and others"));
-      sentence = fmt::format("No heap formed {}. {}", count, sentence);
+      judgement.findings.push_back(fmt::format("No heap formed {}.", count));
     }
-    if (!out.comparison.models.empty()) sentence += " " + out.comparison.verdict.sentence;
-    out.comparison.verdict.sentence = sentence;
-    out.summary["verdict.sentence"] = sentence;
+    judgement.noun = "pile";
+    for (std::string& line : dip_lines(dip)) judgement.findings.push_back(std::move(line));
   }
 
   // A row for every changed gravity, from the least one.
@@ -370,7 +368,6 @@ class PileAnalysis {
     }
     in.subtitle = fmt::format("{} pile{}, {:.0f} grains each", result.realizations.size(),
                               result.realizations.size() == 1 ? "" : "s", grains);
-    in.sentence = result.comparison.verdict.sentence;
     if (first != nullptr) {
       in.pile = first->find("pile");
       for (const auto& [name, state] : first->snapshots) {

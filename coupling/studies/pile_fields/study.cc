@@ -8,6 +8,7 @@
 #include <map>
 
 #include "coupling/averaging/base.h"
+#include "coupling/report/judgement.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/pile/keys.h"
@@ -135,7 +136,7 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
   out.subtitle = fmt::format("{} pile{} of {} grains, strains from the change to {}", piles,
                              piles == 1 ? "" : "s",
                              first == nullptr ? 0 : (*first)["pile"].grains.size(), change);
-  out.sections.emplace_back(Text{"", result.comparison.verdict.sentence, true});
+  add_verdict(out, result.comparison.judgement);
   if (first != nullptr) {
     out.sections.emplace_back(packing("Network of forces", (*first)["pile"]));
     out.sections.emplace_back(displacements(fmt::format("Displacements to {}", change),
@@ -182,8 +183,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
                   {"RVE (grains)", "rve_size.grains", ""},
                   {"g2", "fabric.g2", ""},
                   {"coordination", "heap.coordination", ""}};
-  out.comparison.verdict.sentence = sentence;
-  out.summary["verdict.sentence"] = sentence;
+  out.comparison.judgement.findings = {sentence};
   const std::string gaps = piles.gaps_text();
   out.page = [looked, gaps, change = piles.change()](const StudyResult& result,
                                                      const Realization* first) {

@@ -49,6 +49,10 @@ void declare_fit_keys(SectionKeys s) {
       "width_diameters", "-", IN(width_diameters), {0.01, 100},
       "coarse graining (Lucy kernel): its width in mean grain diameters; wider is smoother and "
       "keeps points further from the flanks");
+  s.number("kernel", "-", IN(kernel), {0.01, 100},
+           "kernel widths in mean grain diameters, e.g. 0.5, 1, 2, 4, at which the verdict is "
+           "repeated; it says whether it changes");
+  s.or_none();
   s.number("left_deg", "deg", IN(left_deg), {0, 89},
            "slope of the left flank; 0: measured on every heap");
   s.number("right_deg", "deg", IN(right_deg), {0, 89}, "the same on the right");

@@ -30,8 +30,10 @@ dem::Outlook foresee(const Case& value, std::int64_t draws) {
 }
 
 StudyResult analyse(const Case& value, const std::vector<std::string>& files, int threads) {
-  StudyResult out = heap_result(
-      value, observe_heaps(value.get<FitSetup>(), heaps_of_runs(files), threads), threads);
+  const auto observe = [&](const FitSetup& setup) {
+    return observe_heaps(setup, heaps_of_runs(files), threads);
+  };
+  StudyResult out = heap_result(value, observe(value.get<FitSetup>()), threads, observe);
   out.realizations = files;
   add_identity(out.summary, value);
   return out;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
+#include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -58,7 +59,7 @@ void add_profiles(Report& report, const Comparison& c) {
 // Of the model that the verdict names; the first where it names none.
 const ModelMap& nearest(const std::vector<ModelMap>& maps, const Comparison& c) {
   for (std::size_t m = 0; m < std::min(maps.size(), c.models.size()); ++m) {
-    if (c.models[m].key == c.verdict.best_model) return maps[m];
+    if (c.models[m].key == c.judgement.best) return maps[m];
   }
   return maps.front();
 }
@@ -100,17 +101,15 @@ void add_tables(Report& report, const PointLoadReport& in) {
   Table distances{
       fmt::format("Distance of the models from the {}", c.subject()),
       fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
-                  "chi2/dof: squared differences over squared standard errors, corrected for the "
-                  "number of realizations; about 1 for a model within the spread. {}",
-                  c.subject(), ranking_note(c)),
-      {"model", "relative L2", "largest difference (F/h)", "at x/h", "in", "chi2/dof"},
+                  "Misfit and verdict are above.",
+                  c.subject()),
+      {"model", "relative L2", "largest difference (F/h)", "at x/h", "in"},
       {}};
   for (const std::size_t m : ranked(c)) {
     const ModelComparison& r = c.results[m];
     distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
                               shown(r.overall.largest * c.depth / c.load),
-                              shown(r.overall.largest_at / c.depth, 2), r.overall.largest_in,
-                              shown(r.overall.chi2_per_dof)});
+                              shown(r.overall.largest_at / c.depth, 2), r.overall.largest_in});
   }
   report.sections.emplace_back(std::move(distances));
 
@@ -149,7 +148,7 @@ Report point_load_report(const PointLoadReport& in) {
   report.title = in.title;
   report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
                                 c.depth, c.realizations, c.realizations == 1 ? "" : "s");
-  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_verdict(report, c.judgement);
   if (in.loaded) report.sections.emplace_back(packing("The loaded packing", *in.loaded));
   if (in.loaded && in.unloaded)
     report.sections.emplace_back(packing("What the load changes", *in.loaded, in.unloaded));

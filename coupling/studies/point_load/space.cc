@@ -314,6 +314,7 @@ class SpaceLoadAnalysis {
     out.summary["time.continuum_s"] = seconds;
     predicted_.add_peak(facts, *kernel_, out.summary);
     out.comparison = compare(profiles(), std::move(models), force_, layer_.depth);
+    out.comparison.judgement.noun = "layer";
     out.comparison.dim = 3;
     out.comparison.scale.stress = "F/h^2";
     out.comparison.scale.note = fmt::format(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "coupling/report/judgement.h"
 #include "coupling/run/radial_page.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/point_load/predicted.h"
@@ -26,7 +27,7 @@ void add_radial(Report& report, const Comparison& c) {
 // The nearest model by the verdict.
 const SpaceLoadPage::Model& nearest_of(const SpaceLoadPage& page, const Comparison& c) {
   for (const auto& m : page.models) {
-    if (m.key == c.verdict.best_model) return m;
+    if (m.key == c.judgement.best) return m;
   }
   return page.models.front();
 }
@@ -85,7 +86,7 @@ Report space_load_page(const StudyResult& result, const Realization* first,
   report.title = title_of(result.value);
   report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
                                 c.depth, c.realizations, c.realizations == 1 ? "" : "s");
-  report.sections.emplace_back(Text{"", c.verdict.sentence, true});
+  add_verdict(report, c.judgement);
   add_radial(report, c);
   add_maps(report, page, c);
   if (first != nullptr) {

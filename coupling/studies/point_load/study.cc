@@ -235,6 +235,7 @@ class PointLoadAnalysis {
     }
     out.summary["time.continuum_s"] = seconds;
     out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);
+    out.comparison.judgement.noun = "layer";
   }
 
   void add_own_figures(Summary& summary) const {

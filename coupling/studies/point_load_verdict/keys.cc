@@ -32,6 +32,10 @@ void declare_verdict_keys(SectionKeys s) {
   s.word("components", IN(components), {"sigma_xx", "sigma_yy", "sigma_xy"},
          "stresses that are fitted, all together");
   s.flag("base", IN(base), "the forces on the base are fitted as well");
+  s.number("kernel", "-", IN(kernel), {0.01, 100},
+           "kernel widths in mean grain diameters, e.g. 0.5, 1, 2, 4, at which the verdict is "
+           "repeated; it says whether it changes");
+  s.or_none();
   s.number("coverage", "-", IN(coverage), {3, 1e6},
            "sizes N: how often intervals from N of the packings hold the constants of the rest "
            "(in the output folder: coverage.md); takes long");

@@ -15,7 +15,10 @@
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
 #include "coupling/fit/setup.h"
+#include "coupling/judge/judge.h"
 #include "coupling/models/models.h"
+#include "coupling/report/judgement.h"
+#include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
@@ -119,7 +122,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
   out.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}",
                              seen.unit * seen.height, seen.height, seen.data.realizations(),
                              seen.data.realizations() == 1 ? "" : "s");
-  out.sections.emplace_back(Text{"", fits.verdict.sentence, true});
+  add_verdict(out, fits.judgement);
   for (Section& s : fit_pictures(fits)) out.sections.push_back(std::move(s));
   if (first != nullptr) {
     const dem::Snapshot &unloaded = (*first)["unloaded"], &loaded = (*first)["loaded"];
@@ -143,6 +146,16 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   const auto start = std::chrono::steady_clock::now();
   const auto fits = std::make_shared<EnsembleFits>(
       fit_layers(value.get<VerdictSetup>(), observe_layers(value, files, threads), threads));
+  const auto at_width = [&](double width) {
+    Case other = value;
+    other.get<AverageSetup>().width = 0;
+    other.get<AverageSetup>().width_diameters = width;
+    other.get<VerdictSetup>().finite_elements.clear();
+    other.get<VerdictSetup>().bootstrap = 0;
+    return fit_layers(other.get<VerdictSetup>(), observe_layers(other, files, threads), threads)
+        .judgement;
+  };
+  judge_at_widths(value.get<VerdictSetup>().kernel, at_width, fits->judgement);
   Case with_constants = value;
   with_constants.models = choices(*fits);
   StudyResult out = analyse_point_load(with_constants, files, threads, evaluator_of(fits));
@@ -171,7 +184,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   out.sweep_x = "x / h (load at 0)";
   out.sweep_y = "response of -σ_{yy}  (F/h)";
   out.sweep_sections = [fits](const std::string& name) {
-    return fit_map_sections(*fits, fits->verdict.model, name);
+    return fit_map_sections(*fits, fits->judgement.best, name);
   };
   out.sweep_tables = [fits](const std::string& name) { return fit_tables(*fits, name + ": "); };
   out.page = [fits](const StudyResult& result, const Realization* first) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "coupling/report/judgement.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -55,7 +57,7 @@ Report sample_report(const SampleReport& in) {
   Report report;
   report.title = in.title;
   report.subtitle = in.subtitle;
-  report.sections.emplace_back(Text{"", in.sentence, true});
+  add_verdict(report, in.judgement);
   Picture main = frames_of(in, "Stress ratio and volume", in.main);
   main.caption =
       "Of the whole sample, mean over realizations; the band is one standard error on either side. "

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/judge/judgement.h"
 #include "coupling/report/report.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -16,7 +17,8 @@ struct SampleCurve {
 };
 
 struct SampleReport {
-  std::string title, subtitle, sentence;
+  std::string title, subtitle;
+  Judgement judgement;
   std::string strain_name;  ///< "shear strain", "axial strain"
   std::string label;        ///< of the curves: "grains, mean of 4"
   Eigen::VectorXd strain;

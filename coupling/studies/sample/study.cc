@@ -232,7 +232,7 @@ std::vector<MemberCurve> member_curves(const SampleReport& report) {
 }
 
 Report page_of(SampleReport report, const StudyResult& result, const Realization* grains) {
-  report.sentence = result.comparison.verdict.sentence;
+  report.judgement = result.comparison.judgement;
   if (grains != nullptr) {
     report.first = &grains->snapshots.front().second;
     report.last = &grains->snapshots.back().second;
@@ -330,8 +330,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
-  out.comparison.verdict.sentence = sentence(value, table, out.summary);
-  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  out.comparison.judgement.findings = {sentence(value, table, out.summary)};
   out.texts = {{"states.csv", table.csv()},
                {"states_of_realizations.csv", table.csv_of_realizations()}};
   if (value.output.vtu) {

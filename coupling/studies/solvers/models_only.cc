@@ -93,7 +93,10 @@ StudyResult compare_models(const Case& value, const std::vector<ModelChoice>& ch
         fmt::format("{}{} differs from {} by {:.2g} % (relative L2)", sentence.empty() ? "" : "; ",
                     result.label, choices.front().label, 100 * result.overall.rel_l2);
   }
-  out.comparison.verdict.sentence = sentence + ".";
+  Judgement judgement;
+  judgement.best = out.comparison.judgement.best;
+  judgement.findings = {sentence + "."};
+  out.comparison.judgement = std::move(judgement);
   add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
   out.page = layer_page;
   out.overview = layer_overview();

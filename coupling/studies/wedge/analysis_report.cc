@@ -87,7 +87,7 @@ WedgeReport WedgeAnalysis::report(const StudyResult& result) const {
   in.title = title_of(value_);
   in.subtitle = fmt::format("friction angle {:g}°, slopes {:g}° and {:g}°", setup_.phi_deg,
                             setup_.left_deg, setup_.right_deg);
-  in.sentence = result.comparison.verdict.sentence;
+  in.judgement = result.comparison.judgement;
   in.heaps = table();
   const std::size_t base = depths_.size() - 1;
   std::vector<const WedgeMember*> heaps;

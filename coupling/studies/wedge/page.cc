@@ -1,12 +1,14 @@
 #include "coupling/studies/wedge/page.h"
 
+#include "coupling/report/judgement.h"
+
 namespace grainfield::coupling {
 
 Report wedge_report(const WedgeReport& in) {
   Report report;
   report.title = in.title;
   report.subtitle = in.subtitle;
-  report.sections.emplace_back(Text{"", in.sentence, true});
+  add_verdict(report, in.judgement);
   Picture base = curves("Pressure on the base", "x / h (apex at 0)", "-σ_{yy} / (ρ g h)", in.base);
   base.caption =
       "Solid and first: finite elements; Cantelaube's branches have a dip (minus), a plateau "

@@ -5,12 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/judge/judgement.h"
 #include "coupling/report/report.h"
 
 namespace grainfield::coupling {
 
 struct WedgeReport {
-  std::string title, subtitle, sentence;
+  std::string title, subtitle;
+  Judgement judgement;
   std::vector<Frame> base, cuts;        ///< pressure over rho g h against x/h
   std::vector<Map> mobilized, plastic;  ///< with slip lines and borders as their lines
   Table heaps;                          ///< one row each

@@ -109,8 +109,9 @@ void WedgeAnalysis::summarize(StudyResult& out) const {
         "{} heaps, {} with an equilibrium: {} with a dip under the apex, {} with a plateau, {} "
         "with a peak",
         heaps, equilibria, words["dip"], words["plateau"], words["peak"]);
-  out.comparison.verdict.sentence = sentence + ".";
-  out.summary["verdict.sentence"] = out.comparison.verdict.sentence;
+  // No grains here: nothing to support.
+  out.comparison.judgement = {};
+  out.comparison.judgement.findings = {sentence + "."};
 }
 
 void WedgeAnalysis::add_files(StudyResult& out) const {

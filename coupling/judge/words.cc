@@ -1,0 +1,385 @@
+#include "coupling/judge/words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+
+namespace grainfield::coupling {
+namespace {
+
+// A model that misses by more than half of the signal describes nothing, even when others do worse.
+constexpr double kMostMiss = 0.5;
+// A position so far outside of [0, 1] is no share of a way: the data's part along the line that
+// neither model has is as large as half the distance of the two.
+constexpr double kMostBeyond = 0.5;
+constexpr std::size_t kNamed = 3;  // models in a headline
+
+// Of a family; names of models keep their letters.
+std::string capital(std::string text) {
+  if (text.starts_with("the ")) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) out += k + 1 == names.size() ? " and " : ", ";
+    out += names[k];
+  }
+  return out;
+}
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+std::string digits(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "-"; }
+
+const char* subject(const Judgement& j) { return j.measured ? "measurement" : "grains"; }
+const char* verb(const Judgement& j, const char* one, const char* many) {
+  return j.measured ? one : many;
+}
+
+std::string counted(int n, const std::string& noun) {
+  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+// "16 layers", "the errors of one field".
+std::string basis(const Judgement& j) {
+  if (j.errors_from == ErrorsFrom::data && j.realizations < 2) return "one field with errors";
+  return counted(j.realizations, j.noun);
+}
+
+// The families that are judged, each by its nearest model; names of models where all are of one.
+struct Group {
+  std::string name;  // "the finite layer", "osl"
+  const JudgedModel* nearest = nullptr;
+  bool kept = false;    // one of it cannot be distinguished from the nearest
+  bool richer = false;  // only models that contain the best are kept
+};
+
+std::vector<Group> groups_of(const Judgement& j) {
+  const auto family = [](const JudgedModel& m) { return m.family.empty() ? m.name : m.family; };
+  bool several = false;
+  for (const JudgedModel& m : j.models) several |= family(m) != family(j.models.front());
+  std::vector<Group> out;
+  for (const JudgedModel& m : j.models) {
+    if (m.description && j.models.size() > 1) continue;
+    const std::string name = !several                                   ? m.label
+                             : family(m).find(' ') == std::string::npos ? family(m)
+                                                                        : "the " + family(m);
+    auto at = std::find_if(out.begin(), out.end(), [&](const Group& g) { return g.name == name; });
+    if (at == out.end()) at = out.insert(out.end(), Group{name, &m, false, true});
+    if (m.distinguishable == Answer::yes) continue;
+    at->kept = true;
+    const auto& special = m.special_cases;
+    at->richer = at->richer && std::find(special.begin(), special.end(), j.best) != special.end();
+  }
+  return out;
+}
+
+std::string without_errors(const Judgement& j, const std::vector<Group>& groups) {
+  const std::string why =
+      j.equal               ? fmt::format("All {} are equal", counted(j.realizations, j.noun))
+      : j.realizations == 1 ? fmt::format("One {}", j.measured ? "field without errors" : j.noun)
+      : j.realizations == 2
+          ? counted(2, j.noun)
+          : fmt::format("A mean of {} without their values", counted(j.realizations, j.noun));
+  const Group& first = groups.front();
+  if (groups.size() == 1) {
+    return fmt::format("{} cannot test a model: {} misses by {}.", why, first.name,
+                       percent(first.nearest->rel_l2));
+  }
+  return fmt::format("{} cannot distinguish models: {} is nearest ({}), then {} ({}).", why,
+                     first.name, percent(first.nearest->rel_l2), groups[1].name,
+                     percent(groups[1].nearest->rel_l2));
+}
+
+std::string models_headline(const Judgement& j) {
+  const std::vector<Group> groups = groups_of(j);
+  const JudgedModel& best = j.best_model();
+  const JudgedModel& nearest = j.models.front();
+  if (std::min(nearest.rel_l2, best.rel_l2) > kMostMiss && best.agrees() != Answer::yes) {
+    return fmt::format("No model describes the {}: the nearest, {}, misses by {:.0f} % ({}).",
+                       subject(j), nearest.label, 100 * nearest.rel_l2, basis(j));
+  }
+  if (nearest.distinguishable == Answer::unknown) return without_errors(j, groups);
+  const std::string tail = fmt::format("({}, 95 %)", basis(j));
+  if (groups.size() == 1) {
+    return fmt::format("{} {} with the {} {}.", capital(groups.front().name),
+                       best.agrees() == Answer::yes ? "agrees" : "does not agree", subject(j),
+                       tail);
+  }
+  std::vector<std::string> kept;
+  std::vector<const Group*> others;
+  const Group* winner = nullptr;
+  for (const Group& g : groups) {
+    const bool own = g.kept && !g.richer;
+    if (own) kept.push_back(g.name);
+    if (own && winner == nullptr) winner = &g;
+    if (!own) others.push_back(&g);
+  }
+  if (kept.size() == 1) {
+    if (best.agrees() == Answer::yes) {
+      return others.size() == 1
+                 ? fmt::format("The {} {} {}, not {} {}.", subject(j),
+                               verb(j, "supports", "support"), winner->name, others[0]->name, tail)
+                 : fmt::format("The {} {} {}, none of the other {} models {}.", subject(j),
+                               verb(j, "supports", "support"), winner->name, others.size(), tail);
+    }
+    return fmt::format(
+        "{} is nearer to the {} than {} {}.", capital(winner->name), subject(j),
+        others.size() == 1 ? others[0]->name : fmt::format("the other {} models", others.size()),
+        tail);
+  }
+  const std::size_t all = kept.size();
+  if (all > kNamed + 1) {
+    kept.resize(kNamed);
+    kept.push_back(fmt::format("{} more", all - kNamed));
+  }
+  std::string out = fmt::format("{} cannot be distinguished {}", capital(joined(kept)), tail);
+  if (!others.empty()) {
+    out += others.size() == 1 ? fmt::format("; {} is worse", others[0]->name)
+                              : fmt::format("; {} others are worse", others.size());
+  }
+  return out + ".";
+}
+
+std::string position_line(const Judgement& j) {
+  const Position& p = j.position;
+  if (std::isnan(p.value)) return "";
+  std::string out = fmt::format(
+      "On the line from {} (0) to {} (1) the {} {} at {}.", p.from, p.to, subject(j),
+      verb(j, "is", "are"),
+      std::isfinite(p.error) ? with_error(p.value, p.error) : fmt::format("{:.2f}", p.value));
+  if (p.value < -kMostBeyond || p.value > 1 + kMostBeyond) {
+    out += fmt::format(
+        " They differ less from each other than the {} from either: the number only gives the side "
+        "(beyond both).",
+        subject(j));
+  }
+  return out;
+}
+
+// "realizations", "layers"; of a single field others like it.
+std::string many(const Judgement& j) {
+  return j.errors_from == ErrorsFrom::data && j.realizations < 2 ? "fields like this one"
+                                                                 : j.noun + "s";
+}
+
+std::string range_of(const Power& p) {
+  if (std::isinf(p.most)) return fmt::format("{:.0f} or more", std::ceil(p.least));
+  return fmt::format("{:.0f} to {:.0f}", std::ceil(p.least), std::ceil(p.most));
+}
+
+std::string power_line(const Judgement& j) {
+  const JudgedModel* rival = j.find(j.rival);
+  if (rival == nullptr || std::isnan(rival->power.realizations)) return "";
+  const Power& p = rival->power;
+  if (p.same) {
+    return fmt::format(
+        "No number of {} would distinguish {} and {}: they are the same stress here.", many(j),
+        j.best, j.rival);
+  }
+  if (rival->distinguishable == Answer::yes) return "";
+  if (std::isinf(p.realizations)) {
+    return fmt::format("{} and {} are equally far from the {}: no number of {} is foreseen.",
+                       j.best, j.rival, subject(j), many(j));
+  }
+  return fmt::format(
+      "To distinguish {} and {} at 95 % with a power of 80 % takes about {:.0f} {} ({} within one "
+      "standard error).",
+      j.best, j.rival, std::ceil(p.realizations), many(j), range_of(p));
+}
+
+// What the judgement says at other kernel widths: a line for each kind of answer.
+std::vector<std::string> width_lines(const Judgement& j) {
+  std::vector<std::string> same, none, out;
+  for (const AtWidth& at : j.widths) {
+    const std::string width = fmt::format("{:g}", at.diameters);
+    if (!at.why.empty()) {
+      none.push_back(width);
+    } else if (at.best == j.best && at.distinguishable == j.distinguishable &&
+               at.agrees == j.best_model().agrees()) {
+      same.push_back(width);
+    } else {
+      out.push_back(
+          fmt::format("At a kernel width of {} diameters the best model is {}, distinguishable: "
+                      "{}, agrees: {}.",
+                      width, at.best, text_of(at.distinguishable), text_of(at.agrees)));
+    }
+  }
+  if (!none.empty()) {
+    out.push_back(fmt::format("Kernel widths of {} diameters leave too few values.", joined(none)));
+  }
+  if (!same.empty()) {
+    out.push_back(
+        fmt::format("The verdict is the same at kernel widths of {} diameters.", joined(same)));
+  }
+  return out;
+}
+
+std::string equations_line(const Judgement& j) {
+  if (j.equations.empty()) return "";
+  if (j.equations == "not distinguishable") {
+    return "Elliptic and hyperbolic equations cannot be distinguished.";
+  }
+  return fmt::format("The response is {}.", j.equations);
+}
+
+}  // namespace
+
+std::string with_error(double value, double error) {
+  if (!std::isfinite(value)) return "-";
+  if (!std::isfinite(error)) return fmt::format("{:.3g}", value);
+  if (!(error > 0)) return fmt::format("{:.3g} ± 0", value);
+  const int magnitude = static_cast<int>(std::floor(std::log10(error)));
+  if (magnitude < -4) return fmt::format("{:.1e} ± {:.1e}", value, error);
+  const int places = std::clamp(1 - magnitude, 0, 6);
+  return fmt::format("{:.{}f} ± {:.{}f}", value, places, error, places);
+}
+
+std::vector<std::string> headlines(const Judgement& j) {
+  std::vector<std::string> out = j.findings;
+  if (!j.models.empty()) out.push_back(models_headline(j));
+  return out;
+}
+
+std::string agreement_line(const Judgement& j) {
+  if (j.models.empty()) return "";
+  const JudgedModel& best = j.best_model();
+  if (best.agrees() == Answer::unknown) {
+    return j.errors_from == ErrorsFrom::realizations
+               ? fmt::format("{} do not show whether a model agrees.",
+                             capital(counted(j.realizations, j.noun)))
+               : std::string("Without errors it is unknown whether a model agrees.");
+  }
+  const std::string level =
+      fmt::format("a true model exceeds {} in 1 of 100 ensembles", digits(best.chance));
+  if (best.agrees() == Answer::yes) {
+    const auto supported = std::count_if(j.models.begin(), j.models.end(), [](const auto& m) {
+      return m.supported() == Answer::yes;
+    });
+    const std::string own = fmt::format("misfit {}, and {}", digits(best.misfit), level);
+    return supported > 1 ? fmt::format("{} of the models agree within the errors: {} has {}.",
+                                       supported, best.label, own)
+                         : fmt::format("{} agrees within the errors: {}.", best.label, own);
+  }
+  const bool none = std::none_of(j.models.begin(), j.models.end(), [](const JudgedModel& m) {
+    return m.agrees() == Answer::yes && !m.description;
+  });
+  if (none) {
+    return fmt::format("No model agrees within the errors: the misfit of {} is {}, and {}.",
+                       best.label, digits(best.misfit), level);
+  }
+  return fmt::format("{} does not agree within the errors: its misfit is {}, and {}.", best.label,
+                     digits(best.misfit), level);
+}
+
+std::string sentence(const Judgement& j) {
+  std::vector<std::string> lines = headlines(j);
+  if (std::string line = agreement_line(j); !line.empty()) lines.push_back(std::move(line));
+  return fmt::format("{}", fmt::join(lines, " "));
+}
+
+std::vector<std::string> note_lines(const Judgement& j) {
+  std::vector<std::string> out;
+  for (std::string line : {equations_line(j), position_line(j), power_line(j)}) {
+    if (!line.empty()) out.push_back(std::move(line));
+  }
+  for (std::string& line : width_lines(j)) out.push_back(std::move(line));
+  out.insert(out.end(), j.notes.begin(), j.notes.end());
+  return out;
+}
+
+JudgementTable power_table(const Judgement& j) {
+  JudgementTable out;
+  out.header = {"model", many(j) + " needed", "within one standard error", "distinguishable now"};
+  for (const JudgedModel& m : j.models) {
+    if (m.name == j.best) continue;
+    const Power& p = m.power;
+    const std::string number = p.same                       ? "none: the same stress here"
+                               : std::isnan(p.realizations) ? "unknown"
+                               : std::isinf(p.realizations)
+                                   ? "none is foreseen"
+                                   : fmt::format("{:.0f}", std::ceil(p.realizations));
+    const bool shown = !p.same && std::isfinite(p.least);
+    out.rows.push_back({m.label, number, shown ? range_of(p) : "-", text_of(m.distinguishable)});
+  }
+  return out;
+}
+
+JudgementTable table_of(const Judgement& j) {
+  JudgementTable out;
+  if (j.models.empty()) return out;
+  const auto any = [&](auto&& has) { return std::any_of(j.models.begin(), j.models.end(), has); };
+  struct Column {
+    std::string head, meaning;
+    bool shown;
+    std::function<std::string(const JudgedModel&)> cell;
+  };
+  const std::vector<Column> columns{
+      {"model", "", true, [](const auto& m) { return m.label; }},
+      {"equations", "", any([](const auto& m) { return !m.equations.empty(); }),
+       [](const auto& m) { return m.equations; }},
+      {"free", "Free: numbers that were fitted.", any([](const auto& m) { return m.free > 0; }),
+       [](const auto& m) { return fmt::format("{}", m.free); }},
+      {"misfit",
+       "Misfit: squared difference over what the errors make of a true model's; a true model "
+       "exceeds the number beside it in 1 of 100 ensembles.",
+       any([](const auto& m) { return std::isfinite(m.misfit); }),
+       [](const auto& m) { return digits(m.misfit); }},
+      {"chance", "", any([](const auto& m) { return std::isfinite(m.chance); }),
+       [](const auto& m) { return digits(m.chance); }},
+      {"relative L2", "", true,
+       [](const auto& m) { return std::isfinite(m.rel_l2) ? percent(m.rel_l2) : "-"; }},
+      {"behind",
+       "Behind: squared difference from realizations left out, less the nearest model's, in parts "
+       "per thousand of the signal's square.",
+       any([](const auto& m) { return std::isfinite(m.behind_error); }),
+       [](const auto& m) {
+         return m.behind == 0 && m.behind_error == 0
+                    ? std::string("nearest")
+                    : with_error(1e3 * m.behind, 1e3 * m.behind_error);
+       }},
+      {"behind, heights", "Heights: the same on heights left out.",
+       any([](const auto& m) { return std::isfinite(m.heights_behind); }),
+       [](const auto& m) {
+         return m.behind == 0 && m.behind_error == 0
+                    ? std::string("nearest")
+                    : with_error(1e3 * m.heights_behind, 1e3 * m.heights_error);
+       }},
+      {"distinguishable", "Distinguishable: behind the nearest by more than chance.",
+       any([](const auto& m) { return m.distinguishable != Answer::unknown; }),
+       [](const auto& m) { return text_of(m.distinguishable); }},
+      {"chi2 + 2 free, behind",
+       "chi2 + 2 free: Akaike's criterion less the nearest's; above 10 it counts.",
+       any([](const auto& m) { return std::isfinite(m.aic_behind); }),
+       [](const auto& m) {
+         return std::isfinite(m.aic_behind) ? fmt::format("{:.1f}", m.aic_behind) : "-";
+       }},
+      {"agrees", "Agrees: the misfit is within chance.",
+       any([](const auto& m) { return m.agrees() != Answer::unknown; }),
+       [](const auto& m) { return text_of(m.agrees()); }},
+      {"supported", "Supported: agrees, and cannot be distinguished from the nearest.", true,
+       [](const auto& m) {
+         return m.description ? "no: a description" : std::string(text_of(m.supported()));
+       }}};
+  for (const Column& c : columns) {
+    if (!c.shown) continue;
+    out.header.push_back(c.head);
+    if (!c.meaning.empty()) out.note += (out.note.empty() ? "" : " ") + c.meaning;
+  }
+  for (const JudgedModel& m : j.models) {
+    auto& row = out.rows.emplace_back();
+    for (const Column& c : columns) {
+      if (c.shown) row.push_back(c.cell(m));
+    }
+  }
+  return out;
+}
+
+}  // namespace grainfield::coupling

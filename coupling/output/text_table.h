@@ -1,0 +1,17 @@
+// Tables of text for Markdown and LaTeX.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// Columns are padded to one width, so that the text is a table on a terminal too.
+std::string markdown_table(const std::vector<std::string>& header,
+                           const std::vector<std::vector<std::string>>& rows);
+/// A tabular environment with left-aligned columns.
+std::string latex_table(const std::vector<std::string>& header,
+                        const std::vector<std::vector<std::string>>& rows);
+/// The text with LaTeX's special characters escaped; "+-" and "±" become \pm.
+std::string escape_latex(const std::string& text);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,152 @@
+// docs/guide.md: every command in it runs, in order, and says what the page says; so does its
+// script of Python, where the module is. The commands of docs/experiments.md run on tables that
+// models fill.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "coupling/output/tables.h"
+#include "tests/coupling/guide_scene.h"
+#include "tests/coupling/program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+using ::testing::StartsWith;
+
+struct Page {
+  std::string said;    ///< what its commands wrote to standard output
+  std::string python;  ///< its script
+  int commands = 0;
+};
+
+/// Runs the indented commands of a page in order; its block ```toml is layer.toml, a block
+/// ```csv NAME the file NAME as printed.
+Page read_and_run(const Folder& folder, const std::string& page) {
+  Page out;
+  std::istringstream text(testing::read_text(test::kDocs + page));
+  std::string line, block, kind;
+  const std::string start = "    grainfield ";
+  while (std::getline(text, line)) {
+    if (line.compare(0, 3, "```") == 0) {
+      if (kind == "toml") folder.write("layer.toml", block);
+      if (kind == "python") out.python += block;
+      if (kind.starts_with("csv ")) folder.write(kind.substr(4), block);
+      kind = line.substr(3);
+      block.clear();
+    } else if (!kind.empty()) {
+      block += line + "\n";
+    } else if (line.compare(0, start.size(), start) == 0) {
+      ++out.commands;
+      const Output done = program(line.substr(start.size()), "cd " + folder.path() + " &&");
+      EXPECT_EQ(done.code, 0) << line << "\n" << done.err;
+      out.said += done.out;
+    }
+  }
+  return out;
+}
+
+double figure(const Summary& s, const std::string& key) { return std::get<double>(s.at(key)); }
+
+TEST(Guide, EveryCommandSaysWhatThePageSays) {
+  const Folder folder;
+  const Page page = read_and_run(folder, "guide.md");
+  EXPECT_GE(page.commands, 17);
+  const std::string guide = testing::read_text(test::kDocs + "guide.md");
+  for (const char* words : {"osl, cantelaube_zero, bcc and 3 more cannot be distinguished (4 "
+                            "piles, 95 %); 3 others are "
+                            "worse."}) {
+    EXPECT_THAT(guide, HasSubstr(words));
+    EXPECT_THAT(page.said, HasSubstr(words));
+  }
+  EXPECT_THAT(page.said,
+              HasSubstr("The finite layer and the half plane cannot be distinguished (4 layers"));
+  // The measurement was made of osl: its constants come back, and bcc does not stand.
+  const Summary measured = read_summary(folder / "measured/summary.json");
+  EXPECT_NEAR(figure(measured, "fit.osl.eta"), 0.74, 3 * figure(measured, "fit.osl.eta.error"));
+  EXPECT_NEAR(figure(measured, "fit.osl.mu"), -0.31, 3 * figure(measured, "fit.osl.mu.error"));
+  EXPECT_EQ(std::get<std::string>(measured.at("fit.osl.supported")), "yes");
+  EXPECT_EQ(std::get<std::string>(measured.at("fit.bcc.supported")), "no");
+  EXPECT_NEAR(figure(measured, "fit.bcc.aic_behind"), 960, 0.5);
+  const std::string fits = testing::read_text(folder / "measured/fits.md");
+  for (const auto& [page_says, file_says] : {std::pair{"0.735 ± 0.010", "| eta | 0.735 +- 0.010 |"},
+                                             {"−0.308 ± 0.026", "| mu | -0.308 +- 0.026 |"},
+                                             {"χ²/dof 7.42", "| bcc | 0 | 7.42 |"}}) {
+    EXPECT_THAT(guide, HasSubstr(page_says));
+    EXPECT_THAT(fits, HasSubstr(file_says));
+  }
+  // The three disks of the page are at rest, and their floor carries them.
+  EXPECT_THAT(page.said, HasSubstr("three: 2D, 3 grains (0 fixed), 4 contacts (2 with walls)"));
+  EXPECT_THAT(page.said, HasSubstr("weight carried by walls and fixed grains: 1\n"));
+  EXPECT_THAT(testing::read_text(folder / "three.csv"), StartsWith("x (m),y (m),"));
+  // The lines of the table on the page are those of the file.
+  const std::string table = testing::read_text(folder / "samples/measured.csv");
+  for (const char* line : {"x (mm),component,value (Pa),error (Pa)\n", "-120,pressure,199.7,4.1\n",
+                           "-120,shear,-74.1,1.5\n"}) {
+    EXPECT_THAT(guide, HasSubstr(line));
+    EXPECT_THAT(table, HasSubstr(line));
+  }
+  EXPECT_THAT(page.python, HasSubstr("gf.fit("));
+  const std::string build = testing::fs::path(GRAINFIELD_PROGRAM).parent_path().string();
+  if (std::system(("ls " + build + "/python/grainfield/_core*.so > /dev/null 2>&1").c_str()) != 0) {
+    return;  // the module is not built here
+  }
+  folder.write("guide.py", page.python);
+  const std::string python =
+      "cd " + folder.path() + " && PYTHONPATH=" + build +
+      "/python MPLBACKEND=Agg /usr/bin/python3 -W ignore guide.py > python.out 2>&1";
+  EXPECT_EQ(std::system(python.c_str()), 0) << testing::read_text(folder / "python.out");
+  EXPECT_THAT(testing::read_text(folder / "python.out"), HasSubstr("cannot be distinguished"));
+}
+
+// A table for a command of experiments.md: positions over h or in mm, made up.
+std::string table(bool heap, double height, double slope, double rho_g,
+                  const std::string& unit = "kPa") {
+  std::string out =
+      fmt::format("x ({}),component,value ({}),error ({})\n", heap ? "mm" : "h", unit, unit);
+  for (int k = -8; k <= 8; ++k) {
+    const double share = k / 9.0;
+    const double foot = height / std::tan(slope * std::numbers::pi / 180);
+    const double value =
+        heap ? 0.8e-3 * rho_g * height * (1 - std::fabs(share)) : 0.8 - 0.1 * std::abs(k);
+    out += fmt::format("{},pressure,{},{}\n", heap ? 1000 * share * foot : share * 2, value,
+                       heap ? 0.02 * value + 0.001 : 0.05);
+  }
+  return out;
+}
+
+TEST(Experiments, EveryCommandRuns) {
+  const Folder folder;
+  folder.write("geng.csv", table(false, 1, 30, 0, "F/h"));
+  folder.write("serero_dense.csv", table(false, 1, 30, 0, "F/h2"));
+  folder.write("mueggenburg.csv", table(false, 1, 30, 0, "F/h2"));
+  folder.write("smid_novosad.csv", table(true, 0.6, 32.6, 15000));
+  folder.write("vanel_point.csv", table(true, 0.08, 30, 15000));
+  folder.write("vanel_rain.csv", table(true, 0.08, 30, 15000));
+  folder.write("ai.csv", table(true, 0.3, 28, 20000));
+  folder.write("apex.csv", "x,y,z\n0,0,-1\n");
+  const Page page = read_and_run(folder, "experiments.md");
+  EXPECT_EQ(page.commands, 19);
+  // The dips of cone_fpa, cone_osl by its default and with two mu, and cone_bcc, as in the table.
+  std::vector<double> dips;
+  const std::regex ratio("# dip_ratio = ([0-9.]+)");
+  for (auto at = std::sregex_iterator(page.said.begin(), page.said.end(), ratio);
+       at != std::sregex_iterator(); ++at) {
+    dips.push_back(std::round(100 * (1 - std::stod((*at)[1]))));
+  }
+  EXPECT_THAT(dips, ::testing::ElementsAre(41, 26, 20, 30, 0));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

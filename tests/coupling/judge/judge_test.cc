@@ -1,0 +1,202 @@
+// The judge on made evidence: what it concludes, what is said, and how many realizations more.
+#include "coupling/judge/judge.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/algorithm/string/split.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "coupling/judge/words.h"
+#include "coupling/output/judgement.h"
+#include "coupling/output/text_table.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr int kValues = 12;
+
+Candidate candidate(const std::string& name, double value, int free = 0) {
+  Candidate out;
+  out.model.name = out.model.label = name;
+  out.model.free = free;
+  out.model.misfit = 1;
+  out.model.chance = 2;
+  out.model.rel_l2 = std::fabs(value - 1);
+  out.forecast = Eigen::MatrixXd::Constant(kValues, 1, value);
+  return out;
+}
+
+// Realizations about 1.
+Evidence evidence(int realizations, double noise, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Evidence out;
+  out.samples.resize(kValues, realizations);
+  for (double& v : out.samples.reshaped()) v = 1 + noise * normal(random);
+  out.errors_from = ErrorsFrom::realizations;
+  out.realizations = realizations;
+  return out;
+}
+
+std::size_t words_in(const std::string& text) {
+  std::vector<std::string> words;
+  boost::split(words, text, [](char c) { return c == ' '; });
+  return words.size();
+}
+
+TEST(Judge, NamesTheFewestFreeNumbersOfThoseThatCannotBeDistinguished) {
+  const Judgement j = judge(evidence(8, 0.1), {candidate("rich", 1, 2), candidate("poor", 1.001, 0),
+                                               candidate("wrong", 1.5, 0)});
+  EXPECT_EQ(j.best, "poor");
+  EXPECT_EQ(j.find("rich")->distinguishable, Answer::no);
+  EXPECT_EQ(j.find("wrong")->distinguishable, Answer::yes);
+  EXPECT_EQ(j.distinguishable, Answer::no);
+  EXPECT_THAT(headlines(j).front(), HasSubstr(" and "));
+  EXPECT_THAT(headlines(j).front(), HasSubstr("cannot be distinguished (8 realizations, 95 %)"));
+}
+
+TEST(Judge, AModelThatContainsTheBestDoesNotOutbidIt) {
+  Candidate rich = candidate("rich", 1, 2);
+  rich.model.special_cases = {"poor"};
+  const Judgement j =
+      judge(evidence(8, 0.1), {rich, candidate("poor", 1.001), candidate("wrong", 1.5)});
+  EXPECT_EQ(j.best, "poor");
+  EXPECT_EQ(j.distinguishable, Answer::yes);
+  EXPECT_EQ(headlines(j).front(),
+            "The grains support poor, none of the other 2 models (8 realizations, 95 %).");
+}
+
+TEST(Judge, TellsEquationsOfWhatIsLeft) {
+  std::vector<Candidate> all{candidate("a", 1), candidate("b", 1.0005), candidate("c", 1.5)};
+  all[0].model.equations = "elliptic";
+  all[1].model.equations = "hyperbolic";
+  all[2].model.equations = "hyperbolic";
+  EXPECT_EQ(judge(evidence(8, 0.1), all).equations, "not distinguishable");
+  all[1].model.equations = "elliptic";
+  EXPECT_EQ(judge(evidence(8, 0.1), all).equations, "elliptic");
+  Evidence one = evidence(1, 0.1);
+  one.errors_from = ErrorsFrom::nothing;
+  EXPECT_EQ(judge(one, all).equations, "not distinguishable");
+}
+
+TEST(Judge, WhatDisagreesIsNearerAndNotSupported) {
+  std::vector<Candidate> all{candidate("half plane", 1.5), candidate("finite layer", 1.1)};
+  for (Candidate& c : all) c.model.misfit = 3.7;
+  for (Candidate& c : all) c.model.chance = 3.3;
+  const Judgement j = judge(evidence(16, 0.05), all);
+  EXPECT_EQ(j.find("finite layer")->supported(), Answer::no);
+  EXPECT_EQ(
+      sentence(j),
+      "The finite layer is nearer to the grains than the half plane (16 realizations, 95 %). No "
+      "model agrees within the errors: the misfit of finite layer is 3.7, and a true model "
+      "exceeds 3.3 in 1 of 100 ensembles.");
+}
+
+// Every kind of first line, with names as the shipped models have them.
+TEST(Judge, FirstLinesHaveAtMost25Words) {
+  const std::vector<std::string> names{"fe_elastic_layer",      "orthotropic_half_plane",
+                                       "osl_layer_absorbing",   "cantelaube_continuous",
+                                       "cantelaube_asymmetric", "hydrostatic"};
+  for (const int realizations : {1, 2, 8}) {
+    for (const double noise : {0.02, 5.0}) {
+      for (std::size_t models = 1; models <= names.size(); ++models) {
+        for (const double misfit : {1.0, 3.0}) {
+          std::vector<Candidate> all;
+          for (std::size_t k = 0; k < models; ++k) {
+            all.push_back(candidate(names[k], 1.1 + 0.05 * static_cast<double>(k)));
+            all.back().model.family = k < 2 ? "finite layer" : "";
+            all.back().model.misfit = misfit;
+          }
+          Evidence e = evidence(realizations, noise);
+          if (realizations == 1) e.errors_from = ErrorsFrom::nothing;
+          for (const std::string& line : headlines(judge(e, all))) {
+            EXPECT_LE(words_in(line), 25U) << line;
+            EXPECT_EQ(line.back(), '.') << line;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Judge, EveryOutputShowsTheSameVerdict) {
+  const Judgement j = judge(evidence(8, 0.1), {candidate("a_b", 1), candidate("c", 1.5)});
+  const std::string first = headlines(j).front(), second = agreement_line(j);
+  const std::string text = judgement_text(j), latex = judgement_latex(j);
+  EXPECT_THAT(text, StartsWith(first + "\n\n" + second + "\n\n| model "));
+  EXPECT_THAT(latex, StartsWith(escape_latex(first) + "\n\n" + escape_latex(second)));
+  const auto json = nlohmann::json::parse(judgement_json(j));
+  EXPECT_EQ(json["headlines"][0], first);
+  EXPECT_EQ(json["agreement"], second);
+  EXPECT_EQ(json["models"][0]["supported"], "yes");
+  EXPECT_EQ(json["models"][1]["supported"], "no");
+  Summary summary;
+  add_judgement(summary, j);
+  EXPECT_EQ(std::get<std::string>(summary.at("verdict.sentence")), first + " " + second);
+  EXPECT_EQ(std::get<std::string>(summary.at("verdict.best_model")), "a_b");
+}
+
+// What the number promises: of ensembles of that size 80 in 100 find the difference.
+TEST(Power, RealizationsFindTheDifferenceIn80Of100) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (const double size : {0.3, 0.7, 1.5}) {
+    const int n = static_cast<int>(std::ceil(realizations_for_power(size, 1)));
+    const double t = least_errors(n);
+    int found = 0;
+    constexpr int kTrials = 4000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      double sum = 0, squares = 0;
+      for (int k = 0; k < n; ++k) {
+        const double v = size + normal(random);
+        sum += v;
+        squares += v * v;
+      }
+      const double mean = sum / n, error = std::sqrt((squares / n - mean * mean) / (n - 1));
+      found += mean > t * error;
+    }
+    // A whole number of realizations has a power a little above; 0.025: four standard errors.
+    EXPECT_GT(found, (0.8 - 0.025) * kTrials) << size << " " << n;
+    EXPECT_LT(found, (n < 8 ? 0.95 : 0.85) * kTrials) << size << " " << n;
+  }
+  EXPECT_TRUE(std::isinf(realizations_for_power(0, 1)));
+  EXPECT_EQ(realizations_for_power(1, 0), 3);
+}
+
+TEST(Power, IsForeseenFromFewAndSaidWhereModelsAreNotDistinguished) {
+  const std::vector<Candidate> two{candidate("a", 1), candidate("b", 1.05)};
+  // D = sum of (s - b)^2 - (s - a)^2 over 12 values: mean 12 x 0.05^2, deviation 2 x 0.05 x noise
+  // x sqrt(12).
+  const double noise = 0.6, mean = kValues * 0.05 * 0.05,
+               deviation = 2 * 0.05 * noise * std::sqrt(kValues);
+  const double truth = realizations_for_power(mean, deviation);
+  EXPECT_NEAR(judge(evidence(40000, noise), two).find("b")->power.realizations / truth, 1, 0.15);
+  int inside = 0, said = 0;
+  constexpr int kTrials = 200;
+  for (unsigned seed = 1; seed <= kTrials; ++seed) {
+    const Judgement j = judge(evidence(16, noise, seed), two);
+    const Power& power = j.find(j.rival)->power;
+    inside += power.least <= truth && truth <= power.most;
+    if (j.distinguishable == Answer::yes) continue;
+    said += note_lines(j).back().find("with a power of 80 % takes about ") != std::string::npos;
+  }
+  // One standard error either side.
+  EXPECT_GT(inside, 0.55 * kTrials);
+  EXPECT_GT(said, kTrials / 2);
+}
+
+TEST(Power, NoNumberWouldTellOneStressFromItself) {
+  const Judgement j = judge(evidence(8, 0.1), {candidate("a", 1), candidate("b", 1 + 1e-9)});
+  EXPECT_TRUE(j.find(j.rival)->power.same);
+  EXPECT_THAT(note_lines(j).back(), HasSubstr("they are the same stress here"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling

@@ -1,0 +1,87 @@
+// Hard disks that turn soft through the real program: at rest, pictures, the same bits, refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "coupling/output/tables.h"
+#include "coupling/run/summary_keys.h"
+#include "tests/coupling/check_scene.h"
+#include "tests/coupling/program.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using testing::Folder;
+using ::testing::HasSubstr;
+using testing::Output;
+using testing::program;
+
+constexpr const char* kRain = R"(title = "rain"
+study = "hard-to-soft"
+[switch]
+columns = 5
+rows = 4
+[ensemble]
+realizations = 2
+)";
+
+double number(const Summary& summary, const std::string& key) {
+  const auto at = summary.find(key);
+  if (at == summary.end()) {
+    ADD_FAILURE() << "no " << key;
+    return 0;
+  }
+  return std::get<double>(at->second);
+}
+
+TEST(HardToSoftRun, RestsSoftAndClosesItsBalance) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", kRain);
+  const Output out = program("run " + file + " -o " + (folder / "out"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary s = read_summary(folder / "out/summary.json");
+  EXPECT_NO_THROW(require_documented(s));
+  EXPECT_EQ(number(s, "dem.grains"), 20);
+  EXPECT_EQ(number(s, "switch.at_rest"), 1);
+  EXPECT_GT(number(s, "switch.soft_share"), 0.85);
+  EXPECT_NEAR(number(s, "base.weight_ratio"), 1, 0.03);
+  EXPECT_GT(number(s, "switch.collisions"), 20);
+  EXPECT_GT(number(s, "switch.lost_impulses"), number(s, "switch.switched"));
+  EXPECT_LT(number(s, "switch.balance_error"), 1e-7);
+  EXPECT_THAT(testing::read_text(folder / "out/history.csv"), HasSubstr("time,soft,kinetic"));
+  const std::string page = testing::read_text(folder / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("Soft grains, t = "));
+  EXPECT_THAT(page, HasSubstr("Network of forces"));
+}
+
+// Contents of all outputs: on one thread and on three, and after stops.
+TEST(HardToSoftRun, SameBitsOnAnyThreadsAndAfterStops) {
+  const Folder folder;
+  const std::string file =
+      folder.write("x.toml", std::string(kRain) + "[output]\nreport = false\n");
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "one") + " --threads 1").code, 0);
+  const auto one = testing::contents(folder / "one");
+  EXPECT_GT(one.size(), 4U);
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "three") + " --threads 3").code, 0);
+  EXPECT_EQ(testing::contents(folder / "three"), one);
+  const std::string run = "run " + file + " -o " + (folder / "k") + " ";
+  int stops = 0, code = 130;
+  for (long at = 40; code == 130 && stops < 60; at += 61, ++stops) {
+    code =
+        program(run + (stops > 0 ? "--resume" : "") + " --stop-after-steps " + std::to_string(at))
+            .code;
+  }
+  EXPECT_EQ(code, 0);
+  EXPECT_GT(stops, 2);
+  EXPECT_EQ(testing::contents(folder / "k"), one);
+}
+
+TEST(HardToSoftRun, MistakesAreNamed) {
+  const Folder folder;
+  const Output out = program("check " + folder.write("x.toml", std::string(kRain)) +
+                             " --set switch.restitution=1.5");
+  EXPECT_EQ(out.code, 2);
+  EXPECT_THAT(out.err, HasSubstr("switch.restitution: found 1.5, allowed: 0 to 1"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling
