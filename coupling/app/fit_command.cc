@@ -84,8 +84,8 @@ void add_fit(CLI::App& app, Action& action) {
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       say("{}\n{}\n", judgement_text(outcome.judgement), outcome.constants);
-      if (!outcome.coverage.empty()) say("{}\n", outcome.coverage);
       if (!outcome.carried.empty()) say("{}\n", outcome.carried);
+      if (!outcome.coverage.empty()) say("{}\n", outcome.coverage);
       say("fitted to {}: {}\nreport: {}/report.html\n", shown(outcome.packings), outcome.note,
           printable_name(wanted.folder));
       return 0;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
+#include "coupling/app/progress_line.h"
 #include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
 #include "coupling/import/format.h"
@@ -122,15 +124,24 @@ void show(const ImportedSnapshot& imported, const std::string& units, bool defau
       s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls, s.walls.size());
   if (s.cell.is_periodic()) say("  {}\n", cell_text(s.cell));
   const GrainSizes sizes = grain_sizes(s);
-  const std::string read_as =
-      units == "m" ? "SI" : fmt::format("SI, lengths, velocities and volumes of {}", units);
+  const std::string read_as = units == "m" || units == "si" ? "SI"
+                              : parse_unit_system(units)->lengths_only
+                                  ? fmt::format("SI, lengths, velocities and volumes of {}", units)
+                                  : units;
   say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as {})\n", sizes.diameter,
       sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3", read_as);
   const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   for (const std::string& text : imported.warnings) warn(text);
+  for (const std::string& text : imported.notes) say("  {}\n", text);
   if (imported.left_out > 0)
     say("  left out: {} contacts across periodic boundaries\n", imported.left_out);
+  if (imported.idle > 0)
+    say("  left out: {} pairs that bear no force and do not touch (gaps)\n", imported.idle);
+  if (imported.twice > 0)
+    say("  {} contacts stand there in both directions: each is kept once\n", imported.twice);
+  if (imported.forceless > 0)
+    say("  {} contacts overlap and bear no force: kept\n", imported.forceless);
   say("  gravity: {:g} {:g} {:g} m/s2{}\n", s.gravity.x(), s.gravity.y(), s.gravity.z(),
       default_gravity ? " (default; --gravity changes it)" : "");
   if (s.contacts.empty()) return;
@@ -161,17 +172,19 @@ std::unique_ptr<FileLock> lock_for_adding(const std::string& output) {
 }  // namespace
 
 void add_import(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("import", "packings of LAMMPS, LIGGGHTS, YADE or CSV as snapshots");
+  auto* command = app.add_subcommand(
+      "import", "packings of LAMMPS, LIGGGHTS, YADE, MercuryDPM, VTK or CSV as snapshots");
   auto given = std::make_shared<Given>();
   ImportOptions& o = given->options;
   command->add_option("files", o.files, "grains and contacts (walls): told apart by what they hold")
       ->required();
-  command->add_option("--from", o.format, "lammps | liggghts | yade | csv")->required();
+  command->add_option("--from", o.format, "lammps | liggghts | yade | csv | mercury | vtk")
+      ->required();
   add_output(*command, given->output, "SNAPSHOT.h5")->required();
   command->add_option("--units", o.units,
                       "m (default) | cm | mm | um: of the files' lengths, with velocities and "
-                      "volumes; a column of a CSV table may name its own, \"x (mm)\"");
+                      "volumes; cgs | micro | nano: of all numbers (LAMMPS' sets); a column of a "
+                      "CSV table may name its own, \"x (mm)\"");
   command->add_flag("--add", given->add, "add to SNAPSHOT.h5 instead of replacing it");
   command
       ->add_option(
@@ -208,7 +221,7 @@ void add_import(CLI::App& app, Action& action) {
   command->callback([=, &action] {
     action = [=] {
       parse(*given);
-      const ImportOptions& options = given->options;
+      ImportOptions& options = given->options;
       require_other_file("-o", given->output, options.files);
       require_ending("-o", given->output, {".h5", ".hdf5"}, "HDF5");
       // Who adds reads first what is there: two of them at once would each lose the other's.
@@ -223,7 +236,16 @@ void add_import(CLI::App& app, Action& action) {
       std::set<std::string> groups;
       if (given->add && fs::exists(given->output))
         for (const auto& group : dem::list_snapshots(given->output)) groups.insert(group);
+      ProgressLine progress(false);
+      const auto start = std::chrono::steady_clock::now();
+      options.progress = [&](const char* phase, std::size_t done, std::size_t all) {
+        // What is done at once needs no word.
+        const auto patience = std::chrono::seconds(2);
+        if (all > 1 && std::chrono::steady_clock::now() - start > patience)
+          progress.show([&] { return fmt::format("{}: {} of {}", phase, done, all); });
+      };
       import_snapshots(options, [&](ImportedSnapshot&& imported) {
+        progress.end();
         std::string& group = imported.group;
         if (group.front() != '/') group.insert(group.begin(), '/');
         for (const std::string& there : groups)

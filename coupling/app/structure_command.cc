@@ -9,6 +9,7 @@
 #include "coupling/files/average_files.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
+#include "coupling/structure/contact_geometry.h"
 #include "coupling/structure/packing_structure.h"
 #include "coupling/system/printable.h"
 
@@ -114,7 +115,10 @@ void add_structure(CLI::App& app, Action& action) {
       for (const auto& name : snapshots) {
         const std::string inner =
             snapshots.size() > 1 ? fmt::format("snapshot_{:03}/", number++) : "";
-        show(name.file + ":" + name.group, dem::read_snapshot(name.file, name.group),
+        std::size_t idle = 0;
+        const auto held = snapshot_of(name, &idle);
+        if (idle > 0) note("{}:{}: {}", name.file, name.group, idle_text(idle));
+        show(name.file + ":" + name.group, *held,
              results ? results->staging(inner) + (inner.empty() ? "/" : "") : "");
       }
       if (results) note_gone(*folder, results->publish());

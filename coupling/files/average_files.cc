@@ -23,6 +23,7 @@
 #include "coupling/files/placement.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/import/packing_warnings.h"
+#include "coupling/structure/contact_geometry.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -167,8 +168,10 @@ struct Extents {
 };
 
 // What makes the averages of states mean nothing, or something else than their user thinks.
-void add_warnings(const SnapshotName& name, const dem::Snapshot& s, PackingWarnings& out) {
+void add_warnings(const SnapshotName& name, const dem::Snapshot& s, std::size_t idle,
+                  PackingWarnings& out) {
   const std::string packing = name.file + ":" + name.group;
+  out.add(2, packing, idle_text(idle));
   if (s.contacts.empty()) {
     out.add(0, packing, "has no contacts: stress and fabric are 0");
   } else {
@@ -186,7 +189,8 @@ Extents measure(std::vector<Item>& items, const AverageRequest& request,
       wanted.empty() || std::find(wanted.begin(), wanted.end(), "sigma") != wanted.end();
   const auto n = static_cast<double>(items.size());
   for (Item& item : items) {
-    const auto read = snapshot_of(item.state);
+    std::size_t idle = 0;
+    const auto read = snapshot_of(item.state, &idle);
     item.up = up_for(*read, request, item.state.file + ":" + item.state.group, warnings);
     const auto held = packing_of(item.state, item, request);
     const dem::Snapshot& s = *held;
@@ -198,9 +202,11 @@ Extents measure(std::vector<Item>& items, const AverageRequest& request,
     out.dim = s.dim;
     independence.add(item.state, s);
     const Placement placed = place(s, request.frame);
-    if (forces) add_warnings(item.state, s, of_forces);
-    if (forces && request.response)
-      add_warnings(item.unloaded, *snapshot_of(item.unloaded), of_forces);
+    if (forces) add_warnings(item.state, s, idle, of_forces);
+    if (forces && request.response) {
+      const auto unloaded = snapshot_of(item.unloaded, &idle);
+      add_warnings(item.unloaded, *unloaded, idle, of_forces);
+    }
     out.depth += placed.depth / n;
     out.least = std::min(out.least, placed.depth);
     out.most = std::max(out.most, placed.depth);
@@ -366,9 +372,14 @@ std::string each(const std::vector<PileFrame>& heaps,
 
 }  // namespace
 
-std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name) {
-  if (name.held) return name.held;
-  return std::make_shared<const dem::Snapshot>(dem::read_snapshot(name.file, name.group));
+std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name, std::size_t* idle) {
+  if (idle != nullptr) *idle = 0;
+  if (name.held && count_idle(*name.held) == 0) return name.held;
+  auto made = std::make_shared<dem::Snapshot>(
+      name.held ? *name.held : dem::read_snapshot(name.file, name.group));
+  const std::size_t left_out = leave_out_idle(*made);
+  if (idle != nullptr) *idle = left_out;
+  return made;
 }
 
 namespace {

@@ -18,7 +18,8 @@ struct SnapshotName {
 };
 
 /// The snapshot, read or held. Throws as dem::read_snapshot.
-std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name);
+std::shared_ptr<const dem::Snapshot> snapshot_of(const SnapshotName& name,
+                                                 std::size_t* idle = nullptr);
 
 /// "FILE.h5" (every snapshot of the file), "FILE.h5:GROUP" or "FILE.h5:STATE", which is every
 /// REALIZATION/STATE of a file without a group STATE. Throws std::invalid_argument, also

@@ -23,6 +23,7 @@ struct StrainRequest {
 struct StrainOutcome {
   Field field;         ///< StrainResult::field on the frame's points, with measure, width and frame
   std::string report;  ///< StrainResult::report()
+  std::string doubt;   ///< doubtful_images(): not empty: displacements may be those of images
 };
 
 /// What a user gave of it, checked and completed, before strain_files(): the support of the measure

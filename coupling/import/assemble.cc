@@ -14,6 +14,7 @@
 
 #include "coupling/import/outline_text.h"
 #include "dem/shapes/polygon.h"
+#include "dem/snapshot/cell_places.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
@@ -78,9 +79,13 @@ void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& col
 
 void Assembly::add_grains(const ForeignTable& table) {
   const TableColumns columns(table, names_);
-  const ForeignColumn id = columns.need("id"), x = columns.need("x"), y = columns.need("y");
-  const ForeignColumn z = options_.dim == 3 ? columns.need("z") : columns.find("z");
-  has_z_ = has_z_ || z;
+  const ForeignColumn id = find_id(table, columns);
+  const PlaceColumns places = place_columns(table, columns);
+  has_z_ = has_z_ || places.place[2];
+  for (std::size_t a = 0; a < 3; ++a)
+    axis_told_[a] = axis_told_[a] && (!places.carried_back[a] || places.image[a]);
+  const ShapeColumns shape = shape_columns(columns);
+  warn_of_shapes(table, columns, shape);
   const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
   const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
   const ForeignColumn spin_x = columns.find("spin_x"), spin_y = columns.find("spin_y");
@@ -91,7 +96,7 @@ void Assembly::add_grains(const ForeignTable& table) {
   cell_ = table.cell;
   const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
   const ForeignColumn diameter = columns.find("diameter");
-  if (!radius && !diameter && !outline) columns.missing("radius");
+  if (!radius && !diameter && !outline && !shape) columns.missing("radius");
   const ForeignColumn mass = columns.find("mass");
   const ForeignColumn density = columns.find("density");
   if (!mass && !density && !(options_.density > 0))
@@ -113,10 +118,13 @@ void Assembly::add_grains(const ForeignTable& table) {
   }
   reader_.read(table, [&](const ForeignRow& row) {
     const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
-    GrainRow r{{}, 0, 0, false, 0, {row.file, row.line}};
+    GrainRow r;
+    r.source = {row.file, row.line};
     dem::Grain& g = r.grain;
-    g.id = row.whole(id);
-    g.position = {row.number(x), row.number(y), z ? row.number(z) : 0};
+    // Without a column the rows are counted: from 0 where the format says so, else from 1.
+    g.id = id ? row.told_id(id).id
+              : static_cast<std::int64_t>(rows_.size()) + (format_.rows_are_ids ? 0 : 1);
+    read_place(places, row, r);
     g.velocity = {value(vx), value(vy), value(vz)};
     g.angle = value(angle);
     g.spin = value(spin);
@@ -129,6 +137,8 @@ void Assembly::add_grains(const ForeignTable& table) {
       } catch (const std::invalid_argument& e) {
         row.refuse(fmt::format("grain {}: {}", g.id, e.what()));
       }
+    } else if (shape) {
+      read_shape(shape, row, g);
     } else {
       if (row.empty(radius) && row.empty(diameter))
         row.refuse(fmt::format("grain {} has neither a radius nor an outline", g.id));
@@ -163,7 +173,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     r.has_inertia = !row.empty(inertia);
     g.inertia = value(inertia);
     g.volume = value(volume);
-    if (table.length && volume.index >= 0 && !volume.unit) r.volume_ten = table.length->ten;
+    if (volume.index >= 0 && !volume.unit) r.volume_ten = table.units.length;
     if (g.volume < 0 || g.inertia < 0)
       row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
                              g.volume < 0 ? "volume" : "inertia", std::min(g.volume, g.inertia)));
@@ -231,6 +241,12 @@ void Assembly::settle_dimension() {
         z));
   const auto polygon = std::find_if(rows_.begin(), rows_.end(),
                                     [](const GrainRow& row) { return !row.grain.outline.empty(); });
+  const auto solid = std::find_if(rows_.begin(), rows_.end(),
+                                  [](const GrainRow& row) { return !row.grain.axes.isZero(0); });
+  if (options_.dim == 0 && solid != rows_.end()) s.dim = 3;
+  if (s.dim == 2 && solid != rows_.end())
+    throw std::invalid_argument(fmt::format("{}: grain {} is a superellipsoid, allowed: --dim 3",
+                                            solid->source.where(), solid->grain.id));
   if (s.dim == 3 && polygon != rows_.end())
     throw std::invalid_argument(fmt::format("{}: grain {} is a polygon; 3D takes spheres",
                                             polygon->source.where(), polygon->grain.id));
@@ -275,6 +291,9 @@ void Assembly::complete(GrainRow& row) const {
     g.radius = dem::circumradius_of(g.outline);
     volume = dem::area_of(g.outline);
     gyration = dem::polar_moment_of(g.outline) / volume;
+  } else if (!g.axes.isZero(0)) {
+    volume = complete_superellipsoid(g);
+    gyration = g.moments.mean() / volume;
   } else {
     const bool plane = out_.snapshot.dim == 2;
     volume = std::numbers::pi * g.radius * g.radius * (plane ? 1 : 4.0 / 3 * g.radius);
@@ -295,8 +314,10 @@ void Assembly::complete(GrainRow& row) const {
   if (out_.snapshot.dim == 2) {
     g.angular_velocity.setZero();
     g.orientation = {1, 0, 0, 0};
-  } else {
+  } else if (g.axes.isZero(0)) {
     g.moments = dem::Vec3::Constant(g.inertia);
+  } else {
+    g.moments *= g.mass / volume;
   }
 }
 
@@ -306,9 +327,20 @@ void Assembly::place(GrainRow& row) const {
   const auto refuse = [&](const std::string& what) {
     throw std::invalid_argument(fmt::format("{}: grain {}: {}", row.source.where(), g.id, what));
   };
+  const dem::Cell<3>& cell = out_.snapshot.cell;
   try {
-    g.position = dem::wrapped(out_.snapshot.cell, g.position);
-  } catch (const std::invalid_argument& e) {
+    const std::array<int, 3> away = dem::edges_away(cell, g.position);
+    g.position = dem::wrapped(cell, g.position);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (row.image[a] != 0 && !cell.periodic[a] && !options_.leave_out_distant &&
+          !(a == 2 && out_.snapshot.dim == 2))
+        refuse(
+            fmt::format("found the image flag {} along {}, where nothing repeats; --periodic "
+                        "{}=LOW:HIGH says where",
+                        row.image[a], "xyz"[a], "xyz"[a]));
+      if (cell.periodic[a] && images_told_) g.image[a] = row.image[a] + away[a];
+    }
+  } catch (const dem::TooFarAway& e) {
     refuse(e.what());
   }
   for (const auto& [name, value] : {std::pair{"x", g.position.x()},
@@ -437,6 +469,12 @@ void Assembly::settle() {
   for (GrainRow& row : rows_) {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    images_told_ = images_told_ && (!s.cell.periodic[a] || axis_told_[a]);
+  images_told_ = s.cell.is_periodic() && (images_told_ || lie_outside());
+  if (images_told_) s.attributes["images"] = "counted";
+  for (GrainRow& row : rows_) {
     place(row);
     s.grains.push_back(std::move(row.grain));
   }

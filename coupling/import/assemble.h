@@ -1,6 +1,9 @@
 // Tables of one step to a snapshot.
 #pragma once
+#include <array>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupling/import/format.h"
@@ -14,6 +17,8 @@ class Assembly {
            TableReader& reader)
       : options_(options), format_(format), names_(names), reader_(reader) {}
 
+  /// Whether tables of contacts follow: their grains must have ids.
+  void expect_contacts(bool expected) { contacts_expected_ = expected; }
   /// In this order: grains and walls, settle(), contacts, finish(). All throw as
   /// import_snapshots().
   void add_grains(const ForeignTable& table);
@@ -35,7 +40,8 @@ class Assembly {
     double density = 0;       ///< 0: has its mass
     double told_density = 0;  ///< beside the mass; 0: none
     bool has_inertia = false;
-    int volume_ten = 0;  ///< a volume is of lengths times 10 to this
+    int volume_ten = 0;                 ///< a volume is of lengths times 10 to this
+    std::array<int, 3> image{0, 0, 0};  ///< told
     Source source;
   };
   struct WallForce {  ///< of a "fix wall/gran ... contacts"
@@ -47,6 +53,15 @@ class Assembly {
   struct ContactRow {
     dem::Contact contact;
     Source source;
+    bool turned = false;  ///< the row names the second of the two first
+    bool joined = false;  ///< with a row of the other direction
+    [[noreturn]] void refuse(const std::string& what) const;
+  };
+  struct Tally {                                              ///< of contacts
+    std::vector<std::pair<std::int64_t, std::int64_t>> idle;  ///< no force, and a gap
+    long long left_out = 0;                                   ///< distant
+    long long far = 0;                                        ///< forces across gaps
+    std::string first_far;
   };
 
   /// A flat wall's contacts.
@@ -62,6 +77,28 @@ class Assembly {
     long long all = 0, not_unit = 0, at_walls = 0, across = 0;
     std::string first_not_unit, first_across;
   };
+
+  /// Where the columns tell a place, for each axis: x, or xu, or xs, or xsu.
+  struct PlaceColumns {
+    std::array<ForeignColumn, 3> place, image;
+    std::array<bool, 3> scaled{}, carried_back{};  ///< over the box; into the cell
+    const dem::Cell<3>* box = nullptr;
+  };
+  struct ShapeColumns {  ///< of superellipsoids
+    std::array<ForeignColumn, 3> axes;
+    std::array<ForeignColumn, 2> exponents;
+    double axis_factor = 1;  ///< 1/2 of diameters
+    bool blockiness = false;
+    explicit operator bool() const { return bool(axes[0]); }
+  };
+  PlaceColumns place_columns(const ForeignTable& table, const TableColumns& columns) const;
+  ShapeColumns shape_columns(const TableColumns& columns) const;
+  void read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) const;
+  void read_shape(const ShapeColumns& columns, const ForeignRow& row, dem::Grain& grain) const;
+  /// Warns of columns that tell a shape which is not taken.
+  void warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
+                      const ShapeColumns& taken);
+  ForeignColumn find_id(const ForeignTable& table, const TableColumns& columns);
 
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
@@ -79,11 +116,48 @@ class Assembly {
   void warn_of_normals();
   void complete(GrainRow& row) const;
   void place(GrainRow& row) const;
+  /// Whether grains lie so far out of the cell that their places have not been carried back.
+  bool lie_outside() const;
+  /// Mass, volume and moments of a superellipsoid.
+  double complete_superellipsoid(dem::Grain& grain) const;
   std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
   std::int64_t wall_of(std::string_view text) const;  ///< -1 - w; 0: unknown
   /// nan where the file tells no spring.
   void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
+  /// What a row of contacts tells.
+  struct ContactColumns;
+  ContactColumns contact_columns(const TableColumns& columns) const;
+  void read_contact(const ContactColumns& columns, const ForeignRow& row, int digits);
+  /// The grains or the grain and the wall of a row; swapped where the wall stands first.
+  struct Ends {
+    std::int64_t i = 0, j = 0;
+    bool swapped = false;
+  };
+  Ends ends_of(const ContactColumns& columns, const ForeignRow& row, int digits) const;
+  /// A grain's index or a wall, of one column; 0-based, -1 - w.
+  std::optional<std::int64_t> body_of(const ForeignRow& row, const ForeignColumn& column,
+                                      int digits) const;
+  std::optional<std::int64_t> grain_of(const ForeignRow& row, const ForeignColumn& column,
+                                       int digits) const;
+  [[noreturn]] void refuse_unknown(const ForeignRow& row, const ForeignColumn& column) const;
+  /// A force of normal and tangential size, on the first grain.
+  dem::Vec3 force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
+                           const dem::Contact& contact) const;
+
   void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
+  /// Image, normal and point; false: it is none, or left out.
+  bool settle_pair(ContactRow& row, bool has_normal, bool has_point);
+  void set_image(ContactRow& row, bool has_point) const;
+  bool check_pair_distance(const ContactRow& row, bool has_point);
+  bool settle_wall_contact(ContactRow& row, bool has_point);
+  void check_wall_distance(const ContactRow& row, bool has_point) const;
+  void check_periods(const ContactRow& row) const;
+  /// Keeps one of the rows of a contact that stands there in both directions; throws for any other
+  /// that is there twice.
+  void join_directions();
+  [[noreturn]] void refuse_twice(const ContactRow& row, const ContactRow& other,
+                                 bool same_force) const;
+  void tell_tally();
   std::string known_grains() const;
 
   const ImportOptions& options_;
@@ -100,6 +174,10 @@ class Assembly {
   std::vector<std::string> marks_;  // some that the column of fixed grains holds
   bool some_marked_ = false;
   bool has_z_ = false;
+  bool contacts_expected_ = true;
+  bool images_told_ = true;  // along every axis that is periodic
+  std::array<bool, 3> axis_told_{true, true, true};
+  Tally tally_;
   dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;
 };

@@ -1,47 +1,266 @@
-// CSV with a header line of our own names (--column for others). A table with a column i is one of
-// contacts, one with name and nx one of walls, any other one of grains.
+// Tables of text with a line of names: separated by commas, semicolons, tabs or blanks. A table of
+// pairs (i and j, under any of their names) is one of contacts, one with name and nx one of walls,
+// any other one of grains.
+//
+// The line of names is the one of the first lines with the most names that are known; titles and
+// "sep=;" may stand before it, a line of units behind it. Where no line has two, it is a comment
+// (numpy.savetxt writes "# id,x,y"), and else the last line of words before the first numbers.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "coupling/import/format.h"
+#include "coupling/import/row_text.h"
+#include "coupling/import/synonyms.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// A header line of another separator would be one column with a long name.
-void require_commas(std::string_view header, const Lines& lines) {
-  const auto count = [&](char ch) { return std::count(header.begin(), header.end(), ch); };
-  for (const auto& [other, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}}) {
-    if (count(other) <= count(',')) continue;
-    throw std::invalid_argument(
-        fmt::format("{}: found columns parted by {}, expected commas (and points in decimals)",
-                    lines.where(), name));
+constexpr std::size_t kHead = 60;         // lines before the rows, at most
+constexpr std::size_t kForCommas = 1000;  // rows that are searched for decimal commas
+
+struct HeadLine {
+  std::string text;  // of a comment: without its sign
+  long long line = 0;
+  Lines::Place behind;
+  bool comment = false;
+};
+
+// The first lines that are not blank, and the separator that a line "sep=;" names.
+struct Head {
+  std::vector<HeadLine> lines;
+  char separator = 0;
+};
+
+Head head_of(Lines& lines) {
+  Head head;
+  std::string_view line;
+  while (head.lines.size() < kHead && lines.next(line)) {
+    std::string_view text = trimmed(line);
+    if (text.empty()) continue;
+    const std::size_t sign = line.find("sep=");
+    if (head.lines.empty() && head.separator == 0 && sign <= 1 && line.size() > sign + 4) {
+      head.separator = line[sign + 4];
+      continue;
+    }
+    const bool comment = text.front() == '#';
+    if (comment) text.remove_prefix(1);
+    head.lines.push_back({std::string(text), lines.line(), lines.place(), comment});
   }
+  return head;
 }
+
+std::vector<std::string> values_of(const HeadLine& line, char separator) {
+  RowParts parts;
+  const auto& fields = parts.of(without_comment(line.text, separator), separator);
+  return {fields.begin(), fields.end()};
+}
+
+// Without empty ones at the end.
+std::size_t count_of(const std::vector<std::string>& values) {
+  std::size_t count = values.size();
+  while (count > 0 && values[count - 1].empty()) --count;
+  return count;
+}
+
+bool is_decimal_comma(std::string_view value) {
+  const std::size_t comma = value.find(',');
+  if (comma == std::string_view::npos) return false;
+  std::string text(value);
+  text[comma] = '.';
+  return dem::parse_number(text).has_value();
+}
+
+bool is_number(std::string_view value, char separator) {
+  return dem::parse_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
+}
+
+// More numbers than words.
+bool is_row(const std::vector<std::string>& values, char separator) {
+  std::size_t numbers = 0, words = 0;
+  for (const std::string& value : values) {
+    if (value.empty()) continue;
+    (is_number(value, separator) ? numbers : words) += 1;
+  }
+  return numbers > 0 && numbers >= words;
+}
+
+// "-", "m", "[mm]" under the names.
+std::optional<std::string> told_unit(std::string value) {
+  if (value.size() > 2 && std::string("([{").find(value.front()) != std::string::npos)
+    value = std::string(trimmed(std::string_view(value).substr(1, value.size() - 2)));
+  if (value.empty() || value == "-" || value == "1") return "";
+  if (parse_unit(value)) return value;
+  return std::nullopt;
+}
+
+bool is_units(const std::vector<std::string>& values) {
+  bool any = false;
+  for (const std::string& value : values) {
+    const auto unit = told_unit(value);
+    if (!unit) return false;
+    any = any || !unit->empty();
+  }
+  return any;
+}
+
+int known_names(const std::vector<std::string>& values) {
+  return static_cast<int>(std::count_if(values.begin(), values.end(), [](const std::string& value) {
+    return is_known_name(heading_of(value, 0).name);
+  }));
+}
+
+// The one by which a line has the most names that are known. Without any: the one of which the
+// first line has the most.
+char separator_of(const Head& head) {
+  if (head.separator != 0) return head.separator;
+  char best = 0;
+  int most = 0;
+  for (const char separator : {',', ';', '\t', ' '})
+    for (const HeadLine& line : head.lines) {
+      const auto values = values_of(line, separator);
+      const int known = is_row(values, separator) ? 0 : known_names(values);
+      // A comment counts where rows have as many values: any other is only words.
+      const auto as_many = [&](const HeadLine& other) {
+        return !other.comment && values_of(other, separator).size() == values.size();
+      };
+      if (line.comment && !std::any_of(head.lines.begin(), head.lines.end(), as_many)) continue;
+      if (known <= most || (separator == ' ' && known < 2)) continue;
+      most = known;
+      best = separator;
+    }
+  if (best != 0) return best;
+  std::size_t parts = 1;
+  for (const HeadLine& line : head.lines) {
+    if (line.comment) continue;
+    for (const char separator : {',', ';', '\t'}) {
+      if (values_of(line, separator).size() <= parts) continue;
+      parts = values_of(line, separator).size();
+      best = separator;
+    }
+    break;
+  }
+  return best == 0 ? ',' : best;
+}
+
+bool has_decimal_commas(Lines& lines, const ForeignTable& table) {
+  if (table.separator == ',') return false;
+  lines.seek(table.first);
+  std::string_view line;
+  RowParts parts;
+  for (std::size_t n = 0; n < kForCommas && lines.next(line); ++n)
+    for (const std::string_view value : parts.of(line, table.separator, lines))
+      if (is_decimal_comma(value)) return true;
+  return false;
+}
+
+[[noreturn]] void refuse_empty(const std::string& file) {
+  throw std::invalid_argument(file +
+                              ": is empty, expected a line of names such as id,x,y,radius,mass");
+}
+
+class HeaderSearch {
+ public:
+  HeaderSearch(const std::string& file, const Head& head, char separator)
+      : file_(file), head_(head) {
+    for (const HeadLine& line : head.lines) values_.push_back(values_of(line, separator));
+    const auto row = [&](std::size_t k) {
+      return !head.lines[k].comment && count_of(values_[k]) > 1 && is_row(values_[k], separator);
+    };
+    rows_.resize(values_.size());
+    for (std::size_t k = 0; k < values_.size(); ++k) rows_[k] = row(k);
+  }
+
+  void find(ForeignTable& table) const {
+    const std::size_t none = values_.size();
+    std::size_t names = most_known(false);
+    if (names == none) names = most_known(true);
+    if (names == none) names = words_before_numbers();
+    if (names == none) refuse();
+    const std::size_t units = names + 1;
+    const bool has_units =
+        units < none && !rows_[units] && !head_.lines[units].comment && is_units(values_[units]);
+    table.columns = std::make_shared<const std::vector<std::string>>(
+        has_units ? with_units(values_[names], values_[units]) : values_[names]);
+    table.header_line = head_.lines[names].line;
+    table.first = head_.lines[has_units ? units : names].behind;
+  }
+
+ private:
+  // The line, or the comment, with the most known names; of several the first.
+  std::size_t most_known(bool comment) const {
+    std::size_t best = values_.size();
+    int most = 1;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      if (rows_[k] || head_.lines[k].comment != comment) continue;
+      if (comment && !has_row_of(count_of(values_[k]))) continue;
+      const int known = known_names(values_[k]);
+      if (known <= most) continue;
+      most = known;
+      best = k;
+    }
+    return best;
+  }
+  // Also where there is no row at all.
+  bool has_row_of(std::size_t count) const {
+    bool any = false;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      any = any || rows_[k];
+      if (rows_[k] && values_[k].size() == count) return true;
+    }
+    return !any;
+  }
+  // The last line of words before the first row, or the first line where there are no rows.
+  std::size_t words_before_numbers() const {
+    std::size_t found = values_.size();
+    for (std::size_t k = 0; k < values_.size() && !rows_[k]; ++k)
+      if (!head_.lines[k].comment) found = k;
+    return found;
+  }
+  static std::vector<std::string> with_units(std::vector<std::string> names,
+                                             const std::vector<std::string>& units) {
+    for (std::size_t k = 0; k < std::min(names.size(), units.size()); ++k) {
+      const std::string unit = *told_unit(units[k]);
+      if (!unit.empty()) names[k] += fmt::format(" ({})", unit);
+    }
+    return names;
+  }
+
+  [[noreturn]] void refuse() const {
+    const auto& lines = head_.lines;
+    const auto text = std::find_if(lines.begin(), lines.end(),
+                                   [](const HeadLine& line) { return !line.comment; });
+    if (text == lines.end()) refuse_empty(file_);
+    const auto k = static_cast<std::size_t>(text - lines.begin());
+    throw std::invalid_argument(fmt::format(
+        "{}:{}: found \"{}\" and no line of names above, expected one such as "
+        "id,x,y,radius,mass for the {} columns",
+        file_, head_.lines[k].line, head_.lines[k].text.substr(0, 60), values_[k].size()));
+  }
+
+  const std::string& file_;
+  const Head& head_;
+  std::vector<std::vector<std::string>> values_;
+  std::vector<bool> rows_;  // more numbers than words
+};
 
 std::vector<ForeignTable> scan(const std::string& file) {
   Lines lines(file);
+  const Head head = head_of(lines);
+  if (head.lines.empty()) refuse_empty(file);
   ForeignTable table;
   table.file = file;
-  table.separator = ',';
+  table.separator = separator_of(head);
   table.units_in_header = true;
-  for (std::string_view line; lines.next(line);) {
-    line = trimmed(line);
-    if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    if (line.empty() || line.front() == '#') continue;
-    require_commas(line, lines);
-    std::vector<std::string_view> names;
-    split(line, ',', names);
-    table.columns = std::make_shared<const std::vector<std::string>>(names.begin(), names.end());
-    table.header_line = lines.line();
-    table.first = lines.place();
-    return {table};
-  }
-  throw std::invalid_argument(file +
-                              ": is empty, expected a header line such as id,x,y,radius,mass");
+  table.any_names = true;
+  HeaderSearch(file, head, table.separator).find(table);
+  table.decimal_commas = has_decimal_commas(lines, table);
+  return {table};
 }
 
 }  // namespace
@@ -49,11 +268,14 @@ std::vector<ForeignTable> scan(const std::string& file) {
 ImportFormat csv_format() {
   ImportFormat format;
   format.name = "csv";
-  format.summary = "tables of grains, contacts and walls with a header line";
+  format.summary = "tables of grains, contacts and walls with a line of names";
   format.scan = scan;
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
-    for (const OurColumn& column : our_columns(kind))
+    for (const OurColumn& column : our_columns(kind)) {
+      // Scaled places are told by dumps alone, which tell the box, too.
+      if (column.name.size() <= 3 && column.name.find('s') == 1) continue;
       format.columns.emplace_back(column.name, column.name);
+    }
   return format;
 }
 

@@ -24,24 +24,25 @@ class DumpScan {
  public:
   explicit DumpScan(const std::string& file) : lines_(file) {
     table_.file = file;
+    table_.any_names = true;
     table_.columns = std::make_shared<const std::vector<std::string>>();
   }
 
   std::vector<ForeignTable> tables() {
     std::string_view line;
     while (lines_.next(line)) {
+      if (trimmed(line).empty()) continue;
       if (lines_.unfinished()) {
         truncated_ = lines_.where() + ": truncated: the file ends in the middle of a line";
         break;
       }
-      if (!line.starts_with("ITEM: "))
-        refuse(fmt::format("found \"{}\", expected \"ITEM: ...\"; is this a dump file?",
-                           line.substr(0, 60)));
+      if (!line.starts_with("ITEM: ")) refuse_line(line);
       if (!item(std::string(trimmed(line.substr(6))))) break;
     }
     if (open_ && truncated_.empty())
-      truncated_ = fmt::format("{}: truncated: the file ends before the rows of step {}",
-                               lines_.where(), *table_.step);
+      truncated_ =
+          fmt::format("{}: truncated: the file ends before the rows of {}", lines_.where(),
+                      table_.step ? fmt::format("step {}", *table_.step) : std::string("a step"));
     if (found_.empty() && truncated_.empty())
       throw std::invalid_argument(table_.file + ": is empty, expected a dump file");
     if (!truncated_.empty()) {
@@ -56,6 +57,16 @@ class DumpScan {
     throw std::invalid_argument(fmt::format("{}: {}", lines_.where(), what));
   }
 
+  // A line between the steps that begins none.
+  [[noreturn]] void refuse_line(std::string_view line) const {
+    const bool yaml = line == "---" || line.starts_with("creator:");
+    const bool vtk = line.starts_with("# vtk") || line.starts_with("<?xml");
+    refuse(fmt::format("found \"{}\", expected \"ITEM: ...\"; {}", line.substr(0, 60),
+                       yaml  ? "this is a dump of style yaml: write one of style custom or local"
+                       : vtk ? "this is a file of VTK: --from vtk reads those"
+                             : "is this a dump file?"));
+  }
+
   // False at the end of the file, which is then truncated.
   bool next(std::string_view& line, const char* what) {
     if (lines_.next(line) && !lines_.unfinished()) return true;
@@ -67,7 +78,12 @@ class DumpScan {
     std::string_view line;
     if (!next(line, what)) return false;
     line = trimmed(line);
-    const std::optional<long long> number = dem::parse_integer(line);
+    std::optional<long long> number = dem::parse_integer(line);
+    if (!number) {  // "2000.0"
+      const std::optional<double> real = dem::parse_number(line);
+      if (real && *real == std::floor(*real) && std::abs(*real) < 9e15)
+        number = static_cast<long long>(*real);
+    }
     if (!number || *number < 0)
       refuse(fmt::format("found \"{}\", expected {}", line.substr(0, 60), what));
     value = *number;
@@ -78,8 +94,8 @@ class DumpScan {
     std::string_view line;
     if (name == "TIMESTEP") {
       long long step = 0;
-      table_.time.reset();
       table_.cell = {};
+      table_.box.reset();
       rows_ = -1;
       table_.columns = std::make_shared<const std::vector<std::string>>();
       if (!whole(step, "the number of the time step")) return false;
@@ -94,13 +110,21 @@ class DumpScan {
       if (!time || !(*time >= 0 && *time <= dem::kMostNumber))
         refuse(fmt::format("found \"{}\", expected the time, a finite number from 0",
                            line.substr(0, 60)));
-      table_.time = *time;
+      time_ = *time;
+      open_ = true;
       return true;
     }
     if (name == "UNITS") {
       if (!next(line, "the units")) return false;
-      if (trimmed(line) != "si")
-        refuse(fmt::format("units \"{}\", expected si (m, kg, s, N)", trimmed(line)));
+      const std::string told(trimmed(line));
+      const std::optional<UnitSystem> units = parse_unit_system(told);
+      if (!units || units->lengths_only)
+        refuse(
+            fmt::format("units \"{}\", allowed: si, cgs, micro, nano; what has others has to be "
+                        "converted to one of these (grains have no size in units of lj, real or "
+                        "metal)",
+                        told));
+      table_.units = *units;
       table_.told_units = lines_.where();
       return true;
     }
@@ -132,7 +156,8 @@ class DumpScan {
     for (auto& row : rows) {
       std::string_view line;
       if (!next(line, "the box bounds")) return false;
-      if (!cell.is_periodic()) continue;
+      if (line.starts_with("ITEM:"))
+        refuse(fmt::format("found \"{}\", expected three lines of box bounds", line.substr(0, 60)));
       split(line, ' ', fields);
       bool good = fields.size() == wanted;
       for (std::size_t k = 0; good && k < wanted; ++k) {
@@ -140,12 +165,14 @@ class DumpScan {
         good = number && std::isfinite(*number);
         if (good) row[k] = *number;
       }
-      if (!good)
+      if (!good && cell.is_periodic())
         refuse(fmt::format("found \"{}\", expected {} finite numbers of the box bounds",
                            line.substr(0, 60), wanted));
+      known = known && good;
     }
-    if (cell.is_periodic()) set_box(rows, tilted, general, cell);
-    table_.cell = cell;
+    if (cell.is_periodic() || known) set_box(rows, tilted, general, cell);
+    if (known) table_.box = cell;
+    table_.cell = cell.is_periodic() ? cell : dem::Cell<3>{};
     return true;
   }
 
@@ -167,7 +194,7 @@ class DumpScan {
     const Eigen::Vector3d high(rows[0][1] - std::max({0.0, xy, xz, xy + xz}),
                                rows[1][1] - std::max(0.0, yz), rows[2][1]);
     for (int a = 0; a < 3; ++a) {
-      if (!(high[a] > cell.low[a]))
+      if (cell.is_periodic() && !(high[a] > cell.low[a]))
         refuse(fmt::format("found a box from {} to {} m along {}, expected low below high",
                            cell.low[a], high[a], "xyz"[a]));
       cell.edges(a, a) = high[a] - cell.low[a];
@@ -196,14 +223,19 @@ class DumpScan {
     table_.rows = rows_;
     std::string_view line;
     for (long long n = 0; n < rows_; ++n) {
-      const bool there = lines_.next(line);
+      bool there = lines_.next(line);
+      while (there && trimmed(line).empty()) there = lines_.next(line);
       if (there && !line.starts_with("ITEM:") && !(n + 1 == rows_ && lines_.unfinished())) continue;
       truncated_ = fmt::format(
           "{}: truncated: step {} has {} rows announced, {} there{}", lines_.where(), *table_.step,
           rows_, n, there && n + 1 == rows_ ? " (the last one ends without a line end)" : "");
       return false;
     }
+    table_.time = time_;
     found_.push_back(table_);
+    // LAMMPS writes the time of a step before its number, others behind it.
+    time_.reset();
+    table_.step.reset();
     open_ = false;
     rows_ = -1;
     return true;
@@ -212,6 +244,7 @@ class DumpScan {
   Lines lines_;
   ForeignTable table_;
   long long rows_ = -1;
+  std::optional<double> time_;
   bool open_ = false;  ///< a step has begun and its rows have not been met
   std::shared_ptr<const std::vector<std::string>> columns_;
   std::vector<ForeignTable> found_;
@@ -225,27 +258,21 @@ std::vector<ForeignTable> scan_dump(const std::string& file) { return DumpScan(f
 std::vector<std::pair<std::string, std::string>> dump_columns(
     const std::vector<std::pair<std::string, std::string>>& contact) {
   std::vector<std::pair<std::string, std::string>> columns = {
-      {"id", "id"},
-      {"x", "x"},
-      {"x", "xu"},
-      {"y", "y"},
-      {"y", "yu"},
-      {"z", "z"},
-      {"z", "zu"},
-      {"vx", "vx"},
-      {"vy", "vy"},
-      {"vz", "vz"},
-      {"spin", "omegaz"},
-      {"spin_x", "omegax"},
-      {"spin_y", "omegay"},
-      {"qw", "quatw"},
-      {"qx", "quati"},
-      {"qy", "quatj"},
-      {"qz", "quatk"},
-      {"radius", "radius"},
-      {"diameter", "diameter"},
-      {"mass", "mass"},
-      {"density", "density"},
+      {"id", "id"},         {"x", "x"},
+      {"y", "y"},           {"z", "z"},
+      {"xu", "xu"},         {"yu", "yu"},
+      {"zu", "zu"},         {"xs", "xs"},
+      {"ys", "ys"},         {"zs", "zs"},
+      {"xsu", "xsu"},       {"ysu", "ysu"},
+      {"zsu", "zsu"},       {"ix", "ix"},
+      {"iy", "iy"},         {"iz", "iz"},
+      {"vx", "vx"},         {"vy", "vy"},
+      {"vz", "vz"},         {"spin", "omegaz"},
+      {"spin_x", "omegax"}, {"spin_y", "omegay"},
+      {"qw", "quatw"},      {"qx", "quati"},
+      {"qy", "quatj"},      {"qz", "quatk"},
+      {"radius", "radius"}, {"diameter", "diameter"},
+      {"mass", "mass"},     {"density", "density"},
   };
   columns.insert(columns.end(), contact.begin(), contact.end());
   return columns;

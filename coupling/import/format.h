@@ -18,6 +18,12 @@ struct ImportFormat {
   /// counts.
   std::vector<std::pair<std::string, std::string>> columns;
   double force_sign = 1;  ///< times the file's force of a contact = force on grain i
+  /// The ids are the numbers of the rows, from 0.
+  bool rows_are_ids = false;
+  /// Steps have a time and no number: they are counted from 0 in the order of their times.
+  bool steps_by_time = false;
+  /// Normal and tangential directions are turned together (MercuryDPM: those of walls are).
+  bool directions_turn_together = false;
 };
 
 /// Every format, in the order of the documentation.
@@ -29,6 +35,8 @@ ImportFormat lammps_format();
 ImportFormat liggghts_format();
 ImportFormat yade_format();
 ImportFormat csv_format();
+ImportFormat mercury_format();
+ImportFormat vtk_format();
 
 /// Tables of a LAMMPS or LIGGGHTS dump file.
 std::vector<ForeignTable> scan_dump(const std::string& file);

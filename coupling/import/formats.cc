@@ -10,10 +10,8 @@ namespace grainfield::coupling {
 
 const std::vector<ImportFormat>& import_formats() {
   static const std::vector<ImportFormat> all{
-      lammps_format(),
-      liggghts_format(),
-      yade_format(),
-      csv_format(),
+      lammps_format(), liggghts_format(), yade_format(),
+      csv_format(),    mercury_format(),  vtk_format(),
   };
   return all;
 }

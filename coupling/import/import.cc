@@ -11,6 +11,7 @@
 
 #include "continuum/model.h"
 #include "coupling/import/assemble.h"
+#include "coupling/import/steps.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
@@ -25,40 +26,17 @@ constexpr double kOffWall = 2;
 // Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
 constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
 
-// The tables of one time step; of a format without steps all of them.
-struct StepTables {
-  std::vector<ForeignTable> grains, contacts, walls;
-};
-using Steps = std::map<long long, StepTables>;
-
+// By its columns, under any of their names.
 TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   if (table.kind != TableKind::unknown) return table.kind;
   const TableColumns columns(table, names);
-  if (columns.find("i").index >= 0) return TableKind::contacts;
-  return columns.find("name") && columns.find("nx") ? TableKind::walls : TableKind::grains;
-}
-
-// Which are there, briefly.
-std::string names_of(const Steps& steps) {
-  std::vector<long long> all;
-  for (const auto& [step, tables] : steps) all.push_back(step);
-  if (all.size() <= 8) return fmt::format("{}", fmt::join(all, ", "));
-  return fmt::format("{}, {}, {}, ..., {} ({} steps)", all[0], all[1], all[2], all.back(),
-                     all.size());
-}
-
-std::vector<StepChoice> chosen_steps(const ImportOptions& options, const Steps& steps) {
-  std::vector<StepChoice> out = options.steps;
-  if (options.all_steps)
-    for (const auto& [step, tables] : steps) out.push_back({step, ""});
-  if (out.empty()) out.push_back({steps.rbegin()->first, ""});
-  for (StepChoice& choice : out) {
-    if (steps.find(choice.step) == steps.end())
-      throw std::invalid_argument(
-          fmt::format("--step {}: no such time step; there are: {}", choice.step, names_of(steps)));
-    if (choice.group.empty() && out.size() == 1) choice.group = options.group;
-  }
-  return out;
+  const auto has = [&](const char* ours) { return columns.find(ours).index >= 0; };
+  if (has("i") && (has("j") || columns.find("wall"))) return TableKind::contacts;
+  if (columns.find("name") && columns.find("nx")) return TableKind::walls;
+  // Forces and no places: contacts, of which a column of ids is missing.
+  const bool forces = has("fx") || has("fnx") || has("fn");
+  if (has("i") || (forces && !has("radius") && !has("diameter"))) return TableKind::contacts;
+  return TableKind::grains;
 }
 
 ForeignTable table_of(const ArrayTable& table, TableKind kind) {
@@ -86,13 +64,10 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
 }
 
 // Of --units.
-Unit length_unit(const std::string& text) {
-  const std::optional<Unit> unit = parse_unit(text);
-  // One symbol: "mm2/m" is of the kind of a length too.
-  const bool single = text.find_first_of(" /^0123456789") == std::string::npos;
-  if (single && unit && unit->kind == parse_unit("m")->kind) return *unit;
+UnitSystem units_of(const std::string& text) {
+  if (const auto units = parse_unit_system(text)) return *units;
   throw std::invalid_argument(
-      fmt::format("--units: found \"{}\", allowed: a unit of length, such as m, cm, mm, um", text));
+      fmt::format("--units: found \"{}\", allowed: {}", text, kUnitSystems));
 }
 
 // What stands alone; what depends on the files is told where they are read.
@@ -153,22 +128,52 @@ void require_unit(bool bare, const std::string& option, const std::string& units
                   option, units));
 }
 
-// The table's lengths are in `unit`, those of its cell too.
-void set_length(const Unit& unit, ForeignTable& table) {
-  if (!table.told_units.empty())
-    throw std::invalid_argument(fmt::format(
-        "{}: the file says that it is in SI units, and --units another", table.told_units));
-  table.length = unit;
-  const double divisor = std::pow(10.0, std::abs(unit.ten));
-  const auto scale = [&](double& length) {
-    length = unit.ten < 0 ? length / divisor : length * divisor;
+// The table's numbers are in `units` (of --units), those of its cell too.
+void set_units(const UnitSystem& units, ForeignTable& table) {
+  const UnitSystem told = table.units;
+  if (!table.told_units.empty() && !units.is_si() &&
+      (units.lengths_only || units.name != told.name))
+    throw std::invalid_argument(
+        fmt::format("{}: the file says that it is in {} units, and --units {}", table.told_units,
+                    told.name == "SI" ? "si" : told.name, units.name));
+  if (table.told_units.empty()) table.units = units;
+  const int length = table.units.length;
+  const auto scale = [](double& number, int ten) {
+    const double factor = std::pow(10.0, std::abs(ten));
+    number = ten < 0 ? number / factor : number * factor;
   };
-  for (double& length : table.cell.low) scale(length);
-  for (double& length : table.cell.edges.reshaped()) scale(length);
+  const auto scale_cell = [&](dem::Cell<3>& cell) {
+    for (double& number : cell.low) scale(number, length);
+    for (double& number : cell.edges.reshaped()) scale(number, length);
+  };
+  scale_cell(table.cell);
+  if (table.box) scale_cell(*table.box);
+  if (table.time && !table.units.lengths_only) scale(*table.time, table.units.time);
 }
 
 std::string list_of(const ImportOptions& options) {
-  return fmt::format("{}", fmt::join(options.files, ", "));
+  constexpr std::size_t most = 20;
+  if (options.files.size() <= most) return fmt::format("{}", fmt::join(options.files, ", "));
+  return fmt::format("{}, ..., {} ({} files)", options.files.front(), options.files.back(),
+                     options.files.size());
+}
+
+// Of a step, s. Warns where the file's own time is another than --time-step makes it.
+double time_of(const ForeignTable& grains, const StepChoice& choice, const ImportOptions& options,
+               std::vector<std::string>& warnings) {
+  const double made = static_cast<double>(choice.step) * options.time_step;
+  const double time = grains.time ? *grains.time : made;
+  if (!(time <= dem::kMostNumber))
+    throw std::invalid_argument(
+        fmt::format("--time-step {:g}: the time of step {} becomes {:g} s, allowed: up to {:g}",
+                    options.time_step, choice.step, time, dem::kMostNumber));
+  if (grains.time && options.time_step > 0 &&
+      std::abs(made - time) > 1e-4 * std::max(std::abs(time), std::abs(made)))
+    warnings.push_back(
+        fmt::format("{}: step {} says that its time is {:g} s, --time-step {:g} makes it {:g} s: "
+                    "the file's counts",
+                    grains.file, choice.step, time, options.time_step, made));
+  return time;
 }
 
 }  // namespace
@@ -228,8 +233,8 @@ void import_snapshots(const ImportOptions& options,
                       const std::function<void(ImportedSnapshot&&)>& take) {
   const ImportFormat& format = find_import_format(options.format);
   check_options(options);
-  const Unit length = length_unit(options.units);
-  if (length.ten != 0) {
+  const UnitSystem units = units_of(options.units);
+  if (units.length != 0) {
     for (const WallChoice& wall : options.walls)
       require_unit(wall.bare, "--wall " + wall.name, options.units);
     for (const PeriodicAxis& axis : options.periodic)
@@ -237,43 +242,32 @@ void import_snapshots(const ImportOptions& options,
   }
   ColumnNames names(format.columns);
   for (const std::string& text : options.columns) names.choose(text);
-  Steps steps;
-  bool stepped = false;
-  for (const std::string& file : options.files) {
-    for (ForeignTable& table : format.scan(file)) {
-      if (length.ten != 0) set_length(length, table);
-      stepped = stepped || table.step.has_value();
-      StepTables& tables = steps[table.step.value_or(0)];
-      switch (kind_of(table, names)) {
-        case TableKind::contacts:
-          tables.contacts.push_back(std::move(table));
-          break;
-        case TableKind::walls:
-          tables.walls.push_back(std::move(table));
-          break;
-        default:
-          tables.grains.push_back(std::move(table));
-      }
+  StepList steps;
+  const auto tell = [&](const char* phase, std::size_t done, std::size_t all) {
+    if (options.progress) options.progress(phase, done, all);
+  };
+  for (std::size_t k = 0; k < options.files.size(); ++k) {
+    tell("files looked through", k, options.files.size());
+    for (ForeignTable& table : format.scan(options.files[k])) {
+      set_units(units, table);
+      const TableKind kind = kind_of(table, names);
+      steps.add(std::move(table), kind);
     }
   }
+  names.take_taken();  // of the tables that are read it is told below
+  steps.settle(format.steps_by_time);
+  const bool stepped = steps.stepped();
   if (!stepped && (options.all_steps || !options.steps.empty()))
     throw std::invalid_argument("--step: the files of " + format.name + " hold no time steps");
   TableReader reader;
-  const std::vector<StepChoice> chosen = chosen_steps(options, steps);
-  for (const StepChoice& choice : chosen) {
+  const std::vector<StepChoice> chosen = steps.choose(options);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const StepChoice& choice = chosen[k];
+    tell("steps read", k, chosen.size());
+    steps.require_whole(choice.step, options);
     const StepTables& tables = steps.at(choice.step);
-    for (const auto* list : {&tables.grains, &tables.contacts, &tables.walls})
-      for (const ForeignTable& table : *list)
-        if (!table.broken.empty()) throw std::invalid_argument(table.broken);
-    const std::string which = stepped ? fmt::format(" of step {}", choice.step) : "";
-    if (tables.grains.empty())
-      throw std::invalid_argument(
-          fmt::format("no table of grains{} in {}", which, list_of(options)));
-    if (tables.contacts.empty() && !options.without_contacts)
-      throw std::invalid_argument(
-          fmt::format("no table of contacts{} in {}; --without-contacts imports the grains alone",
-                      which, list_of(options)));
     Assembly assembly(options, format, names, reader);
+    assembly.expect_contacts(!tables.contacts.empty());
     for (const ForeignTable& table : tables.grains) assembly.add_grains(table);
     for (const ForeignTable& table : tables.walls) assembly.add_walls(table);
     assembly.settle();
@@ -288,12 +282,9 @@ void import_snapshots(const ImportOptions& options,
     const std::string plain = stepped ? fmt::format("/step_{}", choice.step) : "/packing";
     done.group =
         choice.group.empty() ? (options.group.empty() ? plain : options.group) : choice.group;
-    const std::optional<double>& time = tables.grains.front().time;
-    done.snapshot.time = time ? *time : static_cast<double>(choice.step) * options.time_step;
-    if (!(done.snapshot.time <= dem::kMostNumber))
-      throw std::invalid_argument(
-          fmt::format("--time-step {:g}: the time of step {} becomes {:g} s, allowed: up to {:g}",
-                      options.time_step, choice.step, done.snapshot.time, dem::kMostNumber));
+    done.snapshot.time = time_of(tables.grains.front(), choice, options, done.warnings);
+    for (std::string& text : steps.take_warnings()) done.warnings.push_back(std::move(text));
+    for (std::string& text : names.take_taken()) done.notes.push_back(std::move(text));
     auto& attributes = done.snapshot.attributes;
     attributes["imported_from"] = format.name;
     attributes["imported_files"] = list_of(options);
@@ -312,6 +303,7 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
   const ForeignTable of_grains = table_of(grains, TableKind::grains);
   const ForeignTable of_contacts = table_of(contacts, TableKind::contacts);
   const ForeignTable of_walls = table_of(walls, TableKind::walls);
+  assembly.expect_contacts(of_contacts.rows > 0);
   assembly.add_grains(of_grains);
   if (of_walls.rows > 0) assembly.add_walls(of_walls);
   assembly.settle();

@@ -41,9 +41,9 @@ struct StepChoice {
 };
 
 struct ImportOptions {
-  std::string format;                ///< lammps | liggghts | yade | csv
+  std::string format;                ///< lammps | liggghts | yade | csv | mercury | vtk
   std::vector<std::string> files;    ///< told apart by what they hold
-  std::string units = "m";           ///< of lengths, velocities and volumes without a unit there
+  std::string units = "m";           ///< parse_unit_system: of columns without a unit of their own
   std::vector<std::string> columns;  ///< "ours=theirs", "ours=number unit", "i,j=c_id[1..2]"
   int dim = 0;                       ///< 0: 2 when there is no z or every z is the same, else 3
   std::optional<dem::Vec3> gravity;  ///< m/s2; default 9.81 down (2D: -y, 3D: -z)
@@ -60,14 +60,21 @@ struct ImportOptions {
   bool flip_forces = false;        ///< the files' forces act on j: all are turned
   bool leave_out_distant = false;  ///< pairs across periodic boundaries are left out, and no cell
   std::vector<PeriodicAxis> periodic;  ///< instead of those that a dump tells
-  std::int64_t loaded_grain = -1;      ///< id of the grain that carries the applied force, or -1
-  dem::Vec3 applied_force{0, 0, 0};    ///< N
+  /// Told now and then: what is done of how many, "files looked through", "steps read".
+  std::function<void(const char* phase, std::size_t done, std::size_t all)> progress = {};
+  std::int64_t loaded_grain = -1;    ///< id of the grain that carries the applied force, or -1
+  dem::Vec3 applied_force{0, 0, 0};  ///< N
 };
 
 struct ImportedSnapshot {
   std::string group;
   dem::Snapshot snapshot;
-  long long left_out = 0;  ///< distant pairs
+  long long left_out = 0;   ///< distant pairs
+  long long idle = 0;       ///< pairs left out that bear no force across a gap
+  long long forceless = 0;  ///< contacts that bear no force and overlap: kept
+  long long twice = 0;      ///< contacts that stood there in both directions, kept once
+  /// What the reader has decided and may be of interest, a sentence each.
+  std::vector<std::string> notes;
   /// What in the files makes the packing doubtful and does not show in the snapshot: grains far
   /// from all others, normals that were not unit vectors or contradict their wall, grains that a
   /// narrow period has laid upon each other; a sentence each.

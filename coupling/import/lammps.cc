@@ -11,6 +11,10 @@ ImportFormat lammps_format() {
   format.summary = "dump custom of the atoms, dump local of their pairs";
   format.scan = scan_dump;
   format.columns = dump_columns({
+      // Ellipsoids: compute property/atom shapex is a diameter.
+      {"diameter_x", "shapex"},
+      {"diameter_y", "shapey"},
+      {"diameter_z", "shapez"},
       {"i", "patom1"},
       {"i", "id1"},
       {"j", "patom2"},

@@ -10,6 +10,16 @@ ImportFormat liggghts_format() {
   format.summary = "dump custom of the atoms, dump local of pair/gran/local and wall/gran/local";
   format.scan = scan_dump;
   format.columns = dump_columns({
+      // Superquadrics: half axes, blockiness, quaternion w x y z.
+      {"axis_x", "shapex"},
+      {"axis_y", "shapey"},
+      {"axis_z", "shapez"},
+      {"blockiness_1", "blockiness1"},
+      {"blockiness_2", "blockiness2"},
+      {"qw", "quat1"},
+      {"qx", "quat2"},
+      {"qy", "quat3"},
+      {"qz", "quat4"},
       {"i", "id1"},
       {"j", "id2"},
       {"fx", "fx"},

@@ -2,60 +2,78 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
+#include <algorithm>
 #include <stdexcept>
-
-#include "coupling/system/read_input.h"
-#include "dem/cannot_read_now.h"
 
 namespace grainfield::coupling {
 
-Lines::Lines(const std::string& file)
-    : file_(file), buffer_(std::make_unique_for_overwrite<char[]>(longest)) {
-  require_regular_file(file, "a text file");
-  errno = 0;
-  in_.open(file, std::ios::binary);
-  if (!in_) throw std::invalid_argument(fmt::format("{}: {}", file, std::strerror(errno)));
-  if (in_.get() == 0x1f && in_.get() == 0x8b)
-    throw std::invalid_argument(file + ": is compressed (gzip); unpack it first");
-  in_.clear();
-  in_.seekg(0);
+namespace {
+constexpr std::size_t kBlock = std::size_t{1} << 16;  // bytes that are read at once
+}
+
+Lines::Lines(const std::string& file) : file_(file), source_(file) {}
+
+bool Lines::fill() {
+  if (ended_) return false;
+  buffer_.erase(0, at_);
+  start_ += static_cast<std::streamoff>(at_);
+  at_ = 0;
+  const std::size_t old = buffer_.size();
+  buffer_.resize(old + kBlock);
+  const std::size_t count = source_.read(buffer_.data() + old, kBlock);
+  buffer_.resize(old + count);
+  ended_ = count == 0;
+  return !ended_;
+}
+
+Lines::End Lines::find_end() const {
+  const std::size_t feed = buffer_.find('\n', at_);
+  const std::string_view line(buffer_.data() + at_, std::min(feed, buffer_.size()) - at_);
+  const std::size_t turn = line.find('\r');
+  if (turn == std::string_view::npos) return {feed, feed + 1};
+  // "\r\n", and what was made of it by those who put a "\r" before every "\n" once more.
+  const std::size_t rest = line.find_first_not_of('\r', turn);
+  if (rest != std::string_view::npos) return {at_ + turn, at_ + turn + 1};
+  if (feed != std::string::npos) return {at_ + turn, feed + 1};
+  return ended_ ? End{at_ + turn, at_ + turn + 1} : End{};
 }
 
 bool Lines::next(std::string_view& line) {
-  errno = 0;
-  in_.getline(buffer_.get(), static_cast<std::streamsize>(longest));
-  std::streamsize count = in_.gcount();
-  if (in_.bad()) {
-    const std::string after = line_ == 0 ? "" : fmt::format(" on behind line {}", line_);
-    throw dem::CannotReadNow(
-        fmt::format("{}: cannot be read{}: {}", file_, after,
-                    errno != 0 ? std::strerror(errno) : "the system gives no reason"));
+  End end;
+  while (true) {
+    end = find_end();
+    const std::size_t length = std::min(end.text, buffer_.size()) - at_;
+    if (length >= longest) {
+      ++line_;
+      throw std::invalid_argument(fmt::format(
+          "{}: the line is longer than {} bytes; is this a text file?", where(), longest - 1));
+    }
+    if (end.text != std::string::npos || !fill()) break;
   }
-  if (count == 0 && in_.eof()) return false;
+  if (end.text == std::string::npos) end = find_end();
+  if (end.text == std::string::npos && at_ == buffer_.size()) return false;
   ++line_;
-  if (in_.fail())
-    throw std::invalid_argument(fmt::format(
-        "{}: the line is longer than {} bytes; is this a text file?", where(), longest - 1));
-  unfinished_ = in_.eof();
-  if (!unfinished_) --count;  // the end of line, counted but not stored
-  if (count > 0 && buffer_[static_cast<std::size_t>(count) - 1] == '\r') --count;
-  line = std::string_view(buffer_.get(), static_cast<std::size_t>(count));
+  unfinished_ = end.text == std::string::npos;
+  if (unfinished_) end = {buffer_.size(), buffer_.size()};
+  line = std::string_view(buffer_).substr(at_, end.text - at_);
+  at_ = end.next;
   return true;
 }
 
 std::string Lines::where() const { return fmt::format("{}:{}", file_, line_); }
 
-Lines::Place Lines::place() {
-  if (in_.eof()) in_.clear();
-  return {static_cast<std::streamoff>(in_.tellg()), line_};
-}
-
 void Lines::seek(const Place& place) {
-  in_.clear();
-  in_.seekg(place.offset);
   line_ = place.line;
+  const auto last = start_ + static_cast<std::streamoff>(buffer_.size());
+  if (place.offset >= start_ && place.offset <= last) {
+    at_ = static_cast<std::size_t>(place.offset - start_);
+    return;
+  }
+  source_.seek(place.offset);
+  buffer_.clear();
+  start_ = place.offset;
+  at_ = 0;
+  ended_ = false;
 }
 
 std::string_view trimmed(std::string_view text) {

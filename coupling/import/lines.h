@@ -1,10 +1,11 @@
-// Text files line by line through one fixed buffer, whatever the file's size.
+// Text files line by line through one buffer, whatever the file's size.
 #pragma once
-#include <fstream>
-#include <memory>
+#include <ios>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "coupling/import/text_source.h"
 
 namespace grainfield::coupling {
 
@@ -13,11 +14,10 @@ class Lines {
   /// Longest line that is read, bytes: outlines of thousands of corners fit.
   static constexpr std::size_t longest = std::size_t{1} << 20;
 
-  /// Throws std::invalid_argument naming the file: not there, a folder, compressed.
+  /// Throws as TextSource.
   explicit Lines(const std::string& file);
-  /// The next line without its end ("\n" or "\r\n"), valid until the next call; false at the end of
-  /// the file. Throws std::invalid_argument for a line that is too long, dem::CannotReadNow where
-  /// the system cannot read on.
+  /// The next line without its end ("\n", "\r\n" or "\r"), valid until the next call; false at the
+  /// end of the file. Throws std::invalid_argument for a line that is too long, and as TextSource.
   bool next(std::string_view& line);
   const std::string& file() const { return file_; }
   /// Number of the line that next() gave last, from 1.
@@ -32,13 +32,24 @@ class Lines {
     std::streamoff offset = 0;
     long long line = 0;
   };
-  Place place();
+  Place place() const { return {start_ + static_cast<std::streamoff>(at_), line_}; }
   void seek(const Place& place);
 
  private:
+  /// Reads on; false at the end of the file.
+  bool fill();
+  /// Where the line at at_ ends, and where the next one begins; npos: not in the buffer.
+  struct End {
+    std::size_t text = std::string::npos, next = 0;
+  };
+  End find_end() const;
+
   std::string file_;
-  std::ifstream in_;
-  std::unique_ptr<char[]> buffer_;  // of `longest` bytes
+  TextSource source_;
+  std::string buffer_;
+  std::streamoff start_ = 0;  // of the buffer in the text
+  std::size_t at_ = 0;        // of the next line in the buffer
+  bool ended_ = false;
   long long line_ = 0;
   bool unfinished_ = false;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "continuum/constants.h"
 #include "coupling/averaging/layer.h"
@@ -86,39 +87,40 @@ std::vector<std::string> warning_texts(const PackingCheck& check) {
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
-  double mass = 0, volume = 0;
+  double mass = 0, volume = 0, spheres = 0;
   bool any = false;
   for (const dem::Grain& grain : packing.grains) {
     if (grain.fixed) continue;
     mass += grain.mass;
     volume += grain.volume;
+    spheres += 4.0 / 3 * std::numbers::pi * std::pow(grain.radius, 3);
     any = true;
   }
-  if (!any) return {kNan, kNan};
-  return {mass / volume, mean_diameter(packing)};
+  if (!any) return {kNan, kNan, kNan};
+  return {mass / volume, mass / spheres, mean_diameter(packing)};
 }
 
 std::string tension_in(const PackingCheck& check) {
-  const double all = check.pairs_along_gravity + check.walls_along_gravity;
-  const double trace = (check.pairs + check.walls).trace();
+  const double along = check.pairs_along_gravity + check.walls_along_gravity;
+  // Without gravity, or across it, the mean stress tells.
+  const double mean = check.pairs.trace() + check.walls.trace();
+  if (!(along > 0) && !(mean > 0)) return "";
+  const bool by_gravity = along > 0;
   const std::string remedy = "forces count on grain i, by j; turn their sign";
-  if (!(all > 0) && trace > 0) {
-    return fmt::format(
-        "the contacts pull: the mean stress is tension (its trace times the volume is {:.3g} N m, "
-        "compression is negative); {} (import --flip-forces)",
-        trace, remedy);
-  }
-  if (!(all > 0)) return "";
-  if (check.walls_along_gravity < 0) {
+  if (by_gravity && check.walls_along_gravity < 0)
     return fmt::format(
         "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "
         "walls push: {} in the table of the pairs",
         check.pairs_along_gravity, remedy);
-  }
+  if (by_gravity)
+    return fmt::format(
+        "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
+        "compression is negative); {} (import --flip-forces)",
+        along, remedy);
   return fmt::format(
-      "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
-      "compression is negative); {} (import --flip-forces)",
-      all, remedy);
+      "the contacts pull: the mean stress is tension (its trace {:.3g} N m over all contacts, "
+      "compression is negative); {} (import --flip-forces) unless the grains stick together",
+      mean, remedy);
 }
 
 std::vector<std::string> warnings_of(const PackingCheck& check) {
@@ -145,7 +147,11 @@ double relative_inertia(const dem::Snapshot& packing) {
 std::string strange_units(const dem::Snapshot& packing) {
   const GrainSizes sizes = grain_sizes(packing);
   const char* unit = packing.dim == 2 ? "kg/m2" : "kg/m3";
-  if (sizes.density < kLeastDensity || sizes.density > kMostDensity) {
+  const auto strange = [](double density) {
+    return density < kLeastDensity || density > kMostDensity;
+  };
+  // In the plane a mass may be that of spheres, as LAMMPS has it.
+  if (strange(sizes.density) && !(packing.dim == 2 && !strange(sizes.density_as_spheres))) {
     return fmt::format(
         "mean density {:.3g} {}, where grains have {:g} to {:g}: are the file's units SI "
         "(import --units)?",

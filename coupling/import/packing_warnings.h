@@ -9,9 +9,9 @@
 
 namespace grainfield::coupling {
 
-/// Why the contacts of a packing pull where grains push: the stress along gravity, pairs and walls
-/// together, is tension (positive), or whatever gravity is the mean stress; one sentence with the
-/// remedy. Empty: it is compression, or there is no contact.
+/// Why the contacts of a packing pull where grains push: the stress along gravity, or the mean
+/// stress, pairs and walls together, is tension (positive); one sentence with the remedy. Empty:
+/// both are compression, or there is no contact.
 std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
@@ -22,14 +22,16 @@ std::vector<std::string> warnings_of(const PackingCheck& check);
 
 /// Of the free grains; nan without one.
 struct GrainSizes {
-  double density = 0;   ///< all mass over all volume, kg/m3 (2D kg/m2)
-  double diameter = 0;  ///< mean, m
+  double density = 0;             ///< all mass over all volume, kg/m3 (2D kg/m2)
+  double density_as_spheres = 0;  ///< over the volume of spheres of their radii, kg/m3
+  double diameter = 0;            ///< mean, m
 };
 GrainSizes grain_sizes(const dem::Snapshot& packing);
 
 /// Why the units may not be SI: a mean density of the free grains (mass over volume) outside 10 to
-/// 30,000 kg/m3 (2D kg/m2) or a mean diameter outside 0.1 um to 100 m, or moments of inertia
-/// that no mass within the radius has; one sentence. Empty: none of them.
+/// 30,000 kg/m3 (2D kg/m2, unless it is within as that of spheres, in kg/m3) or a mean diameter
+/// outside 0.1 um to 100 m, or moments of inertia that no mass within the radius has; one sentence.
+/// Empty: none of them.
 std::string strange_units(const dem::Snapshot& packing);
 
 /// The warnings of several packings as one list: of each kind the first packing that has it, and

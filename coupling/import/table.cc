@@ -9,57 +9,11 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
+#include "coupling/import/synonyms.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// What other programs call our columns; in lower case, without "_", "-", ".", " " and units in
-// brackets.
-const std::vector<std::pair<std::string, std::vector<std::string>>>& other_names() {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> names{
-      {"id", {"particle", "particleid", "grain", "grainid", "number", "no", "index", "label"}},
-      {"x", {"xpos", "posx", "positionx", "xc", "cx", "centrex", "centerx", "x1", "coordx"}},
-      {"y", {"ypos", "posy", "positiony", "yc", "cy", "centrey", "centery", "x2", "coordy"}},
-      {"z", {"zpos", "posz", "positionz", "zc", "cz", "centrez", "centerz", "x3", "coordz"}},
-      {"radius", {"r", "rad", "rp"}},
-      {"diameter", {"d", "diam", "dp"}},
-      {"mass", {"m"}},
-      {"density", {"rho", "rhop"}},
-      {"i", {"id1", "p1", "particle1", "grain1", "first", "ida", "idi", "from"}},
-      {"j", {"id2", "p2", "particle2", "grain2", "second", "idb", "idj", "to"}},
-      {"fx", {"forcex", "xforce", "f1", "ftotx"}},
-      {"fy", {"forcey", "yforce", "f2", "ftoty"}},
-      {"fz", {"forcez", "zforce", "f3", "ftotz"}},
-      {"px", {"contactx", "pointx", "cpx", "xcontact"}},
-      {"py", {"contacty", "pointy", "cpy", "ycontact"}},
-      {"nx", {"normalx", "xnormal"}},
-      {"ny", {"normaly", "ynormal"}}};
-  return names;
-}
-
-std::string plain(const std::string& name) {
-  std::string out;
-  for (const char ch : name.substr(0, name.find_first_of("([{"))) {
-    const auto c = static_cast<unsigned char>(ch);
-    if (std::isalnum(c) != 0) out += static_cast<char>(std::tolower(c));
-  }
-  return out;
-}
-
-// The column that other programs use for ours; empty: none.
-std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns) {
-  std::vector<std::string> wanted{ours};
-  for (const auto& [name, others] : other_names()) {
-    if (name == ours) wanted.insert(wanted.end(), others.begin(), others.end());
-  }
-  for (const std::string& word : wanted) {
-    for (const std::string& column : columns) {
-      if (plain(column) == word) return column;
-    }
-  }
-  return "";
-}
 
 // "a,c_id[1..3]" -> a, c_id[1], c_id[2], c_id[3]
 std::vector<std::string> expanded(const std::string& list) {
@@ -92,9 +46,6 @@ const OurColumn* our_column(const std::string& name) {
   return nullptr;
 }
 
-// Whether another unit of a file's lengths is its unit too.
-bool is_scaled(const OurColumn& column) { return column.unit == "m" || column.unit == "m/s"; }
-
 std::vector<std::string> all_our_names() {
   std::vector<std::string> names;
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
@@ -103,84 +54,6 @@ std::vector<std::string> all_our_names() {
 }
 
 }  // namespace
-
-const std::vector<OurColumn>& our_columns(TableKind kind) {
-  static const std::vector<OurColumn> grains{
-      {"id", "1", "whole number, each once"},
-      {"x", "m", "centroid"},
-      {"y", "m", "centroid"},
-      {"z", "m", "centroid; 2D: may be missing"},
-      {"vx", "m/s", "velocity, default 0"},
-      {"vy", "m/s", "velocity, default 0"},
-      {"vz", "m/s", "velocity, default 0"},
-      {"angle", "rad", "rotation about z, default 0"},
-      {"spin", "rad/s", "about z, default 0"},
-      {"spin_x", "rad/s", "3D: about x, default 0"},
-      {"spin_y", "rad/s", "3D: about y, default 0"},
-      {"qw", "1", "3D: orientation, a unit quaternion; default 1, 0, 0, 0"},
-      {"qx", "1", "3D: orientation"},
-      {"qy", "1", "3D: orientation"},
-      {"qz", "1", "3D: orientation"},
-      {"radius", "m", "of a disk or sphere"},
-      {"diameter", "m", "instead of radius"},
-      {"mass", "kg", "2D: with an areal density"},
-      {"density", "kg/m3", "instead of mass; 2D: kg/m2", "kg/m2"},
-      {"inertia", "kg m2", "about the centroid; default: of a disk, sphere or polygon"},
-      {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon", "m2"},
-      {"fixed", "1", "1: part of the apparatus, default 0"},
-      {"material", "", "name; default: the only one, without a name"},
-      {"outline", "m", "x1 y1;x2 y2;... of a convex polygon about (x, y), turned by angle"},
-  };
-  static const std::vector<OurColumn> contacts{
-      {"i", "1", "id of a grain"},
-      {"j", "1", "id of the other grain, or name of a wall"},
-      {"wall", "1", "instead of j: name or id of a wall"},
-      {"px", "m", "contact point; default: on the line of centres, in the overlap's middle"},
-      {"py", "m", "contact point"},
-      {"pz", "m", "contact point"},
-      {"nx", "1", "normal from i to j; default: along the line of centres"},
-      {"ny", "1", "normal"},
-      {"nz", "1", "normal"},
-      {"fx", "N", "force on i"},
-      {"fy", "N", "force on i"},
-      {"fz", "N", "force on i"},
-      {"fnx", "N", "normal part of the force on i, instead of fx"},
-      {"fny", "N", "normal part"},
-      {"fnz", "N", "normal part"},
-      {"ftx", "N", "tangential part of the force on i"},
-      {"fty", "N", "tangential part"},
-      {"ftz", "N", "tangential part"},
-      {"friction", "1", "Coulomb coefficient of the contact; default nan (unknown)"},
-      {"spring", "N", "elastic part of the tangential force; default nan (unknown)"},
-      {"sx", "N", "3D: elastic part of the tangential force on i; default nan (unknown)"},
-      {"sy", "N", "3D: elastic part"},
-      {"sz", "N", "3D: elastic part"},
-      {"sliding", "1", "1: at the Coulomb limit; default: told from friction"},
-  };
-  static const std::vector<OurColumn> walls{
-      {"name", "", "floor, left, right or any other"},
-      {"x", "m", "a point of the wall"},
-      {"y", "m", "a point of the wall"},
-      {"z", "m", "a point of the wall"},
-      {"nx", "1", "normal into the grains"},
-      {"ny", "1", "normal"},
-      {"nz", "1", "normal"},
-      {"friction", "1", "grain against wall; default nan (unknown)"},
-      {"material", "", "name; default: that of each grain, with the friction"},
-  };
-  static const std::vector<OurColumn> none;
-  switch (kind) {
-    case TableKind::grains:
-      return grains;
-    case TableKind::contacts:
-      return contacts;
-    case TableKind::walls:
-      return walls;
-    case TableKind::unknown:
-      break;
-  }
-  return none;
-}
 
 ColumnNames::ColumnNames(std::vector<std::pair<std::string, std::string>> format)
     : format_(std::move(format)) {}
@@ -202,6 +75,30 @@ void ColumnNames::choose(const std::string& text) {
                                               ours[k], continuum::nearest(ours[k], known)));
     chosen_.emplace_back(ours[k], theirs[k]);
   }
+}
+
+bool ColumnNames::claims(const std::string& theirs) const {
+  const auto names = [&](const auto& pair) { return pair.second == theirs; };
+  return std::any_of(chosen_.begin(), chosen_.end(), names) ||
+         std::any_of(format_.begin(), format_.end(), names);
+}
+
+void ColumnNames::mark_taken(const std::string& file, const std::string& ours,
+                             const std::string& theirs) {
+  auto& list = taken_[file];
+  const std::string text = fmt::format("{} = {}", ours, theirs);
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+std::vector<std::string> ColumnNames::take_taken() {
+  std::vector<std::string> out;
+  for (const auto& [file, list] : taken_)
+    out.push_back(
+        fmt::format("{}: columns taken by their names: {} (--column OURS=THEIRS takes "
+                    "others)",
+                    file, fmt::join(list, ", ")));
+  taken_.clear();
+  return out;
 }
 
 std::vector<ColumnNames::Candidate> ColumnNames::candidates(const std::string& ours) const {
@@ -250,7 +147,10 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
   const OurColumn* known = our_column(ours);
   if (known == nullptr || known->unit.empty()) return std::nullopt;
   if (heading.unit.empty()) {
-    return is_scaled(*known) ? table_.length : std::nullopt;
+    // A volume is one of the plane or of space: its table's unit is told by its reader.
+    const int ten = known->unit == "m3" ? 0 : table_.units.ten_of(known->unit);
+    if (ten == 0) return std::nullopt;
+    return Unit{parse_unit(known->unit)->kind, ten, known->unit.starts_with("rad")};
   }
   const std::optional<Unit> unit = parse_unit(heading.unit == "-" ? "1" : heading.unit);
   for (const std::string& allowed : {known->unit, known->plane_unit})
@@ -270,8 +170,9 @@ std::optional<double> TableColumns::constant_of(const std::string& ours,
                                                 const std::string& text) const {
   const OurColumn* known = our_column(ours);
   if (const auto number = dem::parse_number(text)) {
-    const bool length = known != nullptr && (is_scaled(*known) || known->unit == "m3");
-    if (table_.length && length && *number != 0)
+    const bool scaled = known != nullptr && !table_.units.is_si() &&
+                        (known->unit == "m3" || table_.units.ten_of(known->unit) != 0);
+    if (scaled && *number != 0)
       throw std::invalid_argument(
           fmt::format("--column {}={}: found a number without a unit beside --units, expected one "
                       "behind a blank, of the kind {}",
@@ -284,6 +185,31 @@ std::optional<double> TableColumns::constant_of(const std::string& ours,
   for (const std::string& allowed : {known->unit, known->plane_unit})
     if (unit && unit->kind == parse_unit(allowed)->kind) return in_si(text.substr(0, blank), *unit);
   return std::nullopt;
+}
+
+std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ours) const {
+  const auto none = headings_.end();
+  if (!table_.any_names || table_.arrays != nullptr) return none;
+  const Synonyms& known = synonyms_of(ours);
+  std::vector<std::string> wanted = known.sure;
+  wanted.push_back(plain_column_name(ours));
+  auto found = none;
+  for (auto at = headings_.begin(); at != none; ++at) {
+    const std::string plain = plain_column_name(at->name);
+    if (std::find(wanted.begin(), wanted.end(), plain) == wanted.end()) continue;
+    if (names_.claims(at->name) ||
+        names_.claims(table_.columns->at(static_cast<std::size_t>(at->index))))
+      continue;
+    if (found != none) return none;
+    found = at;
+  }
+  return found;
+}
+
+std::vector<std::string> TableColumns::names() const {
+  std::vector<std::string> out;
+  for (const Heading& heading : headings_) out.push_back(heading.name);
+  return out;
 }
 
 ForeignColumn TableColumns::find(const std::string& ours) const {
@@ -307,19 +233,16 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
     if (at == headings_.end()) return {ours, -1, constant, std::nullopt};
     return {ours, at->index, std::nullopt, unit_of(ours, *at)};
   }
-  return {ours, -1, std::nullopt, std::nullopt};
+  const auto at = plainly(ours);
+  if (at == headings_.end()) return {ours, -1, std::nullopt, std::nullopt};
+  if (plain_column_name(at->name) != plain_column_name(ours))
+    names_.mark_taken(table_.file, ours, at->name);
+  return {ours, at->index, std::nullopt, unit_of(ours, *at)};
 }
 
 void TableColumns::missing(const std::string& what, const std::string& option,
                            const std::string& argument) const {
   const auto& columns = *table_.columns;
-  // LAMMPS' scaled coordinates run from 0 to 1 over the box: no lengths.
-  for (const char* scaled : {"s", "su"})
-    if ((what == "x" || what == "y" || what == "z") &&
-        std::find(columns.begin(), columns.end(), what + scaled) != columns.end())
-      throw std::invalid_argument(fmt::format(
-          "{}:{}: no column \"{}\"; {}{} is in units of the box: dump x y z (or xu yu zu), in m",
-          table_.file, table_.header_line, what, what, scaled));
   std::string nearest = same_meaning(what, columns);
   // What would do instead of ours, under its own name.
   for (const auto& [ours, instead] :
@@ -356,119 +279,6 @@ ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::st
         "{}:{}: no column \"{}\"; found: {}; nearest: {}", table_.file, table_.header_line, theirs,
         fmt::join(columns, " "), continuum::nearest(theirs, columns)));
   return {theirs, at->index, std::nullopt, unit_of(like, *at)};
-}
-
-const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
-  return arrays == nullptr || column.index < 0 ? nullptr
-                                               : &(*arrays)[static_cast<std::size_t>(column.index)];
-}
-
-std::string_view ForeignRow::text(const ForeignColumn& column) const {
-  if (const ArrayColumn* array = array_of(column)) {
-    if (!array->words.empty()) return array->words[place];
-    const double value = array->numbers[place];
-    if (std::isnan(value)) return {};
-    shown_ = fmt::format("{}", value);
-    return shown_;
-  }
-  return column.index >= 0 ? fields[static_cast<std::size_t>(column.index)] : std::string_view();
-}
-
-bool ForeignRow::empty(const ForeignColumn& column) const {
-  const ArrayColumn* array = array_of(column);
-  if (array != nullptr && array->words.empty()) return std::isnan(array->numbers[place]);
-  return !column || (!column.constant && text(column).empty());
-}
-
-std::string ForeignRow::name_of(const ForeignColumn& column) const {
-  if (column.index < 0) return column.name;
-  const std::string& theirs = (*columns)[static_cast<std::size_t>(column.index)];
-  return theirs == column.name ? theirs : fmt::format("{} ({})", theirs, column.name);
-}
-
-void ForeignRow::refuse(const std::string& what) const {
-  throw std::invalid_argument(fmt::format("{}:{}: {}", *file, line, what));
-}
-
-double ForeignRow::number(const ForeignColumn& column) const {
-  if (column.constant) return *column.constant;
-  const ArrayColumn* array = array_of(column);
-  std::optional<double> value;
-  if (array != nullptr && array->words.empty()) {
-    value = array->numbers[place];
-  } else {
-    value = column.unit ? in_si(std::string(text(column)), *column.unit)
-                        : dem::parse_number(text(column));
-  }
-  if (!value || !std::isfinite(*value))
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
-                       text(column)));
-  return *value;
-}
-
-long long ForeignRow::whole(const ForeignColumn& column) const {
-  if (!column.constant) {
-    if (const auto value = dem::parse_integer(text(column))) return *value;
-  }
-  const double value = number(column);
-  if (value != std::floor(value) || std::abs(value) > 9e15)
-    refuse(fmt::format("column {}: found \"{}\", expected a whole number",
-                       column.constant ? column.name : name_of(column),
-                       column.constant ? fmt::format("{}", value) : std::string(text(column))));
-  return static_cast<long long>(value);
-}
-
-bool ForeignRow::flag(const ForeignColumn& column) const {
-  if (empty(column)) return false;
-  const double value = number(column);
-  if (value != 0 && value != 1)
-    refuse(fmt::format("column {}: found {}, allowed: 0, 1", name_of(column), value));
-  return value != 0;
-}
-
-double ForeignRow::coefficient(const ForeignColumn& column) const {
-  const double value = number(column);
-  if (!(value >= 0 && value <= kMostFriction))
-    refuse(fmt::format("column {}: found {}, allowed: 0 to {:g}", name_of(column), value,
-                       kMostFriction));
-  return value;
-}
-
-void TableReader::read_arrays(const ForeignTable& table,
-                              const std::function<void(const ForeignRow&)>& take) {
-  ForeignRow row;
-  row.file = &table.file;
-  row.columns = table.columns.get();
-  row.arrays = table.arrays.get();
-  for (long long n = 0; n < table.rows; ++n) {
-    row.line = n;
-    row.place = static_cast<std::size_t>(n);
-    take(row);
-  }
-}
-
-void TableReader::read(const ForeignTable& table,
-                       const std::function<void(const ForeignRow&)>& take) {
-  if (table.arrays) return read_arrays(table, take);
-  auto& lines = files_[table.file];
-  if (!lines) lines = std::make_unique<Lines>(table.file);
-  lines->seek(table.first);
-  ForeignRow row;
-  row.file = &table.file;
-  row.columns = table.columns.get();
-  std::string_view line;
-  for (long long n = 0; (table.rows < 0 || n < table.rows) && lines->next(line); ++n) {
-    row.line = lines->line();
-    if (table.rows < 0) {
-      const std::string_view text = trimmed(line);
-      if (text.empty() || text.front() == '#') continue;
-    }
-    split(line, table.separator, row.fields);
-    if (row.fields.size() != table.columns->size())
-      row.refuse(fmt::format("{} values where the header at line {} names {} columns",
-                             row.fields.size(), table.header_line, table.columns->size()));
-    take(row);
-  }
 }
 
 }  // namespace grainfield::coupling

@@ -1,8 +1,11 @@
 // Tables of grains, contacts and walls in foreign files: where they stand, and their columns under
 // our names.
 #pragma once
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include "coupling/import/lines.h"
+#include "coupling/import/unit_system.h"
 #include "coupling/unit.h"
 #include "dem/space/cell.h"
 
@@ -23,12 +27,13 @@ inline constexpr double kMostFriction = 1e6;
 
 enum class TableKind { unknown, grains, contacts, walls };
 
-/// A column in memory: numbers (nan: not told), or words.
+/// A column in memory: numbers (nan: not told), whole numbers, or words.
 struct ArrayColumn {
   std::vector<double> numbers;
   std::vector<std::string> words;
+  std::vector<std::int64_t> whole;
 
-  std::size_t rows() const { return words.empty() ? numbers.size() : words.size(); }
+  std::size_t rows() const { return std::max({numbers.size(), words.size(), whole.size()}); }
 };
 
 /// A table as a format's scan() finds it. Its rows are not read yet.
@@ -38,14 +43,17 @@ struct ForeignTable {
   std::optional<long long> step;                            ///< time step of a dump
   std::optional<double> time;                               ///< s, where the file says it
   dem::Cell<3> cell;                                        ///< of a dump with periodic boundaries
+  std::optional<dem::Cell<3>> box;                          ///< of a dump: all of its edges
   std::shared_ptr<const std::vector<std::string>> columns;  ///< names in the file's order
   long long header_line = 0;                                ///< line that holds the names
   Lines::Place first;                                       ///< of the rows
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
   bool units_in_header = false;  ///< "x (mm)" is a column x in mm
-  std::string told_units;        ///< "FILE:LINE" where the file itself says that it is SI
-  std::optional<Unit> length;    ///< of places and velocities whose column tells no unit
+  bool decimal_commas = false;   ///< numbers are written as 0,005
+  bool any_names = false;        ///< names that other programs have for our columns are taken, too
+  std::string told_units;        ///< "FILE:LINE" where the file itself says what it is in
+  UnitSystem units;              ///< of columns that tell none
   std::string broken;            ///< not empty: why the table cannot be read (truncated)
   /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
   /// long as `rows`.
@@ -77,10 +85,17 @@ class ColumnNames {
   };
   std::vector<Candidate> candidates(const std::string& ours) const;
   void mark_used(const std::string& ours, const std::string& theirs);
+  /// Whether the user or the format names this column of theirs as one of ours.
+  bool claims(const std::string& theirs) const;
+  /// Remembers that a name of another program was taken: "FILE: i = end1".
+  void mark_taken(const std::string& file, const std::string& ours, const std::string& theirs);
+  /// Those remembered, a sentence per file, and forgets them.
+  std::vector<std::string> take_taken();
 
  private:
   std::vector<std::pair<std::string, std::string>> chosen_, format_;
   std::set<std::string> used_;
+  std::map<std::string, std::vector<std::string>> taken_;  // by file
 };
 
 /// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]". A whole number in
@@ -115,14 +130,25 @@ class TableColumns {
   /// What else would do: as an option of the program; as an argument, for a table in memory.
   [[noreturn]] void missing(const std::string& what, const std::string& option = "",
                             const std::string& argument = "") const;
+  /// Names of the table's columns, without units.
+  std::vector<std::string> names() const;
 
  private:
   std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
   std::optional<double> constant_of(const std::string& ours, const std::string& text) const;
+  /// The heading that plainly is ours, or the only one of another program's name for it; else end.
+  std::vector<Heading>::const_iterator plainly(const std::string& ours) const;
 
   const ForeignTable& table_;
   ColumnNames& names_;
   std::vector<Heading> headings_;
+};
+
+/// An id as a file tells it.
+struct ToldId {
+  std::int64_t id = 0;
+  /// 0: all digits are there. Otherwise it was printed with so many, as 1.23457e+06.
+  int digits = 0;
 };
 
 /// A row of a table being read.
@@ -131,17 +157,19 @@ class ForeignRow {
   const std::string* file = nullptr;
   long long line = 0;
   const std::vector<std::string>* columns = nullptr;
-  std::vector<std::string_view> fields;              ///< of a file's row
-  const std::vector<ArrayColumn>* arrays = nullptr;  ///< of a table in memory
-  std::size_t place = 0;                             ///< of the row in it
+  const std::vector<std::string_view>* fields = nullptr;  ///< of a file's row
+  bool decimal_commas = false;                            ///< of a file's numbers
+  const std::vector<ArrayColumn>* arrays = nullptr;       ///< of a table in memory
+  std::size_t place = 0;                                  ///< of the row in it
 
   /// "" for a constant. Valid until the next call or row.
   std::string_view text(const ForeignColumn& column) const;
   bool empty(const ForeignColumn& column) const;
   /// In SI. Throws std::invalid_argument naming file, line and column unless it is a finite number.
   double number(const ForeignColumn& column) const;
-  /// The same for whole numbers ("7", "7.0", "1e3").
-  long long whole(const ForeignColumn& column) const;
+  /// The same for whole numbers ("7", "7.0", "7.000e+00"), to the last of 64 bits. Throws for what
+  /// is written as a floating-point number and beyond 2^53, where such numbers leave some out.
+  ToldId told_id(const ForeignColumn& column) const;
   /// The same for flags: 1 or 0; false where it is empty.
   bool flag(const ForeignColumn& column) const;
   /// The same for coefficients of friction, 0 to kMostFriction.
@@ -156,17 +184,19 @@ class ForeignRow {
   mutable std::string shown_;  // a number in memory as text
 };
 
-/// Calls take(row) for every row; comments (#) and blank lines are passed over where the table runs
-/// to the end of the file. Files stay open between tables. Throws std::invalid_argument for rows of
-/// another length than the header and for what `take` throws.
+/// Calls take(row) for every row; comments (#), blank lines and rows of empty values are passed
+/// over. Throws std::invalid_argument for rows of another length than the header, but for empty
+/// values at the end, and for what `take` throws.
 class TableReader {
  public:
   void read(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
 
  private:
   void read_arrays(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
+  /// The file, opened or as it was left; of many files the last few stay open.
+  Lines& lines_of(const std::string& file);
 
-  std::map<std::string, std::unique_ptr<Lines>> files_;
+  std::list<Lines> files_;  // the one that was read last first
 };
 
 }  // namespace grainfield::coupling

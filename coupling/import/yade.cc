@@ -1,12 +1,14 @@
 // YADE: text of yade.export.textExt or of a script (docs/import.md). Comment lines before the first
-// row name the columns: "#format id_x_y_z_r_matId" or "# id x y z r mass", whichever has as many
-// names as the row has values. YADE's contact forces act on the second body.
+// row name the columns: "#format id_x_y_z_r_matId" or "# id x y z r mass", of those with as many
+// names as the row has values the one with the most known ones. YADE's contact forces act on the
+// second body.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "coupling/import/format.h"
+#include "coupling/import/synonyms.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -21,39 +23,66 @@ std::vector<std::string> names_of(std::string_view comment) {
   return {words.begin(), words.end()};
 }
 
+struct Comment {
+  std::vector<std::string> names;
+  long long line = 0;
+};
+
+// "#format x_y_z_r_attrs" and behind it "#id mass": attributes stand in place of their word.
+void put_attributes(std::vector<Comment>& comments) {
+  for (std::size_t k = 0; k + 1 < comments.size(); ++k) {
+    std::vector<std::string>& names = comments[k].names;
+    if (names.empty() || !names.back().starts_with("attr")) continue;
+    names.pop_back();
+    names.insert(names.end(), comments[k + 1].names.begin(), comments[k + 1].names.end());
+  }
+}
+
+// Of the comments with as many names as the row has values the one with the most known names.
+const Comment* best_of(const std::vector<Comment>& comments, std::size_t count) {
+  const Comment* best = nullptr;
+  std::ptrdiff_t most = -1;
+  for (const Comment& comment : comments) {
+    if (comment.names.size() != count) continue;
+    const auto known = std::count_if(comment.names.begin(), comment.names.end(), is_known_name);
+    if (known < most) continue;
+    most = known;
+    best = &comment;
+  }
+  return best;
+}
+
 std::vector<ForeignTable> scan(const std::string& file) {
   Lines lines(file);
-  std::vector<std::vector<std::string>> names;
-  std::vector<long long> at;
+  std::vector<Comment> comments;
   std::vector<std::string_view> fields;
   ForeignTable table;
   table.file = file;
+  table.any_names = true;
   table.first = lines.place();
+  const auto named = [&](const Comment& comment) {
+    table.columns = std::make_shared<const std::vector<std::string>>(comment.names);
+    table.header_line = comment.line;
+    return std::vector<ForeignTable>{table};
+  };
   for (std::string_view line; lines.next(line); table.first = lines.place()) {
     line = trimmed(line);
     if (line.empty()) continue;
     if (line.front() == '#') {
-      names.push_back(names_of(line.substr(1)));
-      at.push_back(lines.line());
+      comments.push_back({names_of(line.substr(1)), lines.line()});
       continue;
     }
+    put_attributes(comments);
     split(line, ' ', fields);
-    for (std::size_t k = names.size(); k-- > 0;) {
-      if (names[k].size() != fields.size()) continue;
-      table.columns = std::make_shared<const std::vector<std::string>>(names[k]);
-      table.header_line = at[k];
-      return {table};
-    }
+    if (const Comment* best = best_of(comments, fields.size())) return named(*best);
     throw std::invalid_argument(fmt::format(
         "{}: no comment line above names the {} columns; expected \"#format id_x_y_z_r\" or "
         "\"# id x y z r mass\"",
         lines.where(), fields.size()));
   }
   // No rows: the last comment names the columns of an empty table.
-  if (names.empty()) throw std::invalid_argument(file + ": is empty");
-  table.columns = std::make_shared<const std::vector<std::string>>(names.back());
-  table.header_line = at.back();
-  return {table};
+  if (comments.empty()) throw std::invalid_argument(file + ": is empty");
+  return named(comments.back());
 }
 
 }  // namespace
@@ -64,12 +93,13 @@ ImportFormat yade_format() {
   format.summary = "text of the bodies and of the interactions (docs/import.md has the script)";
   format.scan = scan;
   format.force_sign = -1;
-  const char* same[] = {"id",     "x",    "y",        "z",    "vx",      "vy",      "vz",
-                        "angle",  "spin", "radius",   "mass", "density", "inertia", "volume",
-                        "fixed",  "px",   "py",       "pz",   "nx",      "ny",      "nz",
-                        "fx",     "fy",   "fz",       "fnx",  "fny",     "fnz",     "ftx",
-                        "fty",    "ftz",  "friction", "sx",   "sy",      "sz",      "spin_x",
-                        "spin_y", "qw",   "qx",       "qy",   "qz"};
+  const char* same[] = {
+      "id",     "x",    "y",       "z",        "vx",     "vy",    "vz",      "angle",  "spin",
+      "radius", "mass", "density", "inertia",  "volume", "fixed", "px",      "py",     "pz",
+      "nx",     "ny",   "nz",      "fx",       "fy",     "fz",    "fnx",     "fny",    "fnz",
+      "ftx",    "fty",  "ftz",     "friction", "sx",     "sy",    "sz",      "spin_x", "spin_y",
+      "qw",     "qx",   "qy",      "qz",       "xu",     "yu",    "zu",      "ix",     "iy",
+      "iz",     "fn",   "ft",      "tx",       "ty",     "tz",    "material"};
   for (const char* name : same) format.columns.emplace_back(name, name);
   format.columns.insert(format.columns.end(), {{"radius", "r"}, {"i", "id1"}, {"j", "id2"}});
   return format;

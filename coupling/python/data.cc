@@ -224,6 +224,12 @@ coupling::ArrayTable table_of(const std::string& name, const py::dict& columns) 
     coupling::ArrayColumn column;
     if (py::isinstance<py::list>(value)) {
       column.words = value.cast<std::vector<std::string>>();
+    } else if (py::isinstance<py::array_t<std::int64_t>>(value)) {
+      const auto whole = value.cast<py::array_t<std::int64_t, py::array::c_style>>();
+      if (whole.ndim() != 1)
+        throw std::invalid_argument(fmt::format("{}.{}: found an array of {} axes, allowed: (n,)",
+                                                name, key.cast<std::string>(), whole.ndim()));
+      column.whole.assign(whole.data(), whole.data() + whole.size());
     } else {
       const Eigen::VectorXd numbers = vector_of(value, name + "." + key.cast<std::string>());
       column.numbers.assign(numbers.data(), numbers.data() + numbers.size());

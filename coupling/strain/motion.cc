@@ -1,9 +1,12 @@
 #include "coupling/strain/motion.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -104,6 +107,27 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
     ++c;
   }
   return motion;
+}
+
+std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& after) {
+  if (!after.cell.is_periodic() || dem::counts_images(before) || dem::counts_images(after))
+    return "";
+  constexpr double kFar = 1.0 / 3;  // of the shortest edge; beyond a half another image is nearer
+  double edge = std::numeric_limits<double>::infinity();
+  for (Eigen::Index a = 0; a < 3; ++a)
+    if (after.cell.periodic[static_cast<std::size_t>(a)])
+      edge = std::min(edge, after.cell.edges.col(a).norm());
+  long long far = 0;
+  for (std::size_t g = 0; g < before.grains.size(); ++g)
+    far += dem::displacement(before.grains[g], after.grains[g], before.cell, after.cell, false)
+               .norm() > kFar * edge;
+  if (far == 0) return "";
+  return fmt::format(
+      "{} of {} grains have moved by more than a third of the periodic cell and no images are "
+      "told: "
+      "the shortest way may be that of an image; import unwrapped places (xu yu zu) or image flags "
+      "(ix iy iz)",
+      far, before.grains.size());
 }
 
 }  // namespace grainfield::coupling

@@ -1,6 +1,7 @@
 // What two snapshots say about the motion of the free grains: the input of every strain measure.
 #pragma once
 #include <Eigen/Core>
+#include <string>
 
 #include "dem/snapshot/snapshot.h"
 
@@ -25,5 +26,9 @@ struct GrainMotion {
 /// along the axis of the turn from one orientation to the other. Throws std::invalid_argument as
 /// require_same_grains().
 GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after);
+
+/// Of states in a periodic cell that tell no images: that some grains have moved by more than a
+/// third of it, where the shortest way may be that of an image; a sentence. Empty: none.
+std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& after);
 
 }  // namespace grainfield::coupling

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "dem/snapshot/cell_places.h"
+
 namespace grainfield::dem {
 namespace {
 
@@ -26,8 +28,8 @@ Vec3 along_edges(const Cell<3>& cell, const Vec3& v) {
 // As images are counted.
 int whole(double turns) {
   if (std::fabs(turns) <= kMostImages) return static_cast<int>(turns);
-  throw std::invalid_argument(fmt::format(
-      "a place {:g} edges of the periodic cell away, allowed: up to {}", turns, kMostImages));
+  throw TooFarAway(fmt::format("a place {:g} edges of the periodic cell away, allowed: up to {}",
+                               turns, kMostImages));
 }
 
 }  // namespace
@@ -64,6 +66,8 @@ std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch) {
 }
 
 bool counts_images(const Snapshot& s) {
+  const auto told = s.attributes.find("images");
+  if (told != s.attributes.end() && told->second == "counted") return true;
   return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) {
     return g.image != std::array<int, 3>{0, 0, 0};
   });
@@ -98,14 +102,30 @@ Vec3 displacement(const Grain& a, const Grain& b, const Cell<3>& cell_of_a,
   return moved + shift_to(cell_of_b, crossed);
 }
 
-Vec3 wrapped(const Cell<3>& cell, const Vec3& place) {
-  if (!cell.is_periodic()) return place;
+std::array<int, 3> edges_away(const Cell<3>& cell, const Vec3& place) {
+  std::array<int, 3> away{0, 0, 0};
+  if (!cell.is_periodic()) return away;
   const Vec3 turns = along_edges(cell, place - cell.low);
-  std::array<int, 3> image{0, 0, 0};
   for (std::size_t a = 0; a < 3; ++a)
-    image[a] = -whole(std::floor(turns[static_cast<Eigen::Index>(a)]));
-  if (image == std::array<int, 3>{0, 0, 0}) return place;
-  return place + shift_to(cell, image);
+    away[a] = whole(std::floor(turns[static_cast<Eigen::Index>(a)]));
+  return away;
+}
+
+double depth_outside(const Cell<3>& cell, const Vec3& place) {
+  if (!cell.is_periodic()) return 0;
+  const Vec3 turns = along_edges(cell, place - cell.low);
+  double depth = 0;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    if (!cell.periodic[static_cast<std::size_t>(a)]) continue;
+    depth = std::max(depth, std::max(-turns[a], turns[a] - 1) * cell.edges.col(a).norm());
+  }
+  return depth;
+}
+
+Vec3 wrapped(const Cell<3>& cell, const Vec3& place) {
+  const std::array<int, 3> away = edges_away(cell, place);
+  if (away == std::array<int, 3>{0, 0, 0}) return place;
+  return place + shift_to(cell, {-away[0], -away[1], -away[2]});
 }
 
 }  // namespace grainfield::dem

@@ -17,13 +17,45 @@ _SHORT = {"velocities": ("vx", "vy", "vz"), "forces": ("fx", "fy", "fz"), "point
           "normals": ("nx", "ny", "nz")}
 
 
+_IDS = ("id", "i", "j")
+
+
+def _whole(where: str, value: Any) -> Any:
+    """A masked array holds values that are none."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{where}: found {int(np.ma.getmaskarray(value).sum())} masked values of {value.size}, "
+                         "allowed: none; x[~x.mask] of every column leaves their rows out")
+    return value
+
+
+def _ids(where: str, array: np.ndarray) -> np.ndarray:
+    """Whole numbers to their last digit, or as they are."""
+    if array.dtype.kind == "f" and (np.abs(array) > 2**53).any():
+        raise ValueError(f"{where}: found floating-point numbers beyond 2^53, where ids are rounded, "
+                         "allowed: whole numbers (dtype int64)")
+    if array.dtype.kind == "u" and (array > np.iinfo(np.int64).max).any():
+        raise ValueError(f"{where}: found an id beyond 2^63, allowed: below")
+    return array.astype(np.int64) if array.dtype.kind in "iu" else array.astype(float)
+
+
+def _periods(periodic: Mapping[str, tuple[float, float]] | None) -> list[str]:
+    """"x=0.0:0.1" of {"x": (0, 0.1)}."""
+    out = []
+    for axis, ends in (periodic or {}).items():
+        if np.ndim(ends) != 1 or len(ends) != 2:
+            raise ValueError(f"periodic: found {ends!r} for {axis}, allowed: (low, high) in m, such as "
+                             f'{{"{axis}": (0, 0.1)}}')
+        out.append(f"{axis}={float(ends[0])!r}:{float(ends[1])!r}")
+    return out
+
+
 def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[str, Sequence[str]]):
     """Vectors (n, dim) by their components, lists of words as lists, all else as numbers."""
     out: dict[str, Any] = {}
     for name, value in given.items():
         if value is None:
             continue
-        array = np.asarray(value)
+        array = np.asarray(_whole(f"{table}.{name}", value))
         if name in vectors:
             if array.ndim != 2 or array.shape[1] != dim:
                 raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
@@ -35,6 +67,8 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
                              f"nearest: {near}, which takes (n, {dim})")
         elif array.dtype.kind in "US" or array.dtype == object:
             out[name] = [str(word) for word in value]
+        elif name in _IDS:
+            out[name] = _ids(f"{table}.{name}", array)
         else:
             out[name] = array.astype(float)
     return out
@@ -79,6 +113,8 @@ def packing(
     from 0. What `.check()` finds is given as Python warnings. Raises ValueError.
     """
     dim = 2 if z is None else 3
+    for name, value in (("x", x), ("y", y), ("z", z), ("radius", radius)):
+        _whole(f"grains.{name}", value)
     x = np.atleast_1d(np.asarray(x, float))
     n = len(x)
 
@@ -120,7 +156,7 @@ def packing(
             "density": float(density),
             "friction": friction,
             "walls": list(texts),
-            "periodic": [f"{axis}={low!r}:{high!r}" for axis, (low, high) in (periodic or {}).items()],
+            "periodic": _periods(periodic),
             "load": None if load is None else (int(load[0]), [float(f) for f in load[1]]),
             "time": float(time),
             "flip_forces": flip_forces,

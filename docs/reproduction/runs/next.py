@@ -118,7 +118,8 @@ def compute(source, run, folder, deadline):
     """Goes on with a run until it has ended (True) or the time is over (False)."""
     name, seed, case, settings = run
     results = folder / "results"
-    if (results / "summary.json").exists():  # ended before, and could not be committed
+    half_done = any(results.rglob("checkpoint"))
+    if any(results.rglob("summary.json")) and not half_done:  # ended, and could not be committed
         return True
     command = ["nice", "-n", "19", "build/release/grainfield", "run", f"cases/{case}.toml", "-o",
                str(results), "--threads", "1"]
@@ -126,7 +127,7 @@ def compute(source, run, folder, deadline):
         "ensemble.realizations=1"]
     for setting in [f"ensemble.seed={seed}", *one, *settings]:
         command += ["--set", setting]
-    if (results / "checkpoint").exists():
+    if half_done:
         command.append("--resume")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(folder / "log.txt", "a") as log:
@@ -159,11 +160,14 @@ def keep(run, tag, commit, folder, states):
     """Puts what a finished run leaves beside the other states and commits it."""
     name, seed, case, settings = run
     compact = folder / "compact.h5"
-    subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"),
-                    str(folder / "results" / "snapshots.h5"), str(compact)], check=True)
+    found = sorted((folder / "results").rglob("snapshots.h5"))
+    if len(found) != 1:  # a sweep leaves one in the folder of each value
+        fail(f"{name}: found {len(found)} files of states; allowed: one, of one value of a sweep")
+    subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
+                    str(compact)], check=True)
     states.mkdir(parents=True, exist_ok=True)
     packed = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
-    figures = json.loads((folder / "results" / "summary.json").read_text())
+    figures = json.loads(found[0].with_name("summary.json").read_text())
     record = {"case": case, "seed": seed, "settings": settings, "tag": tag, "commit": commit,
               "cpu_seconds": float((folder / "cpu_seconds").read_text()),
               "sha256": hashlib.sha256(packed).hexdigest(), "summary": figures}

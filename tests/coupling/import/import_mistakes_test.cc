@@ -47,19 +47,17 @@ TEST(ImportMistakes, MistakesInCsv) {
   const std::vector<Mistake> mistakes{
       {"", c, "", "no table of grains in "},
       {g, "", "", "no table of contacts in "},
-      {"# nothing\n", c, "", "g.txt: is empty, expected a header line such as id,x,y,radius,mass"},
+      {"# nothing\n", c, "", "g.txt: is empty, expected a line of names such as id,x,y,radius,mass"},
       {"id,x,y,radius,mass\n", c, "", "the tables of grains hold no row"},
       {"id,x,y,radus,mass\n1,0,0,1,1\n", c, "",
        "g.txt:1: no column \"radius\"; found: id x y radus mass; nearest: radus; other names by "
        "--column radius=THEIRS"},
-      {"id;x;y;radius;mass\n1;0;0;1;1\n", c, "",
-       "g.txt:1: found columns parted by semicolons, expected commas (and points in decimals)"},
-      {"id,x,y,R [m],mass\n1,0,0,1,1\n", c, "", "nearest: R [m]; other names by --column"},
-      {"id,x,y,diam,mass\n1,0,0,1,1\n", c, "", "nearest: diam (--column diameter=diam); other"},
-      {"particle,x,y,radius,mass\n1,0,0,1,1\n", c, "",
-       "no column \"id\"; found: particle x y radius mass; nearest: particle"},
-      {"id,pos_x,pos_y,radius,mass\n1,0,0,1,1\n", c, "", "nearest: pos_x"},
-      {g, "i,j,force_x,force_y\n1,2,0,1\n", "", "nearest: force_x"},
+      {"id,x,y,Rp [m],mass\n1,0,0,1,1\n", c, "", "nearest: Rp [m]; other names by --column"},
+      {"id,x,y,d,mass\n1,0,0,1,1\n", c, "", "nearest: d (--column diameter=d); other"},
+      {"number,x,y,radius,mass\n1,0,0,1,1\n", c, "",
+       "no column \"id\"; found: number x y radius mass; nearest: number"},
+      {"id,xc,yc,radius,mass\n1,0,0,1,1\n", c, "", "nearest: xc"},
+      {g, "i,j,f1,f2\n1,2,0,1\n", "", "nearest: f1"},
       {"id,x,y,radius\n1,0,0,1\n", c, "", "or --density"},
       {g, "# c\ni,j,fx\n1,2,0\n", "", "c.txt:2: no column \"fy\"; found: i j fx; nearest: "},
       {g, "i,j,fnx,fny\n1,2,0,1\n", "", "without friction: --column ftx,fty,ftz=0,0,0"},
@@ -88,8 +86,8 @@ TEST(ImportMistakes, MistakesInCsv) {
       {g, c + "1,floor,0,3\n1,floor,0,3\n", "--wall floor:y=-1",
        "c.txt:4: the contact of grain 1 and wall floor is there already, at "},
       {"id,xs,ys,radius,mass\n1,0,0,1,1\n", c, "",
-       "g.txt:1: no column \"x\"; xs is in units of the box: dump x y z (or xu yu zu), in m"},
-      {g + "3,50,0,1,1\n", c + "1,3,0,0\n", "",
+       "g.txt:1: places over the box (id xs ys radius mass), and no box"},
+      {g + "3,50,0,1,1\n", c + "1,3,0,1\n", "",
        "across a periodic boundary? --periodic AXIS=LOW:HIGH"},
       {g, "i,j,nx,ny,px,py,fx,fy\n1,2,0,0,0,1,1,1\n", "",
        "c.txt:2: the contact's normal has length 0"},
@@ -225,7 +223,7 @@ TEST(ImportMistakes, MistakesInDumps) {
        "no table of contacts of step 7 in "},
       {"some text\n", c, columns,
        "g.txt:1: found \"some text\", expected \"ITEM: ...\"; is this a dump file?"},
-      {"ITEM: UNITS\nlj\n" + g, c, columns, "g.txt:2: units \"lj\", expected si"},
+      {"ITEM: UNITS\nlj\n" + g, c, columns, "g.txt:2: units \"lj\", allowed: si, cgs, micro, nano"},
       {changed(g, "NUMBER OF ATOMS\n6", "NUMBER OF ATOMS\nsix"), c, columns,
        "g.txt:4: found \"six\", expected the number of rows"},
       {changed(g, "NUMBER OF ATOMS\n6", "NUMBER OF ATOMS\n5"), c, columns,
@@ -249,7 +247,7 @@ TEST(ImportMistakes, MistakesInDumps) {
        "g.txt:2: found \"nan\", expected the time, a finite number from 0"},
       {"ITEM: TIME\n-1\n" + g, c, columns, "g.txt:2: found \"-1\", expected the time"},
       {g, c, columns + " --step 7=a//b", "--step: found the name \"a//b\" of a snapshot"},
-      {"\x1f\x8b\x08 compressed", c, columns, "is compressed (gzip); unpack it first"},
+      {"\x1f\x8b\x08 compressed", c, columns, "is damaged or cut off"},
       {std::string(std::size_t{1} << 20, 'x'), c, columns,
        "g.txt:1: the line is longer than 1048575 bytes"},
   };
@@ -343,7 +341,7 @@ TEST(ImportMistakes, MistakesInYade) {
       {"1 0 0 0 1\n", "# id1 id2 fx fy fz\n", "--density 1",
        "g.txt:1: no comment line above names the 5 columns; expected \"#format id_x_y_z_r\""});
   expect_refused("yade", {"#format x_y_z_r\n0 0 0 1\n", "# id1 id2 fx fy fz\n", "--density 1",
-                          "g.txt:1: no column \"id\"; found: x y z r; nearest: "});
+                          "g.txt:1: no column \"id\"; found: x y z r; the contacts name their grains by it"});
 }
 
 }  // namespace

@@ -1,0 +1,187 @@
+// What the columns of grains tell beyond plain numbers: ids, places, shapes.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/import/assemble.h"
+#include "coupling/import/synonyms.h"
+#include "dem/shapes/superellipsoid.h"
+#include "dem/snapshot/cell_places.h"
+#include "dem/snapshot/images.h"
+
+namespace grainfield::coupling {
+namespace {
+
+constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+
+// Names, plain, that tell a shape or a body of several grains.
+bool tells_shape(const std::string& plain) {
+  constexpr std::array starts{"shape",         "blockiness", "roundness", "aspect",
+                              "elongation",    "flatness",   "clump",     "multisphere",
+                              "idmultisphere", "nvert",      "vertices",  "corner",
+                              "facets",        "halflength", "semiaxis"};
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const char* start) { return plain.starts_with(start); });
+}
+
+}  // namespace
+
+ForeignColumn Assembly::find_id(const ForeignTable& table, const TableColumns& columns) {
+  ForeignColumn id = columns.find("id");
+  if (id || format_.rows_are_ids) return id;
+  if (contacts_expected_) {
+    if (format_.name == "yade")
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: no column \"id\"; found: {}; the contacts name their grains by it: "
+          "export.textExt(FILE, 'id_x_y_z_r_matId') and docs/import.md's yade_export.py write it, "
+          "--without-contacts counts the grains",
+          table.file, table.header_line, fmt::join(*table.columns, " ")));
+    columns.missing("id");
+  }
+  if (rows_.empty())
+    out_.notes.push_back(table.file + ": no column id: the grains are counted from 1 in its order");
+  return id;
+}
+
+Assembly::PlaceColumns Assembly::place_columns(const ForeignTable& table,
+                                               const TableColumns& columns) const {
+  PlaceColumns out;
+  int scaled = 0, axes = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::string axis = kAxes[a];
+    ForeignColumn& place = out.place[a];
+    place = columns.find(axis);
+    out.image[a] = columns.find("i" + axis);
+    out.carried_back[a] = bool(place);
+    // Beside image flags x is what the program has computed; without, xu tells more.
+    if (!place || !out.image[a])
+      if (const ForeignColumn other = columns.find(axis + "u")) {
+        place = other;
+        out.carried_back[a] = false;
+        out.image[a] = {};
+      }
+    if (!place)
+      if ((place = columns.find(axis + "s"))) {
+        out.scaled[a] = true;
+        out.carried_back[a] = true;
+      }
+    if (!place)
+      if ((place = columns.find(axis + "su"))) {
+        out.scaled[a] = true;
+        out.image[a] = {};
+      }
+    if (!place && (a < 2 || options_.dim == 3)) columns.missing(axis);
+    axes += place ? 1 : 0;
+    scaled += out.scaled[a] ? 1 : 0;
+  }
+  if (scaled == 0) return out;
+  if (!table.box)
+    throw std::invalid_argument(fmt::format(
+        "{}:{}: places over the box ({}), and no box: they need ITEM: BOX BOUNDS with numbers",
+        table.file, table.header_line, fmt::join(*table.columns, " ")));
+  out.box = &*table.box;
+  if (scaled < axes && !table.box->edges.isDiagonal(0))
+    throw std::invalid_argument(fmt::format(
+        "{}:{}: places over the box along some axes only, allowed in a tilted box: along "
+        "all",
+        table.file, table.header_line));
+  return out;
+}
+
+void Assembly::read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) const {
+  dem::Vec3& place = out.grain.position;
+  dem::Vec3 share = dem::Vec3::Zero();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double number = columns.place[a] ? row.number(columns.place[a]) : 0;
+    (columns.scaled[a] ? share : place)[axis] = number;
+    if (columns.scaled[a]) place[axis] = columns.box->low[axis];
+    if (!columns.image[a] || row.empty(columns.image[a])) continue;
+    const std::int64_t image = row.told_id(columns.image[a]).id;
+    if (std::abs(image) > dem::kMostImages)
+      row.refuse(fmt::format("found the image flag {} along {}, allowed: up to {}", image, kAxes[a],
+                             dem::kMostImages));
+    out.image[a] = static_cast<int>(image);
+  }
+  if (columns.box != nullptr) place += columns.box->edges * share;
+}
+
+Assembly::ShapeColumns Assembly::shape_columns(const TableColumns& columns) const {
+  ShapeColumns out;
+  const auto all = [&](const char* stem) {
+    out.axes[0] = columns.find(std::string(stem) + "x");
+    if (!out.axes[0]) return false;
+    out.axes[1] = columns.need(std::string(stem) + "y");
+    out.axes[2] = columns.need(std::string(stem) + "z");
+    return true;
+  };
+  if (!all("axis_") && all("diameter_")) out.axis_factor = 0.5;
+  if (!out) return out;
+  out.exponents = {columns.find("exponent_1"), columns.find("exponent_2")};
+  if (out.exponents[0]) return out;
+  out.exponents = {columns.find("blockiness_2"), columns.find("blockiness_1")};
+  out.blockiness = bool(out.exponents[0]);
+  return out;
+}
+
+void Assembly::read_shape(const ShapeColumns& columns, const ForeignRow& row,
+                          dem::Grain& grain) const {
+  for (std::size_t a = 0; a < 3; ++a)
+    grain.axes[static_cast<Eigen::Index>(a)] = columns.axis_factor * row.number(columns.axes[a]);
+  grain.exponents = {1, 1};
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!columns.exponents[k]) continue;
+    const double told = row.number(columns.exponents[k]);
+    grain.exponents[k] = columns.blockiness ? 2 / told : told;
+  }
+  try {
+    dem::superellipsoid({grain.axes[0], grain.axes[1], grain.axes[2]}, grain.exponents);
+  } catch (const std::invalid_argument& e) {
+    row.refuse(fmt::format("grain {}: {}{}", grain.id, e.what(),
+                           columns.blockiness ? " (an exponent is 2 over the blockiness)" : ""));
+  }
+}
+
+double Assembly::complete_superellipsoid(dem::Grain& g) const {
+  const dem::Superellipsoid body =
+      dem::superellipsoid({g.axes[0], g.axes[1], g.axes[2]}, g.exponents);
+  const dem::Solid<3> solid = dem::solid_of(body);
+  g.radius = solid.radius;
+  g.moments = {solid.moments[0], solid.moments[1], solid.moments[2]};
+  return solid.volume;
+}
+
+void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
+                              const ShapeColumns& taken) {
+  std::vector<std::string> left;
+  const auto used = [&](const std::string& name) {
+    if (!taken) return false;
+    const auto is = [&](const ForeignColumn& column) {
+      return column.index >= 0 && (*table.columns)[static_cast<std::size_t>(column.index)] == name;
+    };
+    return std::any_of(taken.axes.begin(), taken.axes.end(), is) ||
+           std::any_of(taken.exponents.begin(), taken.exponents.end(), is);
+  };
+  for (const std::string& name : columns.names())
+    if (tells_shape(plain_column_name(name)) && !used(name)) left.push_back(name);
+  if (left.empty()) return;
+  out_.warnings.push_back(
+      fmt::format("{}:{}: the columns {} tell of shapes and are not taken: every row is read as {}",
+                  table.file, table.header_line, fmt::join(left, " "),
+                  taken ? "a superellipsoid of the other columns"
+                        : "a grain of its own, round or with an "
+                          "outline"));
+}
+
+bool Assembly::lie_outside() const {
+  const dem::Cell<3>& cell = out_.snapshot.cell;
+  return std::any_of(rows_.begin(), rows_.end(), [&](const GrainRow& row) {
+    return dem::depth_outside(cell, row.grain.position) > 2 * row.grain.radius;
+  });
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,276 @@
+// Contacts between grains and with walls: image, point, normal, and whether they are any.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "coupling/import/assemble.h"
+#include "coupling/structure/contact_geometry.h"
+#include "dem/snapshot/images.h"
+#include "dem/snapshot/limits.h"
+
+namespace grainfield::coupling {
+namespace {
+
+using dem::Vec3;
+
+// A contact point farther than this many radii from a grain's centre lies across a periodic
+// boundary: contacts of stiff grains lie within one radius, of very soft ones slightly beyond.
+constexpr double kDistant = 2;
+// Cosine of the angle between a wall's normal and the direction from a contact point to its grain's
+// centre, least, and of the way from the wall to the centre of a disk or sphere, radii, where no
+// point is told: disks and spheres lie on what they touch, corners of polygons may stand out far.
+constexpr double kLeastCosine = 0.5, kLeastCosineOfPolygon = 0.1, kLeastHeight = 0.25;
+constexpr double kNotUnit = 1e-3;      // of a normal's length from 1
+constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's normal
+// Of the Coulomb limit: a contact this near to it slides.
+constexpr double kSliding = 1e-6;
+
+}  // namespace
+
+void Assembly::set_spring(const std::optional<Vec3>& spring, dem::Contact& c) const {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  c.spring = nan;
+  if (out_.snapshot.dim == 2) return;
+  c.spring_vector = spring.value_or(Vec3(nan, nan, nan));
+  if (spring) c.spring = spring->norm();
+}
+
+void Assembly::ContactRow::refuse(const std::string& what) const {
+  throw std::invalid_argument(source.where() + ": " + what);
+}
+
+void Assembly::check_periods(const ContactRow& row) const {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Contact& c = row.contact;
+  if (c.i != c.j) return;
+  const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
+  std::string cell;
+  for (Eigen::Index a = 0; a < 3; ++a)
+    if (s.cell.periodic[static_cast<std::size_t>(a)])
+      cell += fmt::format("{}{:g} m along {}", cell.empty() ? "" : ", ", s.cell.edges.col(a).norm(),
+                          "xyz"[a]);
+  if (!cell.empty())
+    row.refuse(
+        fmt::format("grain {} of diameter {:g} m in contact with itself: the periodic cell is only "
+                    "{} wide, allowed: wider than two grains, so that each touches others only",
+                    grain.id, 2 * grain.radius, cell));
+  row.refuse(fmt::format(
+      "grain {} in contact with itself{}", grain.id,
+      options_.files.empty() ? "" : ", and no axis is periodic (--periodic AXIS=LOW:HIGH)"));
+}
+
+void Assembly::check_wall_distance(const ContactRow& row, bool has_point) const {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Contact& c = row.contact;
+  const dem::Grain& a = s.grains[static_cast<std::size_t>(c.i)];
+  const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+  const double arm = (c.point - a.position).norm();
+  if (arm <= kDistant * a.radius) return;
+  const double height = std::abs((a.position - wall.point).dot(wall.normal));
+  if (has_point && height <= kDistant * a.radius)
+    row.refuse(fmt::format(
+        "the point ({:g}, {:g}, {:g}) m of the contact with wall {} is {:g} m from "
+        "grain {} of radius {:g} m, allowed: up to {:g} radii",
+        c.point.x(), c.point.y(), c.point.z(), wall.name, arm, a.id, a.radius, kDistant));
+  row.refuse(fmt::format(
+      "grain {} of radius {:g} m in contact with wall {} at a distance of {:g} m: is the wall "
+      "where it says?",
+      a.id, a.radius, wall.name, arm));
+}
+
+bool Assembly::settle_wall_contact(ContactRow& row, bool has_point) {
+  const dem::Snapshot& s = out_.snapshot;
+  dem::Contact& c = row.contact;
+  const dem::Grain& a = s.grains[static_cast<std::size_t>(c.i)];
+  const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+  c.normal = -wall.normal;
+  if (c.force.isZero(0) && gap_of(s, c) > kGap * a.radius) {
+    tally_.idle.emplace_back(c.i, c.j);
+    return false;
+  }
+  if (!has_point) {
+    if (!a.outline.empty())
+      row.refuse(fmt::format("grain {} is a polygon: its contacts need px and py", a.id));
+    const Vec3 lowest = farthest_along(a, -wall.normal);
+    c.point = lowest - (lowest - wall.point).dot(wall.normal) * wall.normal;
+  }
+  check_wall_distance(row, has_point);
+  check_wall_side(c, has_point);
+  return true;
+}
+
+void Assembly::set_image(ContactRow& row, bool has_point) const {
+  const dem::Snapshot& s = out_.snapshot;
+  dem::Contact& c = row.contact;
+  const Vec3 &a = s.grains[static_cast<std::size_t>(c.i)].position,
+             &b = s.grains[static_cast<std::size_t>(c.j)].position;
+  try {
+    c.image = dem::nearest_image(s.cell, b - a);
+    if (!has_point || !s.cell.is_periodic()) return;
+    // Two grains of a narrow cell touch through several images: the point tells which.
+    const auto other = dem::nearest_image(s.cell, b - (a + 2 * (c.point - a)));
+    const auto away = [&](const std::array<int, 3>& image) {
+      return (b + dem::shift_to(s.cell, image) - c.point).norm();
+    };
+    if (away(other) < away(c.image)) c.image = other;
+  } catch (const std::invalid_argument& e) {
+    row.refuse(e.what());
+  }
+}
+
+bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
+  const dem::Snapshot& s = out_.snapshot;
+  dem::Contact& c = row.contact;
+  const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
+                   &b = s.grains[static_cast<std::size_t>(c.j)];
+  set_image(row, has_point);
+  const Vec3 branch = dem::second_place(s, c) - a.position;
+  const double d = branch.norm();
+  if (!(d > 0)) row.refuse(fmt::format("grains {} and {} have the same centre", a.id, b.id));
+  const bool apart = gap_of(s, c) > kGap * std::min(a.radius, b.radius);
+  if (apart && c.force.isZero(0)) {
+    tally_.idle.emplace_back(c.i, c.j);
+    return false;
+  }
+  const bool polygons = !a.outline.empty() || !b.outline.empty();
+  if (polygons && !(has_normal && has_point))
+    row.refuse(fmt::format("contact of grains {} and {}: those of polygons need px, py, nx and ny",
+                           a.id, b.id));
+  if (!a.axes.isZero(0) || !b.axes.isZero(0)) {
+    const CommonPlane plane = common_plane(a, b, branch);
+    if (!has_normal) c.normal = plane.normal;
+    if (!has_point) c.point = a.position + plane.point;
+  } else {
+    if (!has_normal) c.normal = branch / d;
+    // The middle of the chord in which two overlapping circles cross.
+    const double arm = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
+    if (!has_point) c.point = a.position + arm * c.normal;
+  }
+  if (!check_pair_distance(row, has_point)) return false;
+  if (apart && tally_.far++ == 0) tally_.first_far = fmt::format("{} and {}", a.id, b.id);
+  return true;
+}
+
+bool Assembly::check_pair_distance(const ContactRow& row, bool has_point) {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Contact& c = row.contact;
+  const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
+                   &b = s.grains[static_cast<std::size_t>(c.j)];
+  const Vec3 second = dem::second_place(s, c);
+  const double d = (second - a.position).norm();
+  if ((c.point - a.position).norm() <= kDistant * a.radius &&
+      (c.point - second).norm() <= kDistant * b.radius)
+    return true;
+  if (options_.leave_out_distant) {
+    ++tally_.left_out;
+    return false;
+  }
+  if (has_point && d <= kDistant * std::max(a.radius, b.radius) + std::min(a.radius, b.radius))
+    row.refuse(fmt::format(
+        "the point ({:g}, {:g}, {:g}) m of the contact is {:g} m from grain {} of radius {:g} m "
+        "and {:g} m from grain {} of radius {:g} m, allowed: up to {:g} radii from each",
+        c.point.x(), c.point.y(), c.point.z(), (c.point - a.position).norm(), a.id, a.radius,
+        (c.point - second).norm(), b.id, b.radius, kDistant));
+  const char* remedy = options_.files.empty()
+                           ? "periodic={\"x\": (low, high)} says where"
+                           : "--periodic AXIS=LOW:HIGH says where, --leave-out-distant imports "
+                             "the packing without such contacts";
+  row.refuse(fmt::format(
+      "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
+      "periodic boundary? {}",
+      a.id, b.id, a.radius, b.radius, d, remedy));
+}
+
+void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding) {
+  const dem::Snapshot& s = out_.snapshot;
+  dem::Contact& c = row.contact;
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument(row.source.where() + ": " + what);
+  };
+  const double largest = c.force.cwiseAbs().maxCoeff();
+  if (!(largest <= dem::kMostNumber))
+    refuse(
+        fmt::format("found a force of {:.3g} N, allowed: up to {:g} N", largest, dem::kMostNumber));
+  if (std::abs(c.spring) > dem::kMostNumber)
+    refuse(fmt::format("found a spring of {:.3g} N, allowed: up to {:g} N", c.spring,
+                       dem::kMostNumber));
+  check_periods(row);
+  if (c.j >= 0 && c.i > c.j) {
+    std::swap(c.i, c.j);
+    c.force = -c.force;
+    c.normal = -c.normal;
+    c.spring_vector = -c.spring_vector;
+    row.turned = !row.turned;
+  }
+  // The file's point is near some image of the grain.
+  if (has_point) {
+    try {
+      const Vec3& place = s.grains[static_cast<std::size_t>(c.i)].position;
+      c.point += dem::shift_to(s.cell, dem::nearest_image(s.cell, c.point - place));
+    } catch (const std::invalid_argument& e) {
+      refuse(e.what());
+    }
+  }
+  if (has_normal) check_given_normal(c);
+  if (c.j < 0 ? !settle_wall_contact(row, has_point) : !settle_pair(row, has_normal, has_point))
+    return;
+  const double length = c.normal.norm();
+  if (!(length > 0 && std::isfinite(length)))
+    refuse(fmt::format("the contact's normal has length {:g}", length));
+  if (std::abs(length - 1) > 1e-12) c.normal /= length;
+  c.normal_force = -c.force.dot(c.normal);
+  c.tangential_force = s.dim == 2 ? c.force.y() * c.normal.x() - c.force.x() * c.normal.y()
+                                  : (c.force + c.normal_force * c.normal).norm();
+  if (!c.point.allFinite() || !c.normal.allFinite() || !std::isfinite(c.normal_force) ||
+      !std::isfinite(c.tangential_force))
+    refuse("its point, normal or force becomes no finite number");
+  // False where the coefficient is unknown (nan).
+  if (tell_sliding)
+    c.sliding = std::abs(c.tangential_force) >= (1 - kSliding) * c.friction * c.normal_force;
+  contacts_.push_back(std::move(row));
+}
+
+void Assembly::check_given_normal(const dem::Contact& c) {
+  const double length = c.normal.norm();
+  if (!(length > 0 && std::isfinite(length))) return;
+  const auto names = [&] {
+    const auto& s = out_.snapshot;
+    const std::int64_t i = s.grains[static_cast<std::size_t>(c.i)].id;
+    return c.j < 0 ? fmt::format("{} and {}", i, s.walls[static_cast<std::size_t>(-1 - c.j)].name)
+                   : fmt::format("{} and {}", i, s.grains[static_cast<std::size_t>(c.j)].id);
+  };
+  ++given_.all;
+  if (std::abs(length - 1) > kNotUnit && given_.not_unit++ == 0)
+    given_.first_not_unit = fmt::format("{}, length {:g}", names(), length);
+  if (c.j >= 0) return;
+  ++given_.at_walls;
+  const Vec3& normal = out_.snapshot.walls[static_cast<std::size_t>(-1 - c.j)].normal;
+  if (-c.normal.dot(normal) < kAcrossNormal * length && given_.across++ == 0)
+    given_.first_across = names();
+}
+
+void Assembly::check_wall_side(const dem::Contact& c, bool has_point) {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
+  const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
+  WallSide& side = sides_[static_cast<std::size_t>(-1 - c.j)];
+  const Vec3 arm = grain.position - c.point;
+  ++side.contacts;
+  if (arm.squaredNorm() > 0) side.towards += arm.normalized();
+  const bool round = grain.outline.empty() && grain.axes.isZero(0);
+  const double cosine = round ? kLeastCosine : kLeastCosineOfPolygon;
+  const bool behind = arm.dot(wall.normal) < cosine * arm.norm();
+  const double height = (grain.position - wall.point).dot(wall.normal);
+  const bool near = !has_point && round && height < kLeastHeight * grain.radius;
+  side.wrong += behind || near;
+  if (behind || !near || !(height > 0)) return;
+  ++side.deep;
+  if (side.first_deep.empty())
+    side.first_deep = fmt::format("grain {}: radius {:.3g} m, centre {:.3g} m above it", grain.id,
+                                  grain.radius, height);
+}
+
+}  // namespace grainfield::coupling

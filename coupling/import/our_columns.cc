@@ -1,0 +1,111 @@
+// The columns of grains, contacts and walls under our names.
+#include "coupling/import/table.h"
+
+namespace grainfield::coupling {
+
+const std::vector<OurColumn>& our_columns(TableKind kind) {
+  static const std::vector<OurColumn> grains{
+      {"id", "1", "whole number, each once"},
+      {"x", "m", "centroid"},
+      {"y", "m", "centroid"},
+      {"z", "m", "centroid; 2D: may be missing"},
+      {"xu", "m", "instead of x: not carried back into a periodic cell"},
+      {"yu", "m", "instead of y"},
+      {"zu", "m", "instead of z"},
+      {"xs", "1", "instead of x: over the box of a dump, from its low side"},
+      {"ys", "1", "instead of y"},
+      {"zs", "1", "instead of z"},
+      {"xsu", "1", "instead of x: over the box, not carried back into a periodic cell"},
+      {"ysu", "1", "instead of y"},
+      {"zsu", "1", "instead of z"},
+      {"ix", "1", "beside x: edges of the periodic cell by which it was carried back"},
+      {"iy", "1", "beside y"},
+      {"iz", "1", "beside z"},
+      {"vx", "m/s", "velocity, default 0"},
+      {"vy", "m/s", "velocity, default 0"},
+      {"vz", "m/s", "velocity, default 0"},
+      {"angle", "rad", "rotation about z, default 0"},
+      {"spin", "rad/s", "about z, default 0"},
+      {"spin_x", "rad/s", "3D: about x, default 0"},
+      {"spin_y", "rad/s", "3D: about y, default 0"},
+      {"qw", "1", "3D: orientation, a unit quaternion; default 1, 0, 0, 0"},
+      {"qx", "1", "3D: orientation"},
+      {"qy", "1", "3D: orientation"},
+      {"qz", "1", "3D: orientation"},
+      {"radius", "m", "of a disk or sphere"},
+      {"diameter", "m", "instead of radius"},
+      {"axis_x", "m", "3D: semi-axis of a superellipsoid"},
+      {"axis_y", "m", "3D: semi-axis"},
+      {"axis_z", "m", "3D: semi-axis"},
+      {"exponent_1", "1", "3D: of the first two axes; default 1, an ellipsoid"},
+      {"exponent_2", "1", "3D: with the third axis; default 1"},
+      {"diameter_x", "m", "3D: instead of axis_x, twice as long"},
+      {"diameter_y", "m", "3D: instead of axis_y"},
+      {"diameter_z", "m", "3D: instead of axis_z"},
+      {"blockiness_1", "1", "3D: instead of exponent_2, 2 over it (LIGGGHTS)"},
+      {"blockiness_2", "1", "3D: instead of exponent_1, 2 over it"},
+      {"mass", "kg", "2D: with an areal density"},
+      {"density", "kg/m3", "instead of mass; 2D: kg/m2", "kg/m2"},
+      {"inertia", "kg m2", "about the centroid; default: of a disk, sphere or polygon"},
+      {"volume", "m3", "2D: m2; default: of a disk, sphere or polygon", "m2"},
+      {"fixed", "1", "1: part of the apparatus, default 0"},
+      {"material", "", "name; default: the only one, without a name"},
+      {"outline", "m", "x1 y1;x2 y2;... of a convex polygon about (x, y), turned by angle"},
+  };
+  static const std::vector<OurColumn> contacts{
+      {"i", "1", "id of a grain"},
+      {"j", "1", "id of the other grain, or name of a wall"},
+      {"wall", "1", "instead of j: name or id of a wall"},
+      {"px", "m", "contact point; default: on the line of centres, in the overlap's middle"},
+      {"py", "m", "contact point"},
+      {"pz", "m", "contact point"},
+      {"nx", "1", "normal from i to j; default: along the line of centres"},
+      {"ny", "1", "normal"},
+      {"nz", "1", "normal"},
+      {"fx", "N", "force on i"},
+      {"fy", "N", "force on i"},
+      {"fz", "N", "force on i"},
+      {"fnx", "N", "normal part of the force on i, instead of fx"},
+      {"fny", "N", "normal part"},
+      {"fnz", "N", "normal part"},
+      {"ftx", "N", "tangential part of the force on i"},
+      {"fty", "N", "tangential part"},
+      {"ftz", "N", "tangential part"},
+      {"fn", "N", "normal force, repulsion positive, instead of fx"},
+      {"ft", "N", "beside fn: tangential force on i along tx, ty, tz (2D: or along -ny, nx)"},
+      {"tx", "1", "direction of the tangential force on i"},
+      {"ty", "1", "direction"},
+      {"tz", "1", "direction"},
+      {"friction", "1", "Coulomb coefficient of the contact; default nan (unknown)"},
+      {"spring", "N", "elastic part of the tangential force; default nan (unknown)"},
+      {"sx", "N", "3D: elastic part of the tangential force on i; default nan (unknown)"},
+      {"sy", "N", "3D: elastic part"},
+      {"sz", "N", "3D: elastic part"},
+      {"sliding", "1", "1: at the Coulomb limit; default: told from friction"},
+  };
+  static const std::vector<OurColumn> walls{
+      {"name", "", "floor, left, right or any other"},
+      {"x", "m", "a point of the wall"},
+      {"y", "m", "a point of the wall"},
+      {"z", "m", "a point of the wall"},
+      {"nx", "1", "normal into the grains"},
+      {"ny", "1", "normal"},
+      {"nz", "1", "normal"},
+      {"friction", "1", "grain against wall; default nan (unknown)"},
+      {"material", "", "name; default: that of each grain, with the friction"},
+  };
+  static const std::vector<OurColumn> none;
+  switch (kind) {
+    case TableKind::grains:
+      return grains;
+    case TableKind::contacts:
+      return contacts;
+    case TableKind::walls:
+      return walls;
+    case TableKind::unknown:
+      break;
+  }
+  return none;
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,118 @@
+#include "coupling/import/synonyms.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "coupling/import/table.h"
+
+namespace grainfield::coupling {
+namespace {
+
+const std::map<std::string, Synonyms>& all_synonyms() {
+  static const std::map<std::string, Synonyms> all{
+      {"id",
+       {{"particle", "particleid", "particlenumber", "grain", "grainid", "ball", "ballid", "body",
+         "bodyid", "ids", "atomid", "pid"},
+        {"number", "no", "index", "label", "name"}}},
+      {"x",
+       {{"xpos", "posx", "positionx", "position0", "centrex", "centerx", "coordx", "xcoord",
+         "coordinatex", "coordinates0", "points0"},
+        {"xc", "cx", "x1"}}},
+      {"y",
+       {{"ypos", "posy", "positiony", "position1", "centrey", "centery", "coordy", "ycoord",
+         "coordinatey", "coordinates1", "points1"},
+        {"yc", "cy", "x2"}}},
+      {"z",
+       {{"zpos", "posz", "positionz", "position2", "centrez", "centerz", "coordz", "zcoord",
+         "coordinatez", "coordinates2", "points2"},
+        {"zc", "cz", "x3"}}},
+      {"vx", {{"velx", "velocityx", "xvel", "velocity0", "xvelocity"}, {"v1", "ux", "vel0", "v0"}}},
+      {"vy", {{"vely", "velocityy", "yvel", "velocity1", "yvelocity"}, {"v2", "uy"}}},
+      {"vz", {{"velz", "velocityz", "zvel", "velocity2", "zvelocity"}, {"v3", "uz"}}},
+      {"radius", {{"rad", "r", "radii", "particleradius"}, {"rp"}}},
+      {"diameter", {{"diam", "dia", "particlediameter"}, {"d", "dp", "size"}}},
+      {"mass", {{"m", "particlemass"}, {}}},
+      {"density", {{"rho", "dens", "particledensity"}, {"rhop"}}},
+      {"i",
+       {{"id1", "idi", "ida", "particle1", "particlei", "particleid1", "particle1id", "grain1",
+         "grain1id", "grainid1", "ball1", "ball1id", "body1", "end1", "end1id", "bodyid1", "atom1"},
+        {"p1", "first", "from", "a", "element1"}}},
+      {"j",
+       {{"id2", "idj", "idb", "particle2", "particlej", "particleid2", "particle2id", "grain2",
+         "grain2id", "grainid2", "ball2", "ball2id", "body2", "end2", "end2id", "bodyid2", "atom2"},
+        {"p2", "second", "to", "b", "element2"}}},
+      {"fx", {{"forcex", "xforce", "force0", "contactforcex", "globalforcex"}, {"f1", "ftotx"}}},
+      {"fy", {{"forcey", "yforce", "force1", "contactforcey", "globalforcey"}, {"f2", "ftoty"}}},
+      {"fz", {{"forcez", "zforce", "force2", "contactforcez", "globalforcez"}, {"f3", "ftotz"}}},
+      {"fnx", {{"forcenormalx", "normalforcex", "forcenormal0"}, {}}},
+      {"fny", {{"forcenormaly", "normalforcey", "forcenormal1"}, {}}},
+      {"fnz", {{"forcenormalz", "normalforcez", "forcenormal2"}, {}}},
+      {"ftx", {{"forcetangentialx", "tangentialforcex", "shearforcex", "forcetangential0"}, {}}},
+      {"fty", {{"forcetangentialy", "tangentialforcey", "shearforcey", "forcetangential1"}, {}}},
+      {"ftz", {{"forcetangentialz", "tangentialforcez", "shearforcez", "forcetangential2"}, {}}},
+      {"px",
+       {{"contactx", "contactpointx", "pointx", "xcontact", "contactpoint0", "contactposx"},
+        {"cpx"}}},
+      {"py",
+       {{"contacty", "contactpointy", "pointy", "ycontact", "contactpoint1", "contactposy"},
+        {"cpy"}}},
+      {"pz",
+       {{"contactz", "contactpointz", "pointz", "zcontact", "contactpoint2", "contactposz"},
+        {"cpz"}}},
+      {"nx", {{"normalx", "xnormal", "normal0"}, {}}},
+      {"ny", {{"normaly", "ynormal", "normal1"}, {}}},
+      {"nz", {{"normalz", "znormal", "normal2"}, {}}},
+      {"fn", {{}, {"normalforce", "forcenormal", "fnormal"}}},
+      {"ft", {{}, {"tangentialforce", "shearforce", "fs"}}},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::string plain_column_name(const std::string& name) {
+  std::string out;
+  for (const char ch : name.substr(0, name.find_first_of("([{"))) {
+    const auto c = static_cast<unsigned char>(ch);
+    if (std::isalnum(c) != 0) out += static_cast<char>(std::tolower(c));
+  }
+  // "force[0]", "Points:0": the number of a component counts.
+  const std::size_t open = name.find('[');
+  if (open != std::string::npos && open + 2 < name.size() && name[open + 2] == ']' &&
+      std::isdigit(static_cast<unsigned char>(name[open + 1])) != 0)
+    out += name[open + 1];
+  return out;
+}
+
+const Synonyms& synonyms_of(const std::string& ours) {
+  static const Synonyms none;
+  const auto at = all_synonyms().find(ours);
+  return at == all_synonyms().end() ? none : at->second;
+}
+
+std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns) {
+  std::vector<std::string> wanted{ours};
+  const Synonyms& known = synonyms_of(ours);
+  wanted.insert(wanted.end(), known.sure.begin(), known.sure.end());
+  wanted.insert(wanted.end(), known.likely.begin(), known.likely.end());
+  for (const std::string& word : wanted)
+    for (const std::string& column : columns)
+      if (plain_column_name(column) == plain_column_name(word)) return column;
+  return "";
+}
+
+bool is_known_name(const std::string& name) {
+  static const std::set<std::string> known = [] {
+    std::set<std::string> out;
+    for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
+      for (const OurColumn& column : our_columns(kind)) out.insert(plain_column_name(column.name));
+    for (const auto& [ours, others] : all_synonyms())
+      out.insert(others.sure.begin(), others.sure.end());
+    return out;
+  }();
+  return known.find(plain_column_name(name)) != known.end();
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,26 @@
+// What other programs call our columns.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+/// A name without what does not tell columns apart: in lower case, without signs and blanks, up to
+/// a unit in brackets. "Pos-X (mm)" -> "posx".
+std::string plain_column_name(const std::string& name);
+
+/// Plain names that other programs have for ours; the first list is of those that mean nothing
+/// else beside our other columns, so that the import takes them, the second of those that it only
+/// suggests.
+struct Synonyms {
+  std::vector<std::string> sure, likely;
+};
+const Synonyms& synonyms_of(const std::string& ours);
+
+/// The column of `columns` that likely means ours; empty: none.
+std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns);
+
+/// Whether it is, plainly written, one of our names or a sure synonym of one.
+bool is_known_name(const std::string& name);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,193 @@
+// Rows of tables: their values, and the files that they come from.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coupling/import/row_text.h"
+#include "coupling/import/table.h"
+#include "dem/snapshot/number.h"
+
+namespace grainfield::coupling {
+
+const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
+  return arrays == nullptr || column.index < 0 ? nullptr
+                                               : &(*arrays)[static_cast<std::size_t>(column.index)];
+}
+
+std::string_view ForeignRow::text(const ForeignColumn& column) const {
+  if (const ArrayColumn* array = array_of(column)) {
+    if (!array->words.empty()) return array->words[place];
+    if (!array->whole.empty()) {
+      shown_ = fmt::format("{}", array->whole[place]);
+    } else {
+      const double value = array->numbers[place];
+      shown_ = std::isnan(value) ? "nan" : fmt::format("{}", value);
+    }
+    return shown_;
+  }
+  return column.index >= 0 ? (*fields)[static_cast<std::size_t>(column.index)] : std::string_view();
+}
+
+bool ForeignRow::empty(const ForeignColumn& column) const {
+  const ArrayColumn* array = array_of(column);
+  if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
+  return !column || (!column.constant && text(column).empty());
+}
+
+std::string ForeignRow::name_of(const ForeignColumn& column) const {
+  if (column.index < 0) return column.name;
+  const std::string& theirs = (*columns)[static_cast<std::size_t>(column.index)];
+  return theirs == column.name ? theirs : fmt::format("{} ({})", theirs, column.name);
+}
+
+void ForeignRow::refuse(const std::string& what) const {
+  throw std::invalid_argument(fmt::format("{}:{}: {}", *file, line, what));
+}
+
+double ForeignRow::number(const ForeignColumn& column) const {
+  if (column.constant) return *column.constant;
+  const ArrayColumn* array = array_of(column);
+  std::optional<double> value;
+  const auto read = [&](std::string_view told) {
+    return column.unit ? in_si(std::string(told), *column.unit) : dem::parse_number(told);
+  };
+  if (array != nullptr && !array->whole.empty()) {
+    value = static_cast<double>(array->whole[place]);
+  } else if (array != nullptr && array->words.empty()) {
+    value = array->numbers[place];
+    // As the same number in a text would be.
+    if (column.unit && std::isfinite(*value))
+      value = in_si(fmt::format("{}", *value), *column.unit);
+  } else if (decimal_commas) {
+    std::string told(text(column));
+    if (told.find('.') != std::string::npos)
+      refuse(
+          fmt::format("column {}: found \"{}\", expected a comma in decimals, as in the rows "
+                      "before",
+                      name_of(column), told));
+    std::replace(told.begin(), told.end(), ',', '.');
+    value = read(told);
+  } else {
+    value = read(text(column));
+  }
+  if (!value || !std::isfinite(*value))
+    refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
+                       text(column)));
+  return *value;
+}
+
+ToldId ForeignRow::told_id(const ForeignColumn& column) const {
+  const ArrayColumn* array = array_of(column);
+  if (array != nullptr && !array->whole.empty()) return {array->whole[place], 0};
+  std::string told =
+      column.constant ? fmt::format("{}", *column.constant) : std::string(text(column));
+  if (decimal_commas) std::replace(told.begin(), told.end(), ',', '.');
+  if (const auto value = dem::parse_integer(told)) return {*value, 0};
+  const std::optional<double> value = dem::parse_number(told);
+  // Above, doubles are no longer one apart.
+  constexpr double most = 9007199254740992.0;
+  if (!value || *value != std::floor(*value) || !(std::abs(*value) <= most)) {
+    const bool large = value && std::abs(*value) > most && std::isfinite(*value);
+    refuse(fmt::format(
+        "column {}: found \"{}\", expected {}", column.constant ? column.name : name_of(column),
+        told,
+        large ? "a whole number with all of its digits: as a floating-point number one beyond 2^53 "
+                "may stand for its neighbour"
+              : "a whole number"));
+  }
+  const std::size_t e = told.find_first_of("eE");
+  if (e == std::string::npos) return {static_cast<std::int64_t>(*value), 0};
+  // Digits behind the last that is told may be any.
+  int digits = 0;
+  for (const char ch : told.substr(0, e)) digits += ch >= '0' && ch <= '9' ? 1 : 0;
+  const int whole_digits =
+      *value == 0 ? 1 : 1 + static_cast<int>(std::floor(std::log10(std::abs(*value)) + 1e-12));
+  return {static_cast<std::int64_t>(*value), digits < whole_digits ? digits : 0};
+}
+
+bool ForeignRow::flag(const ForeignColumn& column) const {
+  if (empty(column)) return false;
+  const double value = number(column);
+  if (value != 0 && value != 1)
+    refuse(fmt::format("column {}: found {}, allowed: 0, 1", name_of(column), value));
+  return value != 0;
+}
+
+double ForeignRow::coefficient(const ForeignColumn& column) const {
+  const double value = number(column);
+  if (!(value >= 0 && value <= kMostFriction))
+    refuse(fmt::format("column {}: found {}, allowed: 0 to {:g}", name_of(column), value,
+                       kMostFriction));
+  return value;
+}
+
+void TableReader::read_arrays(const ForeignTable& table,
+                              const std::function<void(const ForeignRow&)>& take) {
+  ForeignRow row;
+  row.file = &table.file;
+  row.columns = table.columns.get();
+  row.arrays = table.arrays.get();
+  for (long long n = 0; n < table.rows; ++n) {
+    row.line = n;
+    row.place = static_cast<std::size_t>(n);
+    take(row);
+  }
+}
+
+Lines& TableReader::lines_of(const std::string& file) {
+  constexpr std::size_t kMostOpen = 16;
+  const auto at = std::find_if(files_.begin(), files_.end(),
+                               [&](const Lines& lines) { return lines.file() == file; });
+  if (at != files_.end()) {
+    files_.splice(files_.begin(), files_, at);
+  } else {
+    if (files_.size() == kMostOpen) files_.pop_back();
+    files_.emplace_front(file);
+  }
+  return files_.front();
+}
+
+void TableReader::read(const ForeignTable& table,
+                       const std::function<void(const ForeignRow&)>& take) {
+  if (table.arrays) return read_arrays(table, take);
+  Lines& lines = lines_of(table.file);
+  lines.seek(table.first);
+  RowParts parts;
+  ForeignRow row;
+  row.file = &table.file;
+  row.columns = table.columns.get();
+  row.decimal_commas = table.decimal_commas;
+  const std::size_t columns = table.columns->size();
+  std::vector<std::string_view> padded;
+  std::string_view line;
+  for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
+    row.line = lines.line();
+    const std::string_view text = trimmed(line);
+    if (text.empty() || (table.rows < 0 && text.front() == '#')) continue;
+    ++n;
+    const std::vector<std::string_view>& fields = parts.of(line, table.separator, lines);
+    row.fields = &fields;
+    if (fields.size() != columns) {
+      const auto blank = [](std::string_view field) { return field.empty(); };
+      if (std::all_of(fields.begin(), fields.end(), blank)) continue;
+      const std::size_t both = std::min(fields.size(), columns);
+      bool fits =
+          std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(both), fields.end(), blank);
+      for (std::size_t k = both; k < columns; ++k) fits = fits && (*table.columns)[k].empty();
+      if (!fits)
+        row.refuse(fmt::format("{} values where the header at line {} names {} columns",
+                               fields.size(), table.header_line, columns));
+      padded.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(both));
+      padded.resize(columns);
+      row.fields = &padded;
+    } else if (table.rows < 0 && std::all_of(fields.begin(), fields.end(),
+                                             [](std::string_view f) { return f.empty(); })) {
+      continue;
+    }
+    take(row);
+  }
+}
+
+}  // namespace grainfield::coupling

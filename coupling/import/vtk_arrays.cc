@@ -1,0 +1,64 @@
+#include "coupling/import/vtk_arrays.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cstring>
+
+namespace grainfield::coupling {
+namespace {
+
+template <class Real, class Bits>
+double real_of(std::uint64_t bits) {
+  return static_cast<double>(std::bit_cast<Real>(static_cast<Bits>(bits)));
+}
+
+}  // namespace
+
+VtkType vtk_type(const std::string& name) {
+  std::string plain;
+  for (const char ch : name)
+    plain += static_cast<char>(std::tolower(static_cast<unsigned char>(ch)));
+  if (plain.starts_with("vtktype")) plain = plain.substr(7);
+  struct Known {
+    const char* name;
+    VtkType type;
+  };
+  static const Known known[] = {
+      {"float64", {8, true, true}},    {"double", {8, true, true}},
+      {"float32", {4, true, true}},    {"float", {4, true, true}},
+      {"int64", {8, false, true}},     {"long", {8, false, true}},
+      {"vtkidtype", {8, false, true}}, {"idtype", {8, false, true}},
+      {"uint64", {8, false, false}},   {"unsigned_long", {8, false, false}},
+      {"int32", {4, false, true}},     {"int", {4, false, true}},
+      {"uint32", {4, false, false}},   {"unsigned_int", {4, false, false}},
+      {"int16", {2, false, true}},     {"short", {2, false, true}},
+      {"uint16", {2, false, false}},   {"unsigned_short", {2, false, false}},
+      {"int8", {1, false, true}},      {"char", {1, false, true}},
+      {"uint8", {1, false, false}},    {"unsigned_char", {1, false, false}},
+  };
+  for (const Known& one : known)
+    if (plain == one.name) return one.type;
+  return {};
+}
+
+void append_values(const char* from, std::size_t count, const VtkType& type, bool big,
+                   VtkArray& out) {
+  for (std::size_t k = 0; k < count; ++k) {
+    std::uint64_t bits = 0;
+    for (std::size_t b = 0; b < type.bytes; ++b) {
+      const std::size_t at = k * type.bytes + (big ? b : type.bytes - 1 - b);
+      bits = bits << 8 | static_cast<unsigned char>(from[at]);
+    }
+    if (type.real) {
+      out.numbers.push_back(type.bytes == 8 ? real_of<double, std::uint64_t>(bits)
+                                            : real_of<float, std::uint32_t>(bits));
+      continue;
+    }
+    const std::size_t unused = 64 - 8 * type.bytes;
+    const auto value = static_cast<std::int64_t>(bits << unused);
+    out.whole.push_back(type.sign ? value >> unused : static_cast<std::int64_t>(bits));
+  }
+}
+
+}  // namespace grainfield::coupling
