@@ -19,9 +19,8 @@
 #include "coupling/files/compare_field.h"
 #include "coupling/files/places.h"
 #include "coupling/models/parse_choices.h"
-#include "coupling/output/field_csv.h"
-#include "coupling/output/judgement.h"
 #include "coupling/output/field_file.h"
+#include "coupling/output/judgement.h"
 #include "coupling/output/other_file.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
@@ -202,7 +201,6 @@ void add_compare(CLI::App& app, Action& action) {
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       for (const std::string& doubt : outcome.carried_doubts) note("warning: {}", doubt);
       for (const std::string& line : outcome.carried) say("{}\n", line);
-      if (!outcome.note.empty()) say("{}\n", outcome.note);
       say("{}\nreport: {}/report.html\n", judgement_text(outcome.judgement),
           printable_name(request->folder));
       return 0;

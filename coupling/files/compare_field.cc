@@ -383,12 +383,6 @@ CompareOutcome compare_field(const CompareRequest& request) {
 
   out.judgement = comparison.judgement;
   out.measured = measured;
-  if (kernels.size() > 1) {
-    out.note = fmt::format(
-        "fields seen through different kernels, models through each one's own: "
-        "{}",
-        fmt::join(seen, "; "));
-  }
   const ReportRows made{{"fields", request.file},
                         {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
                         {"version", version_and_commit()}};

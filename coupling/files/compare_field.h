@@ -20,7 +20,6 @@ struct CompareRequest {
 
 struct CompareOutcome {
   Judgement judgement;
-  std::string note;   ///< fields seen through different kernels; empty: all through one
   std::string lacks;  ///< of the report (ReportResult::complaint)
   /// Of what was measured, by field: share_text(), and share_doubt() where there is one.
   std::vector<std::string> carried, carried_doubts;

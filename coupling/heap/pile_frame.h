@@ -10,8 +10,8 @@ namespace grainfield::coupling {
 /// Realizations of one packing do not differ by more than this ratio of heights.
 constexpr double kUnlikeHeights = 1.3;
 
-/// Heaps that weigh so many times the wedge of their height and slopes are none, and neither are
-/// such whose base pressures carry as much: models of heaps are of wedges (docs/fits.md).
+/// Heaps that weigh so many times the wedge of their height and slopes are none: models of heaps
+/// are of wedges (docs/fits.md).
 constexpr double kMostOverWedge = 1.2;
 
 /// Origin at the apex, lengths in units of the height h, inside is y < 0 down to the floor y = -1.

@@ -5,7 +5,7 @@
 #include "coupling/app/list_words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/tables.h"
-#include "program.h"
+#include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -15,7 +15,7 @@
 #include "coupling/files/measured_field.h"
 #include "coupling/output/field_csv.h"
 #include "dem/snapshot/number.h"
-#include "program.h"
+#include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
 namespace {

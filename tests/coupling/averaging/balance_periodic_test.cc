@@ -10,7 +10,7 @@
 #include "coupling/averaging/balance.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/weights.h"
-#include "lattice_layer_scene.h"
+#include "tests/coupling/lattice_layer_scene.h"
 
 namespace grainfield::coupling {
 namespace {

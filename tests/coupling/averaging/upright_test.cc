@@ -5,8 +5,8 @@
 
 #include "coupling/averaging/layer.h"
 #include "coupling/files/average_files.h"
-#include "lattice_layer_scene.h"
-#include "program.h"
+#include "tests/coupling/lattice_layer_scene.h"
+#include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,7 +1,7 @@
 // Keys of [material] that follow from others, and what is said of the contacts.
 #include <filesystem>
 
-#include "check_scene.h"
+#include "tests/coupling/check_scene.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/material.h"
 #include "coupling/case/shipped_cases.h"
