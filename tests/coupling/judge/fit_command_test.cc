@@ -141,7 +141,7 @@ TEST(FitCommand, ImportedHeapsGiveTheirConstantsBack) {
   const Output power = program("power " + heaps + " --model osl --model osl_yield --model bcc -o " +
                                (folder / "power"));
   ASSERT_EQ(power.code, 0) << power.err;
-  EXPECT_THAT(power.out, HasSubstr("To distinguish these models from osl at 95 %"));
+  EXPECT_THAT(power.out, HasSubstr("To distinguish these models from osl"));
   EXPECT_THAT(power.out, HasSubstr("piles needed"));
   expect_refusal(program("power " + heaps + " --model osl -o " + (folder / "power")),
                  "--model: found one model, allowed: two or more");
