@@ -56,15 +56,15 @@ struct FloorSetup {
 /// Grains at rest sleep while the pile is poured (engine.h: SleepSettings).
 struct SleepSetup {
   bool on = true;
-  double quiet_time = 5e-3;    ///< s
-  double quiet_move = 8e-4;    ///< diameters within quiet_time
-  double quiet_creep = 0.035;  ///< diameters/s
-  double quiet_force = 0.015;  ///< out of balance over the grain's load
-  double wake_force = 0.025;   ///< likewise, ...
-  double wake_time = 0.02;     ///< s: ... in the mean of so long, ...
-  double wake_shock = 0.5;     ///< ... or at once
-  double wake_speed = 0.5;     ///< sqrt(g d)
-  double wake_reach = 2;       ///< d v / sqrt(g d), of a grain that comes at the speed v
+  double quiet_time = 5e-3;   ///< s
+  double quiet_move = 8e-4;   ///< diameters within quiet_time
+  double quiet_creep = 0.02;  ///< diameters/s
+  double quiet_force = 0.01;  ///< out of balance over the grain's load
+  double wake_force = 0.015;  ///< likewise, ...
+  double wake_time = 0.02;    ///< s: ... in the mean of so long, ...
+  double wake_shock = 0.5;    ///< ... or at once
+  double wake_speed = 0.5;    ///< sqrt(g d)
+  double wake_reach = 2;      ///< d v / sqrt(g d), of a grain that comes at the speed v
 
   auto members() const {
     return std::tie(on, quiet_time, quiet_move, quiet_creep, quiet_force, wake_force, wake_time,
