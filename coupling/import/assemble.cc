@@ -79,6 +79,7 @@ void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& col
 
 void Assembly::add_grains(const ForeignTable& table) {
   const TableColumns columns(table, names_);
+  if (first_file_.empty()) first_file_ = table.file;
   const ForeignColumn id = find_id(table, columns);
   const PlaceColumns places = place_columns(table, columns);
   has_z_ = has_z_ || places.place[2];
@@ -93,7 +94,7 @@ void Assembly::add_grains(const ForeignTable& table) {
   if (quaternion[0])
     quaternion = {quaternion[0], columns.need("qx"), columns.need("qy"), columns.need("qz")};
   const ForeignColumn material = columns.find("material");
-  cell_ = table.cell;
+  cell_ = table.box && table.box->is_periodic() ? *table.box : dem::Cell<3>{};
   const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
   const ForeignColumn diameter = columns.find("diameter");
   if (!radius && !diameter && !outline && !shape) columns.missing("radius");
@@ -454,7 +455,8 @@ void Assembly::settle_walls() {
 
 void Assembly::settle() {
   dem::Snapshot& s = out_.snapshot;
-  if (rows_.empty()) throw std::invalid_argument("the tables of grains hold no row");
+  if (rows_.empty())
+    throw std::invalid_argument(fmt::format("{}: the tables of grains hold no row", first_file_));
   settle_dimension();
   settle_cell();
   check_vectors();

@@ -178,7 +178,8 @@ class Assembly {
   bool images_told_ = true;  // along every axis that is periodic
   std::array<bool, 3> axis_told_{true, true, true};
   Tally tally_;
-  dem::Cell<3> cell_;  // of the files
+  std::string first_file_;  // of grains
+  dem::Cell<3> cell_;       // of the files
   ImportedSnapshot out_;
 };
 

@@ -67,6 +67,9 @@ Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) 
   c.force = find_triple(columns, "f", dim);
   if (!c.force && columns.find("fnx")) {
     c.normal_part = need_triple(columns, "fn", dim);
+    if (!columns.find("ftx"))
+      columns.missing("ftx", "without friction: --column ftx,fty,ftz=0,0,0",
+                      "without friction: ftx = 0 and its like");
     c.tangential_part = need_triple(columns, "ft", dim);
   } else if (!c.force) {
     c.fn = columns.find("fn");

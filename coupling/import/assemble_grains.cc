@@ -83,7 +83,7 @@ Assembly::PlaceColumns Assembly::place_columns(const ForeignTable& table,
     throw std::invalid_argument(fmt::format(
         "{}:{}: places over the box ({}), and no box: they need ITEM: BOX BOUNDS with numbers",
         table.file, table.header_line, fmt::join(*table.columns, " ")));
-  out.box = &*table.box;
+  out.box = table.box.get();
   if (scaled < axes && !table.box->edges.isDiagonal(0))
     throw std::invalid_argument(fmt::format(
         "{}:{}: places over the box along some axes only, allowed in a tilted box: along "

@@ -124,13 +124,18 @@ char separator_of(const Head& head) {
   for (const char separator : {',', ';', '\t', ' '})
     for (const HeadLine& line : head.lines) {
       const auto values = values_of(line, separator);
+      if (values.size() < 2) continue;
       const int known = is_row(values, separator) ? 0 : known_names(values);
       // A comment counts where rows have as many values: any other is only words.
       const auto as_many = [&](const HeadLine& other) {
         return !other.comment && values_of(other, separator).size() == values.size();
       };
       if (line.comment && !std::any_of(head.lines.begin(), head.lines.end(), as_many)) continue;
-      if (known <= most || (separator == ' ' && known < 2)) continue;
+      // Names may have blanks in them, beside any other separator.
+      const bool blanks = separator == ' ';
+      if (known <= most ||
+          (blanks && (known < 2 || line.text.find_first_of(",;\t") != std::string::npos)))
+        continue;
       most = known;
       best = separator;
     }

@@ -49,7 +49,7 @@ class DumpScan {
       table_.broken = truncated_;
       found_.push_back(table_);
     }
-    return found_;
+    return std::move(found_);
   }
 
  private:
@@ -94,7 +94,6 @@ class DumpScan {
     std::string_view line;
     if (name == "TIMESTEP") {
       long long step = 0;
-      table_.cell = {};
       table_.box.reset();
       rows_ = -1;
       table_.columns = std::make_shared<const std::vector<std::string>>();
@@ -171,8 +170,11 @@ class DumpScan {
       known = known && good;
     }
     if (cell.is_periodic() || known) set_box(rows, tilted, general, cell);
-    if (known) table_.box = cell;
-    table_.cell = cell.is_periodic() ? cell : dem::Cell<3>{};
+    if (!known && !cell.is_periodic()) return true;
+    const bool same = box_ && box_->periodic == cell.periodic && box_->low == cell.low &&
+                      box_->edges == cell.edges;
+    if (!same) box_ = std::make_shared<const dem::Cell<3>>(cell);
+    table_.box = box_;
     return true;
   }
 
@@ -245,7 +247,8 @@ class DumpScan {
   ForeignTable table_;
   long long rows_ = -1;
   std::optional<double> time_;
-  bool open_ = false;  ///< a step has begun and its rows have not been met
+  std::shared_ptr<const dem::Cell<3>> box_;  // the last that was met
+  bool open_ = false;                        ///< a step has begun and its rows have not been met
   std::shared_ptr<const std::vector<std::string>> columns_;
   std::vector<ForeignTable> found_;
   std::string truncated_;

@@ -142,13 +142,38 @@ void set_units(const UnitSystem& units, ForeignTable& table) {
     const double factor = std::pow(10.0, std::abs(ten));
     number = ten < 0 ? number / factor : number * factor;
   };
-  const auto scale_cell = [&](dem::Cell<3>& cell) {
-    for (double& number : cell.low) scale(number, length);
-    for (double& number : cell.edges.reshaped()) scale(number, length);
-  };
-  scale_cell(table.cell);
-  if (table.box) scale_cell(*table.box);
+  if (table.box && length != 0) {
+    dem::Cell<3> box = *table.box;
+    for (double& number : box.low) scale(number, length);
+    for (double& number : box.edges.reshaped()) scale(number, length);
+    table.box = std::make_shared<const dem::Cell<3>>(box);
+  }
   if (table.time && !table.units.lengths_only) scale(*table.time, table.units.time);
+}
+
+// What one file says of its units holds for those that say nothing; returns that, a sentence.
+std::string settle_units(const UnitSystem& chosen, StepList& steps) {
+  std::string where;  // the first file that says them
+  UnitSystem told;
+  steps.for_each([&](const ForeignTable& table) {
+    if (table.told_units.empty()) return;
+    if (!where.empty() && table.units.name != told.name)
+      throw std::invalid_argument(
+          fmt::format("{}: the file says that it is in {} units, {} says {}", table.told_units,
+                      table.units.name, where, told.name));
+    if (where.empty()) where = table.told_units;
+    told = table.units;
+  });
+  const bool for_all = !where.empty() && chosen.is_si();
+  std::string out;
+  steps.for_each([&](ForeignTable& table) {
+    const bool says = !table.told_units.empty();
+    if (!says && for_all && !told.is_si() && out.empty())
+      out =
+          fmt::format("{}: says no units, those of {} are taken: {}", table.file, where, told.name);
+    set_units(!says && for_all ? told : chosen, table);
+  });
+  return out;
 }
 
 std::string list_of(const ImportOptions& options) {
@@ -249,11 +274,11 @@ void import_snapshots(const ImportOptions& options,
   for (std::size_t k = 0; k < options.files.size(); ++k) {
     tell("files looked through", k, options.files.size());
     for (ForeignTable& table : format.scan(options.files[k])) {
-      set_units(units, table);
       const TableKind kind = kind_of(table, names);
       steps.add(std::move(table), kind);
     }
   }
+  const std::string other_units = settle_units(units, steps);
   names.take_taken();  // of the tables that are read it is told below
   steps.settle(format.steps_by_time);
   const bool stepped = steps.stepped();
@@ -285,6 +310,7 @@ void import_snapshots(const ImportOptions& options,
     done.snapshot.time = time_of(tables.grains.front(), choice, options, done.warnings);
     for (std::string& text : steps.take_warnings()) done.warnings.push_back(std::move(text));
     for (std::string& text : names.take_taken()) done.notes.push_back(std::move(text));
+    if (!other_units.empty()) done.notes.push_back(other_units);
     auto& attributes = done.snapshot.attributes;
     attributes["imported_from"] = format.name;
     attributes["imported_files"] = list_of(options);

@@ -55,7 +55,7 @@ class MercuryScan {
     }
     if (found_.empty())
       throw std::invalid_argument(lines_.file() + ": is empty, expected a .data or .fstat file");
-    return found_;
+    return std::move(found_);
   }
 
  private:

@@ -37,6 +37,10 @@ void StepList::add(ForeignTable&& table, TableKind kind) {
   entries_.push_back({std::move(table), kind});
 }
 
+void StepList::for_each(const std::function<void(ForeignTable&)>& change) {
+  for (Entry& entry : entries_) change(entry.table);
+}
+
 void StepList::number_by_time() {
   std::vector<double> times;
   for (const Entry& entry : entries_) times.push_back(entry.table.time.value_or(0));
@@ -84,8 +88,10 @@ void StepList::drop_repeated(std::vector<ForeignTable>& tables) {
 void StepList::settle(bool by_time) {
   if (by_time) number_by_time();
   drop_step_numbers();
-  for (Entry& entry : entries_) {
+  for (; !entries_.empty(); entries_.pop_front()) {
+    Entry& entry = entries_.front();
     ForeignTable& table = entry.table;
+    if (broken_.empty()) broken_ = table.broken;
     if (!table.broken.empty() && !table.step) {
       warnings_.push_back(table.broken + "; the steps before are read");
       continue;
@@ -101,7 +107,8 @@ void StepList::settle(bool by_time) {
                                                   : tables.grains;
     list.push_back(std::move(table));
   }
-  entries_.clear();
+  // Of one file, of which nothing is whole.
+  if (steps_.empty()) throw std::invalid_argument(broken_);
   if (!stepped_) return;
   for (auto& [step, tables] : steps_) {
     drop_repeated(tables.grains);
@@ -149,6 +156,7 @@ std::vector<StepChoice> StepList::choose(const ImportOptions& options) {
       warnings_.push_back(fmt::format(
           "{} of {} steps have not all of the tables and are left out: {}; those that have: {}",
           without.size(), steps_.size(), list_of(without), list_of(whole)));
+    if (!without.empty() && !broken_.empty()) warnings_.push_back(broken_);
   }
   for (StepChoice& choice : out) {
     if (steps_.find(choice.step) == steps_.end()) {

@@ -1,5 +1,6 @@
 // The tables of many files by their time steps, and which of the steps are taken.
 #pragma once
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -19,6 +20,8 @@ class StepList {
  public:
   /// `kind`: as the columns tell it where the table does not.
   void add(ForeignTable&& table, TableKind kind);
+  /// Changes tables that were added, before settle().
+  void for_each(const std::function<void(ForeignTable&)>& change);
   /// Once all are there: numbers steps that have times only, drops numbers that tell nothing apart,
   /// and keeps of a step that a file has more than once the last (with a warning each).
   void settle(bool by_time);
@@ -49,13 +52,14 @@ class StepList {
   bool is_whole(const StepTables& tables, bool without_contacts) const;
   std::vector<long long> whole_steps(bool without_contacts) const;
 
-  std::vector<Entry> entries_;
+  std::deque<Entry> entries_;
   std::vector<std::shared_ptr<const std::vector<std::string>>> names_;
   std::map<long long, StepTables> steps_;
   std::vector<std::string> warnings_;
   /// Kinds of tables of contacts: by their columns.
   std::vector<const std::vector<std::string>*> contact_kinds_;
   bool stepped_ = false;
+  std::string broken_;  ///< the first table that is truncated
 };
 
 }  // namespace grainfield::coupling

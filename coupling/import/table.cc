@@ -189,7 +189,7 @@ std::optional<double> TableColumns::constant_of(const std::string& ours,
 
 std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ours) const {
   const auto none = headings_.end();
-  if (!table_.any_names || table_.arrays != nullptr) return none;
+  if (!table_.any_names) return none;
   const Synonyms& known = synonyms_of(ours);
   std::vector<std::string> wanted = known.sure;
   wanted.push_back(plain_column_name(ours));
@@ -253,7 +253,7 @@ void TableColumns::missing(const std::string& what, const std::string& option,
   }
   const std::string found = columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, " "));
   // Names in memory are ours: none is another's word for the one that is missing.
-  if (table_.arrays != nullptr)
+  if (table_.arrays != nullptr && !table_.any_names)
     throw std::invalid_argument(fmt::format("{}: no \"{}\"; found: {}{}", table_.file, what, found,
                                             argument.empty() ? "" : "; " + argument));
   if (nearest.empty()) nearest = continuum::nearest(what, columns);

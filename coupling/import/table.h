@@ -39,11 +39,12 @@ struct ArrayColumn {
 /// A table as a format's scan() finds it. Its rows are not read yet.
 struct ForeignTable {
   std::string file;
-  TableKind kind = TableKind::unknown;                      ///< unknown: told from the columns
-  std::optional<long long> step;                            ///< time step of a dump
-  std::optional<double> time;                               ///< s, where the file says it
-  dem::Cell<3> cell;                                        ///< of a dump with periodic boundaries
-  std::optional<dem::Cell<3>> box;                          ///< of a dump: all of its edges
+  TableKind kind = TableKind::unknown;  ///< unknown: told from the columns
+  std::optional<long long> step;        ///< time step of a dump
+  std::optional<double> time;           ///< s, where the file says it
+  /// Of a dump: all of its edges, and which axes are periodic. One for all steps where it is the
+  /// same.
+  std::shared_ptr<const dem::Cell<3>> box;
   std::shared_ptr<const std::vector<std::string>> columns;  ///< names in the file's order
   long long header_line = 0;                                ///< line that holds the names
   Lines::Place first;                                       ///< of the rows

@@ -88,14 +88,15 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   const std::optional<double> value = dem::parse_number(told);
   // Above, doubles are no longer one apart.
   constexpr double most = 9007199254740992.0;
-  if (!value || *value != std::floor(*value) || !(std::abs(*value) <= most)) {
-    const bool large = value && std::abs(*value) > most && std::isfinite(*value);
+  if (!value || *value != std::floor(*value) || !(std::abs(*value) < most)) {
+    const bool large = value && std::abs(*value) >= most && std::isfinite(*value);
     refuse(fmt::format(
         "column {}: found \"{}\", expected {}", column.constant ? column.name : name_of(column),
         told,
-        large ? "a whole number with all of its digits: as a floating-point number one beyond 2^53 "
-                "may stand for its neighbour"
-              : "a whole number"));
+        large
+            ? "a whole number with all of its digits: as a floating-point number one from 2^53 on "
+              "may stand for its neighbour"
+            : "a whole number"));
   }
   const std::size_t e = told.find_first_of("eE");
   if (e == std::string::npos) return {static_cast<std::int64_t>(*value), 0};

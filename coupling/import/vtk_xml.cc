@@ -194,6 +194,7 @@ class XmlReader {
   std::string bytes_of(const pugi::xml_node& node, const std::string& form,
                        const std::string& name) const {
     std::string_view stored;
+    std::string letters_only;
     bool base64 = true;
     if (form == "appended") {
       const std::size_t offset = node.attribute("offset").as_ullong();
@@ -202,7 +203,9 @@ class XmlReader {
       stored = appended_.substr(offset);
       base64 = !raw_;
     } else {
-      stored = trimmed(node.child_value());
+      for (const char ch : std::string_view(node.child_value()))
+        if (ch != ' ' && ch != '\n' && ch != '\r' && ch != '\t') letters_only += ch;
+      stored = letters_only;
     }
     try {
       return compressor_.empty() ? plain(stored, base64) : unpacked(stored, base64);

@@ -409,6 +409,9 @@ TEST_F(ImportHabits, DumpsWithOldHeadersAndBlankLines) {
       read("ITEM: UNITS\ncgs\n" + atoms(2000, "", "1 0 1 1 1000\n2 1.99 1 1 1000\n"));
   EXPECT_EQ(only(cgs).snapshot.grains[1].position.x(), 0.0199);
   EXPECT_EQ(cgs.packings[0].snapshot.grains[1].mass, 1);
+  // The contacts' dump says nothing: its forces are dyn, too.
+  EXPECT_EQ(cgs.packings[0].snapshot.contacts[0].force.x(), -1e-5);
+  EXPECT_THAT(cgs.packings[0].notes, Contains(HasSubstr("says no units")));
 }
 
 // Every file was kept open once.

@@ -184,9 +184,9 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
        "g.csv:2: column x (mm) (x): found \"ten\", expected a finite number"},
       {"id,x (km),y,radius,mass\n1,1e308,0,1,1\n", "", "found \"1e308\", expected a finite number"},
       {head("x"), "--units inch",
-       "--units: found \"inch\", allowed: a unit of length, such as m, cm, mm, um\n"},
-      {head("x"), "--units mm2/m", "--units: found \"mm2/m\", allowed: a unit of length"},
-      {head("x"), "--units m2/m", "--units: found \"m2/m\", allowed: a unit of length"},
+       "--units: found \"inch\", allowed: m, cm, mm, um, nm, km, si, cgs, micro, nano\n"},
+      {head("x"), "--units mm2/m", "--units: found \"mm2/m\", allowed: m, cm, mm"},
+      {head("x"), "--units m2/m", "--units: found \"m2/m\", allowed: m, cm, mm"},
       {head("x"), "--units mm --wall floor:y=-12",
        "--wall floor: found a length without a unit beside --units mm, expected one behind a "
        "blank"},
@@ -197,7 +197,7 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
        "blank, of the kind m"},
       {head("x"), "--units mm --column volume=10", "--column volume=10: found a number without a"},
       {"id,x,y,mass\n1,0,0,1\n", "--column 'radius=1.8 kg'", "no column \"radius\""},
-      {head("x"), "--units kg", "--units: found \"kg\", allowed: a unit of length"},
+      {head("x"), "--units kg", "--units: found \"kg\", allowed: m, cm, mm"},
       {head("x"), "--wall 'floor:y=1 s'", "--wall: found \"floor:y=1 s\", expected NAME:AXIS"},
   };
   for (const auto& one : cases) {
@@ -217,8 +217,7 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
                    "BOUNDS ff ff ff\n0 1\n0 1\n0 1\nITEM: ATOMS id x y radius mass\n1 0 0 1 1\n") +
       " -o " + (folder / "o.h5"));
   EXPECT_EQ(told.code, 2);
-  EXPECT_THAT(told.err,
-              HasSubstr("d:2: the file says that it is in SI units, and --units another"));
+  EXPECT_THAT(told.err, HasSubstr("d:2: the file says that it is in si units, and --units mm"));
 }
 
 }  // namespace
