@@ -115,7 +115,7 @@ std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
   return text;
 }
 
-void show(const ImportedSnapshot& imported, const std::string& units, bool default_gravity) {
+void show(const ImportedSnapshot& imported, bool default_gravity) {
   const dem::Snapshot& s = imported.snapshot;
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
@@ -124,10 +124,10 @@ void show(const ImportedSnapshot& imported, const std::string& units, bool defau
       s.dim, s.grains.size(), fixed, s.contacts.size(), at_walls, s.walls.size());
   if (s.cell.is_periodic()) say("  {}\n", cell_text(s.cell));
   const GrainSizes sizes = grain_sizes(s);
-  const std::string read_as = units == "m" || units == "si" ? "SI"
-                              : parse_unit_system(units)->lengths_only
-                                  ? fmt::format("SI, lengths, velocities and volumes of {}", units)
-                                  : units;
+  const std::string read_as = imported.units.is_si() ? "SI"
+                              : imported.units.lengths_only
+                                  ? "SI, lengths, velocities and volumes of " + imported.units.name
+                                  : imported.units.name;
   say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as {})\n", sizes.diameter,
       sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3", read_as);
   const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
@@ -261,7 +261,7 @@ void add_import(CLI::App& app, Action& action) {
         file.write_with([&](const std::string& temporary) {
           dem::write_snapshot(temporary, group, imported.snapshot);
         });
-        show(imported, options.units, !options.gravity);
+        show(imported, !options.gravity);
       });
       file.commit();
       return 0;

@@ -311,6 +311,7 @@ void import_snapshots(const ImportOptions& options,
     for (std::string& text : steps.take_warnings()) done.warnings.push_back(std::move(text));
     for (std::string& text : names.take_taken()) done.notes.push_back(std::move(text));
     if (!other_units.empty()) done.notes.push_back(other_units);
+    done.units = tables.grains.front().units;
     auto& attributes = done.snapshot.attributes;
     attributes["imported_from"] = format.name;
     attributes["imported_files"] = list_of(options);

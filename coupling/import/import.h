@@ -69,6 +69,7 @@ struct ImportOptions {
 struct ImportedSnapshot {
   std::string group;
   dem::Snapshot snapshot;
+  UnitSystem units;         ///< of the grains' table, where a column tells none
   long long left_out = 0;   ///< distant pairs
   long long idle = 0;       ///< pairs left out that bear no force across a gap
   long long forceless = 0;  ///< contacts that bear no force and overlap: kept

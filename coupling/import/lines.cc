@@ -19,8 +19,10 @@ bool Lines::fill() {
   start_ += static_cast<std::streamoff>(at_);
   at_ = 0;
   const std::size_t old = buffer_.size();
-  buffer_.resize(old + kBlock);
-  const std::size_t count = source_.read(buffer_.data() + old, kBlock);
+  // Of short lines one block is all that is kept.
+  const std::size_t more = old < kBlock / 2 ? kBlock - old : kBlock;
+  buffer_.resize(old + more);
+  const std::size_t count = source_.read(buffer_.data() + old, more);
   buffer_.resize(old + count);
   ended_ = count == 0;
   return !ended_;
