@@ -6,10 +6,10 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
+#include "coupling/averaging/contact_geometry.h"
 #include "coupling/files/average_files.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
-#include "coupling/structure/contact_geometry.h"
 #include "coupling/structure/packing_structure.h"
 #include "coupling/system/printable.h"
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "coupling/averaging/base.h"
+#include "coupling/averaging/contact_geometry.h"
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/kernel.h"
@@ -23,7 +24,6 @@
 #include "coupling/files/placement.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/import/packing_warnings.h"
-#include "coupling/structure/contact_geometry.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

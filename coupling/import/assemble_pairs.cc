@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "coupling/averaging/contact_geometry.h"
 #include "coupling/import/assemble.h"
-#include "coupling/structure/contact_geometry.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 

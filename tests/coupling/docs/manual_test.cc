@@ -118,8 +118,8 @@ TEST(Completion, OffersCommandsOptionsCasesModelsAndFiles) {
   EXPECT_EQ(offered(folder, "keys pile"), "pile\npile-fields\npile-fit\n");
   EXPECT_EQ(offered(folder, "export x.h5 --to v"), "vtu\n");
   EXPECT_EQ(offered(folder, "export x.h5 --to "), "lammps\nvtu\ncsv\nhtml\nsvg\npng\n");
-  EXPECT_EQ(offered(folder, "import --from "), "lammps\nliggghts\nyade\ncsv\n");
-  EXPECT_EQ(offered(folder, "import --units "), "m\ncm\nmm\num\n");
+  EXPECT_EQ(offered(folder, "import --from "), "lammps\nliggghts\nyade\ncsv\nmercury\nvtk\n");
+  EXPECT_EQ(offered(folder, "import --units "), "m\ncm\nmm\num\ncgs\nmicro\nnano\n");
   EXPECT_EQ(offered(folder, "average --frame "), "layer\nheap\npacking\n");
   EXPECT_EQ(offered(folder, "average --kernel "), "lucy\ngaussian\nheaviside\ncircle\nsquare\n");
   EXPECT_EQ(offered(folder, "import-field --geometry l"), "layer\n");

@@ -1,4 +1,4 @@
-#include "coupling/structure/contact_geometry.h"
+#include "coupling/averaging/contact_geometry.h"
 
 #include <fmt/format.h>
 
