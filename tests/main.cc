@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdio>
+#include <set>
 #include <string>
 
 namespace {
@@ -13,36 +14,38 @@ std::string file_of(const testing::TestInfo& test) {
   return path.substr(0, path.rfind('.'));
 }
 
-/// Excludes the tests of other files, whatever the filter lets through. Returns how many remain.
-int keep_file(const std::string& name) {
-  int kept = 0;
-  std::string others;
+/// Excludes the tests of other files, whatever the filter lets through. Returns whether some are
+/// left; not where another file has a test of the same name, which the filter cannot distinguish.
+bool keep_file(const std::string& name) {
+  std::set<std::string> kept, excluded;
   const testing::UnitTest& all = *testing::UnitTest::GetInstance();
   for (int s = 0; s < all.total_test_suite_count(); ++s) {
     const testing::TestSuite& suite = *all.GetTestSuite(s);
     for (int t = 0; t < suite.total_test_count(); ++t) {
       const testing::TestInfo& test = *suite.GetTestInfo(t);
-      if (file_of(test) == name) {
-        ++kept;
-      } else {
-        others += std::string(":") + suite.name() + "." + test.name();
-      }
+      auto& names = file_of(test) == name ? kept : excluded;
+      names.insert(std::string(suite.name()) + "." + test.name());
     }
   }
   std::string filter = GTEST_FLAG_GET(filter);
-  if (!others.empty()) {
-    const bool excludes = filter.find('-') != std::string::npos;
-    filter += excludes ? others : "-" + others.substr(1);
+  char before = filter.find('-') == std::string::npos ? '-' : ':';
+  for (const std::string& test : excluded) {
+    if (kept.count(test) > 0) {
+      std::fprintf(stderr, "%s: another file of the room has this test, too\n", test.c_str());
+      return false;
+    }
+    filter += before + test;
+    before = ':';
   }
   GTEST_FLAG_SET(filter, filter);
-  return kept;
+  return !kept.empty();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   testing::InitGoogleMock(&argc, argv);
-  if (argc > 2 || (argc == 2 && keep_file(argv[1]) == 0)) {
+  if (argc > 2 || (argc == 2 && !keep_file(argv[1]))) {
     std::fprintf(stderr, "%s: no file of suites: %s; allowed: one NAME_test without its ending\n",
                  argv[0], argv[argc - 1]);
     return 2;

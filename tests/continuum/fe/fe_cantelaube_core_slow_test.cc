@@ -12,7 +12,7 @@ using grainfield::continuum::testing::kExact;
 using grainfield::continuum::testing::kExactYielding;
 using grainfield::continuum::testing::over_the_heap;
 
-TEST(CantelaubeCore, ClosedFormIsTheSolution) {
+TEST(CantelaubeCoreSlow, ClosedFormIsTheSolution) {
   for (const auto& [phi, nu] : {std::pair{"15", "0.45"}, {"28", "0.3"}, {"40", "0"}}) {
     for (const char* branch : {"zero", "minus", "plus"}) {
       const Settings heap = {{"phi_deg", phi}, {"branch", branch}, {"rho_g", "3"}};
@@ -32,7 +32,7 @@ TEST(CantelaubeCore, ClosedFormIsTheSolution) {
 }
 
 // The closed form is linear in the stress: elements of degree one approach it at their order.
-TEST(CantelaubeCore, DegreeOneConvergesToIt) {
+TEST(CantelaubeCoreSlow, DegreeOneConvergesToIt) {
   double before = 0;
   for (const char* refinement : {"3", "4", "5"}) {
     const auto model =
@@ -51,7 +51,7 @@ TEST(CantelaubeCore, DegreeOneConvergesToIt) {
 
 // The flank's tractions alone do not choose the core's angle; that the stress along its boundary is
 // continuous does, and on the closed form's own base chooses the branch of the axis' condition.
-TEST(CantelaubeCore, ContinuityAtTheFlankChoosesTheBranch) {
+TEST(CantelaubeCoreSlow, ContinuityAtTheFlankChoosesTheBranch) {
   const auto jump = [](double beta_hat, const char* axis, const char* branch) {
     Settings settings{
         {"beta_hat_deg", std::to_string(beta_hat)}, {"axis", axis}, {"refinement", "2"}};
@@ -71,7 +71,7 @@ TEST(CantelaubeCore, ContinuityAtTheFlankChoosesTheBranch) {
   }
 }
 
-TEST(CantelaubeCore, OtherBasesBearTheSameWeight) {
+TEST(CantelaubeCoreSlow, OtherBasesBearTheSameWeight) {
   // The closed form's force on the base of the core: what any base must bear.
   const auto force = [](const std::unique_ptr<Model>& model) {
     const int n = 801;

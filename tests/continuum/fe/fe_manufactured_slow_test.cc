@@ -29,6 +29,6 @@ void expect_orders(int dim, int degree, double nu, int first, int last, bool mix
 
 }  // namespace
 
-TEST(Manufactured, ThreeDimensionsDegreeOne) { expect_orders(3, 1, 0.3, 2, 5); }
-TEST(Manufactured, ThreeDimensionsDegreeTwo) { expect_orders(3, 2, 0.3, 1, 4); }
-TEST(Manufactured, ThreeDimensionsHangingNodes) { expect_orders(3, 2, 0.2, 1, 3, true); }
+TEST(ManufacturedSlow, ThreeDimensionsDegreeOne) { expect_orders(3, 1, 0.3, 2, 5); }
+TEST(ManufacturedSlow, ThreeDimensionsDegreeTwo) { expect_orders(3, 2, 0.3, 1, 4); }
+TEST(ManufacturedSlow, ThreeDimensionsHangingNodes) { expect_orders(3, 2, 0.2, 1, 3, true); }

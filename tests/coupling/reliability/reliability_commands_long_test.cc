@@ -4,7 +4,7 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-TEST(Commands, OutputsAreOldOrNew) {
+TEST(CommandsLong, OutputsAreOldOrNew) {
   const CommandTally tally = interrupt_commands(24);
   tally.print();
   EXPECT_GE(tally.signals, 120);

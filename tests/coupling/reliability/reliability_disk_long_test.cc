@@ -4,7 +4,7 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-TEST(FullDisk, FilesMayNotGrow) {
+TEST(FullDiskLong, FilesMayNotGrow) {
   DiskTally tally;
   for (const TinyStudy& study : tiny_studies()) {
     limit_files(study.name,
@@ -16,7 +16,7 @@ TEST(FullDisk, FilesMayNotGrow) {
   EXPECT_GE(tally.refused, 25);
 }
 
-TEST(FullDisk, ADiskRunsFull) {
+TEST(FullDiskLong, ADiskRunsFull) {
   if (!SmallDisk::why_not().empty()) GTEST_SKIP() << SmallDisk::why_not();
   DiskTally tally;
   for (const TinyStudy& study : tiny_studies()) {
@@ -31,7 +31,7 @@ TEST(FullDisk, ADiskRunsFull) {
   EXPECT_GE(tally.refused, 25);
 }
 
-TEST(FullDisk, CommandsLeaveWhatWasThere) {
+TEST(FullDiskLong, CommandsLeaveWhatWasThere) {
   DiskTally tally;
   limit_commands({0, 100, 1'000, 3'000, 10'000, 30'000, 100'000}, tally);
   tally.print("commands, limited files");

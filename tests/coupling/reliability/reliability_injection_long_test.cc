@@ -4,14 +4,14 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-TEST(Injection, Titles) { inject_titles(kEvil); }
-TEST(Injection, LabelsOfModels) { inject_labels(kEvil); }
-TEST(Injection, NamesOfVariants) { inject_variants(kEvil); }
-TEST(Injection, FilesAndFolders) { inject_names(kEvil); }
-TEST(Injection, TheEnvironment) {
+TEST(InjectionLong, Titles) { inject_titles(kEvil); }
+TEST(InjectionLong, LabelsOfModels) { inject_labels(kEvil); }
+TEST(InjectionLong, NamesOfVariants) { inject_variants(kEvil); }
+TEST(InjectionLong, FilesAndFolders) { inject_names(kEvil); }
+TEST(InjectionLong, TheEnvironment) {
   inject_environment({kEvil[0], kEvil[1], kEvil[3], kEvil[5], kEvil[11], "missing"});
 }
-TEST(Injection, WhatAMistakeEchoes) {
+TEST(InjectionLong, WhatAMistakeEchoes) {
   Texts evils = kEvil;
   evils.emplace_back(120'000, 'A');
   for (const char* start : {"\x1b[31m", "[", "\"", "a.b."}) {
