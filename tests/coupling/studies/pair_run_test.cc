@@ -9,6 +9,7 @@
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/pair/closed_forms.h"
+#include "dem/laws/restitution.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/run_scene.h"
 
@@ -189,18 +190,18 @@ TEST(PairRun, EnergyLawHasOneRestitutionForAllSpeeds) {
              pair_case("speed = 1e-3\nspeeds = [1e-4]\n",
                        "law = \"energy\"\nenergy = \"square\"\ndamping = 0.75\nfriction = 0\n"),
              "--set motion.time_step_fraction=0.05");  // soft, so an impact takes long
-  EXPECT_NEAR(number(s, "pair.closed_form.restitution_normal"), restitution_of_dashpot(0.375),
+  EXPECT_NEAR(number(s, "pair.closed_form.restitution_normal"), dem::restitution_of_dashpot(0.375),
               1e-12);
   expect_closed_forms(s, "pair.");
   expect_closed_forms(s, "pair.speed_0.0001.");
 }
 
 TEST(PairClosedForms, DashpotsWithoutPull) {
-  EXPECT_EQ(restitution_of_dashpot(0), 1);
+  EXPECT_EQ(dem::restitution_of_dashpot(0), 1);
   // Critical: x'' = 0 at s = 2 (Schwager and Poeschel 2007).
-  EXPECT_NEAR(restitution_of_dashpot(1), std::exp(-2.0), 1e-12);
-  EXPECT_NEAR(restitution_of_dashpot(1 - 1e-7), restitution_of_dashpot(1 + 1e-7), 1e-6);
-  EXPECT_LT(restitution_of_dashpot(3), restitution_of_dashpot(2));
+  EXPECT_NEAR(dem::restitution_of_dashpot(1), std::exp(-2.0), 1e-12);
+  EXPECT_NEAR(dem::restitution_of_dashpot(1 - 1e-7), dem::restitution_of_dashpot(1 + 1e-7), 1e-6);
+  EXPECT_LT(dem::restitution_of_dashpot(3), dem::restitution_of_dashpot(2));
 }
 
 // Every path runs, in the plane and in space, and its table says so.
