@@ -36,7 +36,7 @@ void add_import_field(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--geometry", r.geometry, "heap (apex at 0, 0) | layer (load at 0, 0)");
   command->add_option("--dim", r.dim,
-                      "2 (default without a column z or r; 1 Pa counts as 1 N/m) | 3");
+                      "2 | 3; default 2 without a column z or r, where 1 Pa counts as 1 N/m");
   add_quantity(*command, "--height", r.height, option_length(),
                "of the heap or layer, m or \"80 mm\"");
   auto* slope = add_quantity(*command, "--slope", given->slope, option_angle(),

@@ -28,7 +28,7 @@ class InterruptedCommand {
     prepare(folder);
     before_ = results_in(folder.path());
     const auto start = std::chrono::steady_clock::now();
-    const Ending ending = finish(command_.to(folder / kOutput));
+    const Ending ending = finish(command_.to(folder / output()));
     seconds_ = seconds_since(start);
     if (ending.code != 0) throw std::runtime_error(command_.name + ": " + ending.err);
     after_ = results_in(folder.path());
@@ -37,7 +37,7 @@ class InterruptedCommand {
   void strike(int signal, bool group, bool while_writing) {
     const Folder folder;
     prepare(folder);
-    Child child(command_.to(folder / kOutput));
+    Child child(command_.to(folder / output()));
     const double delay = std::uniform_real_distribution<>(0, 1.1 * seconds_)(random_);
     child.wait_until([&] { return signal == SIGKILL || child.catches(signal); });
     child.wait_until([&] { return while_writing && !leftovers(folder.path()).empty(); },
@@ -65,7 +65,7 @@ class InterruptedCommand {
       tally_.old += struck && !fresh;
     }
     // Whatever happened, the same command ends well.
-    Start again = command_.to(folder / kOutput);
+    Start again = command_.to(folder / output());
     // A packing is not added twice.
     const bool added = found == after_ && command_.words.back() == "/added";
     const Ending done = finish(again);
@@ -74,14 +74,14 @@ class InterruptedCommand {
   }
 
  private:
-  inline static const std::string kOutput = "out.h5";
+  std::string output() const { return "out" + command_.ending(); }
 
   // The earlier output: the command's own, and then changed, so that it differs from the new one; a
   // packing is added to a file of one.
   void make_earlier() {
     const bool adds = command_.words.back() == "/added";
     const Command first = adds ? workshop().import({"--group", "/first"}) : command_;
-    const Ending ending = finish(first.to(earlier_ / kOutput));
+    const Ending ending = finish(first.to(earlier_ / output()));
     if (ending.code != 0) throw std::runtime_error(command_.name + ": " + ending.err);
     if (adds) return;
     for (const auto& entry : fs::recursive_directory_iterator(earlier_.path())) {

@@ -137,9 +137,9 @@ inline void limit_commands(const std::vector<rlim_t>& sizes, DiskTally& tally) {
     for (const rlim_t size : sizes) {
       SCOPED_TRACE(command.name + ", files of at most " + std::to_string(size) + " bytes");
       const Folder folder;
-      const std::string output = folder / "out.h5";
+      const std::string name = "out" + command.ending(), output = folder / name;
       if (command.writes == Writes::folder) fs::create_directory(output);
-      folder.write(command.writes == Writes::folder ? "out.h5/notes" : "out.h5", "old");
+      folder.write(command.writes == Writes::folder ? name + "/notes" : name, "old");
       const Contents before = made_by(command, output);
       Start start = command.to(output);
       start.file_size = size;

@@ -15,6 +15,8 @@ struct Command {
   std::vector<std::string> words;  ///< without -o
   Writes writes = Writes::nothing;
 
+  /// Of the file that it writes: a table, or HDF5.
+  std::string ending() const { return words.front() == "model" ? ".csv" : ".h5"; }
   Start to(const std::string& output) const {
     Start start{words, {}, "", {}};
     if (!output.empty()) start.words.insert(start.words.end(), {"-o", output});

@@ -84,9 +84,10 @@ TEST(AverageSpace, GridsCutsAndTables) {
   const Output cuts = program(start + "--cuts 0,0.5 --grid 3x4 -o " + (folder / "c.csv"));
   ASSERT_EQ(cuts.code, 0) << cuts.err;
   const std::string table = testing::read_text(folder / "c.csv");
-  EXPECT_THAT(table, StartsWith("x (m),y (m),z (m),sigma_xx (Pa),sigma_yy (Pa),sigma_zz (Pa),"
-                                "sigma_yz (Pa),sigma_zy (Pa),sigma_xz (Pa),sigma_zx (Pa),"
-                                "sigma_xy (Pa),sigma_yx (Pa),density (kg/m3)\n-0.03,-0.03,-0."));
+  EXPECT_THAT(table,
+              StartsWith("x (m),y (m),z (m),sigma_xx (N/m2),sigma_yy (N/m2),sigma_zz (N/m2),"
+                         "sigma_yz (N/m2),sigma_zy (N/m2),sigma_xz (N/m2),sigma_zx (N/m2),"
+                         "sigma_xy (N/m2),sigma_yx (N/m2),density (kg/m3)\n-0.03,-0.03,-0."));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 25);
   const Output balance = program("average " + (folder / "s.h5") + " --balance");
   ASSERT_EQ(balance.code, 0) << balance.err;
@@ -113,7 +114,7 @@ TEST(AverageSpace, RingsAboutTheAxisOfAFrame) {
                                  " -o " + (folder / "p.out.csv"));
   ASSERT_EQ(packing.code, 0) << packing.err;
   EXPECT_THAT(testing::read_text(folder / "p.out.csv"),
-              StartsWith("r (m),z (m),sigma_rr (Pa),sigma_tt (Pa),sigma_zz (Pa),"));
+              StartsWith("r (m),z (m),sigma_rr (N/m2),sigma_tt (N/m2),sigma_zz (N/m2),"));
   expect_refusal(program(start + "--frame packing --axis 0.2,0.03 -o " + (folder / "x.h5")),
                  "--axis: (0.2, 0.03) is outside the packing");
 }

@@ -221,9 +221,15 @@ TEST(Fit, CoverageIsPooledOverTheConstants) {
                         constant("nu", 4, 0, std::nan("")), constant("eta", 8, 20, 0.5)};
   coverage.verdicts = {{4, 30}, {8, 20}, {16, 20}};
   const std::string text = coverage_text(coverage, 16);
-  EXPECT_THAT(text, HasSubstr("| all |  | 4 | 40 | 95.0 % | - | 95.0 % | - |"));
-  EXPECT_THAT(text, HasSubstr("| all |  | 8 | 20 | 50.0 % | - | 50.0 % | - |"));
-  EXPECT_THAT(text, Not(HasSubstr("| all |  | 16 |")));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "| all   |          | 4     | 40    | 95.0 %     | -         | 95.0 %    | -       |"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "| all   |          | 8     | 20    | 50.0 %     | -         | 50.0 %    | -       |"));
+  EXPECT_THAT(text, Not(HasSubstr("| all   |          | 16 ")));
 }
 
 TEST(Fit, BadData) {

@@ -69,18 +69,19 @@ TEST(Outputs, ALinkStaysAndItsTargetIsReplaced) {
     SCOPED_TRACE(command.name);
     const Folder folder;
     const bool wants_folder = command.writes == Writes::folder;
-    const std::string target = folder / "far/target.h5", link = folder / "link.h5";
+    const std::string there = "far/target" + command.ending();
+    const std::string target = folder / there, link = folder / ("link" + command.ending());
     fs::create_directory(folder / "far");
     if (wants_folder) {
       fs::create_directory(target);
     } else {
-      folder.write("far/target.h5", "old");
+      folder.write(there, "old");
     }
-    fs::create_symlink("far/target.h5", link);
+    fs::create_symlink(there, link);
     const Ending ending = finish(command.to(link));
     ASSERT_EQ(ending.code, 0) << ending;
     ASSERT_TRUE(fs::is_symlink(link));
-    EXPECT_EQ(fs::read_symlink(link), "far/target.h5");
+    EXPECT_EQ(fs::read_symlink(link), there);
     EXPECT_EQ(wants_folder, fs::is_directory(target));
     const Contents made = made_by(command, target);
     EXPECT_FALSE(made.empty());
@@ -96,8 +97,9 @@ TEST(Outputs, ADanglingLinkStaysALink) {
   for (const Command& command : workshop().writing()) {
     SCOPED_TRACE(command.name);
     const Folder folder;
-    const std::string target = folder / "target.h5", link = folder / "link.h5";
-    fs::create_symlink("target.h5", link);
+    const std::string there = "target" + command.ending(), target = folder / there,
+                      link = folder / ("link" + command.ending());
+    fs::create_symlink(there, link);
     const Ending ending = finish(command.to(link));
     EXPECT_TRUE(fs::is_symlink(link));
     if (ending.code == 0) {
@@ -127,7 +129,7 @@ TEST(Outputs, PermissionsOfAFileStay) {
     if (command.writes != Writes::file) continue;
     for (const mode_t mode : {0600, 0664}) {
       const Folder folder;
-      const std::string file = folder.write("out.h5", "old");
+      const std::string file = folder.write("out" + command.ending(), "old");
       ASSERT_EQ(chmod(file.c_str(), mode), 0);
       EXPECT_EQ(finish(command.to(file)).code, 0) << command.name;
       EXPECT_EQ(stat_of(file).st_mode & 07777U, mode) << command.name;

@@ -69,7 +69,7 @@ TEST(PileRun, LeavesEverything) {
                           "[model.hydrostatic]\nleft_deg = 20\nright_deg = 20\n"));
   const Output run = program("run " + file + " -o " + (folder / "out"));
   ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("whether that is a dip needs at least 3"));
+  EXPECT_THAT(run.out, HasSubstr("hether there is a pressure dip needs at least 3 realizations"));
   for (const char* name :
        {"summary.json", "profiles.csv", "profiles.md", "profiles.tex", "fields.h5", "fields.xdmf",
         "snapshots.h5", "grains_pile.vtu", "chains_pile.vtu", "grains_gravity_8.829.vtu",

@@ -105,7 +105,7 @@ std::vector<Scene> scenes() {
       falling("SlenderAreaVerlet", 0x845090abc92e2737, Kind::slender, false, verlet),
       sleeping_pour("SleepingDisks", 0x446c3a6a6712cea6, Kind::disks, verlet),
       sleeping_pour("SleepingPolygons", 0xcbbb791be3505a60, Kind::polygons, verlet),
-      sleeping_pour("SleepingSlender", 0x16ac31ec62e60714, Kind::slender, verlet),
+      sleeping_pour("SleepingSlender", 0xce16d2f9b27e0ab2, Kind::slender, verlet),
       sleeping_pour("SleepingPolygonsGear", 0xfbd40d34e881ccfb, Kind::polygons, gear),
       rough_floor("RoughFloorDisks", 0x418b2b8a0738b733, Kind::disks, false),
       rough_floor("RoughFloorPolygons", 0x6c8ceb4054570a88, Kind::polygons, false),
