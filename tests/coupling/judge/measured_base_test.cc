@@ -112,7 +112,7 @@ rolling_damping = 10
 unbalanced_force_ratio = 1e-3
 kinetic_to_elastic_energy = 1e-3
 [ensemble]
-realizations = 2
+realizations = 8
 [output]
 fields = false
 [measured]
