@@ -78,7 +78,7 @@ TEST(Guide, EveryCommandSaysWhatThePageSays) {
   EXPECT_NEAR(figure(measured, "fit.osl.mu"), -0.31, 3 * figure(measured, "fit.osl.mu.error"));
   EXPECT_EQ(std::get<std::string>(measured.at("fit.osl.supported")), "yes");
   EXPECT_EQ(std::get<std::string>(measured.at("fit.bcc.supported")), "no");
-  EXPECT_NEAR(figure(measured, "fit.bcc.aic_behind"), 961, 0.5);
+  EXPECT_NEAR(figure(measured, "fit.bcc.aic_behind"), 960, 0.5);
   const std::string fits = testing::read_text(folder / "measured/fits.md");
   for (const auto& [page_says, file_says] :
        {std::pair{"0.735 ± 0.010", "| eta       | 0.735 ± 0.010  |"},
