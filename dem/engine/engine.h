@@ -235,8 +235,8 @@ StepBound step_bound(const EngineSettings& settings, const GrainExtremes& extrem
 
 /// Shares of that limit up to this are accepted for polygons: piles of 200 RAND1 polygons came to
 /// rest at 2.8 times the limit and not at 3.5; at 2.5 impacts keep the same energy as at a tenth to
-/// 0.5 % (tests/dem/engine/time_step_test.cc). A packing that is not stable does not come to rest, which
-/// is reported.
+/// 0.5 % (tests/dem/engine/time_step_test.cc). A packing that is not stable does not come to rest,
+/// which is reported.
 inline constexpr double kMostOfLimit = 2.5;
 
 /// Throws std::invalid_argument for settings out of range; resistance against rolling of polygons

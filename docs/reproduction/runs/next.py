@@ -4,9 +4,9 @@
     docs/reproduction/runs/next.py docs/reproduction/runs/piles.txt [--minutes 150]
     while docs/reproduction/runs/next.py docs/reproduction/runs/piles.txt; do :; done
 
-The list is committed. Its first line names the tag whose commit computes, then there is a run a line:
+The list is committed. Its first line names the tag or commit that computes, then there is a run a line:
 
-    commit TAG
+    commit TAG-OR-HASH
     NAME SEED CASE [KEY=VALUE ...]
 
 with settings in quotes where they hold blanks. The program of that tag is built once, in a clone of
@@ -194,7 +194,7 @@ def main():
         fail(f"{given.list}: no such list")
     check_committed(listed)
     tag, runs = read_list(listed)
-    commit = git("rev-parse", "--verify", f"refs/tags/{tag}^{{commit}}")
+    commit = git("rev-parse", "--verify", f"{tag}^{{commit}}")
     states = HERE.parent / "states" / listed.stem
     work = ROOT / "build" / "runs" / tag
     for run in runs:
