@@ -30,8 +30,10 @@ class Key:
 
 
 def value_of(text):
-    """A default as the table prints it, TOML, as a Python value."""
+    """A default as the table prints it, TOML, as a Python value; None where it follows other keys."""
     text = text.strip()
+    if re.search(r"^from | of ", text) and not text.startswith('"'):
+        return None
     if text.startswith("["):
         inner = text[1:-1].strip()
         return [value_of(item) for item in inner.split(",")] if inner else []

@@ -246,4 +246,4 @@ def complete(values, keys):
     out = {path: key.default(study) for path, key in keys.items()
            if study in key.studies and key.section}
     out.update(values)
-    return out
+    return {path: value for path, value in out.items() if value is not None}
