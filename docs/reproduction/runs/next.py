@@ -15,7 +15,8 @@ the lowest priority. When the time is over it writes a checkpoint, and the
 next call goes on to the same bits. Several calls at once take different runs. A finished run leaves
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
-states and the figures of summary.json. A run whose NAME.json is there is not missing.
+states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
+states, NAME.TABLE.csv. A run whose NAME.json is there is not missing.
 
 Ends with 0 when a run has ended or has come further, 1 when none is missing, 2 when it cannot start or a
 run fails. Needs git, the build's packages, h5py, numpy and xz.
@@ -159,21 +160,31 @@ def compute(source, run, folder, deadline):
 def keep(run, tag, commit, folder, states):
     """Puts what a finished run leaves beside the other states and commits it."""
     name, seed, case, settings = run
+    without_states = "output.snapshots=false" in settings
     compact = folder / "compact.h5"
-    found = sorted((folder / "results").rglob("snapshots.h5"))
+    wanted = "states.csv" if without_states else "snapshots.h5"
+    found = sorted((folder / "results").rglob(wanted))
     if len(found) != 1:  # a sweep leaves one in the folder of each value
-        fail(f"{name}: found {len(found)} files of states; allowed: one, of one value of a sweep")
-    subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
-                    str(compact)], check=True)
+        fail(f"{name}: found {len(found)} files {wanted}; allowed: one, of one value of a sweep")
     states.mkdir(parents=True, exist_ok=True)
-    packed = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+    contents = {}
+    if without_states:
+        for table in sorted(found[0].parent.glob("*.csv")):
+            contents[states / f"{name}.{table.name}"] = table.read_bytes()
+        kept = contents[states / f"{name}.{wanted}"]
+    else:
+        subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
+                        str(compact)], check=True)
+        kept = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+        contents[states / f"{name}.h5.xz"] = kept
     figures = json.loads(found[0].with_name("summary.json").read_text())
     record = {"case": case, "seed": seed, "settings": settings, "tag": tag, "commit": commit,
               "cpu_seconds": float((folder / "cpu_seconds").read_text()),
-              "sha256": hashlib.sha256(packed).hexdigest(), "summary": figures}
-    files = [states / f"{name}.h5.xz", states / f"{name}.json"]
-    files[0].write_bytes(packed)
-    files[1].write_text(json.dumps(record, indent=1) + "\n")
+              "sha256": hashlib.sha256(kept).hexdigest(), "summary": figures}
+    contents[states / f"{name}.json"] = (json.dumps(record, indent=1) + "\n").encode()
+    files = list(contents)
+    for file, content in contents.items():
+        file.write_bytes(content)
     lock = Lock(ROOT / "build" / "runs" / "commit.lock", wait=True)
     git("add", "--", *map(str, files))
     git("commit", "--quiet", "-m", f"Runs: {name}, seed {seed}, of {tag}", "-m",
