@@ -26,11 +26,6 @@ const std::vector<Misprint>& misprints() {
       {"Liffman 29", "−μ F_k t̂", "with the sign of the slip"},
       {"Liffman 36", "τ = σ F_slip/2", "−(σ/2) F_t, F_t the tangential force that acts"},
       {"Roul 2.39", "the viscous part accumulates in the spring", "beside the spring"},
-      {"Wellmann 13", "damping velocity with v·n^j",
-       "the sign of the approach: the dashpot opposes approach and separation"},
-      {"Wellmann, text of fig. 9", "\"normal stress\"", "normal strain"},
-      {"Liffman, after fig. 11", "θ = π/3", "π/6 in the convention of (44)"},
-      {"Liffman, text of fig. 18", "\"Fig. 13\"", "figure 18"},
   };
   return all;
 }

@@ -85,20 +85,18 @@ std::string grain_seconds(const Results& r, const std::string& study) {
   return wall.empty() ? "" : wall + " wall";
 }
 
-// What the fits themselves conclude. Sentences on dips have a p of one side or of two, by the
-// version that wrote them: dips() has the same p for all.
+// What the studies themselves conclude.
 std::string verdicts(const Results& results, const std::vector<std::string>& studies) {
   std::string out;
   for (const std::string& study : studies) {
     const auto sentence = results.text(study, "verdict.sentence");
-    if (sentence && study.starts_with("fit-")) {
-      out += fmt::format("- `{}`: {}\n", study, *sentence);
-    }
+    const bool judged = study.starts_with("fit-") || results.text(study, "dip.verdict");
+    if (sentence && judged) out += fmt::format("- `{}`: {}\n", study, *sentence);
   }
   if (out.empty()) return out;
   return "\n## Which theory the grains support\n\n"
-         "Each fit's own sentence, by the rules of the version that ran it. Where no model "
-         "agrees, \"supported\" meant the nearest of those asked.\n\n" +
+         "As each study said when it was run, by itself and by the rules of its version. Where no "
+         "model agrees, \"supported\" meant the nearest of those asked.\n\n" +
          out +
          "\nLayers under a point load: [verdict over all "
          "packings](cases/point-load-verdict.md); lattice piles: "
@@ -111,10 +109,11 @@ std::string dips(const Results& results) {
   if (all.empty()) return "";
   std::string out = fmt::format(
       "\n## Dips and peaks of all pours\n\n"
-      "Mean base pressure beside the apex minus that under it, over ρ g h of each pile. If there "
-      "were no dip or peak, a difference this large in either direction would occur with the "
-      "probability p (two-sided, Student's t over realizations). p (Holm) is corrected for all {} "
-      "pours of this table, and the last column follows from it. Ensembles of "
+      "Mean base pressure beside the apex minus that under it, over ρ g h of each pile; p: chance "
+      "of "
+      "so large a difference either way if there were none (Student's t over realizations), and "
+      "the "
+      "same corrected for all {} pours of this table (Holm). The last column counts. Ensembles of "
       "which only the states are kept are not in it ([which "
       "they are](reproduction/results/README.md)).\n\n"
       "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
@@ -175,9 +174,8 @@ std::string reproduction_page(const Results& results) {
       "asymmetric) the covariance's. A fit is beyond the errors when its χ²/dof exceeds "
       "what a true model's does by chance: in 1 of 100, under the older weights in 1.35 of "
       "1000. A dip or peak is one at 5 % over [all pours "
-      "together](#dips-and-peaks-of-all-pours). A peak also counts as \"no dip\". The result "
-      "\"neither\" is uninformative: it is compatible with a dip and with no dip. A stress ratio "
-      "hardly changes where it "
+      "together](#dips-and-peaks-of-all-pours); a peak meets \"no dip\" too; neither is "
+      "uninformative: it agrees with a dip as with none. A stress ratio hardly changes where it "
       "does by less than a tenth also with 2 standard errors more, and changes where it does by "
       "more "
       "than a tenth also with 2 less; between, the spread is too wide to tell. Nothing was tuned "
