@@ -14,17 +14,59 @@ from __future__ import annotations
 import argparse
 import math
 import pathlib
+import re
 import sys
+from collections import Counter
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from record import record_run, write_file  # noqa: E402
-from rows import NOT_RUN, TOO_WIDE, Row, all_rows, judged, read_toml, with_unit  # noqa: E402
+from rows import FILES, NOT_RUN, TOO_WIDE, Row, all_rows, band, judged, read_toml, with_unit  # noqa: E402
 from summaries import Refused, Results  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parent / "reproduction.md"
 NO_COMMAND = "run before commands were stored: see the case's page"
+
+INTRODUCTION = (
+    "# Figures of the sources beside ours\n\n"
+    "Does grainfield find what its three sources found? The first table counts the figures of each part. The "
+    "tables after it put every figure beside ours.\n\n")
+
+JUDGED = f"""
+"Cannot tell" means that our spread is too wide, or that the result is compatible with both answers. "Without a
+result" means not run or not measured; the row says which.
+
+**How agreement is judged**
+
+- **Errors** are standard errors over realizations.
+- **Numbers.** A number agrees when the band and ours ± 2 standard errors overlap. The band is the source's value
+  with its reading error: 1° for angles, 0.01 for fractions, 25 % where the source says "about".
+- **Spread too wide to tell**: 2 standard errors exceed {100 * TOO_WIDE:.0f} % of the value. For the ratios of volume
+  fraction and coordination, the effect that the source reports replaces the value (0.09, 0.08, 0.04).
+- **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
+  counts as "no dip". The result "neither" is uninformative: it is compatible with a dip and with no dip.
+- **Fits.** A fit is beyond the errors when its χ²/dof exceeds the value that a true model exceeds in 1 of 100
+  ensembles. The fits of the point source, of OSL and of the asymmetric piles used other weights: there it is
+  1.35 of 1,000.
+- **Fitted constants** have the larger of two errors, the fit's own and the bootstrap's over piles. The fit's own is
+  the jackknife's; with the other weights it is the covariance's.
+- **Ratios of two ensembles** have the error of the one minus the source's ratio times the other.
+- **"Hardly changes"** means by less than a tenth, also with 2 standard errors more. "Changes" means by more than a
+  tenth, also with 2 standard errors less. Between them the spread is too wide to tell.
+- **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
+  meant.
+- **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles
+  were seen. Its row says so. The value over the whole way to the bend is not stored.
+
+The script `docs/reproduction/page.py` makes this page. It reads the sources' figures from
+`docs/reproduction/figures/` and ours from `docs/reproduction/results/`: `CASE.json` is the `summary.json` of
+`grainfield run cases/CASE.toml`. `page.py --add RUN` takes in the summary, the profiles and the pictures of a
+finished run.
+"""
+
+HEADER = ("| source | figure | theirs | counts as theirs | ours | agreement | realizations | study |\n"
+          "|---|---|---|---|---|---|---|---|\n")
 
 
 def number(results: Results, study: str, key: str, form: str) -> str:
@@ -61,13 +103,14 @@ def grain_seconds(results: Results, study: str) -> str:
     return "taken up again, not counted" if wall < 1 else f"{wall:.0f} wall"
 
 
-def figure_line(row: Row, results: Results) -> str:
+def figure_line(row: Row, results: Results) -> tuple[str, str]:
+    """A line of a table, and its agreement."""
     ours, said = judged(row, results)
     study, lacking = row["study"], said == ""
     realizations = "" if lacking else number(results, study, "ensemble.realizations", "g")
-    cells = [row["source"], row["what"], with_unit(row["theirs"], row), ours, said, realizations,
+    cells = [row["source"], row["what"], with_unit(row["theirs"], row), band(row), ours, said, realizations,
              study_cell(results, study)]
-    return "| " + " | ".join(cells) + " |\n"
+    return "| " + " | ".join(cells) + " |\n", said
 
 
 def dips(results: Results) -> str:
@@ -77,10 +120,11 @@ def dips(results: Results) -> str:
         return ""
     out = (
         "\n## Dips and peaks of all pours\n\n"
-        "Mean base pressure beside the apex minus that under it, over ρ g h of each pile; p: chance of so "
-        "large a difference either way if there were none (Student's t over realizations), and the same "
-        f"corrected for all {len(found)} pours of this table (Holm). The last column counts. Ensembles of "
-        "which only the states are kept are not in it ([which they are](reproduction/results/README.md)).\n\n"
+        "The difference is the mean base pressure beside the apex minus that under it, over ρ g h of each pile. "
+        "If there were no dip or peak, a difference this large, of either sign, would occur by chance with "
+        "probability p (Student's t over realizations). The next column corrects p for all "
+        f"{len(found)} pours of this table (Holm); the last one decides. Ensembles of which only the states are "
+        "kept are not in the table ([which they are](reproduction/results/README.md)).\n\n"
         "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
         "|---|---|---|---|---|---|\n")
     for dip in found:
@@ -101,8 +145,8 @@ def verdicts(results: Results, studies: list[str]) -> str:
         return ""
     return (
         "\n## Which theory the grains support\n\n"
-        "As each study said when it was run, by itself and by the rules of its version. Where no model "
-        "agrees, \"supported\" meant the nearest of those asked.\n\n"
+        "Each study said this when it was run, alone and by the rules of its version. Where no model agrees, "
+        "\"supported\" meant the nearest of the models asked.\n\n"
         + lines +
         "\nLayers under a point load: [verdict over all packings](cases/point-load-verdict.md); lattice "
         "piles: [Liffman](cases/liffman-lattice.md).\n")
@@ -124,21 +168,22 @@ def profiles_and_maps(results: Results, studies: list[str]) -> str:
     if not out:
         return ""
     return ("\n## Base pressure and volume fraction\n\n"
-            "To be laid beside Roul 3.3 and 3.4: mean over the piles with standard errors, the pressure in "
-            "units of each pile's own ρ g h.\n\n" + out)
+            "To be compared with Roul's figures 3.9 to 3.13. They show means over the piles with standard errors. "
+            "The pressure is in units of each pile's own ρ g h.\n\n" + out)
 
 
 def how_run(results: Results, studies: list[str]) -> str:
     out = (
         "\n## How they were run\n\n"
-        "Grain-steps count every grain, asleep or not. Roul's interval was 0.1 s, his time step 2e-6 s. "
-        "`pile-line-source` and `pile-asymmetric-line` were poured with today's default of sleeping: "
-        "sleepers hide at most 1 % of their load. That [gains nothing](benchmarks.md) on piles of hundreds "
-        "and 6 times on a heap of 6,500. `pile-point-source`, `pile-elliptic` and `pile-asymmetric-point` "
-        "were poured with the earlier default, whose sleepers hid up to about 20 %; so were the piles that "
-        "`pile-fields-line` took. The case `liffman-dropped` sets its own limit, 5 %. With the earlier "
-        "default small piles came out denser than with all grains awake, by 0.3 % from a line source and "
-        "by 1 % from a funnel at 0.1 s, and without a reach of waking denser still ([what sleeping "
+        "Grain-steps count every grain, asleep or not. Roul's interval between grains was 0.1 s, his time step "
+        "2e-6 s. A sleeping grain may hide a part of its load, by its limit:\n\n"
+        "- 1 %, today's default: `pile-line-source`, `pile-asymmetric-line`. It [gains nothing](benchmarks.md) on "
+        "piles of hundreds and 6 times on a heap of 6,500.\n"
+        "- About 20 %, an older default: `pile-point-source`, `pile-elliptic`, `pile-asymmetric-point`, and the "
+        "piles of `pile-fields-line`.\n"
+        "- 5 %, set in the case: `liffman-dropped`.\n\n"
+        "With the older default small piles came out denser than with all grains awake: by 0.3 % from a line "
+        "source, by 1 % from a funnel at 0.1 s. Without a reach of waking they were denser still ([what sleeping "
         "changes](cases/pile-rest-detection.md)).\n\n"
         "| study | grains | realizations | interval (s) | reach of waking | time step (s) | steps | "
         "grain-steps | time of the grains (s) | base force / weight | version | command |\n"
@@ -161,44 +206,51 @@ def how_run(results: Results, studies: list[str]) -> str:
 
 def misprints() -> str:
     out = ("\n## Misprints and inconsistencies of the sources\n\n"
-           "Re-derived from the field equations; the program uses what holds.\n\n"
-           "| where | printed | holds |\n|---|---|---|\n")
+           "They were found when the field equations were derived again. The program uses the last column.\n\n"
+           "| where | printed | correct |\n|---|---|---|\n")
     for one in read_toml("misprints")["misprint"]:
-        out += f"| {one['where']} | {one['printed']} | {one['holds']} |\n"
+        out += f"| {one['where']} | {one['printed']} | {one['correct']} |\n"
     return out
+
+
+def kind(said: str) -> str:
+    """Agreement in a word: agrees, differs, silent (no statement) or open (no result)."""
+    if not said:
+        return "open"
+    word = said.partition(";")[0].split()[0]
+    return word if word in ("agrees", "differs") else "silent"
+
+
+def tables(results: Results) -> str:
+    """How many rows agree, then the rows of each part."""
+    counts = ("| part | figures | agree | differ | cannot tell | without a result |\n"
+              "|---|---|---|---|---|---|\n")
+    total, out = Counter(), ""
+    for name in FILES:
+        part = read_toml(name)
+        lines, said = zip(*(figure_line(row, results) for row in part["figure"]))
+        count = Counter(map(kind, said))
+        total += count
+        out += f"\n## {part['title']}\n\n{HEADER}" + "".join(lines)
+        counts += count_line(f"[{part['title']}](#{anchor(part['title'])})", count)
+    return counts + count_line("all", total) + JUDGED + out
+
+
+def anchor(title: str) -> str:
+    """Of a heading, as GitHub makes it."""
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+
+
+def count_line(part: str, count: Counter[str]) -> str:
+    cells = [sum(count.values()), *(count[word] for word in ("agrees", "differs", "silent", "open"))]
+    return f"| {part} | " + " | ".join(map(str, cells)) + " |\n"
 
 
 def page(results: Results) -> str:
     """The page: every figure of the sources beside ours, and how each study was run."""
-    rows = all_rows()
-    studies = list(dict.fromkeys(row["study"] for row in rows))
-    return (
-        "# Figures of the sources beside ours\n\n"
-        "Generated from the summaries in `docs/reproduction/results/` (`CASE.json` is the `summary.json` of "
-        "`grainfield run cases/CASE.toml`) by\n\n"
-        "    docs/reproduction/page.py\n\n"
-        "`--add DIR` takes the summary, the profiles and the pictures of a finished run in.\n\n"
-        "Errors are standard errors over realizations. A number agrees when the source's value with its "
-        "reading error (angles 1°, fractions 0.01, \"about\" 25 %) and ours ± 2 standard errors meet; the "
-        f"spread is too wide to tell when 2 standard errors exceed {100 * TOO_WIDE:.0f} % of the value, or, for "
-        "the ratios of volume fraction and coordination, of the effect that the source reports (0.09, 0.08, "
-        "0.04). The steeper flank is the one with the larger mean, whichever side it is: the study's page "
-        "says which was meant. The error of a ratio of two ensembles is that of the one minus the source's "
-        "ratio times the other. The error of a fitted constant is the larger of the fit's own and the "
-        "bootstrap's over piles. The fit's own is the jackknife's, of fits recorded under older weights "
-        "(point source, OSL, asymmetric) the covariance's. A fit is beyond the errors when its χ²/dof "
-        "exceeds what a true model's does by chance: in 1 of 100, under the older weights in 1.35 of 1000. A "
-        "dip or peak is one at 5 % over [all pours together](#dips-and-peaks-of-all-pours); a peak meets \"no "
-        "dip\" too; neither is uninformative: it agrees with a dip as with none. A stress ratio hardly "
-        "changes where it does by less than a tenth also with 2 standard errors more, and changes where it "
-        "does by more than a tenth also with 2 less; between, the spread is too wide to tell. Nothing was "
-        "tuned to agree, but for the window of Liffman's H at 32.6°, of which its row tells; the value over "
-        "the whole way to the bend is not among the stored results.\n\n"
-        "| source | figure | theirs | ours | agreement | realizations | study |\n"
-        "|---|---|---|---|---|---|---|\n"
-        + "".join(figure_line(row, results) for row in rows)
-        + dips(results) + verdicts(results, studies) + profiles_and_maps(results, studies)
-        + how_run(results, studies) + misprints())
+    studies = list(dict.fromkeys(row["study"] for row in all_rows()))
+    return (INTRODUCTION + tables(results) + dips(results) + verdicts(results, studies)
+            + profiles_and_maps(results, studies) + how_run(results, studies) + misprints())
 
 
 def main(words: list[str] | None = None) -> int:

@@ -1,8 +1,9 @@
-"""A row of the table: a source's figure (figures/*.toml), ours, and whether both agree.
+"""A row of a table: a source's figure (figures/*.toml), ours, and whether both agree.
 
 A row is a number or a word. A number has `range`, the source's value with its reading error, and
 `key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
-`limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's.
+`limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
+has no result says in `gap` why: "not run", or "not measured" where no study has such a figure.
 """
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from summaries import NAN, Measured, Refused, Results
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "figures"
 #: In the order of the page.
-FILES = ("roul-piles", "roul-fits", "wellmann", "liffman")
+FILES = ("roul-piles", "roul-fits", "roul-layers", "wellmann", "liffman")
 NOT_RUN = "not run"
 WIDE = "spread too wide to tell"
 TOO_WIDE = 0.5  #: share of the value, or of the effect, that 2 standard errors may take
@@ -57,14 +58,15 @@ def _flank(steeper: bool) -> Rule:
 
 
 def _ratio(row: Row, results: Results) -> Measured | None:
-    """a / b of independent ensembles.
+    """a / b of independent ensembles: the second of a pair over the first.
 
     The error is that of a - rho b over b, at the rho of the source's range that is nearest to ours
     (Fieller). It is valid however uncertain b is, where propagation to first order is not.
     """
-    a, b = (results.number(study, row["key"]) for study in (row["study"], row["over"]))
-    if a is None or b is None:
+    pair = _pair(row, results)
+    if pair is None:
         return None
+    b, a = pair
     ratio = a.value / b.value
     rho = min(max(ratio, row["range"][0]), row["range"][1])
     return Measured(ratio, math.hypot(a.error, rho * b.error) / abs(b.value))
@@ -86,6 +88,16 @@ def _limits(row: Row, results: Results) -> str | None:
     return row["says"].format(word=row["words"][place], value=value, percent=100 * value)
 
 
+def _peaks_at_every_depth(row: Row, results: Results) -> str | None:
+    dot = f".{row['member']}" if "member" in row else ""
+    depths = ("0.25", "0.5", "0.75")
+    found = [results.plain(row["study"], f"response.depth_{depth}.peaks{dot}") for depth in depths]
+    if None in found:
+        return None
+    word = "one peak at every depth" if set(found) == {1} else "not one peak at every depth"
+    return f"{word}: {', '.join(f'{n:g}' for n in found)} at {', '.join(depths)} of it"
+
+
 def _dip_over_all(row: Row, results: Results) -> str | None:
     dip, centre = results.dip(row["study"]), results.plain(row["study"], "dip.ratio")
     if dip is None or centre is None:
@@ -104,15 +116,28 @@ def _dip_by_itself(row: Row, results: Results) -> str | None:
     return f"{word}: shoulder - centre = {found.value:.3f} ± {found.error:.3f} ρgh, by itself"
 
 
+def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
+    """Two numbers: of the studies `over` and `study`, of the members `from` and `to`, or of these keys."""
+    study = row["study"]
+    if "over" in row:
+        a, b = (results.number(one, row["key"]) for one in (row["over"], study))
+    elif "key" in row:
+        a, b = (results.number(study, row["key"], row[end]) for end in ("from", "to"))
+    else:
+        a, b = (results.number(study, row[end]) for end in ("from", "to"))
+    return None if a is None or b is None else (a, b)
+
+
 def _change(row: Row, results: Results) -> tuple[float, float, float] | None:
-    """The member `to` less the member `from`: difference, its error, the value of `from`.
+    """The second of a pair less the first: difference, its error, the value of the first.
 
     Samples of one seed share their first state where only the friction differs; the error is that
     of independent ones, which is no less.
     """
-    a, b = (results.number(row["study"], row["key"], row[end]) for end in ("from", "to"))
-    if a is None or b is None:
+    pair = _pair(row, results)
+    if pair is None:
         return None
+    a, b = pair
     return b.value - a.value, math.hypot(a.error, b.error), a.value
 
 
@@ -219,6 +244,7 @@ RULES: dict[str, Rule] = {
     "ratio": _ratio,
     "dip over all pours": _dip_over_all,
     "dip by itself": _dip_by_itself,
+    "peaks at every depth": _peaks_at_every_depth,
     "rises": _rises,
     "hardly changes": _hardly_changes,
     "contraction": _contraction,
@@ -234,10 +260,58 @@ RULES: dict[str, Rule] = {
 def rule_of(row: Row) -> Rule:
     if "rule" in row:
         return RULES[row["rule"]]
-    return _limits if "limits" in row else _plain
+    if "limits" in row:
+        return _limits
+    return _plain if "key" in row else lambda *_: None  # a gap that no study has a figure for
 
 
 # What the row says.
+
+#: When the words of a rule are said.
+RULE_BANDS = {
+    "dip over all pours": "at 5 %, Holm",
+    "dip by itself": "at 5 %",
+    "peaks at every depth": "at a quarter, half and three quarters",
+    "rises": "by more than 2 standard errors",
+    "contraction": "each by more than 2 standard errors",
+    "fit quality": "by the chance level of χ²/dof",
+    "branch": "the nearest of three",
+    "kink": "by more than 2 standard errors",
+    "convergence": "the difference falls by more than a fifth, or not",
+    "turning soft": "all at rest, 90 % of them soft",
+    "static friction": "no rest without it",
+}
+
+
+def _interval(low: float, high: float, percent: bool) -> str:
+    low, high = (100 * limit if percent else limit for limit in (low, high))
+    text = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    if math.isinf(low):
+        text = f"at most {high:g}"
+    elif math.isinf(high):
+        text = f"above {low:g}"
+    return text + (" %" if percent else "")
+
+
+def band(row: Row) -> str:
+    """What of ours counts as the source's: the range, or the words with their limits or their rule."""
+    if "band" in row:
+        return row["band"]
+    if "range" in row:
+        return with_unit(_interval(*row["range"], percent=False), row)
+    if "agrees" not in row:
+        return ""
+    words = " or ".join(row["agrees"])
+    if len(set(row.get("limits", "ab"))) == 1 and len(row["words"]) == 3:
+        return words  # a count
+    if "limits" in row:
+        ends = [-math.inf, *row["limits"], math.inf]
+        percent = "{percent" in row["says"]
+        spans = [_interval(ends[k], ends[k + 1], percent)
+                 for k, word in enumerate(row["words"]) if word in row["agrees"]]
+        return f"{words} ({' or '.join(spans)})"
+    rule = RULE_BANDS.get(row["rule"]) or f"by at most {100 * row['within']:g} %"
+    return f"{words} ({rule})"
 
 
 def with_unit(text: str, row: Row) -> str:
@@ -255,7 +329,7 @@ def number_text(found: Measured, row: Row) -> str:
 
 
 def agreement(found: Measured, row: Row) -> str:
-    """Agrees when the source's range and ours ± 2 standard errors meet.
+    """Agrees when the source's range and ours ± 2 standard errors overlap.
 
     It says nothing with one realization, or where 2 standard errors exceed TOO_WIDE of the source's
     value (of the effect that a ratio reports).

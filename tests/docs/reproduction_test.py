@@ -11,10 +11,15 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import page as maker  # noqa: E402
-from rows import RULES, agreement, all_rows  # noqa: E402
+from rows import FILES, RULES, agreement, all_rows, band, judged, read_toml  # noqa: E402
 from summaries import Measured, Results, holm  # noqa: E402
 
 NAN = float("nan")
+RESULTS = Results(ROOT / "docs/reproduction/results")
+#: Rows without a result: "not run", "not measured" and the like. The number may only fall.
+OPEN_ROWS = 51
+#: Figures of each source, by chapter where they are numbered so.
+FIGURES = {"Roul": {1: 12, 2: 10, 3: 32, 4: 9, 5: 17}, "Wellmann": 17, "Liffman": 20}
 
 
 @pytest.fixture
@@ -30,10 +35,11 @@ def made(tmp_path):
 
 
 def row_of(text, what):
-    """The cells of a row of the first table by its second one."""
+    """The cells of a row by its second one, without what counts as theirs."""
     found = [line for line in text.splitlines() if line.split(" | ")[1:2] == [what]]
     assert len(found) == 1, what
-    return [cell.strip() for cell in found[0].strip("|").split("|")]
+    cells = [cell.strip() for cell in found[0].strip("|").split("|")]
+    return cells[:3] + cells[4:]
 
 
 def test_the_page_in_docs_is_what_the_script_makes():
@@ -53,33 +59,77 @@ def test_every_row_is_whole():
         assert (ROOT / "cases" / f"{row['study']}.toml").exists(), row
         assert row["what"] not in seen, row
         seen.add(row["what"])
-        is_number = "range" in row
-        assert is_number != ("agrees" in row), row
-        if is_number:
+        kinds = [key for key in ("range", "agrees") if key in row]
+        assert len(kinds) == 1 or not kinds and "gap" in row, row
+        if "range" in row:
             assert row["range"][0] <= row["range"][1], row
-        assert row.get("rule", "ratio") in RULES, row
         if "limits" in row:
             assert len(row["words"]) == len(row["limits"]) + 1
             assert set(row["agrees"]) <= set(row["words"]), row
     assert {row["rule"] for row in all_rows() if "rule" in row} == set(RULES), "a rule that no row uses"
 
 
-def test_every_row_without_a_gap_has_a_result():
+def test_rows_without_a_result_are_listed_and_only_become_fewer():
+    open_rows = [row["what"] for row in all_rows() if judged(row, RESULTS)[1] == ""]
+    assert open_rows == [row["what"] for row in all_rows() if "gap" in row]
+    assert len(open_rows) == OPEN_ROWS, "fewer: lower OPEN_ROWS; more: a result was lost"
+
+
+def test_the_list_of_the_sources_figures_is_whole():
+    listed = read_toml("sources")
+    for source, numbers in FIGURES.items():
+        every = [f"fig. {chapter}.{k + 1}" for chapter, n in numbers.items() for k in range(n)] if isinstance(
+            numbers, dict) else [f"fig. {k + 1}" for k in range(numbers)]
+        kinds = ("results", "sketches", "pictures", "others")
+        found = [one for kind in kinds for one in listed[source][kind] if one.startswith("fig.")]
+        assert sorted(found) == sorted(every), source
+
+
+def test_every_figure_of_the_sources_has_a_row():
+    listed, rows = read_toml("sources"), {}
+    for row in all_rows():
+        source, kind, places = re.fullmatch(r"(\w+) ((?:fig|eq|sect)\. |table |suggestion |)(.+)", row["source"]).groups()
+        for place in places.split(", "):
+            rows.setdefault(source, set()).add(kind + place)
+    assert rows.pop("Henderson") == {"1975"}
+    assert rows.keys() == listed.keys()
+    for source, places in rows.items():
+        assert places == set(listed[source]["results"]) | set(listed[source]["text"]), source
+
+
+def test_what_counts_as_theirs_is_in_every_row():
     text = (ROOT / "docs/reproduction.md").read_text()
     for row in all_rows():
-        ours = row_of(text, row["what"])[3]
-        assert (ours == row.get("gap", "")) == ("gap" in row), row["what"]
+        line = next(line for line in text.splitlines() if line.split(" | ")[1:2] == [row["what"]])
+        assert line.split(" | ")[3] == band(row)
+        assert (band(row) == "") == ("range" not in row and "agrees" not in row), row
+
+
+def test_bands_by_hand():
+    assert band({"range": [27, 29], "unit": "deg"}) == "27 to 29 deg"
+    assert band({"limits": [0.01], "words": ["few", "many"], "agrees": ["few"], "says": "{percent:g}"}) == (
+        "few (at most 1 %)")
+    assert band({"limits": [0.8, 1.25], "words": ["a", "b", "a"], "agrees": ["a"], "says": ""}) == (
+        "a (at most 0.8 or above 1.25)")
+    assert band({"rule": "hardly changes", "within": 0.1, "agrees": ["hardly changes"]}) == (
+        "hardly changes (by at most 10 %)")
+
+
+def test_the_first_table_counts_the_rows():
+    text = (ROOT / "docs/reproduction.md").read_text()
+    agree = sum(judged(row, RESULTS)[1].startswith("agrees") for row in all_rows())
+    assert f"| all | {len(all_rows())} | {agree} | " in text and text.count("\n| [") == len(FILES)
 
 
 def test_every_key_is_one_that_summaries_have():
     listed = re.findall(r"^\| `([^`]+)` \|", (ROOT / "docs/summary-keys.md").read_text(), flags=re.M)
     known = re.compile("|".join(re.escape(key).replace(r"\*", r"[^.]+(\.[0-9]+)?") for key in listed))
+    rows = [row for row in all_rows() if "key" in row or "from" in row]
     parts = {"steeper flank": "_left_deg", "fit quality": ".chi2_per_dof", "branch": ".branch", "kink": ".kink",
              "contraction": ".contraction", "dip by itself": ".difference", "turning soft": ".at_rest",
              "static friction": ".at_rest", "flatter flank": "_right_deg"}
-    for row in all_rows():
-        if "key" in row:
-            key = row["key"] + parts.get(row.get("rule"), "")
+    for row in rows:
+        for key in [row["key"] + parts.get(row.get("rule"), "")] if "key" in row else [row["from"], row["to"]]:
             assert known.fullmatch(key), key
 
 
