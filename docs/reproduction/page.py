@@ -139,7 +139,7 @@ def verdicts(results: Results, studies: list[str]) -> str:
     lines = ""
     for study in studies:
         sentence = results.text(study, "verdict.sentence")
-        if sentence and (study.startswith("fit-") or results.text(study, "dip.verdict")):
+        if sentence and study.startswith("fit-"):  # dips have a table of their own
             lines += f"- `{study}`: {sentence}\n"
     if not lines:
         return ""
