@@ -16,7 +16,8 @@ next call goes on to the same bits. Several calls at once take different runs. A
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
 states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
-states, NAME.TABLE.csv. A run whose NAME.json is there is not missing.
+states, NAME.TABLE.csv. A run whose NAME.json is there is not missing. A run whose grains.files name
+docs/reproduction/states/LIST/NAME.h5 waits until that run's states are there, and unpacks them.
 
 Ends with 0 when a run has ended or has come further, 1 when none is missing, 2 when it cannot start or a
 run fails. Needs git, the build's packages, h5py, numpy and xz.
@@ -115,6 +116,27 @@ def build(tag, commit, work):
     return source
 
 
+def packings(settings):
+    """The files in grains.files of a run, relative to the root."""
+    given = [s.partition("=")[2] for s in settings if s.startswith("grains.files=")]
+    return json.loads(given[-1]) if given else []
+
+
+def has_packings(settings):
+    """Whether a run's packings are there, packed."""
+    return all((ROOT / f"{file}.xz").exists() for file in packings(settings))
+
+
+def unpack_packings(source, settings):
+    """Puts a run's packings where the program of `source` looks for them."""
+    for file in packings(settings):
+        target = source / file
+        target.parent.mkdir(parents=True, exist_ok=True)
+        part = target.with_name(f"{target.name}.{os.getpid()}")
+        part.write_bytes(lzma.decompress((ROOT / f"{file}.xz").read_bytes()))
+        part.replace(target)
+
+
 def compute(source, run, folder, deadline):
     """Goes on with a run until it has ended (True) or the time is over (False)."""
     name, seed, case, settings = run
@@ -122,6 +144,7 @@ def compute(source, run, folder, deadline):
     half_done = any(results.rglob("checkpoint"))
     if any(results.rglob("summary.json")) and not half_done:  # ended, and could not be committed
         return True
+    unpack_packings(source, settings)
     command = ["nice", "-n", "19", "build/release/grainfield", "run", f"cases/{case}.toml", "-o",
                str(results), "--threads", "1"]
     one = [] if any(s.startswith("ensemble.realizations=") for s in settings) else [
@@ -209,7 +232,7 @@ def main():
     states = HERE.parent / "states" / listed.stem
     work = ROOT / "build" / "runs" / tag
     for run in runs:
-        if (states / f"{run[0]}.json").exists():
+        if (states / f"{run[0]}.json").exists() or not has_packings(run[3]):
             continue
         folder = work / run[0]
         lock = Lock(folder / "lock", wait=False)
