@@ -137,6 +137,7 @@ TEST(FilledBoxes, AreShearedFromAStateOnTheWay) {
 // What begins without stress is unloaded to a thousandth of the largest one.
 TEST(FilledBoxes, AreUnloadedToNearlyNothing) {
   SampleSetup setup = dropped();
+  setup.plan.strain_rate = 0.01;  // the lid is asked every 20 steps
   setup.plan.unload = "stress";
   setup.plan.unload_records = 4;
   const RunResult result = run(setup, 5, &state(packing(), 0));
@@ -165,6 +166,7 @@ TEST(FilledBoxes, MistakesAreNamed) {
   EXPECT_THAT(refusal(
                   [](SampleSetup& s) {
                     s.plan.shape = "superellipsoid";
+                    s.plan.start_fraction = 0.1;
                     s.material.law = "penalty";
                   },
                   filled),
