@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _show
 from ._data import Summary, Table, read_table
 from ._files import Collection, fields_of, packings_of
 
@@ -125,6 +125,9 @@ class Judgement(MappingBase):
     def __repr__(self) -> str:
         return f"<Judgement: {self._core.sentence()}>"
 
+    def _repr_html_(self) -> str:
+        return _show.judgement(self)
+
 
 class _Judged(_Profiles):
     """What the results of compare and fit share."""
@@ -140,6 +143,9 @@ class _Judged(_Profiles):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return _show.judgement(self.judgement)
 
 
 class CompareResult(_Judged):
