@@ -123,9 +123,9 @@ void ColumnNames::require_all_used() const {
 }
 
 Heading heading_of(const std::string& text, int index) {
-  const std::size_t open = text.find_last_of("([");
+  const std::size_t open = text.find_last_of("([{");
   if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
-  const std::size_t close = text.find_first_of(")]", open);
+  const std::size_t close = text.find_first_of(")]}", open);
   const std::string_view all = text;
   const std::string_view inner = trimmed(all.substr(open + 1, close - open - 1));
   const bool whole = inner.find_first_not_of("0123456789") == std::string_view::npos;
@@ -138,8 +138,8 @@ TableColumns::TableColumns(const ForeignTable& table, ColumnNames& names)
     : table_(table), names_(names) {
   for (const std::string& column : *table.columns) {
     const int index = static_cast<int>(headings_.size());
-    headings_.push_back(table.units_in_header ? heading_of(column, index)
-                                              : Heading{column, "", index});
+    const bool ours = table.arrays != nullptr && !table.any_names;
+    headings_.push_back(ours ? Heading{column, "", index} : heading_of(column, index));
   }
 }
 

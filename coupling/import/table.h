@@ -32,6 +32,7 @@ struct ArrayColumn {
   std::vector<double> numbers;
   std::vector<std::string> words;
   std::vector<std::int64_t> whole;
+  bool single = false;  ///< numbers were of four bytes: whole ones from 2^24 on are rounded
 
   std::size_t rows() const { return std::max({numbers.size(), words.size(), whole.size()}); }
 };
@@ -50,12 +51,11 @@ struct ForeignTable {
   Lines::Place first;                                       ///< of the rows
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
-  bool units_in_header = false;  ///< "x (mm)" is a column x in mm
-  bool decimal_commas = false;   ///< numbers are written as 0,005
-  bool any_names = false;        ///< names that other programs have for our columns are taken, too
-  std::string told_units;        ///< "FILE:LINE" where the file itself says what it is in
-  UnitSystem units;              ///< of columns that tell none
-  std::string broken;            ///< not empty: why the table cannot be read (truncated)
+  bool decimal_commas = false;  ///< numbers are written as 0,005
+  bool any_names = false;       ///< names that other programs have for our columns are taken, too
+  std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
+  UnitSystem units;             ///< of columns that tell none
+  std::string broken;           ///< not empty: why the table cannot be read (truncated)
   /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
   /// long as `rows`.
   std::shared_ptr<const std::vector<ArrayColumn>> arrays;
@@ -99,8 +99,8 @@ class ColumnNames {
   std::map<std::string, std::vector<std::string>> taken_;  // by file
 };
 
-/// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]". A whole number in
-/// square brackets, "c_p[1]", is part of the name.
+/// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]", "r {um}". A whole
+/// number in square brackets, "c_p[1]", is part of the name.
 struct Heading {
   std::string name, unit;
   int index = -1;
