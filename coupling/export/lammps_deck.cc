@@ -6,11 +6,10 @@
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numbers>
 #include <stdexcept>
 
+#include "coupling/export/lammps_ids.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -104,40 +103,10 @@ double volume_of(const dem::Snapshot& s, const dem::Grain& g) {
   return s.dim == 3 ? g.volume : 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
 }
 
-// LAMMPS' ids of the grains: ours where these are 1 to 2^31 - 1, one more where they begin with 0,
-// else the places in the snapshot from 1.
-class LammpsIds {
- public:
-  explicit LammpsIds(const dem::Snapshot& s) {
-    constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
-    std::int64_t least = most, largest = 0;
-    for (const dem::Grain& g : s.grains) {
-      least = std::min(least, g.id);
-      largest = std::max(largest, g.id);
-    }
-    if (least >= 1 && largest <= most) return;
-    note = "ids are one more than here: LAMMPS begins with 1";
-    shift_ = 1;
-    if (least == 0 && largest < most) return;
-    note = "grains are numbered from 1 in the order of the snapshot: LAMMPS' ids are 1 to 2^31 - 1";
-    for (std::size_t k = 0; k < s.grains.size(); ++k)
-      numbers_[s.grains[k].id] = static_cast<std::int64_t>(k) + 1;
-  }
-  std::int64_t of(std::int64_t id) const {
-    return numbers_.empty() ? id + shift_ : numbers_.at(id);
-  }
-
-  std::string note;  ///< empty: as ours
-
- private:
-  std::int64_t shift_ = 0;
-  std::map<std::int64_t, std::int64_t> numbers_;
-};
-
 std::string data_of(const dem::Snapshot& s, const LammpsIds& ids) {
   const Box box = box_of(s);
-  std::string out =
-      fmt::format("Packing of spheres, SI units\n\n{} atoms\n2 atom types\n\n", s.grains.size());
+  std::string out = fmt::format("Packing of {}, SI units\n\n{} atoms\n2 atom types\n\n",
+                                s.dim == 2 ? "disks" : "spheres", s.grains.size());
   for (int a = 0; a < 3; ++a) {
     out += fmt::format("{:.17g} {:.17g} {}lo {}hi\n", box.low[a], box.high[a], kAxes[a], kAxes[a]);
   }
@@ -247,12 +216,13 @@ bool has_fixed(const dem::Snapshot& s) {
   return std::any_of(s.grains.begin(), s.grains.end(), [](const auto& g) { return g.fixed; });
 }
 
-std::string import_command(const dem::Snapshot& s, const char* state) {
+std::string import_command(const dem::Snapshot& s, const char* state, const LammpsDeck& deck) {
   std::string out = fmt::format(
       "grainfield import --from lammps {0}.grains {0}.contacts --column 'i,j=c_ids[1..2]' --column "
-      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --dim {2} --group "
+      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --dim {2}{3} --group "
       "/{0}",
-      state, has_fixed(s) ? " --fixed type=2" : "", s.dim);
+      state, has_fixed(s) ? " --fixed type=2" : "", s.dim,
+      deck.ids.empty() ? "" : " --ids ids.csv");
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
     int axis = 0;
@@ -310,14 +280,14 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, const Lam
       setup.known ? "" : " -var law \"hooke K_N GAMMA_N ...\" -var step SECONDS";
   std::string out = fmt::format(
       "# lmp -in in.lammps{0}, or mpirun -n 8 lmp -in in.lammps{0}. Back:\n# {1} -o lammps.h5\n",
-      variables, import_command(s, "unloaded"));
+      variables, import_command(s, "unloaded", deck));
   if (!setup.known) {
     deck.notes.push_back(
         "the packing does not tell its law: in.lammps takes it and the time step from the command "
         "line, as its first line says; with CASE.toml before the packing the deck has both");
   }
   if (!setup.loaded.empty()) {
-    out += "# " + import_command(s, "loaded") +
+    out += "# " + import_command(s, "loaded", deck) +
            fmt::format(" --load {}={:.17g},{:.17g},{:.17g} --add -o lammps.h5\n",
                        ids.of(setup.loaded.front()), setup.force.x(), setup.force.y(),
                        setup.force.z());
@@ -395,7 +365,9 @@ LammpsDeck lammps_deck(const dem::Snapshot& given, const LammpsSetup& setup) {
   dem::Snapshot packing = given;
   if (!setup.known) leave_out_walls(packing, deck);
   const LammpsIds ids(packing);
-  if (!ids.note.empty()) deck.notes.push_back(ids.note);
+  const bool copied = setup.copies[0] * setup.copies[1] > 1;
+  if (!ids.kept()) deck.notes.push_back(ids.note(copied));
+  if (!ids.kept() && !copied) deck.ids = ids.csv(packing);
   deck.data = data_of(packing, ids);
   deck.input = input_of(packing, setup, ids, deck);
   std::sort(deck.notes.begin(), deck.notes.end());

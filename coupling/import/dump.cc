@@ -257,7 +257,9 @@ class DumpScan {
 
 }  // namespace
 
-std::vector<ForeignTable> scan_dump(const std::string& file) { return DumpScan(file).tables(); }
+std::vector<ForeignTable> scan_dump(const std::string& file, ColumnNames&) {
+  return DumpScan(file).tables();
+}
 
 std::vector<std::pair<std::string, std::string>> dump_columns(
     const std::vector<std::pair<std::string, std::string>>& contact) {

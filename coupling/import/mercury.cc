@@ -141,7 +141,9 @@ class MercuryScan {
   std::vector<ForeignTable> found_;
 };
 
-std::vector<ForeignTable> scan(const std::string& file) { return MercuryScan(file).tables(); }
+std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
+  return MercuryScan(file).tables();
+}
 
 }  // namespace
 

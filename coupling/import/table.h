@@ -32,6 +32,7 @@ struct ArrayColumn {
   std::vector<double> numbers;
   std::vector<std::string> words;
   std::vector<std::int64_t> whole;
+  bool single = false;  ///< numbers were of four bytes: whole ones from 2^24 on are rounded
 
   std::size_t rows() const { return std::max({numbers.size(), words.size(), whole.size()}); }
 };

@@ -57,7 +57,8 @@ double ForeignRow::number(const ForeignColumn& column) const {
     return column.unit ? in_si(std::string(told), *column.unit) : dem::parse_number(told);
   };
   if (array != nullptr && !array->whole.empty()) {
-    value = static_cast<double>(array->whole[place]);
+    value = column.unit ? in_si(fmt::format("{}", array->whole[place]), *column.unit)
+                        : static_cast<double>(array->whole[place]);
   } else if (array != nullptr && array->words.empty()) {
     value = array->numbers[place];
     // As the same number in a text would be.
@@ -92,19 +93,23 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   std::string told =
       column.constant ? fmt::format("{}", *column.constant) : std::string(text(column));
   if (decimal_commas) std::replace(told.begin(), told.end(), ',', '.');
-  if (const auto value = dem::parse_integer(told)) return {*value, 0};
+  // A floating-point number in memory may be rounded, whatever its digits.
+  const bool floating = array != nullptr && !array->numbers.empty();
+  if (const auto value = dem::parse_integer(told); value && !floating) return {*value, 0};
   const std::optional<double> value = dem::parse_number(told);
-  // Above, doubles are no longer one apart.
-  constexpr double most = 9007199254740992.0;
+  // Above, numbers of this type are no longer one apart.
+  const bool single = array != nullptr && array->single;
+  const double most = single ? 16777216.0 : 9007199254740992.0;
   if (!value || *value != std::floor(*value) || !(std::abs(*value) < most)) {
     const bool large = value && std::abs(*value) >= most && std::isfinite(*value);
     refuse(fmt::format(
         "column {}: found \"{}\", expected {}", column.constant ? column.name : name_of(column),
         told,
         large
-            ? "a whole number with all of its digits: as a floating-point number one from 2^53 on "
-              "may stand for its neighbour"
-            : "a whole number"));
+            ? fmt::format("a whole number with all of its digits: as a floating-point number{} one "
+                          "from {} on may stand for its neighbour",
+                          single ? " of four bytes" : "", single ? "2^24" : "2^53")
+            : std::string("a whole number")));
   }
   const std::size_t e = told.find_first_of("eE");
   if (e == std::string::npos) return {static_cast<std::int64_t>(*value), 0};

@@ -52,7 +52,7 @@ const Comment* best_of(const std::vector<Comment>& comments, std::size_t count) 
   return best;
 }
 
-std::vector<ForeignTable> scan(const std::string& file) {
+std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
   Lines lines(file);
   std::vector<Comment> comments;
   std::vector<std::string_view> fields;
