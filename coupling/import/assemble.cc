@@ -339,7 +339,8 @@ void Assembly::place(GrainRow& row) const {
             fmt::format("found the image flag {} along {}, where nothing repeats; --periodic "
                         "{}=LOW:HIGH says where",
                         row.image[a], "xyz"[a], "xyz"[a]));
-      if (cell.periodic[a] && images_told_) g.image[a] = row.image[a] + away[a];
+      // Without flags they are those of the place: displacements.h decides on their use.
+      if (cell.periodic[a]) g.image[a] = (axis_told_[a] ? row.image[a] : 0) + away[a];
     }
   } catch (const dem::TooFarAway& e) {
     refuse(e.what());
@@ -472,10 +473,7 @@ void Assembly::settle() {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    images_told_ = images_told_ && (!s.cell.periodic[a] || axis_told_[a]);
-  images_told_ = s.cell.is_periodic() && (images_told_ || lie_outside());
-  if (images_told_) s.attributes["images"] = "counted";
+  if (s.cell.is_periodic()) s.attributes["images"] = images_of_files();
   for (GrainRow& row : rows_) {
     place(row);
     s.grains.push_back(std::move(row.grain));

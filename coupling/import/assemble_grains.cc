@@ -184,4 +184,17 @@ bool Assembly::lie_outside() const {
   });
 }
 
+std::string Assembly::images_of_files() {
+  std::vector<std::string> told, untold;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (out_.snapshot.cell.periodic[a]) (axis_told_[a] ? told : untold).emplace_back(kAxes[a]);
+  if (untold.empty()) return "counted";
+  if (told.empty()) return lie_outside() ? "not carried back" : "untold";
+  out_.notes.push_back(fmt::format(
+      "{}: images are counted along {} only: displacements along {} will be the shortest ways "
+      "(i{} or {}u counts them)",
+      first_file_, fmt::join(told, ", "), fmt::join(untold, ", "), untold.front(), untold.front()));
+  return fmt::format("counted along {}", fmt::join(told, " "));
+}
+
 }  // namespace grainfield::coupling
