@@ -99,7 +99,10 @@ std::vector<std::string> chosen(const CompareRequest& request) {
   if (!heap_lines.empty()) return heap_lines;
   if (!heap_maps.empty()) return {heap_maps.front()};
   if (!others.empty()) return {others.front()};
-  throw std::invalid_argument(request.file + ": holds no averaged stress to compare");
+  throw std::invalid_argument(request.file +
+                              ": holds no averaged stress to compare (`grainfield average` and "
+                              "`grainfield import-field` make "
+                              "it)");
 }
 
 void require_same(const SceneField& first, const SceneField& next, const std::string& file) {

@@ -107,7 +107,10 @@ Chosen choose(const std::vector<std::string>& inputs) {
     const std::vector<std::string> groups = dem::list_snapshots(input.file);
     const std::vector<std::string> fields = list_fields(input.file);
     if (groups.empty() && fields.empty()) {
-      throw std::invalid_argument(input.file + ": holds neither snapshots nor fields");
+      throw std::invalid_argument(
+          input.file +
+          ": holds neither snapshots nor fields (`grainfield import`, `average` and "
+          "`import-field` make them)");
     }
     if (!fields.empty()) {
       if (inputs.size() > 1) {

@@ -84,24 +84,6 @@ std::array<int, 3> image_in(const Cell<3>& after, const Cell<3>& before,
   return {out[0], out[1], out[2]};
 }
 
-bool counts_images(const Snapshot& s) {
-  const auto told = s.attributes.find("images");
-  if (told != s.attributes.end() && told->second == "counted") return true;
-  return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) {
-    return g.image != std::array<int, 3>{0, 0, 0};
-  });
-}
-
-Vec3 displacement(const Grain& a, const Grain& b, const Cell<3>& cell_of_a,
-                  const Cell<3>& cell_of_b, bool counted) {
-  const Vec3 moved = b.position - a.position;
-  if (!counted) return moved + shift_to(cell_of_b, nearest_image(cell_of_b, moved));
-  const std::array<int, 3> from = image_in(cell_of_b, cell_of_a, a.image);
-  std::array<int, 3> crossed{};
-  for (std::size_t k = 0; k < 3; ++k) crossed[k] = b.image[k] - from[k];
-  return moved + shift_to(cell_of_b, crossed);
-}
-
 std::array<int, 3> edges_away(const Cell<3>& cell, const Vec3& place) {
   std::array<int, 3> away{0, 0, 0};
   if (!cell.is_periodic()) return away;

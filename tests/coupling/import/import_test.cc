@@ -62,9 +62,10 @@ dem::Snapshot import_one(const Folder& folder, const std::string& arguments) {
   return dem::read_snapshot(folder / "in.h5", groups.at(0));
 }
 
-const char* axis_walls =
-    " --wall floor:y=0:ids=0,9000 --wall left:x=0:ids=1,9001"
-    " --wall right:x=0.12:ids=2,9002";
+const char* axis_walls =  // of LIGGGHTS' meshes
+    " --wall floor:y=0:ids=0 --wall left:x=0:ids=1 --wall right:x=0.12:ids=2";
+const char* body_walls =  // of YADE's bodies
+    " --wall floor:y=0:ids=9000 --wall left:x=0:ids=9001 --wall right:x=0.12:ids=9002";
 const char* fix_walls =
     " --wall floor:y=0:fix=f_floor --wall left:x=0:fix=f_left"
     " --wall right:x=0.12:fix=f_right";
@@ -137,7 +138,7 @@ TEST(Import, EveryFormatGivesBackTheStress) {
                                                     test::liggghts_columns + axis_walls));
     const std::string yade = folder.write("y.bodies", test::yade_bodies(ours)) + " " +
                              folder.write("y.inter", test::yade_interactions(ours));
-    expect_same_fields(ours, import_one(folder, "--from yade " + yade + axis_walls));
+    expect_same_fields(ours, import_one(folder, "--from yade " + yade + body_walls));
   }
 }
 
