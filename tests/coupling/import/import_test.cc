@@ -350,9 +350,11 @@ TEST(Import, WarnsOfDoubtfulValues) {
   const std::string row = "id,x,y,radius,density\n1,1,1,1,5000\n2,3,1,1,5000\n3,5.5,1,1,5000\n";
   EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:6.5"),
               Not(HasSubstr("overlap")));
-  EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:4"),
-              HasSubstr("pairs of grains that overlap by more than half the smaller radius: 1 (the "
-                        "first: 1 and 3); is the period narrower than the packing"));
+  EXPECT_THAT(
+      warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:4"),
+      HasSubstr("pairs of grains that overlap by more than half the smaller radius: 1 (the "
+                "first: 1 and 3); are the radii diameters, or in another unit than the places, "
+                "or is the period narrower than the packing?"));
   const auto sliding = [&](const char* force, int mark) {
     return warned(g, fmt::format("i,j,fx,fy,friction,sliding\n1,2,{},-3,0.5,{}\n", force, mark),
                   "");
