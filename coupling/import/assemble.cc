@@ -166,8 +166,8 @@ void Assembly::place(GrainRow& row) const {
             fmt::format("found the image flag {} along {}, where nothing repeats; --periodic "
                         "{}=LOW:HIGH says where",
                         row.image[a], "xyz"[a], "xyz"[a]));
-      // Of untold ones those that another state shows not to be carried back (images.h).
-      if (cell.periodic[a]) g.image[a] = (images_told_ ? row.image[a] : 0) + away[a];
+      // Without flags they are those of the place: displacements.h decides on their use.
+      if (cell.periodic[a]) g.image[a] = (axis_told_[a] ? row.image[a] : 0) + away[a];
     }
   } catch (const dem::TooFarAway& e) {
     refuse(e.what());
@@ -300,14 +300,7 @@ void Assembly::settle() {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    images_told_ = images_told_ && (!s.cell.periodic[a] || axis_told_[a]);
-  if (s.cell.is_periodic()) {
-    warn_of_half_told_images();
-    s.attributes["images"] = images_told_    ? "counted"
-                             : lie_outside() ? "not carried back"
-                                             : "untold";
-  }
+  if (s.cell.is_periodic()) s.attributes["images"] = images_of_files();
   for (GrainRow& row : rows_) place(row);
   join_repeated_grains();
   for (GrainRow& row : rows_) s.grains.push_back(std::move(row.grain));

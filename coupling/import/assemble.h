@@ -149,7 +149,9 @@ class Assembly {
   void place(GrainRow& row) const;
   /// Whether grains lie so far out of the cell that their places have not been carried back.
   bool lie_outside() const;
-  void warn_of_half_told_images();
+  /// The snapshot's attribute `images` (displacements.h). Says where flags are there along some
+  /// axes only.
+  std::string images_of_files();
   /// Mass, volume and moments of a superellipsoid.
   double complete_superellipsoid(dem::Grain& grain) const;
   /// Drops the tables of grains that an earlier file has, too; throws for any other id that is
@@ -244,8 +246,7 @@ class Assembly {
   bool some_marked_ = false;
   bool has_z_ = false;
   bool contacts_expected_ = true;
-  bool images_told_ = true;  // along every axis that is periodic
-  std::array<bool, 3> axis_told_{true, true, true};
+  std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
   std::string first_file_;          // of grains
   std::vector<std::int64_t> by_x_;  // of grains, where copies have numbers

@@ -198,23 +198,24 @@ void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& col
                           "outline"));
 }
 
-void Assembly::warn_of_half_told_images() {
-  std::string told, untold;
-  for (std::size_t a = 0; a < 3; ++a)
-    if (out_.snapshot.cell.periodic[a]) (axis_told_[a] ? told : untold) += kAxes[a];
-  if (told.empty() || untold.empty()) return;
-  out_.warnings.push_back(fmt::format(
-      "image flags or places that were not carried back are there along {} and missing along {}: "
-      "they "
-      "are not used, and displacements take the shortest way (dump ix iy iz, or xu yu zu)",
-      told, untold));
-}
-
 bool Assembly::lie_outside() const {
   const dem::Cell<3>& cell = out_.snapshot.cell;
   return std::any_of(rows_.begin(), rows_.end(), [&](const GrainRow& row) {
     return dem::depth_outside(cell, row.grain.position) > 2 * row.grain.radius;
   });
+}
+
+std::string Assembly::images_of_files() {
+  std::vector<std::string> told, untold;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (out_.snapshot.cell.periodic[a]) (axis_told_[a] ? told : untold).emplace_back(kAxes[a]);
+  if (untold.empty()) return "counted";
+  if (told.empty()) return lie_outside() ? "not carried back" : "untold";
+  out_.notes.push_back(fmt::format(
+      "{}: images are counted along {} only: displacements along {} will be the shortest ways "
+      "(i{} or {}u counts them)",
+      first_file_, fmt::join(told, ", "), fmt::join(untold, ", "), untold.front(), untold.front()));
+  return fmt::format("counted along {}", fmt::join(told, " "));
 }
 
 }  // namespace grainfield::coupling

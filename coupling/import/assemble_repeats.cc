@@ -42,7 +42,7 @@ std::string Assembly::difference_of(const GrainRow& a, const GrainRow& b) const 
     const double rounding = kSameNumber * (std::abs(g.position[e]) + std::abs(h.position[e]));
     if (std::abs(apart[e]) > kSameNumber * radius + rounding)
       return fmt::format("{} = {} and {}", axes[k], g.position[e], h.position[e]);
-    if (images_told_ && g.image[k] != h.image[k])
+    if (axis_told_[k] && g.image[k] != h.image[k])
       return fmt::format("image {} = {} and {}", axes[k], g.image[k], h.image[k]);
   }
   for (const auto& [name, one, other] : {std::tuple{"radius", g.radius, h.radius},

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
-#include "dem/snapshot/told_images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -205,11 +205,8 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     return row;
   });
   if (reference) {
-    const bool counted = dem::count_images(*reference, snapshot);
-    grid.add_vector("displacement", [&](std::size_t k) -> dem::Vec3 {
-      return dem::displacement(reference->grains[k], grains[k], reference->cell, snapshot.cell,
-                               counted);
-    });
+    const dem::Displacements displacements(*reference, snapshot);
+    grid.add_vector("displacement", [&](std::size_t k) { return displacements.of(k); });
     if (spheres)
       grid.add_vector("rotation",
                       [&](std::size_t k) { return turn_between(reference->grains[k], grains[k]); });

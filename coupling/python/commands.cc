@@ -120,13 +120,12 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
   return out;
 }
 
-std::pair<HeldField, std::string> strain(const Source& before, const Source& after,
-                                         const py::object& points, const std::string& grid,
-                                         const std::string& frame, const std::string& up,
-                                         const std::string& measure,
-                                         const std::optional<std::string>& support,
-                                         const std::optional<double>& width, int least_grains,
-                                         int threads) {
+// The field, and what it lacks and why it is doubtful, a sentence each.
+std::pair<HeldField, std::vector<std::string>> strain(
+    const Source& before, const Source& after, const py::object& points, const std::string& grid,
+    const std::string& frame, const std::string& up, const std::string& measure,
+    const std::optional<std::string>& support, const std::optional<double>& width, int least_grains,
+    int threads) {
   coupling::StrainRequest request;
   request.frame = frame;
   request.up = up;
@@ -146,7 +145,10 @@ std::pair<HeldField, std::string> strain(const Source& before, const Source& aft
     require_columns(request.points, dim, fmt::format("the packing is {}D", dim));
   }
   coupling::StrainOutcome outcome = coupling::strain_files(request);
-  return {held(std::move(outcome.field)), outcome.report};
+  std::vector<std::string> lines;
+  for (std::string* line : {&outcome.report, &outcome.images, &outcome.doubt})
+    if (!line->empty()) lines.push_back(std::move(*line));
+  return {held(std::move(outcome.field)), std::move(lines)};
 }
 
 // A number of each grain.

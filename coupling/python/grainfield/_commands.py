@@ -151,7 +151,7 @@ def strain(
     before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
     width: m; default three mean diameters. Raises ValueError.
     """
-    core, report = _core.strain(
+    core, lines = _core.strain(
         before=_core_of(before),
         after=_core_of(after),
         points=_points(points),
@@ -165,7 +165,7 @@ def strain(
         threads=threads,
     )
     field = Field(core, name="strain")
-    field.warnings = [report] if report else []
+    field.warnings = lines
     _warn(field.warnings)
     return field
 

@@ -2,9 +2,7 @@
 // grains, or the shortest way with a warning.
 #include <gmock/gmock.h>
 
-#include "coupling/strain/motion.h"
-#include "dem/snapshot/images.h"
-#include "dem/snapshot/told_images.h"
+#include "dem/snapshot/displacements.h"
 #include "tests/coupling/import_outcome.h"
 
 namespace grainfield::coupling {
@@ -48,16 +46,14 @@ class ImportImages : public testing::ImportOfFiles {
   std::pair<double, double> ways(Told a, double drift_a, Told b, double drift_b) {
     const Outcome one = state(a, drift_a), two = state(b, drift_b);
     const dem::Snapshot &before = only(one).snapshot, &after = only(two).snapshot;
-    const bool counted = dem::count_images(before, after);
+    const dem::Displacements displacements(before, after);
     double least = 1, most = -1;
     for (std::size_t g = 0; g < before.grains.size(); ++g) {
-      const double way =
-          dem::displacement(before.grains[g], after.grains[g], before.cell, after.cell, counted)
-              .x();
+      const double way = displacements.of(g).x();
       least = std::min(least, way);
       most = std::max(most, way);
     }
-    doubt_ = doubtful_images(before, after);
+    doubt_ = displacements.doubt();
     return {least, most};
   }
   void expect_all(const std::pair<double, double>& ways, double way) {
@@ -87,14 +83,13 @@ TEST_F(ImportImages, OneStateWithoutImages) {
   EXPECT_EQ(doubt_, "");
   expect_all(ways(Told::flags, 0.022, Told::carried_back, 0.037), 0.015);
   ways(Told::carried_back, 0.022, Told::unwrapped, 0.08);
-  EXPECT_THAT(doubt_, HasSubstr("one of the states tells no images"));
+  EXPECT_THAT(doubt_, HasSubstr("more than a third of the periodic cell"));
   expect_all(ways(Told::flags, 0.022, Told::unwrapped, 0.28), 0.258);
 }
 
 TEST_F(ImportImages, FlagsOfOneAxisAreSaid) {
   const Outcome half = state(Told::flags_of_x, 0.072);
-  EXPECT_THAT(only(half).warnings,
-              Contains(HasSubstr("are there along x and missing along y: they are not used")));
+  EXPECT_THAT(only(half).notes, Contains(HasSubstr("images are counted along x only")));
   EXPECT_THAT(only(state(Told::flags, 0.072)).warnings, ::testing::IsEmpty());
 }
 
