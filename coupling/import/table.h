@@ -52,6 +52,7 @@ struct ForeignTable {
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
   bool decimal_commas = false;  ///< numbers are written as 0,005
+  bool prefixes = false;        ///< "c_", "f_", "v_", "i_", "d_" say what made a column (dumps)
   bool any_names = false;       ///< names that other programs have for our columns are taken, too
   std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
   UnitSystem units;             ///< of columns that tell none
@@ -85,6 +86,8 @@ class ColumnNames {
     bool chosen = false;
   };
   std::vector<Candidate> candidates(const std::string& ours) const;
+  /// Whether the user names a column for ours.
+  bool chose(const std::string& ours) const;
   void mark_used(const std::string& ours, const std::string& theirs);
   /// Whether the user or the format names this column of theirs as one of ours.
   bool claims(const std::string& theirs) const;
@@ -133,8 +136,12 @@ class TableColumns {
                             const std::string& argument = "") const;
   /// Names of the table's columns, without units.
   std::vector<std::string> names() const;
+  /// Throws std::invalid_argument where of the lengths that were found some have a unit other than
+  /// the table's and others none.
+  void require_length_units() const;
 
  private:
+  void note_length(const Heading& heading) const;
   std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
   std::optional<double> constant_of(const std::string& ours, const std::string& text) const;
   /// The heading that plainly is ours, or the only one of another program's name for it; else end.
@@ -143,6 +150,8 @@ class TableColumns {
   const ForeignTable& table_;
   ColumnNames& names_;
   std::vector<Heading> headings_;
+  mutable std::vector<std::string> bare_lengths_;  // found, without a unit
+  mutable std::string told_length_, told_unit_;    // the first with another than the table's
 };
 
 /// An id as a file tells it.
