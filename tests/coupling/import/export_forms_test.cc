@@ -258,8 +258,8 @@ TEST(ExportForms, ADeckKeepsIds) {
   const Folder folder;
   for (const auto& [first, told, note] :
        {std::tuple{"7", "7 1 ", ""},
-        {"0", "1 1 ", "note: ids are one more than here"},
-        {"4294967296", "2 1 ", "note: grains are numbered from 1 in the order of the snapshot"}}) {
+        {"0", "1 1 ", "note: ids are one more than the packing's"},
+        {"4294967296", "2 1 ", "note: ids are numbers from 1"}}) {
     const std::string csv = folder.write("g.csv", std::string("id,x,y,radius,density\n") + first +
                                                       ",0,0,0.005,2500\n3,1,0,0.005,2500\n");
     ASSERT_EQ(
