@@ -219,10 +219,10 @@ bool has_fixed(const dem::Snapshot& s) {
 std::string import_command(const dem::Snapshot& s, const char* state, const LammpsDeck& deck) {
   std::string out = fmt::format(
       "grainfield import --from lammps {0}.grains {0}.contacts --column 'i,j=c_ids[1..2]' --column "
-      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --dim {2}{3} --group "
+      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1}{2} --dim {3} --group "
       "/{0}",
-      state, has_fixed(s) ? " --fixed type=2" : "", s.dim,
-      deck.ids.empty() ? "" : " --ids ids.csv");
+      state, has_fixed(s) ? " --fixed type=2" : "", deck.ids.empty() ? "" : " --ids ids.csv",
+      s.dim);
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
     int axis = 0;

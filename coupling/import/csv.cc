@@ -204,7 +204,7 @@ class HeaderSearch {
     table.columns = std::make_shared<const std::vector<std::string>>(
         units < none ? with_units(values_[names], values_[units]) : values_[names]);
     table.header_line = head_.lines[names].line;
-    table.first = head_.lines[units == below ? units : names].behind;
+    table.first = head_.lines[units < none && units == below ? units : names].behind;
   }
 
  private:
