@@ -17,6 +17,8 @@ namespace {
 
 // Spheres are given up after this many failures in a row for each that would cover the lid.
 constexpr double kDropTries = 50;
+// Fitted spheres miss the grain that stops them by this share of their radius at most.
+constexpr double kFit = 1e-6;
 // Densities within this share are the same: volumes are sums of rounded numbers.
 constexpr double kSameDensity = 1e-9;
 
@@ -46,6 +48,19 @@ void stop(Snapshot& s) {
     g.spin = 0;
   }
   for (Wall& wall : s.walls) wall.velocity.setZero();
+}
+
+// The largest radius up to `most` that is free, to kFit of itself; `least` is. Spheres that touch
+// the lid in one point lie in each other, so those below a free radius are free.
+template <class Free>
+double largest_free(double least, double most, const Free& is_free) {
+  if (is_free(most)) return most;
+  double low = least, high = most;
+  while (high - low > kFit * low) {
+    const double middle = 0.5 * (low + high);
+    (is_free(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 bool is_superellipsoid(const Grain& g) { return g.axes.maxCoeff() > 0; }
@@ -119,18 +134,28 @@ FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density
   for (const Grain& g : s.grains) {
     if (g.position.z() + g.radius > top - 2 * most) near.push_back(g);
   }
-  for (long failures = 0; failures < tries;) {
-    const double r = draw_gap_radius(plan, random);
+  const bool fitted = plan.gap == "fitted";
+  // Below the lid at (x, y): whether it meets no grain.
+  const auto is_free = [&](double x, double y, double r) {
     Grain sphere = sphere_of(r, density, plan.shape == "superellipsoid");
-    const double x = random.uniform(r, width - r), y = random.uniform(r, depth - r);
     sphere.position = {x, y, top - r};
-    const bool meets =
-        std::any_of(near.begin(), near.end(), [&](const Grain& g) { return overlap(g, sphere); });
-    if (meets) {
+    return std::none_of(near.begin(), near.end(),
+                        [&](const Grain& g) { return overlap(g, sphere); });
+  };
+  for (long failures = 0; failures < tries;) {
+    double r = fitted ? least : draw_gap_radius(plan, random);
+    const double x = random.uniform(r, width - r), y = random.uniform(r, depth - r);
+    if (!is_free(x, y, r)) {
       ++failures;
       continue;
     }
     failures = 0;
+    if (fitted) {
+      const double room = std::min({x, width - x, y, depth - y, most});
+      r = largest_free(r, room, [&](double radius) { return is_free(x, y, radius); });
+    }
+    Grain sphere = sphere_of(r, density, plan.shape == "superellipsoid");
+    sphere.position = {x, y, top - r};
     sphere.id = static_cast<std::int64_t>(s.grains.size());
     solid += sphere.volume;
     s.grains.push_back(sphere);

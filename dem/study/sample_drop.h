@@ -23,7 +23,8 @@ struct FilledBox {
 
 /// The lid touches the highest point of a grain; spheres that touch it, with radii drawn as the
 /// plan draws those of its grains (superellipsoids: a semi-axis), are put in at random places where
-/// they overlap nothing, until none finds room any more.
+/// they overlap nothing, until none finds room any more. plan.gap "fitted": each is as large as its
+/// place and the largest of those radii allow, so that it touches what is below.
 FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density, Random& random);
 
 /// A recorded state as such a box: its grains at rest and without their contacts, which a law of

@@ -35,6 +35,7 @@ struct SamplePlan {
   double base_fraction = 0.6;         ///< dropped: solid fraction that the base is made for
   double drop_gravity = 9.81;         ///< dropped: m/s2, downwards
   double drop_damping = 10;           ///< dropped: 1/s, of all motion
+  std::string gap = "hanging";        ///< dropped: hanging | fitted, the spheres below the lid
 
   // -- compression
   std::string compression = "isotropic";  ///< isotropic | uniaxial (along the last axis)
@@ -70,11 +71,11 @@ struct SamplePlan {
     return std::tie(dim, shape, grains, sizes, radius, polydispersity, size_ratio, fraction_small,
                     corners_min, corners_max, axis_min, axis_max, axes_times, exponent_min,
                     exponent_max, boundary, height_ratio, start_fraction, filling, base_fraction,
-                    drop_gravity, drop_damping, compression, compress_to, pressure, solid_fraction,
-                    compression_strain, compression_rate, prepared_with, prepared_friction,
-                    precompression, settle, probe, probe_strain, deformation, constant, sides,
-                    strain, strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
-                    unload_records);
+                    drop_gravity, drop_damping, gap, compression, compress_to, pressure,
+                    solid_fraction, compression_strain, compression_rate, prepared_with,
+                    prepared_friction, precompression, settle, probe, probe_strain, deformation,
+                    constant, sides, strain, strain_rate, ramp_time, records, unload, unload_strain,
+                    unload_stress, unload_records);
   }
 };
 

@@ -85,6 +85,16 @@ void place(SectionKeys& s) {
   dropped();
 }
 
+void gap(SectionKeys& s) {
+  s.word(
+      "gap", IN(gap), {"hanging", "fitted"},
+      "spheres between the lid and dropped grains: of drawn radii, touching the lid alone, which "
+      "comes down by part of a grain until they bear; or each as large as its place allows, up "
+      "to the largest semi-axis, so that it touches lid and grains",
+      "Wellmann 4");
+  s.only("sample.filling", {"dropped"});
+}
+
 void compression(SectionKeys& s) {
   s.word("compression", IN(compression), {"isotropic", "uniaxial"},
          "all edges shorten, or the one along the last axis");
@@ -177,6 +187,7 @@ void unloading(SectionKeys& s) {
 void declare_sample_keys(SectionKeys s) {
   grains(s);
   place(s);
+  gap(s);
   compression(s);
   probes(s);
   deformation(s);

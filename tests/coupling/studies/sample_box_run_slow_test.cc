@@ -251,6 +251,34 @@ TEST(SampleBox, IsFilledByDroppingAndSpheres) {
   EXPECT_NEAR(number(summary, "sample.initial_pressure") / 1e4, 0.9, 0.2);
 }
 
+// One box is filled and loaded by two laws from the same places.
+TEST(SampleBox, IsFilledOnceForSeveralLaws) {
+  const Folder folder;
+  const std::string loaded =
+      "filling = \"dropped\"\ncompress_to = \"none\"\ndeformation = \"uniaxial\"\nstrain = "
+      "0.02\nrecords = 2\n";
+  run(folder,
+      box("filling = \"dropped\"\ndrop_damping = 25\ncompress_to = \"none\"\n"
+          "deformation = \"uniaxial\"\nstrain = 1e-6\nrecords = 1\n",
+          "friction = 0.3\nwall_friction = 0.3"),
+      "--set output.vtu=false --set output.report=false");
+  const std::string files = "--set 'grains.files=[\"" + (folder / "out/snapshots.h5") + "\"]'";
+  const auto load = [&](const std::string& law, const std::string& to) {
+    const Output output = program("run " + folder.write("y.toml", box(loaded)) + " -o " +
+                                  (folder / to) + " " + files + " --set material.law=" + law +
+                                  " --set output.report=false --set output.vtu=false");
+    EXPECT_EQ(output.code, 0) << output.err;
+    return read_summary(folder / (to + "/summary.json"));
+  };
+  const Summary hertz = load("hertz_elliptic", "a"), penalty = load("penalty", "b");
+  EXPECT_EQ(number(hertz, "sample.gap_spheres"), number(penalty, "sample.gap_spheres"));
+  EXPECT_EQ(number(hertz, "sample.initial_solid_fraction"),
+            number(penalty, "sample.initial_solid_fraction"));
+  EXPECT_EQ(number(hertz, "sample.lost_strength"), 0);
+  EXPECT_GT(number(hertz, "sample.final_pressure"), 0);
+  EXPECT_NE(number(hertz, "sample.final_pressure"), number(penalty, "sample.final_pressure"));
+}
+
 TEST(SampleBox, MistakesAreNamed) {
   const std::string text = box(kCompression + "[rve]\nalong = 2\nradii = [2]");
   const auto says = [&](const Overrides& set, const std::string& what) {
@@ -277,6 +305,8 @@ TEST(SampleBox, MistakesAreNamed) {
         "rve.radii=[1]"},
        "sample.base_fraction: found 0.05, allowed: above sample.start_fraction = 0.1");
   says({"sample.probe=first", "rest.background_damping=0"}, "rest.background_damping: found 0");
+  says({"grains.files=[\"x.h5\"]"},
+       "grains.files: found files of filled boxes, allowed with sample.filling = \"placed\": []");
 }
 
 }  // namespace

@@ -78,6 +78,39 @@ TEST(FilledBoxes, HaveOneBase) {
   EXPECT_NEAR(many[2] / few[2], 1.1 / 0.9, 1e-12);
 }
 
+// Fitted spheres touch what stops them, or are as large as they may be; hanging ones do not.
+TEST(FilledBoxes, HaveSpheresThatFitBelowTheLid) {
+  SamplePlan plan = dropped().plan;
+  Snapshot bed = state(packing(), 0);
+  bed.grains.resize(150);
+  const auto loose = [&](const char* gap) {
+    plan.gap = gap;
+    Random random(3);
+    const FilledBox box = put_lid_on(bed, plan, 1, random);
+    EXPECT_GT(box.spheres, 5);
+    const auto& grains = box.snapshot.grains;
+    const double width = sample_box(plan, 1)[0];
+    int out = 0;
+    for (std::size_t k = 150; k < grains.size(); ++k) {
+      const Grain& sphere = grains[k];
+      EXPECT_NEAR(sphere.position.z() + sphere.radius, box.height, 1e-12);
+      double room = std::min({sphere.position.x(), width - sphere.position.x(), sphere.position.y(),
+                              width - sphere.position.y()}) -
+                    sphere.radius;
+      for (std::size_t j = 0; j < grains.size(); ++j) {
+        if (j == k) continue;
+        room = std::min(
+            room, (grains[j].position - sphere.position).norm() - grains[j].radius - sphere.radius);
+      }
+      EXPECT_GT(room, -1e-12);
+      out += room > 1e-4 && sphere.radius < sample_radii(plan).most * (1 - 1e-5);
+    }
+    return out;
+  };
+  EXPECT_EQ(loose("fitted"), 0);
+  EXPECT_GT(loose("hanging"), 5);
+}
+
 TEST(FilledBoxes, AreLoadedAgainWithAnotherLaw) {
   SampleSetup other = dropped();
   other.material.law = "linear";
