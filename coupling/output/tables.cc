@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/profile_columns.h"
 #include "coupling/output/text_table.h"
 #include "dem/snapshot/number.h"
 
@@ -118,52 +119,28 @@ std::string quote_csv(const std::string& text) {
   return out + "\"";
 }
 
-std::string normalisation(const Comparison& c) {
-  if (!c.scale.note.empty()) return c.scale.note;
-  return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
-                     c.depth, c.load / c.depth, c.realizations);
-}
-
 }  // namespace
 
 std::string profiles_csv(const Comparison& c) {
-  std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
-                     ": compression positive; x from the " + c.scale.x_from + "\n";
-  const std::string unit = c.profiles.front().unit;
-  text += fmt::format("profile,depth_m,x_m,{1}_{0},standard_error_{0}", unit, c.column());
-  for (const ModelProfiles& m : c.models)
-    for (const std::string& name :
-         {fmt::format("{}_{}", m.key, unit), fmt::format("{}_difference_{}", m.key, unit),
-          fmt::format("{}_difference_over_error", m.key)})
-      text += fmt::format(",{}", quote_csv(name));
-  text += "\n";
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    const Profile& p = c.profiles[k];
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (const ModelProfiles& m : c.models) {
-        const double value = m.values[k][i], difference = p.mean[i] - value;
-        text += fmt::format(",{},{},{}", number(value), number(difference),
-                            number(difference / error_at(p, i)));
-      }
-      text += "\n";
-    }
+  const ProfileColumns table = profile_columns(c);
+  std::string text;
+  for (const std::string& note : table.notes) text += "# " + note + "\n";
+  text += "profile";
+  for (const ProfileColumn& column : table.columns) {
+    text += "," + quote_csv(column.unit == "1" ? column.name : column.name + "_" + column.unit);
   }
-  for (const Profile& p : c.beside) {
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (std::size_t m = 0; m < c.models.size(); ++m) text += ",nan,nan,nan";
-      text += "\n";
-    }
+  text += "\n";
+  for (std::size_t k = 0; k < table.profile.size(); ++k) {
+    text += quote_csv(table.profile[k]);
+    for (const ProfileColumn& column : table.columns) text += "," + number(column.values[k]);
+    text += "\n";
   }
   return text;
 }
 
 std::string profiles_markdown(const Comparison& c, int rows) {
   const Shown shown = shown_models(c);
-  std::string text = "# Profiles\n\n" + normalisation(c) + "\n";
+  std::string text = "# Profiles\n\n" + scale_note(c) + "\n";
   if (!shown.note.empty()) text += "\n" + shown.note + "\n";
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     text += fmt::format("\n## {}\n\n{} in units of {}\n\n", c.profiles[k].name,
@@ -179,7 +156,7 @@ std::string profiles_markdown(const Comparison& c, int rows) {
 
 std::string profiles_latex(const Comparison& c, int rows) {
   const Shown shown = shown_models(c);
-  std::string text = "% " + normalisation(c) + "\n";
+  std::string text = "% " + scale_note(c) + "\n";
   if (!shown.note.empty()) text += "% " + shown.note + "\n";
   const Style style{"  ", " & ", " \\\\"};
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {

@@ -16,6 +16,7 @@ import math
 import pathlib
 import re
 import sys
+import tomllib
 from collections import Counter
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -137,16 +138,20 @@ def dips(results: Results) -> str:
 def verdicts(results: Results, studies: list[str]) -> str:
     """What the studies themselves conclude."""
     lines = ""
+    kept = {fit["name"] for fit in tomllib.loads((HERE / "states/fits.toml").read_text())["fit"]}
     for study in studies:
         sentence = results.text(study, "verdict.sentence")
-        if sentence and (study.startswith("fit-") or results.text(study, "dip.verdict")):
-            lines += f"- `{study}`: {sentence}\n"
+        if sentence and study.startswith("fit-"):  # dips have a table of their own
+            judge = ("" if study in kept else
+                     f" (states lost, judge of version {results.text(study, 'version')})")
+            lines += f"- `{study}`{judge}: {sentence}\n"
     if not lines:
         return ""
     return (
         "\n## Which theory the grains support\n\n"
-        "Each study said this when it was run, alone and by the rules of its version. Where no model agrees, "
-        "\"supported\" meant the nearest of the models asked.\n\n"
+        "`docs/reproduction/states/judge.py PROGRAM` judges the ensembles anew whose states are kept. The other "
+        "verdicts are by the judge of their version: where no model agrees, \"supported\" meant the nearest of the "
+        "models asked.\n\n"
         + lines +
         "\nLayers under a point load: [verdict over all packings](cases/point-load-verdict.md); lattice "
         "piles: [Liffman](cases/liffman-lattice.md).\n")

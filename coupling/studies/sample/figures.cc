@@ -40,9 +40,16 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.stress_rms_error", "-", "root of the mean square of the same"},
       {"sample.kinetic_share", "-",
        "largest kinetic over elastic energy of the states after the first one"},
+      {"sample.late_kinetic_share", "-",
+       "the same of the states of the loading beyond a tenth of its strain"},
+      {"sample.late_inertial_number", "-", "largest inertial number of the same states"},
       {"sample.pressure_ratio", "-", "p at the end of the loading over that of the first state"},
       {"sample.shear_over_pressure", "-",
        "simple shear: shear stress at the end of the loading over p of the first state"},
+      {"sample.first_shear_stiffness", "-",
+       "simple shear at constant volume: rise of the shear stress to the state after the first "
+       "one, "
+       "over its strain and over p of the first state"},
       {"sample.axial_dip_strain", "-",
        "simple shear at constant volume: shear strain (half the shear) of the recorded state of "
        "the "
@@ -59,7 +66,7 @@ std::vector<SummaryKey> sample_figures() {
       {"sample.plastic_strain", "-",
        "unloading: strain where the axial stress (of the lid; in a cell of the contacts) is that "
        "of "
-       "the first state again"},
+       "the first state again, or a thousandth of the largest where the first one is below it"},
       {"sample.unloading_stiffness", "-",
        "its slope to the middle state of the unloading over that of the loading's last quarter"},
       {"sample.loop_loss", "-", "area of its loop over that under the loading"},

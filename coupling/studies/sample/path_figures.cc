@@ -16,6 +16,9 @@ double slope(const VectorXd& strain, const VectorXd& stress, Index from, Index t
   return (stress[to] - stress[from]) / (strain[to] - strain[from]);
 }
 
+// The first state of the loading at a tenth of its strain or beyond.
+Index first_after_start(Index end) { return std::max<Index>(1, (end + 9) / 10); }
+
 double area_under(const VectorXd& strain, const VectorXd& stress, Index from, Index to) {
   double area = 0;
   for (Index k = from; k < to; ++k) {
@@ -49,10 +52,17 @@ std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
     const VectorXd strain = column("strain"), p = column("p");
     const VectorXd kinetic = column("kinetic_energy"), elastic = column("elastic_energy");
     put("kinetic_share", (kinetic.array() / elastic.array()).tail(kinetic.size() - 1).maxCoeff());
+    const Index started = first_after_start(end);
+    const auto largest_late = [&](const VectorXd& values) {
+      return values.segment(started, end - started + 1).maxCoeff();
+    };
+    put("late_kinetic_share", largest_late(kinetic.cwiseQuotient(elastic)));
+    put("late_inertial_number", largest_late(column("inertial_number")));
     put("pressure_ratio", p[end] / p[0]);
     if (dem::shears(plan)) {
       const char* shear = plan.dim == 2 ? "sigma_xy" : "sigma_xz";
       put("shear_over_pressure", column(shear)[end] / p[0]);
+      put("first_shear_stiffness", slope(strain, column(shear), 0, 1) / p[0]);
       if (plan.constant == "volume") {  // a held stress has no least value
         Index least = 0;
         column(axial).head(end + 1).maxCoeff(&least);
@@ -73,7 +83,8 @@ std::map<std::string, std::vector<double>> path_figures(const StateTable& table,
     }
     if (!dem::unloads(plan) || dem::shears(plan)) continue;
     const VectorXd outside = dem::is_periodic(plan) ? inside : column("pressure_on_lid");
-    const double plastic = strain_at_fall(strain, outside, end, outside[0]);
+    const double unloaded = std::max(outside[0], dem::kLeastUnloaded * outside[end]);
+    const double plastic = strain_at_fall(strain, outside, end, unloaded);
     if (std::isfinite(plastic)) put("plastic_strain", plastic);
     const Index late = std::min<Index>(end - 1, 3 * end / 4);
     const Index middle = end + std::max<Index>(1, plan.unload_records / 2);

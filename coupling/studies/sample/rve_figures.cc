@@ -90,6 +90,18 @@ double axial_stress_ratio(const std::vector<RveValue>& values) {
   return 3 * (axial - lateral) / (axial + 2 * lateral);
 }
 
+// Largest mean shear strain of the hulls beside the component that is imposed.
+double other_shear(const std::vector<RveValue>& values, const Axis& imposed) {
+  double largest = 0;
+  for (const Axis at : {Axis{0, 1}, Axis{0, 2}, Axis{1, 2}}) {
+    if (at.a == imposed.a && at.b == imposed.b) continue;
+    double sum = 0;
+    for (const RveValue& v : values) sum += symmetric(v.hull, at.a, at.b);
+    largest = std::max(largest, std::fabs(sum) / static_cast<double>(values.size()));
+  }
+  return largest;
+}
+
 // Largest |boundary - inside| over |inside| of the RVEs in a state.
 double closure(const std::vector<RveValue>& values) {
   double worst = 0;
@@ -125,6 +137,8 @@ void add_of_radius(const RveTable& table, std::size_t r, const std::string& defo
     }
     put("strain_ratio", mean_of(hull) / symmetric(table.gradients[k][loading], axis.a, axis.b));
     put("fit_ratio", mean_of(fit) / mean_of(hull));
+    put("other_shear",
+        other_shear(end, axis) / std::fabs(symmetric(table.gradients[k][loading], axis.a, axis.b)));
   }
 }
 

@@ -39,6 +39,9 @@ std::vector<SummaryKey> rve_summary_keys() {
       {"rve.r*.strain_ratio", "-",
        "strain of the hulls over that of the sample's edges at the end of the loading: zz, of a "
        "simple shear xz"},
+      {"rve.r*.other_shear", "-",
+       "largest of the hulls' mean shear strains that are not imposed over the imposed strain, at "
+       "the end of the loading"},
       {"rve.r*.fit_ratio", "-", "strain by least squares over that of the hulls, likewise"},
       {"rve.contraction", "-",
        "simple shear: -trace/3 of the strain of the largest RVEs where its mean over the samples "

@@ -33,12 +33,14 @@ Eigen::Index critical_states(Eigen::Index states) {
   return states - static_cast<Eigen::Index>(first);
 }
 
+// A box without stress at the start has no strength that it could lose there.
 std::vector<bool> bearing(const Eigen::VectorXd& p, const Eigen::VectorXd& inertial_number,
                           const Eigen::VectorXd& ratio) {
   std::vector<bool> out;
   for (Eigen::Index k = 0; k < p.size(); ++k) {
-    out.push_back(p[k] > kLeastPressure * p[0] && inertial_number[k] < kMostInertia &&
-                  std::isfinite(ratio[k]));
+    const bool empty = k == 0 && !(p[0] > 0);
+    out.push_back(empty || (p[k] > kLeastPressure * p[0] && inertial_number[k] < kMostInertia &&
+                            std::isfinite(ratio[k])));
   }
   return out;
 }
@@ -103,7 +105,8 @@ std::map<std::string, std::vector<double>> state_figures(const StateTable& table
     if (deformation == "uniaxial" || deformation == "isotropic") continue;
     Eigen::Index peak = -1;
     for (Eigen::Index k = 0; k <= last; ++k) {
-      if (bears[static_cast<std::size_t>(k)] && (peak < 0 || ratio[k] > ratio[peak])) peak = k;
+      if (!bears[static_cast<std::size_t>(k)] || !std::isfinite(ratio[k])) continue;
+      if (peak < 0 || ratio[k] > ratio[peak]) peak = k;
     }
     if (peak >= 0) {
       put("peak_stress_ratio", ratio[peak]);
