@@ -24,7 +24,9 @@ myst_heading_anchors = 4
 myst_update_mathjax = False
 html_theme = "alabaster"
 html_title = "grainfield"
-html_theme_options = {"page_width": "1200px"}
+html_theme_options = {"page_width": "1280px"}
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
 html_show_copyright = False
 highlight_language = "none"
 
