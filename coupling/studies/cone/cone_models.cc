@@ -8,7 +8,7 @@
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/models/subject.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 
 namespace grainfield::coupling {
 namespace {

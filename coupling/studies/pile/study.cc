@@ -50,15 +50,6 @@ class PileAnalysis {
                                                        const Realization* first) {
       return page(result, first, averaged, beside, flat);
     };
-    out.overview = {{"dip ratio", "dip.ratio", ""},
-                    {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
-                    {"p of a dip, one-sided", "dip.p_value", ""},
-                    {"repose (deg)", "repose.mean_deg", ""},
-                    {"left - right (deg)", "repose.left_minus_right_deg", ""},
-                    {"volume fraction", "heap.volume_fraction", ""},
-                    {"contacts per grain", "heap.coordination", ""},
-                    {"centre pressure (rho g h)", "dip.centre", ""},
-                    {"sigma_xx / sigma_yy on the axis", "axis.stress_ratio", ""}};
     return out;
   }
 
@@ -378,47 +369,8 @@ class PileAnalysis {
     in.comparison = result.comparison;
     in.map = result.map;
     in.averaged = averaged;
-    in.figures = figure_rows(result.summary, {"dem.grains",
-                                              "dem.contacts",
-                                              "repose.mean_deg",
-                                              "dem.repose_angle_left_deg",
-                                              "dem.repose_angle_right_deg",
-                                              "pile.height",
-                                              "heap.volume_fraction",
-                                              "heap.rho_g_h",
-                                              "heap.coordination",
-                                              "pile.volume_fraction_centre",
-                                              "pile.volume_fraction_surface",
-                                              "density.ratio",
-                                              "density.p_value",
-                                              "base.weight_ratio",
-                                              "relaxation.base_weight_ratio_before",
-                                              "relaxation.level_error_before",
-                                              "relaxation.force_change",
-                                              "relaxation.mean_displacement",
-                                              "axis.stress_ratio",
-                                              "dip.centre",
-                                              "dip.window_ratio",
-                                              "dip.difference",
-                                              "dip.standard_error",
-                                              "dip.p_value",
-                                              "measured.places",
-                                              "measured.normal_rms",
-                                              "measured.shear_rms",
-                                              "measured.normal_chi2",
-                                              "measured.shear_chi2",
-                                              "measured.normal_centre",
-                                              "measured.shear_slope_ratio",
-                                              "measured.shear_explained",
-                                              "source.interval",
-                                              "dem.time_step",
-                                              "time.dem_cpu_s",
-                                              "dem.max_overlap_ratio",
-                                              "dem.unbalanced_force_ratio",
-                                              "average.coarse_graining.balance_rms",
-                                              "average.particle_centre.balance_rms"});
+    in.figures = figure_rows(result);
     add_reasons(in.figures, flat);
-    add_energy_rows(result.summary, in.figures);
     in.changes = changes_of(result.summary);
     in.made = origin_rows(result);
     return pile_report(in);

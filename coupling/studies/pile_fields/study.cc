@@ -149,15 +149,7 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
   out.sections.emplace_back(Text{
       "Points without a value",
       gaps.empty() ? "Every point whose RVE is inside the heap has enough grains." : gaps, false});
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : result.summary) {
-    const bool aside = key.ends_with(".least") || key.ends_with(".most") ||
-                       key.ends_with(".standard_error") || key.rfind("case.", 0) == 0 ||
-                       key.rfind("time.", 0) == 0 || key.rfind("memory.", 0) == 0 ||
-                       key == "verdict.sentence";
-    if (!aside) keys.push_back(key);
-  }
-  add_rows(out, "Figures", figure_rows(result.summary, keys));
+  add_rows(out, "Figures", figure_rows(result, true));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
@@ -179,10 +171,6 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
     out.texts.insert(out.texts.end(), result.texts.begin(), result.texts.end());
     sentence += (sentence.empty() ? "" : " ") + result.sentence;
   }
-  out.overview = {{"E (N/m)", "elastic.young", ""},
-                  {"RVE (grains)", "rve_size.grains", ""},
-                  {"g2", "fabric.g2", ""},
-                  {"coordination", "heap.coordination", ""}};
   out.comparison.judgement.findings = {sentence};
   const std::string gaps = piles.gaps_text();
   out.page = [looked, gaps, change = piles.change()](const StudyResult& result,

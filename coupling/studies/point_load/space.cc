@@ -17,7 +17,7 @@
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space_page.h"
