@@ -113,9 +113,8 @@ std::string quote_csv(const std::string& text) {
 }
 
 std::string normalisation(const Comparison& c) {
-  if (!c.scale.note.empty()) return c.scale.note;
-  return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
-                     c.depth, c.load / c.depth, c.realizations);
+  return c.scale.load > 0 ? fmt::format("{}, realizations: {}", c.scale.note, c.realizations)
+                          : c.scale.note;
 }
 
 }  // namespace
@@ -157,18 +156,18 @@ std::string profiles_csv(const Comparison& c) {
 
 std::vector<Table> profile_tables(const Comparison& c, int rows) {
   const Shown shown = shown_models(c);
-  const double unit = c.unit();
+  const double unit = c.scale.unit;
   std::vector<Table> out;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     const Profile& p = c.profiles[k];
     Table table{p.name,
                 fmt::format("{} in units of {}", p.quantity, c.scale.stress),
-                {fmt::format("x/{}", c.scale.length), c.column()},
+                {"x/h", c.column()},
                 {}};
     table.header.insert(table.header.end(), shown.labels.begin(), shown.labels.end());
     for (const Eigen::Index i : chosen(p.mean, rows)) {
       const double grains = p.mean[i] / unit, error = error_at(p, i) / unit;
-      std::vector<std::string> row{fmt::format("{:.3f}", p.x[i] / c.depth),
+      std::vector<std::string> row{fmt::format("{:.3f}", p.x[i] / c.scale.h),
                                    with_error(grains, error)};
       for (const std::size_t m : shown.models) {
         row.push_back(model_cell(grains, error, c.models[m].values[k][i] / unit));
@@ -184,8 +183,8 @@ std::string profiles_note(const Comparison& c) {
   std::string out = normalisation(c) + ".";
   if (!c.models.empty()) {
     out += fmt::format(
-        " A model's value stands with its distance in brackets, ({} - model) / standard error. "
-        "Models whose fields differ by less than {:g} % of the largest value share a column.",
+        " In brackets behind a model's value: ({} - model) / standard error. Models whose fields "
+        "differ by less than {:g} % of the largest value share a column.",
         c.column(), 100 * kSameField);
   }
   const std::string aside = shown_models(c).note;

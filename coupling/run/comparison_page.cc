@@ -9,14 +9,21 @@
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {
+namespace {
+
+std::string shown(double value, int digits = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+}  // namespace
 
 Frame profile_frame(const Comparison& c, std::size_t profile) {
   const Profile& p = c.profiles[profile];
-  Frame out{p.name, {{c.label(), p.x / c.depth, p.mean / c.unit(), {}, true}}};
-  if (p.error.size() > 0) out.series.front().error = p.error / c.unit();
+  Frame out{p.name, {{c.label(), p.x / c.scale.h, p.mean / c.scale.unit, {}, true}}};
+  if (p.error.size() > 0) out.series.front().error = p.error / c.scale.unit;
   for (std::size_t m = 0; m < c.models.size(); ++m) {
     const DrawnLine line = drawn_line(c, m, profile);
-    out.series.push_back({c.models[m].label, line.x / c.depth, line.y / c.unit(), {}, false});
+    out.series.push_back({c.models[m].label, line.x / c.scale.h, line.y / c.scale.unit, {}, false});
   }
   return out;
 }
@@ -37,11 +44,10 @@ Table distances_table(const Comparison& c, const std::string& unit, const std::s
       {}};
   for (const std::size_t m : ranked(c)) {
     const ModelComparison& r = c.results[m];
-    const double place = r.overall.largest_at / c.depth;
+    const double place = r.overall.largest_at / c.scale.h;
     out.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
-                        fmt::format("{:.3g}", r.overall.largest / c.unit()),
-                        fmt::format("{:.2g}", at == "r/h" ? std::fabs(place) : place),
-                        r.overall.largest_in});
+                        shown(r.overall.largest / c.scale.unit),
+                        shown(at == "r/h" ? std::fabs(place) : place, 2), r.overall.largest_in});
   }
   return out;
 }
@@ -61,14 +67,15 @@ Table shapes_table(const Comparison& c, const std::string& unit, const std::stri
   if (!radial) out.header.emplace_back("integral");
   const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
                        const ProfileShape& error) {
-    const double place = s.peak_at / c.depth;
-    out.rows.push_back({profile, of, with_error(s.peak / c.unit(), error.peak / c.unit()),
-                        fmt::format("{:.2g}", radial ? std::fabs(place) : place),
-                        with_error(s.fwhm / c.depth, error.fwhm / c.depth),
-                        with_error(s.rms_width / c.depth, error.rms_width / c.depth),
+    const double place = s.peak_at / c.scale.h;
+    out.rows.push_back({profile, of, with_error(s.peak / c.scale.unit, error.peak / c.scale.unit),
+                        shown(radial ? std::fabs(place) : place, 2),
+                        with_error(s.fwhm / c.scale.h, error.fwhm / c.scale.h),
+                        with_error(s.rms_width / c.scale.h, error.rms_width / c.scale.h),
                         fmt::format("{}", s.peaks)});
     if (!radial) {
-      out.rows.back().push_back(with_error(s.integral / c.load, error.integral / c.load));
+      out.rows.back().push_back(
+          with_error(s.integral / c.scale.load, error.integral / c.scale.load));
     }
   };
   const ProfileShape exact{kNan, kNan, kNan, kNan, 0, kNan};

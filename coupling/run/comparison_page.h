@@ -8,12 +8,13 @@
 
 namespace grainfield::coupling {
 
-/// Grains, with the band of their error, and models: lengths in h, stresses in comparison.unit().
+/// Grains, with the band of their error, and models: lengths in h, stresses in
+/// comparison.scale.unit.
 Frame profile_frame(const Comparison& comparison, std::size_t profile);
 std::vector<Frame> profile_frames(const Comparison& comparison);
 
 /// How far each model is from the grains, nearest first, and the shapes of the profiles.
-/// `unit`: the name of comparison.unit(), for people: "F/h²". `at`: what places are called:
+/// `unit`: the name of comparison.scale.unit, for people: "F/h²". `at`: what places are called:
 /// "x/h", or "r/h" of profiles by radius.
 Table distances_table(const Comparison& comparison, const std::string& unit,
                       const std::string& at = "x/h");

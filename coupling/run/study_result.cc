@@ -28,7 +28,7 @@ constexpr const char* kElsewhere[] = {
     "case.", "version", "warnings", "ensemble.", "verdict.",  "compare.",     "model.",
     "time.", "memory.", "sweep.",   "*.",        "dem.steps", "dem.time_step"};
 
-std::string shown(const Summary& summary, const std::string& key) {
+std::string figure_text(const Summary& summary, const std::string& key) {
   const auto at = summary.find(key);
   if (at == summary.end()) return "";
   if (const auto* number = std::get_if<double>(&at->second)) {
@@ -105,7 +105,8 @@ std::string shown_with_error(const Summary& summary, const std::string& key,
   const auto at = summary.find(key), error = summary.find(error_key);
   const auto* value = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
   const auto* spread = error == summary.end() ? nullptr : std::get_if<double>(&error->second);
-  if (value == nullptr || spread == nullptr || std::isnan(*spread)) return shown(summary, key);
+  if (value == nullptr || spread == nullptr || std::isnan(*spread))
+    return figure_text(summary, key);
   return with_error(*value, *spread);
 }
 
@@ -143,12 +144,12 @@ ReportRows origin_rows(const StudyResult& result) {
   ReportRows rows;
   for (const char* key : {"case.command", "case.hash", "version", "ensemble.realizations",
                           "ensemble.seed", "dem.steps", "dem.time_step"}) {
-    const std::string value = shown(result.summary, key);
+    const std::string value = figure_text(result.summary, key);
     if (!value.empty()) rows.emplace_back(key, value);
   }
   for (const auto& model : result.value.models) {
     rows.emplace_back("model " + model.label,
-                      shown(result.summary, "model." + model.label + ".name"));
+                      figure_text(result.summary, "model." + model.label + ".name"));
   }
   return rows;
 }
@@ -184,7 +185,7 @@ void add_identity(Summary& summary, const Case& value) {
 
 void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main) {
   for (const auto& [key, number] : summary_figures(comparison, main)) summary[key] = number;
-  const double unit = comparison.unit();
+  const double unit = comparison.scale.unit;
   summary["response.peak_over_F_per_h"] = comparison.shapes[main].peak / unit;
   if (const double error = comparison.shape_errors[main].peak; std::isfinite(error)) {
     summary["response.peak_over_F_per_h.standard_error"] = error / unit;

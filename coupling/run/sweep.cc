@@ -104,7 +104,7 @@ Picture side_by_side(const Case& value, const std::vector<StudyResult>& results)
 }
 
 // Whether a member has units of its own: F/h of its load, rho g h of its pile.
-bool has_scale(const Comparison& c) { return c.depth > 0 && c.unit() > 0; }
+bool has_scale(const Comparison& c) { return c.scale.h > 0 && c.scale.unit > 0; }
 
 }  // namespace
 
@@ -121,7 +121,7 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
       const Comparison& c = results[m].comparison;
       if (p >= c.profiles.size()) continue;
       const Profile& own = c.profiles[p];
-      const double length = scaled ? c.depth : 1, unit = scaled ? c.unit() : 1;
+      const double length = scaled ? c.scale.h : 1, unit = scaled ? c.scale.unit : 1;
       frame.series.push_back({fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]),
                               own.x / length, own.mean / unit, own.error / unit, m == 0});
     }
@@ -131,10 +131,8 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
   const char* const title =
       one.scale.x_from == "load" ? "Response of every member" : "Pressure of every member";
   const std::string normal = first.quantity == "-sigma_yy" ? "-σ_{yy}" : "-σ_{zz}";
-  const std::string stress = one.dim == 3 && one.scale.stress == "F/h" ? "F/h^2" : one.scale.stress;
   Picture picture =
-      scaled ? curves(title, fmt::format("x / {}", one.scale.length),
-                      fmt::format("{}  ({})", normal, stress), frames)
+      scaled ? curves(title, "x / h", fmt::format("{}  ({})", normal, one.scale.stress), frames)
              : curves(title, "x (m)", fmt::format("{}  ({})", normal, first.unit), frames);
   picture.caption = "Mean over realizations; the band is the first member's standard error.";
   return picture;

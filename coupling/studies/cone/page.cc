@@ -23,7 +23,7 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
       "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike; their cone has the flanks of the "
       "grains', its apex above theirs where that is round. The grey band is one standard "
       "error on either side.",
-      page.averaged, c.unit(), c.depth);
+      page.averaged, c.scale.unit, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 
   const Column& shear = *page.rings.find("sigma_rz");
@@ -119,7 +119,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   Report report;
   report.title = title_of(result.value);
   report.subtitle = fmt::format("{} cone{}, h = {:.4g} m", c.realizations,
-                                c.realizations == 1 ? "" : "s", c.depth);
+                                c.realizations == 1 ? "" : "s", c.scale.h);
   add_verdict(report, c.judgement);
   add_cone_profiles(report, result, page);
   if (first != nullptr) {

@@ -231,15 +231,16 @@ class LatticePileAnalysis {
     }
     out.summary["time.continuum_s"] = seconds;
     const double h = heap_.height(), unit = known.numbers.at("rho_g") * h;
-    out.comparison = compare(std::move(profiles), std::move(models), unit * h, h,
-                             static_cast<int>(files_.size()));
-    out.comparison.scale = {
-        "h", "rho g h", "middle",
-        fmt::format(
-            "h = {:.6g} m, rho g h = {:.6g} N/m, rho g = {:.6g} N/m2 of the lattice; forces "
-            "of the base disks over their spacing {:.6g} m, N/d as -sigma_yy and H/d as "
-            "sigma_xy; m g = {:.6g} N; realizations: {}",
-            h, unit, unit / h, spacing_, weight_, files_.size())};
+    out.comparison = compare(
+        std::move(profiles), std::move(models),
+        scale_of_heaps(
+            h, unit,
+            fmt::format(", rho g = {:.6g} N/m2 of the lattice; forces of the base disks over their "
+                        "spacing {:.6g} m, N/d as -sigma_yy and H/d as sigma_xy; m g = {:.6g} N; "
+                        "realizations: {}",
+                        unit / h, spacing_, weight_, files_.size()),
+            "middle"),
+        static_cast<int>(files_.size()));
     for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
       if (key.compare(0, 8, "compare.") == 0) out.summary[key] = figure;
     }

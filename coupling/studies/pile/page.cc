@@ -17,7 +17,7 @@ std::string scale_note(const Comparison& c) {
   return fmt::format(
       "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own). "
       "The grey band is one standard error over {} realization{} on either side.",
-      c.depth, c.unit(), c.realizations, c.realizations == 1 ? "" : "s");
+      c.scale.h, c.scale.unit, c.realizations, c.realizations == 1 ? "" : "s");
 }
 
 void add_base(Report& report, const PileReport& in) {
@@ -29,7 +29,7 @@ void add_base(Report& report, const PileReport& in) {
     frame.series.front().label += ", base forces";
     for (const Profile& p : c.beside) {
       if (!p.key.starts_with("base_")) continue;
-      frame.series.push_back({p.name, p.x / c.depth, p.mean / c.unit(), {}, false});
+      frame.series.push_back({p.name, p.x / c.scale.h, p.mean / c.scale.unit, {}, false});
     }
     Picture picture = curves("Vertical pressure on the base", "x / h (apex at 0)",
                              "-σ_{yy}  (ρ g h)", {std::move(frame)});
@@ -78,7 +78,7 @@ void add_maps(Report& report, const PileReport& in) {
     for (Eigen::Index p = 0; p < value.size(); ++p) {
       if (!(grains->value[p] > 0.05)) value[p] = std::nan("");
     }
-    return Map{title, in.map.nx, in.map.ny, in.map.points / c.depth, value};
+    return Map{title, in.map.nx, in.map.ny, in.map.points / c.scale.h, value};
   };
   const std::string averaged = "Averaged by " + in.averaged + ". ";
   Picture density = maps("Volume fraction", "x / h", "y / h", "volume fraction",
@@ -88,7 +88,7 @@ void add_maps(Report& report, const PileReport& in) {
       "Area of the grains over the area of the kernel that lies inside the heap; white: no "
       "grains. In units of the height h.";
   report.sections.emplace_back(std::move(density));
-  const double unit = 1 / c.unit();
+  const double unit = 1 / c.scale.unit;
   Picture stress = maps(
       "Stress", "x / h", "y / h", "ρ g h",
       {map("vertical pressure -σ_yy", "sigma_yy", -unit),

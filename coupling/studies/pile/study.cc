@@ -196,11 +196,16 @@ class PileAnalysis {
     std::vector<Profile> profiles{profile(piles_.base(), "base", "base", 0)};
     for (Profile& p : cuts(piles_.methods().front(), false)) profiles.push_back(std::move(p));
     const int n = static_cast<int>(files_.size());
+    const Scale scale =
+        scale_of_heaps(h, unit,
+                       fmt::format(" (rho = {:.6g} kg/m2 times mean volume fraction {:.4g}){}",
+                                   piles_.mean(&PileFrame::grain_density),
+                                   piles_.mean(&PileFrame::volume_fraction), scaled_alone(n)));
     if (value_.models.empty()) {
-      out.comparison = without_models(std::move(profiles), unit * h, h, n);
+      out.comparison = without_models(std::move(profiles), scale, n);
     } else {
       std::vector<ModelProfiles> all = models(out, profiles);
-      out.comparison = compare(std::move(profiles), std::move(all), unit * h, h, n);
+      out.comparison = compare(std::move(profiles), std::move(all), scale, n);
       for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
         // The response.* keys speak of a load.
         if (key.compare(0, 9, "response.") != 0) out.summary[key] = figure;
@@ -211,13 +216,6 @@ class PileAnalysis {
       if (&a == &piles_.methods().front()) continue;
       for (Profile& p : cuts(a, true)) out.comparison.beside.push_back(std::move(p));
     }
-    const double density = piles_.mean(&PileFrame::grain_density);
-    const double fraction = piles_.mean(&PileFrame::volume_fraction);
-    out.comparison.scale = {
-        "h", "rho g h", "apex",
-        fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m (rho = {:.6g} kg/m2 times mean volume "
-                    "fraction {:.4g}); every pile scaled by its own; realizations: {}",
-                    h, unit, density, fraction, n)};
   }
 
   void add_own_figures(Summary& summary) const {

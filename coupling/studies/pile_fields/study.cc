@@ -79,12 +79,8 @@ Comparison pressures(const PileSet& piles) {
         "fields.heights: no row of the map has three points with values: {}",
         gaps.empty() ? "allowed: heights inside the heap" : gaps + " (fields.rve_diameters)"));
   }
-  Comparison out = without_models(std::move(profiles), unit * h, h, piles.count());
-  out.scale = {"h", "rho g h", "apex",
-               fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
-                           "realizations: {}",
-                           h, unit, piles.count())};
-  return out;
+  return without_models(std::move(profiles), scale_of_heaps(h, unit, scaled_alone(piles.count())),
+                        piles.count());
 }
 
 void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summary& summary) {

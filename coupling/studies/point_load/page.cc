@@ -15,8 +15,8 @@ namespace {
 Frame frame(const Comparison& c, std::size_t k) {
   const Profile& p = c.profiles[k];
   Frame out = profile_frame(c, k);
-  if (p.depth < c.depth && p.key != "base")
-    out.title += fmt::format(" ({:.2g} h)", p.depth / c.depth);
+  if (p.depth < c.scale.h && p.key != "base")
+    out.title += fmt::format(" ({:.2g} h)", p.depth / c.scale.h);
   return out;
 }
 
@@ -28,7 +28,7 @@ void add_profiles(Report& report, const Comparison& c) {
       "Vertical pressure added by the load, in units of F/h = {:.4g} N/m (F = {:.4g} N, h = {:.4g} "
       "m). The models are smoothed with the kernel of the averaging. The grey band is one standard "
       "error on either side.",
-      c.load / c.depth, c.load, c.depth);
+      c.scale.unit, c.scale.load, c.scale.h);
   const auto add = [&](const std::string& title, const std::vector<Frame>& frames) {
     if (frames.empty()) return;
     Picture picture = curves(title, "x / h", "response of -σ_{yy}  (F/h)", frames);
@@ -50,7 +50,7 @@ const ModelMap& nearest(const std::vector<ModelMap>& maps, const Comparison& c) 
 void add_maps(Report& report, const PointLoadReport& in) {
   const Column* column = in.map.find("sigma_yy");
   if (!column || in.map.nx < 2 || in.map.ny < 2) return;
-  const double unit = in.comparison.load / in.comparison.depth, h = in.comparison.depth;
+  const double unit = in.comparison.scale.unit, h = in.comparison.scale.h;
   const Eigen::VectorXd simulation = -column->value / unit;
   const auto map = [&](const std::string& title, const Eigen::VectorXd& value) {
     return Map{title, in.map.nx, in.map.ny, in.map.points / h, value};
@@ -94,8 +94,9 @@ Report point_load_report(const PointLoadReport& in) {
   const Comparison& c = in.comparison;
   Report report;
   report.title = in.title;
-  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
-                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.subtitle =
+      fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.scale.load,
+                  c.scale.h, c.realizations, c.realizations == 1 ? "" : "s");
   add_verdict(report, c.judgement);
   if (in.loaded) report.sections.emplace_back(packing("The loaded packing", *in.loaded));
   if (in.loaded && in.unloaded)

@@ -20,7 +20,7 @@ void add_radial(Report& report, const Comparison& c) {
       "{:.4g} "
       "Pa (F = {:.4g} N, h = {:.4g} m). The models are smoothed with the kernel of the averaging. "
       "The grey band is one standard error on either side.",
-      c.unit(), c.load, c.depth);
+      c.scale.unit, c.scale.load, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 }
 
@@ -38,11 +38,11 @@ Picture side_views(const std::string& title, const Field& grains, const std::str
                    const Comparison& c, const std::string& seen) {
   Eigen::MatrixXd points(grains.points.rows(), 2);
   points << grains.points.col(0), grains.points.col(column);
-  points /= c.depth;
-  const Eigen::VectorXd simulation = -grains.find("sigma_zz")->value / c.unit();
+  points /= c.scale.h;
+  const Eigen::VectorXd simulation = -grains.find("sigma_zz")->value / c.scale.unit;
   std::vector<Map> all{{"grains", grains.nx, rows, points, simulation}};
   if (model != nullptr) {
-    const Eigen::VectorXd there = -*model / c.unit();
+    const Eigen::VectorXd there = -*model / c.scale.unit;
     all.push_back({label, grains.nx, rows, points, there});
     all.push_back({"grains - " + label, grains.nx, rows, points, simulation - there});
   }
@@ -84,8 +84,9 @@ Report space_load_page(const StudyResult& result, const Realization* first,
   const Comparison& c = result.comparison;
   Report report;
   report.title = title_of(result.value);
-  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
-                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.subtitle =
+      fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.scale.load,
+                  c.scale.h, c.realizations, c.realizations == 1 ? "" : "s");
   add_verdict(report, c.judgement);
   add_radial(report, c);
   add_maps(report, page, c);

@@ -355,7 +355,7 @@ Comparison small() {
   p.mean = Eigen::Vector3d(1, 4, 1);
   p.error = Eigen::Vector3d(0.5, 0.5, 0.5);
   return compare({p}, {{"flamant", "half plane, 50 %", "half plane", {Eigen::Vector3d(1, 3, 2)}}},
-                 2, 0.5);
+                 scale_of_load(2, 0.5));
 }
 
 // Ten models side by side are wider than any page: those that rank first, every row with all its
@@ -369,7 +369,7 @@ TEST_F(Output, LatexTablesOfManyModelsFitAPage) {
                       "f",
                       {Eigen::Vector3d(1, 3 + m, 2)}});
   }
-  const std::string tex = profiles_latex(compare({p}, models, 2, 0.5));
+  const std::string tex = profiles_latex(compare({p}, models, scale_of_load(2, 0.5)));
   std::istringstream lines(tex);
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -396,7 +396,7 @@ TEST_F(Output, MarkdownShowsTheNearestModelsAndTheBestOfAnotherFamily) {
                       far == 9 ? "other" : "f",
                       {Eigen::Vector3d(1, 4 + far, 1)}});
   }
-  const std::string text = profiles_markdown(compare({p}, models, 2, 0.5));
+  const std::string text = profiles_markdown(compare({p}, models, scale_of_load(2, 0.5)));
   EXPECT_THAT(text, ::testing::ContainsRegex("by 0 +\\| by 1 +\\| by 2 +\\| by 9 +\\|\n"));
   EXPECT_THAT(text,
               HasSubstr("Of 5 fields the 3 that rank first and the best of another family; in "
@@ -410,7 +410,7 @@ TEST_F(Output, ModelsOfOneFieldShareAColumn) {
                                {{"layer", "closed", "layer", {Eigen::Vector3d(1, 3, 2)}},
                                 {"fe", "by elements", "layer", {Eigen::Vector3d(1, 3.002, 2)}},
                                 {"half", "half plane", "half", {Eigen::Vector3d(1, 2.9, 2)}}},
-                               2, 0.5);
+                               scale_of_load(2, 0.5));
   const std::vector<Table> tables = profile_tables(c);
   ASSERT_EQ(tables.size(), 1U);
   EXPECT_THAT(tables.front().header,
@@ -419,8 +419,8 @@ TEST_F(Output, ModelsOfOneFieldShareAColumn) {
 
 TEST_F(Output, LabelsAreNoCommandsOfLatex) {
   const Profile p = small().profiles.front();
-  const std::string tex = profiles_latex(
-      compare({p}, {{"m", "\\input{x}^2~", "f", {Eigen::Vector3d(1, 3, 2)}}}, 2, 0.5));
+  const std::string tex = profiles_latex(compare(
+      {p}, {{"m", "\\input{x}^2~", "f", {Eigen::Vector3d(1, 3, 2)}}}, scale_of_load(2, 0.5)));
   EXPECT_THAT(tex, HasSubstr("\\textbackslash{}input\\{x\\}\\^{}2\\~{}"));
 }
 
