@@ -24,7 +24,6 @@ void add_power(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
 void add_import_field(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
-void add_reproduce(CLI::App& app, Action& action);
 void add_strain(CLI::App& app, Action& action);
 void add_structure(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

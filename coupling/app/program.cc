@@ -64,7 +64,6 @@ int parse_and_act(int argc, char** argv) {
   add_import(app, action);
   add_import_field(app, action);
   add_export(app, action);
-  add_reproduce(app, action);
   add_strain(app, action);
   add_structure(app, action);
   add_info(app, action);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/told_images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -38,7 +39,7 @@ Cluster::Cluster(const dem::Snapshot& first, const Eigen::Vector3d& centre, doub
 
 Eigen::MatrixXd Cluster::places(const dem::Snapshot& state) const {
   const dem::Snapshot& first = *first_;
-  const bool counted = dem::counts_images(first) || dem::counts_images(state);
+  const bool counted = dem::count_images(first, state);
   Eigen::MatrixXd out(size(), 3);
   for (Eigen::Index m = 0; m < size(); ++m) {
     const Member& member = members_[static_cast<std::size_t>(m)];

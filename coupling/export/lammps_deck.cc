@@ -6,6 +6,8 @@
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -102,7 +104,37 @@ double volume_of(const dem::Snapshot& s, const dem::Grain& g) {
   return s.dim == 3 ? g.volume : 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
 }
 
-std::string data_of(const dem::Snapshot& s) {
+// LAMMPS' ids of the grains: ours where these are 1 to 2^31 - 1, one more where they begin with 0,
+// else the places in the snapshot from 1.
+class LammpsIds {
+ public:
+  explicit LammpsIds(const dem::Snapshot& s) {
+    constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+    std::int64_t least = most, largest = 0;
+    for (const dem::Grain& g : s.grains) {
+      least = std::min(least, g.id);
+      largest = std::max(largest, g.id);
+    }
+    if (least >= 1 && largest <= most) return;
+    note = "ids are one more than here: LAMMPS begins with 1";
+    shift_ = 1;
+    if (least == 0 && largest < most) return;
+    note = "grains are numbered from 1 in the order of the snapshot: LAMMPS' ids are 1 to 2^31 - 1";
+    for (std::size_t k = 0; k < s.grains.size(); ++k)
+      numbers_[s.grains[k].id] = static_cast<std::int64_t>(k) + 1;
+  }
+  std::int64_t of(std::int64_t id) const {
+    return numbers_.empty() ? id + shift_ : numbers_.at(id);
+  }
+
+  std::string note;  ///< empty: as ours
+
+ private:
+  std::int64_t shift_ = 0;
+  std::map<std::int64_t, std::int64_t> numbers_;
+};
+
+std::string data_of(const dem::Snapshot& s, const LammpsIds& ids) {
   const Box box = box_of(s);
   std::string out =
       fmt::format("Packing of spheres, SI units\n\n{} atoms\n2 atom types\n\n", s.grains.size());
@@ -111,9 +143,9 @@ std::string data_of(const dem::Snapshot& s) {
   }
   out += "\nAtoms # sphere\n\n";
   for (const dem::Grain& g : s.grains) {
-    out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", g.id + 1, g.fixed ? 2 : 1,
-                       2 * g.radius, g.mass / volume_of(s, g), g.position.x(), g.position.y(),
-                       g.position.z());
+    out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", ids.of(g.id),
+                       g.fixed ? 2 : 1, 2 * g.radius, g.mass / volume_of(s, g), g.position.x(),
+                       g.position.y(), g.position.z());
   }
   return out;
 }
@@ -218,9 +250,9 @@ bool has_fixed(const dem::Snapshot& s) {
 std::string import_command(const dem::Snapshot& s, const char* state) {
   std::string out = fmt::format(
       "grainfield import --from lammps {0}.grains {0}.contacts --column 'i,j=c_ids[1..2]' --column "
-      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --group "
+      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --dim {2} --group "
       "/{0}",
-      state, has_fixed(s) ? " --fixed type=2" : "");
+      state, has_fixed(s) ? " --fixed type=2" : "", s.dim);
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
     int axis = 0;
@@ -260,7 +292,8 @@ std::string rest(const char* label) {
       label);
 }
 
-std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDeck& deck) {
+std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, const LammpsIds& ids,
+                     LammpsDeck& deck) {
   const dem::MaterialSetup& m = setup.material;
   const double gravity = s.gravity.norm();
   const bool flat = s.dim == 2;
@@ -284,10 +317,10 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
         "line, as its first line says; with CASE.toml before the packing the deck has both");
   }
   if (!setup.loaded.empty()) {
-    std::string ids;
     out += "# " + import_command(s, "loaded") +
            fmt::format(" --load {}={:.17g},{:.17g},{:.17g} --add -o lammps.h5\n",
-                       setup.loaded.front() + 1, setup.force.x(), setup.force.y(), setup.force.z());
+                       ids.of(setup.loaded.front()), setup.force.x(), setup.force.y(),
+                       setup.force.z());
   }
   out += fmt::format(
       "units si\n{}atom_style sphere\natom_modify map array\nnewton off\nboundary {} {} {}\n"
@@ -331,7 +364,7 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   out += "# The springs of friction begin anew.\n" + rest("unloaded") + dump_of(s, "unloaded");
   if (!setup.loaded.empty()) {
     out += "\ngroup loaded id";
-    for (const std::int64_t id : setup.loaded) out += fmt::format(" {}", id + 1);
+    for (const std::int64_t id : setup.loaded) out += fmt::format(" {}", ids.of(id));
     out += fmt::format("\nfix load loaded addforce {:.17g} {:.17g} {:.17g}\nrun 2500\n",
                        setup.force.x(), setup.force.y(), setup.force.z()) +
            rest("loaded") + dump_of(s, "loaded");
@@ -361,8 +394,10 @@ LammpsDeck lammps_deck(const dem::Snapshot& given, const LammpsSetup& setup) {
   LammpsDeck deck;
   dem::Snapshot packing = given;
   if (!setup.known) leave_out_walls(packing, deck);
-  deck.data = data_of(packing);
-  deck.input = input_of(packing, setup, deck);
+  const LammpsIds ids(packing);
+  if (!ids.note.empty()) deck.notes.push_back(ids.note);
+  deck.data = data_of(packing, ids);
+  deck.input = input_of(packing, setup, ids, deck);
   std::sort(deck.notes.begin(), deck.notes.end());
   deck.notes.erase(std::unique(deck.notes.begin(), deck.notes.end()), deck.notes.end());
   return deck;

@@ -349,7 +349,9 @@ Field measured_field(const MeasuredRequest& given) {
       row.refuse(fmt::format("{} at x = {:g} m is there already, at {}:{}", row.text(component),
                              x.of(row), request.file, there->second.line));
   });
-  if (found.empty()) throw std::invalid_argument(request.file + ": holds no value");
+  if (found.empty())
+    throw std::invalid_argument(
+        request.file + ": holds no value, expected a row for each below the line of names");
 
   Field out;
   const auto n = static_cast<Eigen::Index>(found.size());

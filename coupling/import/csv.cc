@@ -187,13 +187,18 @@ class HeaderSearch {
     if (names == none) names = most_known(true);
     if (names == none) names = words_before_numbers();
     if (names == none) refuse();
-    const std::size_t units = names + 1;
-    const bool has_units =
-        units < none && !rows_[units] && !head_.lines[units].comment && is_units(values_[units]);
+    // A line of units stands below the names, or above them, also as a comment.
+    const auto of_units = [&](std::size_t k) {
+      return k < none && !rows_[k] && is_units(values_[k]) &&
+             count_of(values_[k]) <= values_[names].size() &&
+             (!head_.lines[k].comment || count_of(values_[k]) == count_of(values_[names]));
+    };
+    const std::size_t below = names + 1, above = names == 0 ? none : names - 1;
+    const std::size_t units = of_units(below) ? below : of_units(above) ? above : none;
     table.columns = std::make_shared<const std::vector<std::string>>(
-        has_units ? with_units(values_[names], values_[units]) : values_[names]);
+        units < none ? with_units(values_[names], values_[units]) : values_[names]);
     table.header_line = head_.lines[names].line;
-    table.first = head_.lines[has_units ? units : names].behind;
+    table.first = head_.lines[units == below ? units : names].behind;
   }
 
  private:
@@ -261,7 +266,6 @@ std::vector<ForeignTable> scan(const std::string& file) {
   ForeignTable table;
   table.file = file;
   table.separator = separator_of(head);
-  table.units_in_header = true;
   table.any_names = true;
   HeaderSearch(file, head, table.separator).find(table);
   table.decimal_commas = has_decimal_commas(lines, table);

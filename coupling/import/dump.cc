@@ -25,6 +25,7 @@ class DumpScan {
   explicit DumpScan(const std::string& file) : lines_(file) {
     table_.file = file;
     table_.any_names = true;
+    table_.prefixes = true;
     table_.columns = std::make_shared<const std::vector<std::string>>();
   }
 

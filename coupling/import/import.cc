@@ -35,7 +35,8 @@ TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   if (columns.find("name") && columns.find("nx")) return TableKind::walls;
   // Forces and no places: contacts, of which a column of ids is missing.
   const bool forces = has("fx") || has("fnx") || has("fn");
-  if (has("i") || (forces && !has("radius") && !has("diameter"))) return TableKind::contacts;
+  const bool sized = has("radius") || has("diameter") || has("outline");
+  if (!sized && (has("i") || forces)) return TableKind::contacts;
   return TableKind::grains;
 }
 

@@ -33,7 +33,10 @@ std::string_view ForeignRow::text(const ForeignColumn& column) const {
 bool ForeignRow::empty(const ForeignColumn& column) const {
   const ArrayColumn* array = array_of(column);
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
-  return !column || (!column.constant && text(column).empty());
+  if (!column || column.constant) return !column;
+  const std::string_view told = text(column);
+  // What R and pandas write for none.
+  return told.empty() || told == "NA" || told == "<NA>" || told == "None";
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
@@ -72,9 +75,14 @@ double ForeignRow::number(const ForeignColumn& column) const {
   } else {
     value = read(text(column));
   }
-  if (!value || !std::isfinite(*value))
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
-                       text(column)));
+  if (!value || !std::isfinite(*value)) {
+    const std::string_view told = text(column);
+    const bool comma = array == nullptr && std::count(told.begin(), told.end(), ',') == 1;
+    refuse(fmt::format("column {}: found \"{}\", expected a finite number{}", name_of(column), told,
+                       comma ? ": is the comma one of decimals or of thousands? Decimal commas are "
+                               "read in tables with semicolons"
+                             : ""));
+  }
   return *value;
 }
 
@@ -110,6 +118,11 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
 
 bool ForeignRow::flag(const ForeignColumn& column) const {
   if (empty(column)) return false;
+  const std::string_view told = column.constant ? std::string_view() : text(column);
+  for (const std::string_view yes : {"True", "true", "TRUE"})
+    if (told == yes) return true;
+  for (const std::string_view no : {"False", "false", "FALSE"})
+    if (told == no) return false;
   const double value = number(column);
   if (value != 0 && value != 1)
     refuse(fmt::format("column {}: found {}, allowed: 0, 1", name_of(column), value));
@@ -178,14 +191,20 @@ void TableReader::read(const ForeignTable& table,
           std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(both), fields.end(), blank);
       for (std::size_t k = both; k < columns; ++k) fits = fits && (*table.columns)[k].empty();
       if (!fits)
-        row.refuse(fmt::format("{} values where the header at line {} names {} columns",
-                               fields.size(), table.header_line, columns));
+        row.refuse(fmt::format("{} values where the header at line {} names {} columns{}",
+                               fields.size(), table.header_line, columns,
+                               fields.size() == columns + 1
+                                   ? "; are the first ones names of rows (R: write.table(..., "
+                                     "row.names = FALSE) leaves them out)?"
+                                   : ""));
       padded.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(both));
       padded.resize(columns);
       row.fields = &padded;
     } else if (table.rows < 0 && std::all_of(fields.begin(), fields.end(),
                                              [](std::string_view f) { return f.empty(); })) {
       continue;
+    } else if (table.rows < 0 && std::equal(fields.begin(), fields.end(), table.columns->begin())) {
+      continue;  // the line of names once more, of tables that were put behind each other
     }
     take(row);
   }

@@ -12,6 +12,7 @@
 
 #include "coupling/judge/words.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/profile_columns.h"
 #include "coupling/output/text_table.h"
 #include "dem/snapshot/number.h"
 
@@ -112,44 +113,21 @@ std::string quote_csv(const std::string& text) {
   return out + "\"";
 }
 
-std::string normalisation(const Comparison& c) {
-  return c.scale.load > 0 ? fmt::format("{}, realizations: {}", c.scale.note, c.realizations)
-                          : c.scale.note;
-}
-
 }  // namespace
 
 std::string profiles_csv(const Comparison& c) {
-  std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
-                     ": compression positive; x from the " + c.scale.x_from + "\n";
-  const std::string unit = c.profiles.front().unit;
-  text += fmt::format("profile,depth_m,x_m,{1}_{0},standard_error_{0}", unit, c.column());
-  for (const ModelProfiles& m : c.models)
-    for (const std::string& name :
-         {fmt::format("{}_{}", m.key, unit), fmt::format("{}_difference_{}", m.key, unit),
-          fmt::format("{}_difference_over_error", m.key)})
-      text += fmt::format(",{}", quote_csv(name));
-  text += "\n";
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    const Profile& p = c.profiles[k];
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (const ModelProfiles& m : c.models) {
-        const double value = m.values[k][i], difference = p.mean[i] - value;
-        text += fmt::format(",{},{},{}", number(value), number(difference),
-                            number(difference / error_at(p, i)));
-      }
-      text += "\n";
-    }
+  const ProfileColumns table = profile_columns(c);
+  std::string text;
+  for (const std::string& note : table.notes) text += "# " + note + "\n";
+  text += "profile";
+  for (const ProfileColumn& column : table.columns) {
+    text += "," + quote_csv(column.unit == "1" ? column.name : column.name + "_" + column.unit);
   }
-  for (const Profile& p : c.beside) {
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (std::size_t m = 0; m < c.models.size(); ++m) text += ",nan,nan,nan";
-      text += "\n";
-    }
+  text += "\n";
+  for (std::size_t k = 0; k < table.profile.size(); ++k) {
+    text += quote_csv(table.profile[k]);
+    for (const ProfileColumn& column : table.columns) text += "," + number(column.values[k]);
+    text += "\n";
   }
   return text;
 }
@@ -180,7 +158,7 @@ std::vector<Table> profile_tables(const Comparison& c, int rows) {
 }
 
 std::string profiles_note(const Comparison& c) {
-  std::string out = normalisation(c) + ".";
+  std::string out = scale_note(c) + ".";
   if (!c.models.empty()) {
     out += fmt::format(
         " In brackets behind a model's value: ({} - model) / standard error. Models whose fields "

@@ -10,6 +10,7 @@
 
 #include "coupling/output/atomic_file.h"
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/told_images.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -204,7 +205,7 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     return row;
   });
   if (reference) {
-    const bool counted = dem::counts_images(*reference) || dem::counts_images(snapshot);
+    const bool counted = dem::count_images(*reference, snapshot);
     grid.add_vector("displacement", [&](std::size_t k) -> dem::Vec3 {
       return dem::displacement(reference->grains[k], grains[k], reference->cell, snapshot.cell,
                                counted);

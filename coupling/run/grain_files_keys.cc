@@ -11,7 +11,10 @@ void declare_grain_files_keys(SectionKeys s) {
          "finished piles, one a realization, in this order: snapshots.h5 of earlier runs of study "
          "pile or pile-fields, or of cone; only the changes of gravity that they do not hold are "
          "computed. [material], and of cones cone.source, shape and floor, must be that of the "
-         "piles; [shape], [source] and [floor] are not used. []: the piles are poured");
+         "piles; [shape], [source] and [floor] are not used. []: the piles are poured. Of study "
+         "sample with sample.filling = dropped: first states (state_000) of earlier runs between "
+         "walls, which take the place of dropping; another material may load them, of the same "
+         "density");
   s.or_none();
 }
 

@@ -12,6 +12,7 @@
 
 #include "coupling/averaging/average.h"
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/told_images.h"
 
 namespace grainfield::coupling {
 
@@ -61,7 +62,7 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
   motion.mass.resize(grains);
   std::vector<dem::Vec3> turn(static_cast<std::size_t>(grains));
   motion.turns = dim == 2 || tells_orientation(before) || tells_orientation(after);
-  const bool counted = dem::counts_images(before) || dem::counts_images(after);
+  const bool counted = dem::count_images(before, after);
   for (std::size_t g = 0; g < before.grains.size(); ++g) {
     const Eigen::Index k = row[g];
     if (k < 0) continue;
@@ -110,7 +111,7 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
 }
 
 std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& after) {
-  if (!after.cell.is_periodic() || dem::counts_images(before) || dem::counts_images(after))
+  if (!after.cell.is_periodic() || dem::count_images(before, after))
     return "";
   constexpr double kFar = 1.0 / 3;  // of the shortest edge; beyond a half another image is nearer
   double edge = std::numeric_limits<double>::infinity();
@@ -123,8 +124,8 @@ std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& af
                .norm() > kFar * edge;
   if (far == 0) return "";
   return fmt::format(
-      "{} of {} grains have moved by more than a third of the periodic cell and no images are "
-      "told: "
+      "{} of {} grains have moved by more than a third of the periodic cell and one of the states "
+      "tells no images: "
       "the shortest way may be that of an image; import unwrapped places (xu yu zu) or image flags "
       "(ix iy iz)",
       far, before.grains.size());

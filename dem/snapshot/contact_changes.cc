@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/told_images.h"
 #include "dem/snapshot/same_grain.h"
 
 namespace grainfield::dem {
@@ -13,7 +14,7 @@ ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after) {
     throw std::invalid_argument("snapshots do not belong together: different numbers of grains");
   }
   ContactChanges c;
-  const bool counted = counts_images(before) || counts_images(after);
+  const bool counted = count_images(before, after);
   for (std::size_t k = 0; k < before.grains.size(); ++k) {
     const Grain& a = before.grains[k];
     const Grain& b = after.grains[k];

@@ -67,7 +67,7 @@ std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch) {
 
 bool counts_images(const Snapshot& s) {
   const auto told = s.attributes.find("images");
-  if (told != s.attributes.end() && told->second == "counted") return true;
+  if (told != s.attributes.end()) return told->second != "untold";
   return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) {
     return g.image != std::array<int, 3>{0, 0, 0};
   });

@@ -1,5 +1,5 @@
 // Grains placed loosely are compressed, rest, and are deformed:
-//   (drop ->) compress -> rest (-> probe) (-> precompress, settle) (-> probe) -> snapshot
+//   (drop ->) (compress -> rest) (-> probe) (-> precompress (, settle)) (-> probe) -> snapshot
 //   "state_000" -> deform (-> unload), with a snapshot at equal steps of strain, or of the axial
 //   stress as it is unloaded.
 // A periodic cell is led by its velocity gradient, between walls by their motion; where a stress is
@@ -39,9 +39,26 @@ constexpr double kDense2 = 0.84, kDense3 = 0.64;
 // Spheres of a gap are drawn from a seed of their own.
 constexpr std::uint64_t kGapSeed = 0x9a95b1e5;
 
+std::string snapshot_seed(const Snapshot& s) {
+  const auto at = s.attributes.find("seed");
+  return at == s.attributes.end() ? "unknown" : at->second;
+}
+
+std::vector<ShapedGrain> shapes_of(const Snapshot& s) {
+  std::vector<ShapedGrain> out;
+  for (const Grain& g : s.grains) {
+    ShapedGrain& grain = out.emplace_back();
+    grain.radius = g.radius;
+    grain.area = g.volume;
+    grain.axes = {g.axes[0], g.axes[1], g.axes[2]};
+    grain.exponents = g.exponents;
+  }
+  return out;
+}
+
 class SampleRun final : public ArchivedRun {
  public:
-  SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads);
+  SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads, const Snapshot* filled);
 
   void advance(long steps) override;
   bool done() const override { return phases_.done(); }
@@ -66,6 +83,9 @@ class SampleRun final : public ArchivedRun {
   }
   Cell<3> cell_at_start() const;
   std::unique_ptr<Engine> empty_engine() const;
+  double wall_friction() const;
+  void take_settings(const std::vector<ShapedGrain>& grains, int threads);
+  void go_on_from(FilledBox box);
   /// Between grains, in this phase.
   double friction() const {
     return has_other_friction(plan_) && prepares() ? plan_.prepared_friction : settings_.friction;
@@ -92,6 +112,7 @@ class SampleRun final : public ArchivedRun {
   SampleSetup setup_;
   const SamplePlan& plan_ = setup_.plan;
   std::uint64_t seed_;
+  std::string filled_from_;  // seed of the run that has filled the box, or nothing
   EngineSettings settings_;
   std::array<double, 3> box_{};  // edges at the start, m
   double solid_volume_ = 0;      // of all grains, m3 (m2)
@@ -120,16 +141,21 @@ class SampleRun final : public ArchivedRun {
   std::vector<std::optional<Snapshot>> states_;
 };
 
-SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
+SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads,
+                     const Snapshot* filled)
     : setup_(setup), seed_(seed) {
   check_sample(setup_);
-  Random random(seed);
   const double density = setup_.material.density;
+  if (filled != nullptr) {
+    FilledBox box = filled_box(*filled, plan_, density);
+    filled_from_ = snapshot_seed(*filled);
+    take_settings(shapes_of(box.snapshot), threads);
+    go_on_from(std::move(box));
+    return;
+  }
+  Random random(seed);
   const std::vector<ShapedGrain> grains = draw_sample(plan_, random);
-  const SampleFrame frame = sample_frame(setup_, sample_extremes(plan_, density, grains));
-  settings_ = frame.settings;
-  compression_time_ = frame.compression_time;
-  settings_.threads = threads;
+  take_settings(grains, threads);
   solid_volume_ = total_area(grains);
   box_ = sample_box(plan_, solid_volume_);
   settings_.cell = cell_at_start();
@@ -144,6 +170,32 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads)
   begin(is_dropped(plan_) ? Phase::drop : Phase::compress);
 }
 
+void SampleRun::take_settings(const std::vector<ShapedGrain>& grains, int threads) {
+  const SampleFrame frame =
+      sample_frame(setup_, sample_extremes(plan_, setup_.material.density, grains));
+  settings_ = frame.settings;
+  compression_time_ = frame.compression_time;
+  settings_.threads = threads;
+}
+
+// With its lid on, at rest and without gravity.
+void SampleRun::go_on_from(FilledBox box) {
+  gap_spheres_ = box.spheres;
+  dropped_fraction_ = box.solid_share;
+  for (const Wall& wall : box.snapshot.walls) {
+    if (wall.name == "right") box_[0] = wall.point.x();
+    if (wall.name == "back") box_[1] = wall.point.y();
+  }
+  box_[2] = box.height;
+  solid_volume_ = box.solid_share * box_[0] * box_[1] * box_[2];
+  EngineSettings settings = settings_;
+  settings.friction = friction();
+  for (Wall& wall : box.snapshot.walls) wall.friction = wall_friction();
+  engine_ = make_engine(settings, box.snapshot);
+  check_fraction_ahead(plan_, fraction());
+  begin(starts_as_filled(plan_) ? after(Phase::rest) : Phase::compress);
+}
+
 Cell<3> SampleRun::cell_at_start() const {
   Cell<3> cell;
   if (!periodic()) return cell;
@@ -154,19 +206,21 @@ Cell<3> SampleRun::cell_at_start() const {
   return cell;
 }
 
+// In this phase.
+double SampleRun::wall_friction() const {
+  const double own = setup_.material.wall_friction;
+  return has_other_friction(plan_) && prepares() ? std::min(own, plan_.prepared_friction) : own;
+}
+
 // With the friction of the phase.
 std::unique_ptr<Engine> SampleRun::empty_engine() const {
   EngineSettings settings = settings_;
   settings.friction = friction();
-  double of_walls = setup_.material.wall_friction;
-  if (has_other_friction(plan_) && prepares()) {
-    of_walls = std::min(of_walls, plan_.prepared_friction);
-  }
   std::unique_ptr<Engine> engine = make_engine(settings);
   if (periodic()) return engine;
   Vec3 high(box_[0], box_[1], box_[2]);
   if (plan_.dim == 2) high.z() = 0;
-  for (const Wall& wall : box_walls(Vec3::Zero(), high, of_walls, plan_.dim)) {
+  for (const Wall& wall : box_walls(Vec3::Zero(), high, wall_friction(), plan_.dim)) {
     engine->add_wall(wall);
   }
   return engine;
@@ -245,7 +299,9 @@ void SampleRun::decide() {
       if (phases_.is_due(kCheckEvery)) decide_rest();
       return;
     case Phase::precompress:
-      if (phases_.steps() == next_record_) begin(Phase::settle);
+      if (phases_.steps() == next_record_) {
+        begin(plan_.settle == "rest" ? Phase::settle : after(Phase::settle));
+      }
       return;
     case Phase::deform:
     case Phase::unload:
@@ -293,16 +349,7 @@ void SampleRun::decide_drop() {
     return;
   }
   Random random(seed_ ^ kGapSeed);
-  const FilledBox filled = put_lid_on(engine_->snapshot(), plan_, setup_.material.density, random);
-  gap_spheres_ = filled.spheres;
-  dropped_fraction_ = filled.solid_share;
-  solid_volume_ = filled.solid_share * box_[0] * box_[1] * filled.height;
-  box_[2] = filled.height;
-  EngineSettings settings = settings_;
-  settings.friction = friction();
-  engine_ = make_engine(settings, filled.snapshot);
-  check_fraction_ahead(plan_, fraction());
-  begin(Phase::compress);
+  go_on_from(put_lid_on(engine_->snapshot(), plan_, setup_.material.density, random));
 }
 
 void SampleRun::decide_compression() {
@@ -389,14 +436,14 @@ void SampleRun::plan_next_record() {
 }
 
 // Axial stress of the next state of an unloading to a stress: equal steps from the last state of
-// the loading to the share of the first state's.
+// the loading to the share of the first state's, or to kLeastUnloaded.
 double SampleRun::unloading_level() const {
   const auto axial = [&](std::size_t state) {
     const SampleState s = sample_state(*states_[state]);
     return periodic() ? -s.stress(last(), last()) : s.moved_pressure[last()];
   };
   const double most = axial(static_cast<std::size_t>(plan_.records));
-  const double least = plan_.unload_stress * axial(0);
+  const double least = std::max(plan_.unload_stress * axial(0), kLeastUnloaded * most);
   const double share =
       static_cast<double>(static_cast<int>(states_.size()) - plan_.records) / plan_.unload_records;
   return most + share * (least - most);
@@ -469,7 +516,8 @@ void SampleRun::visit(Archive& archive) {
 }
 
 std::string SampleRun::fingerprint() const {
-  return fmt::format("sample {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
+  return fmt::format("sample {} {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_,
+                     filled_from_);
 }
 
 RunResult SampleRun::result() const {
@@ -492,8 +540,9 @@ RunResult SampleRun::result() const {
 
 }  // namespace
 
-std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads) {
-  return std::make_unique<SampleRun>(setup, seed, threads);
+std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads,
+                                     const Snapshot* filled) {
+  return std::make_unique<SampleRun>(setup, seed, threads, filled);
 }
 
 }  // namespace grainfield::dem

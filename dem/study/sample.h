@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "dem/snapshot/snapshot.h"
 #include "dem/study/outlook.h"
 #include "dem/study/run.h"
 #include "dem/study/sample_setup.h"
@@ -20,9 +21,12 @@ namespace grainfield::dem {
 /// measurements, "sample.stress_rms_error" the root of their mean square (where there is a servo).
 /// Dropped: "sample.gap_spheres" and "sample.dropped_solid_fraction", as the lid is put on.
 /// Attributes probe.* of "state_000": what small strains have shown (probe_record.h).
+/// `filled`: a recorded state between walls that takes the place of drawing and dropping
+/// (plan.filling "dropped"); then the seed is only recorded.
 /// Throws std::invalid_argument naming the key that does not hold ("sample.pressure"). The bits of
 /// the result do not depend on threads.
-std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads);
+std::unique_ptr<Run> make_sample_run(const SampleSetup& setup, std::uint64_t seed, int threads,
+                                     const Snapshot* filled = nullptr);
 
 /// Throws as make_sample_run would for any of these seeds; draws at most so many polygons.
 Outlook foresee_sample(const SampleSetup& setup, const std::vector<std::uint64_t>& seeds,

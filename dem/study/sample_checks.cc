@@ -127,6 +127,11 @@ void check_servo(const SamplePlan& p) {
 
 // A strain before the first state, and the way back.
 void check_path(const SamplePlan& p) {
+  if (starts_as_filled(p) && !is_dropped(p)) {
+    refuse("compress_to", fmt::format("found \"none\", allowed with sample.filling = \"{}\": "
+                                      "pressure, solid_fraction, strain",
+                                      p.filling));
+  }
   if (p.precompression > 0 && any_led(p, SamplePhase::deform)) {
     refuse("precompression",
            fmt::format(
@@ -226,6 +231,7 @@ double shrunk(const SamplePlan& p, int axis, double target) {
 
 // Volume after the compression over that at the start, about.
 double volume_share(const SamplePlan& p) {
+  if (starts_as_filled(p)) return 1;
   if (p.compress_to == "strain") {
     return std::pow(1 - p.compression_strain, p.compression == "isotropic" ? p.dim : 1);
   }

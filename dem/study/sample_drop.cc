@@ -1,7 +1,10 @@
 #include "dem/study/sample_drop.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -14,12 +17,35 @@ namespace {
 
 // Spheres are given up after this many failures in a row for each that would cover the lid.
 constexpr double kDropTries = 50;
+// Densities within this share are the same: volumes are sums of rounded numbers.
+constexpr double kSameDensity = 1e-9;
 
 double& lid_of(Snapshot& s) {
   for (Wall& wall : s.walls) {
     if (wall.name == "lid") return wall.point.z();
   }
   throw std::logic_error("a dropped sample has no lid");
+}
+
+// Edges of the floor along x and y, m.
+std::array<double, 2> base_of(const Snapshot& s) {
+  std::array<double, 2> out{};
+  for (const Wall& wall : s.walls) {
+    if (wall.name == "right") out[0] = wall.point.x();
+    if (wall.name == "back") out[1] = wall.point.y();
+  }
+  return out;
+}
+
+// Takes the motion of grains and walls away, and gravity.
+void stop(Snapshot& s) {
+  s.gravity.setZero();
+  for (Grain& g : s.grains) {
+    g.velocity.setZero();
+    g.angular_velocity.setZero();
+    g.spin = 0;
+  }
+  for (Wall& wall : s.walls) wall.velocity.setZero();
 }
 
 bool is_superellipsoid(const Grain& g) { return g.axes.maxCoeff() > 0; }
@@ -79,20 +105,13 @@ FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density
   FilledBox out;
   out.snapshot = bed;
   Snapshot& s = out.snapshot;
-  s.gravity.setZero();
-  double top = 0, width = 0, depth = 0, solid = 0;
-  for (Grain& g : s.grains) {
-    g.velocity.setZero();
-    g.angular_velocity.setZero();
-    g.spin = 0;
+  stop(s);
+  double top = 0, solid = 0;
+  for (const Grain& g : s.grains) {
     top = std::max(top, g.position.z() + rise_of(g));
     solid += g.volume;
   }
-  for (Wall& wall : s.walls) {
-    wall.velocity.setZero();
-    if (wall.name == "right") width = wall.point.x();
-    if (wall.name == "back") depth = wall.point.y();
-  }
+  const auto [width, depth] = base_of(s);
   lid_of(s) = out.height = top;
   const auto [least, mean, most] = gap_radii(plan);
   const long tries = std::lround(kDropTries * width * depth / (std::numbers::pi * mean * mean));
@@ -119,6 +138,41 @@ FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density
     ++out.spheres;
   }
   out.solid_share = solid / (width * depth * top);
+  return out;
+}
+
+FilledBox filled_box(const Snapshot& state, const SamplePlan& plan, double density) {
+  FilledBox out;
+  out.snapshot = state;
+  Snapshot& s = out.snapshot;
+  stop(s);
+  s.contacts.clear();
+  const auto count = static_cast<int>(s.grains.size());
+  if (count < plan.grains) {
+    throw std::invalid_argument(fmt::format(
+        "sample.grains: found {}, allowed: up to the {} grains of the state in grains.files",
+        plan.grains, count));
+  }
+  double mass = 0, solid = 0;
+  for (const Grain& g : s.grains) {
+    if (is_superellipsoid(g) != (plan.shape == "superellipsoid")) {
+      throw std::invalid_argument(fmt::format(
+          "sample.shape: found \"{}\", allowed: the shape of the grains in grains.files",
+          plan.shape));
+    }
+    mass += g.mass;
+    solid += g.volume;
+  }
+  if (std::fabs(mass / solid / density - 1) > kSameDensity) {
+    throw std::invalid_argument(
+        fmt::format("material.density: found {:g}, allowed: {:.9g}, that of the grains in "
+                    "grains.files",
+                    density, mass / solid));
+  }
+  out.spheres = count - plan.grains;
+  out.height = lid_of(s);
+  const auto [width, depth] = base_of(s);
+  out.solid_share = solid / (width * depth * out.height);
   return out;
 }
 

@@ -26,4 +26,9 @@ struct FilledBox {
 /// they overlap nothing, until none finds room any more.
 FilledBox put_lid_on(const Snapshot& bed, const SamplePlan& plan, double density, Random& random);
 
+/// A recorded state as such a box: its grains at rest and without their contacts, which a law of
+/// its own finds anew. What it holds beyond plan.grains counts as spheres of the gap. Throws
+/// std::invalid_argument naming the key that does not go with the state.
+FilledBox filled_box(const Snapshot& state, const SamplePlan& plan, double density);
+
 }  // namespace grainfield::dem

@@ -20,6 +20,7 @@ constexpr double kCrushed = 0.5;
 }  // namespace
 
 const char* goal_key(const SamplePlan& plan) {
+  if (starts_as_filled(plan)) return "base_fraction";
   if (plan.compress_to == "strain") return "compression_strain";
   return plan.compress_to == "pressure" ? "pressure" : "solid_fraction";
 }

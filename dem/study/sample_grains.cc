@@ -163,8 +163,9 @@ GrainExtremes sample_extremes(const SamplePlan& p, double density,
 
 std::array<double, 3> sample_box(const SamplePlan& p, double volume) {
   if (is_dropped(p)) {
-    // The base is that of the filled box; so high that the loose grains have their places.
-    std::array<double, 3> box = sample_box(as_filled(p), volume);
+    // The base is that of a box filled by grains of mean volume, the same for all seeds; so high
+    // that the loose grains have their places.
+    std::array<double, 3> box = sample_box(as_filled(p), mean_volume(p));
     box[2] = volume / p.start_fraction / (box[0] * box[1]);
     return box;
   }

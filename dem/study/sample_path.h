@@ -4,8 +4,8 @@
 
 namespace grainfield::dem {
 
-/// (drop) -> compress -> rest -> (probe_prepared) -> (precompress -> settle) -> (probe_first) ->
-/// deform -> (unload) -> done; those in brackets where the plan asks for them.
+/// (drop) -> (compress -> rest) -> (probe_prepared) -> (precompress (-> settle)) -> (probe_first)
+/// -> deform -> (unload) -> done; those in brackets where the plan asks for them.
 enum class SamplePhase : int {
   drop,
   compress,
@@ -21,11 +21,16 @@ enum class SamplePhase : int {
 
 inline bool is_periodic(const SamplePlan& p) { return p.boundary == "periodic"; }
 inline bool compresses_to_pressure(const SamplePlan& p) { return p.compress_to == "pressure"; }
+/// Whether the first state follows the filling without a compression and a rest.
+inline bool starts_as_filled(const SamplePlan& p) { return p.compress_to == "none"; }
 inline bool shears(const SamplePlan& p) { return p.deformation == "simple_shear"; }
 /// Whether sides turn with the lid.
 inline bool tilts(const SamplePlan& p) {
   return shears(p) && !is_periodic(p) && p.sides == "tilting";
 }
+/// An unloading to a stress ends at this share of the largest axial stress at the latest: what
+/// begins without stress would be unloaded until the last grain has left the lid.
+inline constexpr double kLeastUnloaded = 1e-3;
 inline bool unloads(const SamplePlan& p) { return p.unload != "none"; }
 inline bool has_other_friction(const SamplePlan& p) { return p.prepared_with == "other_friction"; }
 /// Whether it is shortened along the last axis, and rests once more, before the first state.

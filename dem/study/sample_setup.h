@@ -37,15 +37,16 @@ struct SamplePlan {
   double drop_damping = 10;           ///< dropped: 1/s, of all motion
 
   // -- compression
-  std::string compression = "isotropic";        ///< isotropic | uniaxial (along the last axis)
-  std::string compress_to = "pressure";         ///< pressure | solid_fraction | strain
-  double pressure = 1e4;                        ///< Pa (2D: N/m); of servos
-  double solid_fraction = 0.86;                 ///< compress_to solid_fraction
-  double compression_strain = 0.2;              ///< compress_to strain: of every edge that shortens
-  double compression_rate = 1;                  ///< 1/s, of an edge; and of servos at most
+  std::string compression = "isotropic";  ///< isotropic | uniaxial (along the last axis)
+  std::string compress_to = "pressure";   ///< pressure | solid_fraction | strain | none (dropped)
+  double pressure = 1e4;                  ///< Pa (2D: N/m); of servos
+  double solid_fraction = 0.86;           ///< compress_to solid_fraction
+  double compression_strain = 0.2;        ///< compress_to strain: of every edge that shortens
+  double compression_rate = 1;            ///< 1/s, of an edge; and of servos at most
   std::string prepared_with = "same_friction";  ///< same_friction | other_friction
   double prepared_friction = 0;  ///< other_friction: of the grains, and of walls at most
   double precompression = 0;     ///< strain along the last axis before the first state
+  std::string settle = "rest";   ///< rest | none: between precompression and first state
 
   // -- small strains
   std::string probe = "none";  ///< none | prepared | first | both: the states they are tried in
@@ -71,8 +72,8 @@ struct SamplePlan {
                     exponent_max, boundary, height_ratio, start_fraction, filling, base_fraction,
                     drop_gravity, drop_damping, compression, compress_to, pressure, solid_fraction,
                     compression_strain, compression_rate, prepared_with, prepared_friction,
-                    precompression, probe, probe_strain, deformation, constant, sides, strain,
-                    strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
+                    precompression, settle, probe, probe_strain, deformation, constant, sides,
+                    strain, strain_rate, ramp_time, records, unload, unload_strain, unload_stress,
                     unload_records);
   }
 };

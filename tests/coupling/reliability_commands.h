@@ -116,10 +116,9 @@ inline CommandTally interrupt_commands(int rounds) {
   CommandTally tally;
   std::mt19937 random(attack_seed());
   const Workshop& inputs = workshop();
-  for (const Command& command :
-       {inputs.model(), inputs.average("150x80"), inputs.strain("300x200"), inputs.import(),
-        inputs.import({"--add", "--group", "/added"}), inputs.reproduce(), inputs.compare(),
-        inputs.fit(), inputs.structure()}) {
+  for (const Command& command : {inputs.model(), inputs.average("150x80"), inputs.strain("300x200"),
+                                 inputs.import(), inputs.import({"--add", "--group", "/added"}),
+                                 inputs.compare(), inputs.fit(), inputs.structure()}) {
     InterruptedCommand victim(command, random, tally);
     for (int round = 0; round < rounds && !::testing::Test::HasFailure(); ++round) {
       constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP, SIGKILL};

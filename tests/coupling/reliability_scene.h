@@ -38,7 +38,6 @@ class Workshop {
     std::string points = "x,y\n0,1\n";
     for (int k = 0; k < 20000; ++k) points += fmt::format("{},-1\n", 1e-4 * k);
     points_ = folder_.write("points.csv", points);
-    fs::create_directory(folder_ / "record");
   }
 
   const Folder& folder() const { return folder_; }
@@ -63,9 +62,6 @@ class Workshop {
     out.words.insert(out.words.end(), more.begin(), more.end());
     return out;
   }
-  Command reproduce() const {
-    return {"reproduce", {"reproduce", folder_ / "record"}, Writes::file};
-  }
   Command run_models() const {
     return {"run", {"run", folder_.write("models.toml", quick_models())}, Writes::folder};
   }
@@ -81,8 +77,7 @@ class Workshop {
   Command structure() const { return {"structure", {"structure", snapshot()}, Writes::folder}; }
 
   std::vector<Command> writing() const {
-    return {model(),      average(), strain(), import(),   reproduce(),
-            run_models(), compare(), fit(),    structure()};
+    return {model(), average(), strain(), import(), run_models(), compare(), fit(), structure()};
   }
   std::vector<Command> printing() const {
     return {{"check", {"check", case_file()}},
@@ -90,7 +85,6 @@ class Workshop {
             {"cases", {"cases"}},
             {"info", {"info", fields()}},
             {"model", model().words},
-            {"reproduce", reproduce().words},
             {"structure", structure().words}};
   }
 

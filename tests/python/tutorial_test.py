@@ -4,6 +4,8 @@ import json
 import runpy
 import sys
 
+import numpy as np
+
 import grainfield as gf
 from scene import ETA, ROOT, import_dumps, program, same, same_summary, write_dumps
 
@@ -30,3 +32,19 @@ def test_the_script_is_short_and_stands_on_the_page():
     lines = [line for line in text.splitlines() if line.strip()]
     assert len(lines) < 25
     assert text in (ROOT / "docs/python.md").read_text()
+
+
+def test_the_strip_footing_of_the_page(capsys):
+    script = ROOT / "docs/examples/strip_footing.py"
+    made = runpy.run_path(str(script))
+    page = (ROOT / "docs/geotechnical.md").read_text()
+    assert script.read_text() in page and capsys.readouterr().out in page
+    # The textbook's strip on a half space: q (alpha + sin alpha)/pi below its middle.
+    alpha = 2 * np.arctan(made["width"] / 2 / -made["below"])
+    strip = made["pressure"] / np.pi * (alpha + np.sin(alpha))
+    deep = made["below"] < -0.5
+    assert np.abs(made["half_plane"][deep, 1] + strip[deep]).max() < 1e-3 * made["pressure"]
+    # A uniform pressure on a wide strip: the layer is in uniaxial strain.
+    e, nu = made["young"], made["poisson"]
+    wide = (1 + nu) * (1 - 2 * nu) / (1 - nu) * made["pressure"] * made["depth"] / e
+    assert 0.5 * wide < made["settlement"] < wide

@@ -65,11 +65,13 @@ struct SamplePath {
                    ratio = loading("q_over_p");
     bool bore = true;
     for (Index k = 0; k < strain.size(); ++k) {
+      // A box without stress at the start has no strength that it could lose there.
+      const bool empty = k == 0 && !(p[0] > 0), known = std::isfinite(ratio[k]);
       const bool bears =
-          p[k] > kLeastPressure * p[0] && inertia[k] < kMostInertia && std::isfinite(ratio[k]);
+          empty || (p[k] > kLeastPressure * p[0] && inertia[k] < kMostInertia && known);
       if (bore && !bears) lost = k;
       bore = bore && bears;
-      if (bears && (peak < 0 || ratio[k] > ratio[peak])) peak = k;
+      if (bears && known && (peak < 0 || ratio[k] > ratio[peak])) peak = k;
       bearing_since = bears ? bearing_since : k + 1;
     }
     if (uniaxial() || plan.deformation == "isotropic") peak = -1;
@@ -83,6 +85,11 @@ struct SamplePath {
   Index last() const { return plan.records; }
   VectorXd inside() const { return -way(plan.dim == 2 ? "sigma_yy" : "sigma_zz"); }
   VectorXd outside() const { return dem::is_periodic(plan) ? inside() : way("pressure_on_lid"); }
+  // Of the states of the loading at a tenth of its strain or beyond.
+  double largest_late(const VectorXd& values) const {
+    const Index from = std::max<Index>(1, (last() + 9) / 10);
+    return values.segment(from, last() - from + 1).maxCoeff();
+  }
   // A column in a state; nullopt without the state.
   Value at(const char* name, Index state) const {
     return state < 0 ? Value() : Value(way(name)[state]);
@@ -139,13 +146,15 @@ Value stiffening(P s, Index least, Index from, Index to, Index from_over, Index 
          slope(s.strain, inside, from_over * end / 4, to_over * end / 4);
 }
 
-// Strain at which the axial stress falls to that of the first state, by straight lines.
+// Strain at which the axial stress falls to that of the first state, or to a small share of the
+// largest where the first one is below it, by straight lines.
 Value plastic_strain(P s) {
   if (!s.returns()) return {};
   const VectorXd strain = s.way("strain"), stress = s.outside();
+  const double unloaded = std::max(stress[0], dem::kLeastUnloaded * stress[s.last()]);
   for (Index k = s.last() + 1; k < stress.size(); ++k) {
-    if (stress[k] > stress[0]) continue;
-    const double share = (stress[k - 1] - stress[0]) / (stress[k - 1] - stress[k]);
+    if (stress[k] > unloaded) continue;
+    const double share = (stress[k - 1] - unloaded) / (stress[k - 1] - stress[k]);
     return strain[k - 1] + share * (strain[k] - strain[k - 1]);
   }
   return {};
@@ -193,14 +202,17 @@ const std::vector<Figure<SamplePath>>& sample_rows() {
       {"stress_error", "-", "largest relative error of a servo's stress at any of its measurements in the deformation"},
       {"stress_rms_error", "-", "root of the mean square of the same"},
       {"kinetic_share", "-", "largest kinetic over elastic energy of the states after the first one", [](P s) { const VectorXd share = s.way("kinetic_energy").array() / s.way("elastic_energy").array(); return Value(share.tail(share.size() - 1).maxCoeff()); }},
+      {"late_kinetic_share", "-", "the same of the states of the loading beyond a tenth of its strain", [](P s) { return Value(s.largest_late(s.way("kinetic_energy").cwiseQuotient(s.way("elastic_energy")))); }},
+      {"late_inertial_number", "-", "largest inertial number of the same states", [](P s) { return Value(s.largest_late(s.way("inertial_number"))); }},
       {"pressure_ratio", "-", "p at the end of the loading over that of the first state", [](P s) { return Value(s.way("p")[s.last()] / s.way("p")[0]); }},
       {"shear_over_pressure", "-", "simple shear: shear stress at the end of the loading over p of the first state", [](P s) { return dem::shears(s.plan) ? Value(s.driven[s.last()] / s.way("p")[0]) : Value(); }},
+      {"first_shear_stiffness", "-", "simple shear at constant volume: rise of the shear stress to the state after the first one, over its strain and over p of the first state", [](P s) { return dem::shears(s.plan) ? Value(slope(s.strain, s.driven, 0, 1) / s.way("p")[0]) : Value(); }},
       {"axial_dip_strain", "-", "simple shear at constant volume: shear strain (half the shear) of the recorded state of the loading whose axial pressure is least; it falls first and rises then", strain_of_least_pressure},
       {"end_stress_ratio", "-", "uniaxial: q/p at the end of the loading", [](P s) { return s.uniaxial() ? s.at("q_over_p", s.last()) : Value(); }},
       {"end_axial_stress_ratio", "-", "uniaxial in three dimensions: q/p there with q the axial pressure less the mean lateral one (Wellmann 32), as axial_q_over_p of states.csv", [](P s) { return s.uniaxial() && s.plan.dim == 3 ? s.at("axial_q_over_p", s.last()) : Value(); }},
       {"stiffening", "-", "uniaxial: rise of the axial stress in the second half of the strain over that in the first half; 1 of a straight line", [](P s) { return stiffening(s, 2, 2, 4, 0, 2); }},
       {"stiffening_late", "-", "the same of the last quarter over the second one", [](P s) { return stiffening(s, 4, 3, 4, 1, 2); }},
-      {"plastic_strain", "-", "unloading: strain where the axial stress (of the lid; in a cell of the contacts) is that of the first state again", plastic_strain},
+      {"plastic_strain", "-", "unloading: strain where the axial stress (of the lid; in a cell of the contacts) is that of the first state again, or a thousandth of the largest where the first one is below it", plastic_strain},
       {"unloading_stiffness", "-", "its slope to the middle state of the unloading over that of the loading's last quarter", unloading_stiffness},
       {"loop_loss", "-", "area of its loop over that under the loading", loop_loss},
       {"residual_stress", "-", "axial stress of the contacts after the unloading over that at the end of the loading", [](P s) { const VectorXd inside = s.inside(); return s.returns() ? Value(inside[inside.size() - 1] / inside[s.last()]) : Value(); }},

@@ -88,9 +88,10 @@ void place(SectionKeys& s) {
 void compression(SectionKeys& s) {
   s.word("compression", IN(compression), {"isotropic", "uniaxial"},
          "all edges shorten, or the one along the last axis");
-  s.word("compress_to", IN(compress_to), {"pressure", "solid_fraction", "strain"},
+  s.word("compress_to", IN(compress_to), {"pressure", "solid_fraction", "strain", "none"},
          "what ends the compression: the pressure that servos then hold, a solid fraction, or a "
-         "strain");
+         "strain; none, with sample.filling = dropped: the first state is the box as it was "
+         "filled, without compression and rest");
   s.number("pressure", kStress, IN(pressure), Range{1e-6, 1e15}.with_zero(),
            "held by servos, compression positive; higher: denser, with larger overlaps");
   s.only("sample.compress_to", {"pressure"});
@@ -111,8 +112,12 @@ void compression(SectionKeys& s) {
   s.only("sample.prepared_with", {"other_friction"});
   s.number("precompression", "-", IN(precompression), {0, 0.9},
            "strain by which the last axis alone shortens before the first state, at "
-           "sample.strain_rate; the grains rest after it",
+           "sample.strain_rate",
            "Wellmann 28");
+  s.word("settle", IN(settle), {"rest", "none"},
+         "after a precompression the grains rest, or the first state is taken at once, as a state "
+         "on the way of a compression",
+         "Wellmann 6");
 }
 
 void probes(SectionKeys& s) {
@@ -154,7 +159,7 @@ void deformation(SectionKeys& s) {
 void unloading(SectionKeys& s) {
   s.word("unload", IN(unload), {"none", "strain", "stress"},
          "after the last strain the deformation is taken back: not, by a share of the strain, or "
-         "until the axial stress has fallen",
+         "until the axial stress has fallen (to a thousandth of the largest at the latest)",
          "Wellmann fig. 12");
   s.number("unload_strain", "-", IN(unload_strain), {1e-6, 2}, "share of the strain; 1: all of it");
   s.only("sample.unload", {"strain"});

@@ -100,6 +100,18 @@ double closure(const std::vector<RveValue>& values) {
   return worst;
 }
 
+// Largest mean shear strain of the hulls beside the component that is imposed.
+double other_shear(const std::vector<RveValue>& values, const Axis& imposed) {
+  double largest = 0;
+  for (const Axis at : {Axis{0, 1}, Axis{0, 2}, Axis{1, 2}}) {
+    if (at.a == imposed.a && at.b == imposed.b) continue;
+    double sum = 0;
+    for (const RveValue& v : values) sum += symmetric(v.hull, at.a, at.b);
+    largest = std::max(largest, std::fabs(sum) / static_cast<double>(values.size()));
+  }
+  return largest;
+}
+
 // One sample's RVEs of one radius.
 struct RvesOfSample {
   const RveStates& states;
@@ -130,6 +142,7 @@ const std::vector<Figure<RvesOfSample>>& rve_rows() {
       {"field_ratio", "-", "the same of the coarse-grained field at their points", [](R r) { return r.mean([](const RveValue& v) { return v.field_zz; }) / r.stress(2, 2); }},
       {"axial_stress_ratio", "-", "q/p of the RVEs' mean stress from the forces on their boundary at the end of the loading, but for simple shear: q the stress along z less the mean along x and y (Wellmann 32)", [](R r) { return r.deformation == "simple_shear" ? Value() : Value(axial_stress_ratio(r.end())); }},
       {"strain_ratio", "-", "strain of the hulls over that of the sample's edges at the end of the loading: zz, of a simple shear xz", [](R r) { const Axis axis = axis_of(r.deformation); return r.strain(&RveValue::hull) / symmetric(r.gradient, axis.a, axis.b); }},
+      {"other_shear", "-", "largest of the hulls' mean shear strains that are not imposed over the imposed strain, at the end of the loading", [](R r) { const Axis axis = axis_of(r.deformation); return other_shear(r.end(), axis) / std::fabs(symmetric(r.gradient, axis.a, axis.b)); }},
       {"fit_ratio", "-", "strain by least squares over that of the hulls, likewise", [](R r) { return r.strain(&RveValue::fit) / r.strain(&RveValue::hull); }},
   };
   // clang-format on

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
@@ -18,6 +19,7 @@
 #include "coupling/studies/sample/rve_page.h"
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
+#include "dem/snapshot/snapshot.h"
 #include "dem/study/sample.h"
 #include "dem/study/sample_path.h"
 #include "dem/study/sample_setup.h"
@@ -280,13 +282,30 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   return out;
 }
 
+const std::vector<std::string> kFilled{"state_000"};
+
+std::unique_ptr<dem::Run> make_filled(const Case& value, const FinishedRun& filled,
+                                      std::uint64_t seed, int threads) {
+  const dem::Snapshot state = dem::read_snapshot(filled.file, filled.group + "/" + kFilled.front());
+  return dem::make_sample_run(value.get<dem::SampleSetup>(), seed, threads, &state);
+}
+
+std::unique_ptr<dem::Run> make_sample(const Case& value, std::int64_t number, int threads) {
+  const std::uint64_t seed = realization_seed(value, number);
+  if (!value.get<GrainFiles>().files.empty()) {
+    return make_filled(value, finished_run(value, number, kFilled, "sample"), seed, threads);
+  }
+  return dem::make_sample_run(value.get<dem::SampleSetup>(), seed, threads);
+}
+
 }  // namespace
 
 Study sample_study() {
   Study out;
   out.name = "sample";
   out.meaning = "grains in a cell or a box, compressed and sheared: stress, volume and fabric";
-  out.sections = {kMaterialKeys, kMotionKeys, kRestKeys, kSampleKeys, kRveKeys, kBlockKeys};
+  out.sections = {kGrainFilesKeys, kMaterialKeys, kMotionKeys, kRestKeys,
+                  kSampleKeys,     kRveKeys,      kBlockKeys};
   out.needs = {{"material.wall_friction", "sample.boundary", {"walls"}}};
   out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<dem::SampleSetup>().material; };
   out.grain_radius = [](const Case& c) { return c.get<dem::SampleSetup>().plan.radius; };
@@ -300,16 +319,24 @@ Study sample_study() {
   out.dimension_key = "sample.dim";
   out.check = [](const Case& value) {
     const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+    if (!value.get<GrainFiles>().files.empty() && plan.filling != "dropped") {
+      throw std::invalid_argument(fmt::format(
+          "grains.files: found files of filled boxes, allowed with sample.filling = \"{}\": []",
+          plan.filling));
+    }
     check_rves(value.get<RveSetup>(), plan);
     check_block(value.get<BlockSetup>(), plan);
   };
-  out.make_run = [](const Case& value, std::int64_t number, int threads) {
-    return dem::make_sample_run(value.get<dem::SampleSetup>(), realization_seed(value, number),
-                                threads);
-  };
+  out.make_run = make_sample;
   out.foresee = [](const Case& value, std::int64_t draws) {
+    if (!value.get<GrainFiles>().files.empty()) {
+      try_finished_runs(value, kFilled, "sample", [&](const FinishedRun& filled) {
+        make_filled(value, filled, realization_seed(value, 0), 1);
+      });
+    }
     return dem::foresee_sample(value.get<dem::SampleSetup>(), realization_seeds(value), draws);
   };
+  out.left_unused = [](const Case& value) { return unused_runs(value, kFilled, "sample"); };
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int) {
     return analyse_sample(value, files);
   };

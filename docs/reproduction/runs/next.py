@@ -15,7 +15,9 @@ the lowest priority. When the time is over it writes a checkpoint, and the
 next call goes on to the same bits. Several calls at once take different runs. A finished run leaves
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
-states and the figures of summary.json. A run whose NAME.json is there is not missing.
+states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
+states, NAME.TABLE.csv. A run whose NAME.json is there is not missing. A run whose grains.files name
+docs/reproduction/states/LIST/NAME.h5 waits until that run's states are there, and unpacks them.
 
 Ends with 0 when a run has ended or has come further, 1 when none is missing, 2 when it cannot start or a
 run fails. Needs git, the build's packages, h5py, numpy and xz.
@@ -114,6 +116,27 @@ def build(tag, commit, work):
     return source
 
 
+def packings(settings):
+    """The files in grains.files of a run, relative to the root."""
+    given = [s.partition("=")[2] for s in settings if s.startswith("grains.files=")]
+    return json.loads(given[-1]) if given else []
+
+
+def has_packings(settings):
+    """Whether a run's packings are there, packed."""
+    return all((ROOT / f"{file}.xz").exists() for file in packings(settings))
+
+
+def unpack_packings(source, settings):
+    """Puts a run's packings where the program of `source` looks for them."""
+    for file in packings(settings):
+        target = source / file
+        target.parent.mkdir(parents=True, exist_ok=True)
+        part = target.with_name(f"{target.name}.{os.getpid()}")
+        part.write_bytes(lzma.decompress((ROOT / f"{file}.xz").read_bytes()))
+        part.replace(target)
+
+
 def compute(source, run, folder, deadline):
     """Goes on with a run until it has ended (True) or the time is over (False)."""
     name, seed, case, settings = run
@@ -121,6 +144,7 @@ def compute(source, run, folder, deadline):
     half_done = any(results.rglob("checkpoint"))
     if any(results.rglob("summary.json")) and not half_done:  # ended, and could not be committed
         return True
+    unpack_packings(source, settings)
     command = ["nice", "-n", "19", "build/release/grainfield", "run", f"cases/{case}.toml", "-o",
                str(results), "--threads", "1"]
     one = [] if any(s.startswith("ensemble.realizations=") for s in settings) else [
@@ -159,21 +183,31 @@ def compute(source, run, folder, deadline):
 def keep(run, tag, commit, folder, states):
     """Puts what a finished run leaves beside the other states and commits it."""
     name, seed, case, settings = run
+    without_states = "output.snapshots=false" in settings
     compact = folder / "compact.h5"
-    found = sorted((folder / "results").rglob("snapshots.h5"))
+    wanted = "states.csv" if without_states else "snapshots.h5"
+    found = sorted((folder / "results").rglob(wanted))
     if len(found) != 1:  # a sweep leaves one in the folder of each value
-        fail(f"{name}: found {len(found)} files of states; allowed: one, of one value of a sweep")
-    subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
-                    str(compact)], check=True)
+        fail(f"{name}: found {len(found)} files {wanted}; allowed: one, of one value of a sweep")
     states.mkdir(parents=True, exist_ok=True)
-    packed = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+    contents = {}
+    if without_states:
+        for table in sorted(found[0].parent.glob("*.csv")):
+            contents[states / f"{name}.{table.name}"] = table.read_bytes()
+        kept = contents[states / f"{name}.{wanted}"]
+    else:
+        subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
+                        str(compact)], check=True)
+        kept = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+        contents[states / f"{name}.h5.xz"] = kept
     figures = json.loads(found[0].with_name("summary.json").read_text())
     record = {"case": case, "seed": seed, "settings": settings, "tag": tag, "commit": commit,
               "cpu_seconds": float((folder / "cpu_seconds").read_text()),
-              "sha256": hashlib.sha256(packed).hexdigest(), "summary": figures}
-    files = [states / f"{name}.h5.xz", states / f"{name}.json"]
-    files[0].write_bytes(packed)
-    files[1].write_text(json.dumps(record, indent=1) + "\n")
+              "sha256": hashlib.sha256(kept).hexdigest(), "summary": figures}
+    contents[states / f"{name}.json"] = (json.dumps(record, indent=1) + "\n").encode()
+    files = list(contents)
+    for file, content in contents.items():
+        file.write_bytes(content)
     lock = Lock(ROOT / "build" / "runs" / "commit.lock", wait=True)
     git("add", "--", *map(str, files))
     git("commit", "--quiet", "-m", f"Runs: {name}, seed {seed}, of {tag}", "-m",
@@ -198,7 +232,7 @@ def main():
     states = HERE.parent / "states" / listed.stem
     work = ROOT / "build" / "runs" / tag
     for run in runs:
-        if (states / f"{run[0]}.json").exists():
+        if (states / f"{run[0]}.json").exists() or not has_packings(run[3]):
             continue
         folder = work / run[0]
         lock = Lock(folder / "lock", wait=False)

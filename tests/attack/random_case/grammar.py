@@ -130,7 +130,7 @@ def scale(d, least_softness=1e-5, most_softness=3e-3):
     return Scale(r, density, gravity, softness, mass, mass * gravity / (softness * 2 * r))
 
 
-# Roul's law knows edges; springs on the depth alone do not (docs/theory-dem.md).
+# Roul's law knows edges; springs on the depth alone do not (docs/contact-laws.md).
 NOT_OF = {"polygon": ("linear", "penalty"), "superellipsoid": ("hertz",), "round": ()}
 
 

@@ -1,4 +1,4 @@
-"""The contact laws by docs/theory-dem.md, from the overlap and the motion."""
+"""The contact laws by docs/contact-laws.md, from the overlap and the motion."""
 import math
 
 import numpy as np

@@ -36,7 +36,8 @@ std::string truncated(const Folder& folder) {
 
 TEST(Errors, Usage) {
   expect_refusal(program(""), 2, "required");
-  expect_refusal(program("rum x.toml"), 2, "rum");
+  expect_refusal(program("rum x.toml"), 2, "unknown command \"rum\"; nearest: run");
+  expect_refusal(program("reproduce results -o page.md"), 2, "unknown command \"reproduce\"");
   expect_refusal(program("run"), 2, "run: case is required");
   expect_refusal(program("keys materiel"), 2, "nearest: material");
   expect_refusal(program("run fit-osl-point --checkpoint-seconds -1"), 2,

@@ -49,11 +49,6 @@ double most_memory() {
   return static_cast<double>(usage.ru_maxrss) * 1024e-6;
 }
 
-void make_record(const std::string& folder, const std::string& pipe) {
-  testing::fs::create_directory(folder);
-  testing::fs::create_symlink(pipe, folder + "/pile.json");
-}
-
 std::string repeated(const std::string& text, int times) {
   std::string out;
   for (int k = 0; k < times; ++k) out += text;
@@ -93,8 +88,6 @@ TEST(CheckHostile, PipesThatNobodyWritesTo) {
   command(
       "model fe_osl_layer --set map=" + pipe + " --points " + folder.write("p.csv", "x,y\n0,-1\n"),
       "is a pipe or device, expected a file");
-  make_record(folder / "record", pipe);
-  command("reproduce " + (folder / "record"), "is a pipe, expected a file");
 }
 
 TEST(CheckHostile, PipesThatSomebodyWritesTo) {

@@ -125,6 +125,49 @@ TEST(Docs, BrokenLinksAreFound) {
   EXPECT_EQ(links, 4);
 }
 
+/// "case: what is wrong" for every shipped case that the gallery does not lead to. The gallery has
+/// [`case`](cases/PAGE.md#section); PAGE has the command that runs it.
+std::vector<std::string> cases_without_page(const std::string& gallery, const path& folder,
+                                            const std::set<std::string>& cases) {
+  std::vector<std::string> out;
+  for (const std::string& name : cases) {
+    std::smatch link;
+    if (!std::regex_search(gallery, link,
+                           std::regex("\\[`" + name + "`\\]\\((cases/[a-z0-9-]+\\.md)[)#]"))) {
+      out.push_back(name + ": not in the gallery");
+      continue;
+    }
+    const path page = folder / link[1].str();
+    if (!testing::fs::exists(page) ||
+        !std::regex_search(read_text(page.string()),
+                           std::regex("grainfield run (cases/)?" + name + "[.\\s`]"))) {
+      out.push_back(name + ": not on " + link[1].str());
+    }
+  }
+  return out;
+}
+
+TEST(Docs, GalleryLeadsToThePageOfEveryCase) {
+  std::set<std::string> cases;
+  for (const auto& entry : testing::fs::directory_iterator(kRoot / "cases")) {
+    if (entry.path().extension() == ".toml") cases.insert(entry.path().stem());
+  }
+  EXPECT_GT(cases.size(), 50U);
+  EXPECT_THAT(
+      cases_without_page(read_text((kRoot / "docs/gallery.md").string()), kRoot / "docs", cases),
+      ::testing::IsEmpty());
+}
+
+TEST(Docs, CasesWithoutPageAreFound) {
+  const testing::Folder folder;
+  testing::fs::create_directories(path(folder / "cases"));
+  folder.write("cases/p.md", "grainfield run cases/a.toml\n");
+  EXPECT_THAT(cases_without_page("[`a`](cases/p.md#a) [`b`](cases/p.md) [`d`](cases/q.md)",
+                                 path(folder / "."), {"a", "b", "c", "d"}),
+              ::testing::ElementsAre("b: not on cases/p.md", "c: not in the gallery",
+                                     "d: not on cases/q.md"));
+}
+
 /// What stands between `[@` and `]` on the pages: keys of docs/references.bib.
 std::set<std::string> cited_keys(const std::string& text) {
   std::set<std::string> out;

@@ -22,7 +22,6 @@ const std::vector<Room>& rooms() {
       {"compare", {"averaging", "judge", "statistics"}},
       {"heap", {"averaging", "statistics"}},
       {"output", {"compare", "judge", "system"}},
-      {"reproduce", {"output", "statistics"}},
       {"elastic_constants", {"averaging", "output", "statistics", "system"}},
       {"report", {"averaging", "judge", "output", "system"}},
       {"models", {"averaging", "compare", "output"}},
@@ -65,11 +64,11 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "fit", "heap", "import", "judge", "models", "output", "run",
         "strain", "studies/pile", "studies/point_load"}},
       {"app",
-       {"averaging", "case", "export", "files", "import", "judge", "models", "output", "reproduce",
-        "run", "structure", "system"}},
-      {"python",
-       {"app", "averaging", "case", "files", "import", "judge", "models", "output", "run",
+       {"averaging", "case", "export", "files", "import", "judge", "models", "output", "run",
         "structure", "system"}},
+      {"python",
+       {"app", "averaging", "case", "compare", "files", "fit", "import", "judge", "models", "output",
+        "run", "structure", "system"}},
   };
   return kRooms;
 }
@@ -87,8 +86,7 @@ TEST(Rooms, HaveNoCycle) {
   EXPECT_THAT(cycle_in(graph), ::testing::SizeIs(::testing::Ge(3)));
 }
 
-// The words of the case key `study`, which only their own folders, the commands and reproduction
-// may say.
+// The words of the case key `study`, which only their own folders and the commands may say.
 TEST(Rooms, OfRunsCasesAndPagesKnowNoStudyByName) {
   namespace fs = std::filesystem;
   const fs::path root = GRAINFIELD_SOURCES;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "dem/snapshot/images.h"
+#include "dem/snapshot/told_images.h"
 #include "tests/coupling/import_matrix_scene.h"
 #include "tests/coupling/program.h"
 
@@ -75,7 +76,7 @@ std::string difference(const dem::Snapshot& found, const dem::Snapshot& ours, do
 // The way between two states, of every grain.
 std::string displaced(const Seen& seen, const test::Motion& motion, double tolerance) {
   const dem::Snapshot &before = *seen.before, &after = *seen.after;
-  const bool counted = dem::counts_images(before) || dem::counts_images(after);
+  const bool counted = dem::count_images(before, after);
   for (std::size_t g = 0; g < before.grains.size(); ++g) {
     const dem::Vec3 ours = motion.after.grains[g].position - motion.before.grains[g].position;
     const dem::Vec3 found =

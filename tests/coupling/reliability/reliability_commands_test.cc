@@ -1,4 +1,4 @@
-// average, strain, import, model, reproduce, compare, fit, structure under signals: the short form
+// average, strain, import, model, compare, fit, structure under signals: the short form
 // of reliability_commands_long_test.cc.
 #include "tests/coupling/reliability_commands.h"
 

@@ -112,7 +112,7 @@ TEST(PolygonBoost, AreaAndCrossingsOfRandomPairs) {
       continue;
     }
     (crossings.size() == 2 ? two_crossings : more) += 1;
-    // theory-dem.md: b = sum sigma x along t, and s from s.t |b| = sum sigma x.x/2,
+    // docs/shapes.md: b = sum sigma x along t, and s from s.t |b| = sum sigma x.x/2,
     // s.n |b| = sum sigma (x.t)(x.n); the crossing of two sides moves by round-off over the sine of
     // their angle: a part in 1e9 of the pairs' size bounds it at the smallest angle that is met.
     double bx = 0, by = 0, squares = 0, mixed = 0;

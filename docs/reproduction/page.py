@@ -1,0 +1,289 @@
+#!/usr/bin/python3
+"""Makes docs/reproduction.md, the sources' figures beside ours.
+
+    docs/reproduction/page.py                  writes the page
+    docs/reproduction/page.py --check          says whether the page is what it would write
+    docs/reproduction/page.py --add RUN ...    takes finished runs in first: their summaries, profiles
+                                               and pictures go to docs/reproduction/results/
+
+The sources' figures are in figures/*.toml; how ours are read and judged is in rows.py. Ends with 0, with 1
+where --check finds another page, with 2 where it cannot. Needs Python 3.11 and nothing else.
+"""
+from __future__ import annotations
+
+import argparse
+import math
+import pathlib
+import re
+import sys
+import tomllib
+from collections import Counter
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from record import record_run, write_file  # noqa: E402
+from rows import FILES, NOT_RUN, TOO_WIDE, Row, all_rows, band, judged, read_toml, with_unit  # noqa: E402
+from summaries import Refused, Results  # noqa: E402
+
+HERE = pathlib.Path(__file__).resolve().parent
+PAGE = HERE.parent / "reproduction.md"
+NO_COMMAND = "run before commands were stored: see the case's page"
+
+INTRODUCTION = (
+    "# Figures of the sources beside ours\n\n"
+    "Does grainfield find what its three sources found? The first table counts the figures of each part. The "
+    "tables after it put every figure beside ours.\n\n")
+
+JUDGED = f"""
+"Cannot tell" means that our spread is too wide, or that the result is compatible with both answers. "Without a
+result" means not run or not measured; the row says which.
+
+**How agreement is judged**
+
+- **Errors** are standard errors over realizations.
+- **Numbers.** A number agrees when the band and ours ± 2 standard errors overlap. The band is the source's value
+  with its reading error: 1° for angles, 0.01 for fractions, 25 % where the source says "about".
+- **Spread too wide to tell**: 2 standard errors exceed {100 * TOO_WIDE:.0f} % of the value. For the ratios of volume
+  fraction and coordination, the effect that the source reports replaces the value (0.09, 0.08, 0.04).
+- **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
+  counts as "no dip". The result "neither" is uninformative: it is compatible with a dip and with no dip.
+- **Fits.** A fit is beyond the errors when its χ²/dof exceeds the value that a true model exceeds in 1 of 100
+  ensembles. The fits of the point source, of OSL and of the asymmetric piles used other weights: there it is
+  1.35 of 1,000.
+- **Fitted constants** have the larger of two errors, the fit's own and the bootstrap's over piles. The fit's own is
+  the jackknife's; with the other weights it is the covariance's.
+- **Ratios of two ensembles** have the error of the one minus the source's ratio times the other.
+- **"Hardly changes"** means by less than a tenth, also with 2 standard errors more. "Changes" means by more than a
+  tenth, also with 2 standard errors less. Between them the spread is too wide to tell.
+- **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
+  meant.
+- **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles
+  were seen. Its row says so. The value over the whole way to the bend is not stored.
+
+The script `docs/reproduction/page.py` makes this page. It reads the sources' figures from
+`docs/reproduction/figures/` and ours from `docs/reproduction/results/`: `CASE.json` is the `summary.json` of
+`grainfield run cases/CASE.toml`. `page.py --add RUN` takes in the summary, the profiles and the pictures of a
+finished run.
+"""
+
+HEADER = ("| source | figure | theirs | counts as theirs | ours | agreement | realizations | study |\n"
+          "|---|---|---|---|---|---|---|---|\n")
+
+
+def number(results: Results, study: str, key: str, form: str) -> str:
+    """A number of a summary; empty where there is none."""
+    value = results.plain(study, key)
+    return "" if value is None or math.isnan(value) else format(value, form)
+
+
+def grains_of(results: Results, study: str) -> float | None:
+    """Of a run, or of all members of a sweep where they have the same number."""
+    own = results.plain(study, "dem.grains")
+    if own is not None:
+        return own
+    of_members = {value for key, value in results.all[study].items() if key.startswith("dem.grains.least.")}
+    return of_members.pop() if len(of_members) == 1 else None
+
+
+def study_cell(results: Results, study: str) -> str:
+    """`box-shear`, or of a quick run `box-shear` (quick, 200 grains)."""
+    if " --quick" not in (results.text(study, "case.command") or ""):
+        return f"`{study}`"
+    grains = grains_of(results, study)
+    return f"`{study}` (quick" + ("" if grains is None else f", {grains:.0f} grains") + ")"
+
+
+def grain_seconds(results: Results, study: str) -> str:
+    """What the grains took: CPU time where every start was counted."""
+    cpu = number(results, study, "time.dem_cpu_s", ".0f")
+    if cpu:
+        return cpu + " CPU"
+    wall = results.plain(study, "time.dem_s")
+    if wall is None or math.isnan(wall):
+        return ""
+    return "taken up again, not counted" if wall < 1 else f"{wall:.0f} wall"
+
+
+def figure_line(row: Row, results: Results) -> tuple[str, str]:
+    """A line of a table, and its agreement."""
+    ours, said = judged(row, results)
+    study, lacking = row["study"], said == ""
+    realizations = "" if lacking else number(results, study, "ensemble.realizations", "g")
+    cells = [row["source"], row["what"], with_unit(row["theirs"], row), band(row), ours, said, realizations,
+             study_cell(results, study)]
+    return "| " + " | ".join(cells) + " |\n", said
+
+
+def dips(results: Results) -> str:
+    """All ensembles' dips, also those that the sources do not have."""
+    found = results.dips()
+    if not found:
+        return ""
+    out = (
+        "\n## Dips and peaks of all pours\n\n"
+        "The difference is the mean base pressure beside the apex minus that under it, over ρ g h of each pile. "
+        "If there were no dip or peak, a difference this large, of either sign, would occur by chance with "
+        "probability p (Student's t over realizations). The next column corrects p for all "
+        f"{len(found)} pours of this table (Holm); the last one decides. Ensembles of which only the states are "
+        "kept are not in the table ([which they are](reproduction/results/README.md)).\n\n"
+        "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
+        "|---|---|---|---|---|---|\n")
+    for dip in found:
+        realizations = number(results, dip.study, "ensemble.realizations", "g")
+        out += (f"| `{dip.study}` | {realizations} | {dip.difference.value:.3f} ± {dip.difference.error:.3f} "
+                f"| {dip.p:.2g} | {dip.p_holm:.2g} | {dip.word} |\n")
+    return out
+
+
+def verdicts(results: Results, studies: list[str]) -> str:
+    """What the studies themselves conclude."""
+    lines = ""
+    kept = {fit["name"] for fit in tomllib.loads((HERE / "states/fits.toml").read_text())["fit"]}
+    for study in studies:
+        sentence = results.text(study, "verdict.sentence")
+        if sentence and study.startswith("fit-"):  # dips have a table of their own
+            judge = ("" if study in kept else
+                     f" (states lost, judge of version {results.text(study, 'version')})")
+            lines += f"- `{study}`{judge}: {sentence}\n"
+    if not lines:
+        return ""
+    return (
+        "\n## Which theory the grains support\n\n"
+        "`docs/reproduction/states/judge.py PROGRAM` judges the ensembles anew whose states are kept. The other "
+        "verdicts are by the judge of their version: where no model agrees, \"supported\" meant the nearest of the "
+        "models asked.\n\n"
+        + lines +
+        "\nLayers under a point load: [verdict over all packings](cases/point-load-verdict.md); lattice "
+        "piles: [Liffman](cases/liffman-lattice.md).\n")
+
+
+def profiles_and_maps(results: Results, studies: list[str]) -> str:
+    """Links to the profiles and the pictures themselves, of the studies that have them."""
+    out = ""
+    for study in studies:
+        links = pictures = ""
+        for file in results.beside(study):
+            path = f"reproduction/results/{file}"
+            if file.endswith(".md"):
+                links += f" ([profiles as tables]({path}))"
+            elif file.endswith((".svg", ".png")):
+                pictures += f"![{file[len(study) + 1 : file.rindex('.')]}]({path})\n"
+        if pictures:
+            out += f"`{study}`{links}:\n\n{pictures}\n"
+    if not out:
+        return ""
+    return ("\n## Base pressure and volume fraction\n\n"
+            "To be compared with Roul's figures 3.9 to 3.13. They show means over the piles with standard errors. "
+            "The pressure is in units of each pile's own ρ g h.\n\n" + out)
+
+
+def how_run(results: Results, studies: list[str]) -> str:
+    out = (
+        "\n## How they were run\n\n"
+        "Grain-steps count every grain, asleep or not. Roul's interval between grains was 0.1 s, his time step "
+        "2e-6 s. A sleeping grain may hide a part of its load, by its limit:\n\n"
+        "- 1 %, today's default: `pile-line-source`, `pile-asymmetric-line`. It [gains nothing](benchmarks.md) on "
+        "piles of hundreds and 6 times on a heap of 6,500.\n"
+        "- About 20 %, an older default: `pile-point-source`, `pile-elliptic`, `pile-asymmetric-point`, and the "
+        "piles of `pile-fields-line`.\n"
+        "- 5 %, set in the case: `liffman-dropped`.\n\n"
+        "With the older default small piles came out denser than with all grains awake: by 0.3 % from a line "
+        "source, by 1 % from a funnel at 0.1 s. Without a reach of waking they were denser still ([what sleeping "
+        "changes](cases/pile-rest-detection.md)).\n\n"
+        "| study | grains | realizations | interval (s) | reach of waking | time step (s) | steps | "
+        "grain-steps | time of the grains (s) | base force / weight | version | command |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n")
+    for study in studies:
+        if not results.has(study):
+            out += f"| `{study}` | {NOT_RUN} |" + " |" * 10 + "\n"
+            continue
+        command = results.text(study, "case.command")
+        cells = [number(results, study, key, form) for key, form in (
+            ("dem.grains", ".0f"), ("ensemble.realizations", "g"), ("source.interval", "g"),
+            ("sleep.wake_reach", "g"), ("dem.time_step", ".3g"), ("dem.steps", ".4g"),
+            ("dem.grain_steps", ".3g"))]
+        cells += [grain_seconds(results, study), number(results, study, "base.weight_ratio", ".6f"),
+                  results.text(study, "version") or "",
+                  "`" + command.replace("|", "\\|") + "`" if command else NO_COMMAND]
+        out += f"| `{study}` | " + " | ".join(cells) + " |\n"
+    return out
+
+
+def misprints() -> str:
+    out = ("\n## Misprints and inconsistencies of the sources\n\n"
+           "They were found when the field equations were derived again. The program uses the last column.\n\n"
+           "| where | printed | correct |\n|---|---|---|\n")
+    for one in read_toml("misprints")["misprint"]:
+        out += f"| {one['where']} | {one['printed']} | {one['correct']} |\n"
+    return out
+
+
+def kind(said: str) -> str:
+    """Agreement in a word: agrees, differs, silent (no statement) or open (no result)."""
+    if not said:
+        return "open"
+    word = said.partition(";")[0].split()[0]
+    return word if word in ("agrees", "differs") else "silent"
+
+
+def tables(results: Results) -> str:
+    """How many rows agree, then the rows of each part."""
+    counts = ("| part | figures | agree | differ | cannot tell | without a result |\n"
+              "|---|---|---|---|---|---|\n")
+    total, out = Counter(), ""
+    for name in FILES:
+        part = read_toml(name)
+        lines, said = zip(*(figure_line(row, results) for row in part["figure"]))
+        count = Counter(map(kind, said))
+        total += count
+        out += f"\n## {part['title']}\n\n{HEADER}" + "".join(lines)
+        counts += count_line(f"[{part['title']}](#{anchor(part['title'])})", count)
+    return counts + count_line("all", total) + JUDGED + out
+
+
+def anchor(title: str) -> str:
+    """Of a heading, as GitHub makes it."""
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+
+
+def count_line(part: str, count: Counter[str]) -> str:
+    cells = [sum(count.values()), *(count[word] for word in ("agrees", "differs", "silent", "open"))]
+    return f"| {part} | " + " | ".join(map(str, cells)) + " |\n"
+
+
+def page(results: Results) -> str:
+    """The page: every figure of the sources beside ours, and how each study was run."""
+    studies = list(dict.fromkeys(row["study"] for row in all_rows()))
+    return (INTRODUCTION + tables(results) + dips(results) + verdicts(results, studies)
+            + profiles_and_maps(results, studies) + how_run(results, studies) + misprints())
+
+
+def main(words: list[str] | None = None) -> int:
+    options = argparse.ArgumentParser(description="Makes docs/reproduction.md, the sources' figures beside ours.")
+    options.add_argument("--add", type=pathlib.Path, action="append", default=[], metavar="RUN",
+                         help="folder of a finished run, taken in first; may be given several times")
+    options.add_argument("--check", action="store_true", help="write nothing: compare the page")
+    options.add_argument("--results", type=pathlib.Path, default=HERE / "results", metavar="DIR",
+                         help="the summaries; default: docs/reproduction/results")
+    options.add_argument("-o", "--output", type=pathlib.Path, default=PAGE, metavar="FILE",
+                         help="the page; default: docs/reproduction.md")
+    given = options.parse_args(words)
+    try:
+        for run in given.add:
+            for file in record_run(run, given.results):
+                print(file)
+        made = page(Results(given.results)).encode()
+        if given.check:
+            same = given.output.exists() and given.output.read_bytes() == made
+            print(f"{given.output}: " + ("up to date" if same else "differs; docs/reproduction/page.py writes it"))
+            return 0 if same else 1
+        write_file(given.output, made)
+        print(given.output)
+        return 0
+    except (Refused, OSError) as error:
+        print(f"page.py: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,372 @@
+"""A row of a table: a source's figure (figures/*.toml), ours, and whether both agree.
+
+A row is a number or a word. A number has `range`, the source's value with its reading error, and
+`key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
+`limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
+has no result says in `gap` why: "not run", or "not measured" where no study has such a figure.
+"""
+from __future__ import annotations
+
+import math
+import pathlib
+import tomllib
+from typing import Any, Callable
+
+from summaries import NAN, Measured, Refused, Results
+
+FOLDER = pathlib.Path(__file__).resolve().parent / "figures"
+#: In the order of the page.
+FILES = ("roul-piles", "roul-fits", "roul-layers", "wellmann", "liffman")
+NOT_RUN = "not run"
+WIDE = "spread too wide to tell"
+TOO_WIDE = 0.5  #: share of the value, or of the effect, that 2 standard errors may take
+
+Row = dict[str, Any]
+Rule = Callable[[Row, Results], "str | Measured | None"]
+
+
+def read_toml(name: str) -> dict[str, Any]:
+    with open(FOLDER / f"{name}.toml", "rb") as file:
+        try:
+            return tomllib.load(file)
+        except tomllib.TOMLDecodeError as error:
+            raise Refused(f"{file.name}: {error}") from error
+
+
+def all_rows() -> list[Row]:
+    return [row for name in FILES for row in read_toml(name)["figure"]]
+
+
+# Numbers.
+
+
+def _plain(row: Row, results: Results) -> Measured | None:
+    found = results.number(row["study"], row["key"], row.get("member", ""))
+    return Measured(abs(found.value), found.error) if found and row.get("size") else found
+
+
+def _flank(steeper: bool) -> Rule:
+    """The flank that is steeper, or flatter, in the mean, whichever side it is."""
+
+    def of(row: Row, results: Results) -> Measured | None:
+        sides = [results.number(row["study"], f"{row['key']}_{side}_deg") for side in ("left", "right")]
+        if None in sides:
+            return None
+        return sides[0 if (sides[0].value > sides[1].value) == steeper else 1]
+
+    return of
+
+
+def _ratio(row: Row, results: Results) -> Measured | None:
+    """a / b of independent ensembles: the second of a pair over the first.
+
+    The error is that of a - rho b over b, at the rho of the source's range that is nearest to ours
+    (Fieller). It is valid however uncertain b is, where propagation to first order is not.
+    """
+    pair = _pair(row, results)
+    if pair is None:
+        return None
+    b, a = pair
+    ratio = a.value / b.value
+    rho = min(max(ratio, row["range"][0]), row["range"][1])
+    return Measured(ratio, math.hypot(a.error, rho * b.error) / abs(b.value))
+
+
+# Words, each "WORD: what supports it".
+
+
+def _limits(row: Row, results: Results) -> str | None:
+    """With one limit: up to it, above it. With two: below, within, above."""
+    key = row["key"] + ("." + row["member"] if "member" in row else "")
+    value = results.plain(row["study"], key)
+    if value is None:
+        return None
+    if math.isnan(value):
+        return row.get("nan", "undecided: no value")
+    low, high = row["limits"][0], row["limits"][-1]
+    place = (value > high) if len(row["limits"]) == 1 else (value >= low) + (value > high)
+    return row["says"].format(word=row["words"][place], value=value, percent=100 * value)
+
+
+def _peaks_at_every_depth(row: Row, results: Results) -> str | None:
+    dot = f".{row['member']}" if "member" in row else ""
+    depths = ("0.25", "0.5", "0.75")
+    found = [results.plain(row["study"], f"response.depth_{depth}.peaks{dot}") for depth in depths]
+    if None in found:
+        return None
+    word = "one peak at every depth" if set(found) == {1} else "not one peak at every depth"
+    return f"{word}: {', '.join(f'{n:g}' for n in found)} at {', '.join(depths)} of it"
+
+
+def _dip_over_all(row: Row, results: Results) -> str | None:
+    dip, centre = results.dip(row["study"]), results.plain(row["study"], "dip.ratio")
+    if dip is None or centre is None:
+        return None
+    return (f"{dip.word}: shoulder - centre = {dip.difference.value:.3f} ± {dip.difference.error:.3f} ρgh, "
+            f"p = {dip.p:.2g} if there were none ({dip.p_holm:.2g} over all pours); "
+            f"centre over largest {centre:.2f}")
+
+
+def _dip_by_itself(row: Row, results: Results) -> str | None:
+    member = row.get("member", "")
+    word = results.text(row["study"], "dip.verdict" + (f".{member}" if member else ""))
+    found = results.number(row["study"], "dip.difference", member)
+    if word is None or found is None:
+        return None
+    return f"{word}: shoulder - centre = {found.value:.3f} ± {found.error:.3f} ρgh, by itself"
+
+
+def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
+    """Two numbers: of the studies `over` and `study`, of the members `from` and `to`, or of these keys."""
+    study = row["study"]
+    if "over" in row:
+        a, b = (results.number(one, row["key"]) for one in (row["over"], study))
+    elif "key" in row:
+        a, b = (results.number(study, row["key"], row[end]) for end in ("from", "to"))
+    else:
+        a, b = (results.number(study, row[end]) for end in ("from", "to"))
+    return None if a is None or b is None else (a, b)
+
+
+def _change(row: Row, results: Results) -> tuple[float, float, float] | None:
+    """The second of a pair less the first: difference, its error, the value of the first.
+
+    Samples of one seed share their first state where only the friction differs; the error is that
+    of independent ones, which is no less.
+    """
+    pair = _pair(row, results)
+    if pair is None:
+        return None
+    a, b = pair
+    return b.value - a.value, math.hypot(a.error, b.error), a.value
+
+
+def _rises(row: Row, results: Results) -> str | None:
+    change = _change(row, results)
+    if change is None:
+        return None
+    by, error, _ = change
+    word = "rises" if by > 2 * error else "falls" if by < -2 * error else "undecided"
+    return f"{word}: {by:+.3f} ± {error:.3f}"
+
+
+def _hardly_changes(row: Row, results: Results) -> str | None:
+    change = _change(row, results)
+    if change is None:
+        return None
+    by, error, base = change
+    most = row["within"] * abs(base)
+    if not math.isfinite(error):
+        return f"undecided: {by:+.3f}, {100 * by / base:+.0f} %"
+    word = "between"
+    if abs(by) + 2 * error <= most:
+        word = "hardly changes"
+    elif abs(by) - 2 * error > most:
+        word = "changes"
+    return f"{word}: {by:+.3f} ± {error:.3f}, {100 * by / base:+.0f} ± {100 * error / base:.0f} %"
+
+
+def _contraction(row: Row, results: Results) -> str | None:
+    """By the mean over samples at its least value and by what it regains from there."""
+    down, up = (results.number(row["study"], f"{row['key']}.{name}", row["member"])
+                for name in ("contraction", "dilation"))
+    if down is None or up is None:
+        return None
+    falls, rises = down.value > 2 * down.error, up.value > 2 * up.error
+    word = ", then ".join(["contraction"] * falls + ["dilation"] * rises) or "neither"
+    then = f"then rises by {up.value:.5f} ± {up.error:.5f}"
+    if up.value == 0 and up.error == 0:
+        then = "least at the end"
+    return f"{word}: trace/3 falls by {down.value:.5f} ± {down.error:.5f}, {then}"
+
+
+def _fit_quality(row: Row, results: Results) -> str | None:
+    """Beyond the errors where chi2/dof exceeds what a true model's does by chance in 1 of 100."""
+    found = [results.plain(row["study"], f"{row['key']}.{name}")
+             for name in ("chi2_per_dof", "chi2_chance", "rel_l2")]
+    if None in found or math.isnan(found[0]):
+        return None
+    chi2, most, rel = found
+    return (f"{'beyond' if chi2 > most else 'within'} the errors: χ²/dof {chi2:.2f} "
+            f"(chance: up to {most:.2f}), relative L2 {100 * rel:.1f} %")
+
+
+def _branch(row: Row, results: Results) -> str | None:
+    name = results.text(row["study"], f"{row['key']}.branch")
+    angle = results.number(row["study"], f"{row['key']}.beta_hat_deg")
+    return None if name is None or angle is None else f"{name}: nearest to β̂ = {angle.value:.1f}°"
+
+
+def _kink(row: Row, results: Results) -> str | None:
+    """Kink of the free core: a dip or a peak beyond two errors."""
+    size, ray = (results.number(row["study"], f"{row['key']}.{name}") for name in ("kink", "ray_deg"))
+    if size is None or ray is None or math.isnan(size.error):
+        return None
+    word = "dip" if size.value < 0 else "peak"
+    if abs(size.value) <= 2 * size.error:
+        word = "neither"
+    return (f"{word}: kink {size.value:.2f} ± {size.error:.2f} ρg "
+            f"on the ray at {ray.value:.0f}° from the vertical")
+
+
+def _convergence(row: Row, results: Results) -> str | None:
+    """Whether more disks bring H nearer to the line model: by a fifth of the difference."""
+    few, many = (results.plain(row["study"], f"{row['key']}.{row[end]}") for end in ("from", "to"))
+    if few is None or many is None:
+        return None
+    return (f"{'does not converge' if many > 0.8 * few else 'converges'}: differs by {100 * few:.2g} % "
+            f"with 360 disks, by {100 * many:.2g} % with 5,490")
+
+
+def _turning_soft(row: Row, results: Results) -> str | None:
+    """Whether a rain of hard disks comes to rest as soft ones: nine tenths, the others lie loose."""
+    rests, share, hard = (results.plain(row["study"], f"{row['key']}.{name}")
+                          for name in ("at_rest", "soft_share", "to_hard"))
+    if None in (rests, share, hard):
+        return None
+    return (f"{'turn soft' if rests == 1 and share > 0.9 else 'do not rest'}: {100 * share:.3g} % at rest; "
+            f"{hard:.0f} times one turned hard again on the way")
+
+
+def _static_friction(row: Row, results: Results) -> str | None:
+    """What viscous friction alone, without the ground's wells, does with a pile."""
+    rests, speed = (results.plain(row["study"], f"{row['key']}.{name}.{row['member']}")
+                    for name in ("at_rest", "spread_speed"))
+    if rests is None or speed is None:
+        return None
+    return (f"{'needed' if rests == 0 else 'not needed'}: without it the base goes apart "
+            f"at {speed:.2g} sqrt(g d)")
+
+
+RULES: dict[str, Rule] = {
+    "steeper flank": _flank(True),
+    "flatter flank": _flank(False),
+    "ratio": _ratio,
+    "dip over all pours": _dip_over_all,
+    "dip by itself": _dip_by_itself,
+    "peaks at every depth": _peaks_at_every_depth,
+    "rises": _rises,
+    "hardly changes": _hardly_changes,
+    "contraction": _contraction,
+    "fit quality": _fit_quality,
+    "branch": _branch,
+    "kink": _kink,
+    "convergence": _convergence,
+    "turning soft": _turning_soft,
+    "static friction": _static_friction,
+}
+
+
+def rule_of(row: Row) -> Rule:
+    if "rule" in row:
+        return RULES[row["rule"]]
+    if "limits" in row:
+        return _limits
+    return _plain if "key" in row else lambda *_: None  # a gap that no study has a figure for
+
+
+# What the row says.
+
+#: When the words of a rule are said.
+RULE_BANDS = {
+    "dip over all pours": "at 5 %, Holm",
+    "dip by itself": "at 5 %",
+    "peaks at every depth": "at a quarter, half and three quarters",
+    "rises": "by more than 2 standard errors",
+    "contraction": "each by more than 2 standard errors",
+    "fit quality": "by the chance level of χ²/dof",
+    "branch": "the nearest of three",
+    "kink": "by more than 2 standard errors",
+    "convergence": "the difference falls by more than a fifth, or not",
+    "turning soft": "all at rest, 90 % of them soft",
+    "static friction": "no rest without it",
+}
+
+
+def _interval(low: float, high: float, percent: bool) -> str:
+    low, high = (100 * limit if percent else limit for limit in (low, high))
+    text = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    if math.isinf(low):
+        text = f"at most {high:g}"
+    elif math.isinf(high):
+        text = f"above {low:g}"
+    return text + (" %" if percent else "")
+
+
+def band(row: Row) -> str:
+    """What of ours counts as the source's: the range, or the words with their limits or their rule."""
+    if "band" in row:
+        return row["band"]
+    if "range" in row:
+        return with_unit(_interval(*row["range"], percent=False), row)
+    if "agrees" not in row:
+        return ""
+    words = " or ".join(row["agrees"])
+    if len(set(row.get("limits", "ab"))) == 1 and len(row["words"]) == 3:
+        return words  # a count
+    if "limits" in row:
+        ends = [-math.inf, *row["limits"], math.inf]
+        percent = "{percent" in row["says"]
+        spans = [_interval(ends[k], ends[k + 1], percent)
+                 for k, word in enumerate(row["words"]) if word in row["agrees"]]
+        return f"{words} ({' or '.join(spans)})"
+    rule = RULE_BANDS.get(row["rule"]) or f"by at most {100 * row['within']:g} %"
+    return f"{words} ({rule})"
+
+
+def with_unit(text: str, row: Row) -> str:
+    return f"{text} {row['unit']}" if "unit" in row else text
+
+
+def number_text(found: Measured, row: Row) -> str:
+    """Ours with its error; an error that is not 0 is not shown as 0."""
+    digits = 1 if row.get("unit") == "deg" else 3
+    if math.isnan(found.error):
+        return with_unit(f"{found.value:.{digits}f}", row)
+    while digits < 6 and 0 < found.error < 0.5 * 10**-digits:
+        digits += 1
+    return with_unit(f"{found.value:.{digits}f} ± {found.error:.{digits}f}", row)
+
+
+def agreement(found: Measured, row: Row) -> str:
+    """Agrees when the source's range and ours ± 2 standard errors overlap.
+
+    It says nothing with one realization, or where 2 standard errors exceed TOO_WIDE of the source's
+    value (of the effect that a ratio reports).
+    """
+    if math.isnan(found.error):
+        return "no error, no statement"
+    low, high = row["range"]
+    miss = max(0.0, low - found.value, found.value - high)
+    if miss > 2 * found.error:
+        return f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / found.error:.1f} standard errors)"
+    stake = row.get("effect", abs((low + high) / 2))
+    return WIDE if 2 * found.error > TOO_WIDE * stake else "agrees"
+
+
+SILENT = {
+    "undecided": "too few realizations to tell",
+    "between": WIDE,
+    "neither": "uninformative",  # what is not there beyond the spread says nothing of a dip, nor of none
+}
+
+
+def note_of(row: Row, results: Results) -> str:
+    """What a reader must know of ours: "; ..." behind the agreement, or nothing."""
+    if "note" not in row:
+        return ""
+    note = row["note"]
+    value = results.plain(row["study"], f"{note['key']}.{row['member']}")
+    return "; " + note["says"].format(value=value) if value is not None and value > note["above"] else ""
+
+
+def judged(row: Row, results: Results) -> tuple[str, str]:
+    """Ours and the agreement; where there is no result, why, and nothing."""
+    found = rule_of(row)(row, results)
+    if found is None:
+        return row.get("gap", NOT_RUN) if results.has(row["study"]) else NOT_RUN, ""
+    if isinstance(found, Measured):
+        return number_text(found, row), agreement(found, row) + note_of(row, results)
+    word = found.partition(":")[0]
+    said = SILENT.get(word, "agrees" if word in row["agrees"] else "differs")
+    return found, said + note_of(row, results)

@@ -1,0 +1,332 @@
+"""docs/reproduction.md is what its script makes, and the script judges by the rules that the page states."""
+import base64
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "docs/reproduction"))
+
+import page as maker  # noqa: E402
+from rows import FILES, RULES, agreement, all_rows, band, judged, read_toml  # noqa: E402
+from summaries import Measured, Results, holm  # noqa: E402
+
+NAN = float("nan")
+RESULTS = Results(ROOT / "docs/reproduction/results")
+#: Rows without a result: "not run", "not measured" and the like. The number may only fall.
+OPEN_ROWS = 37
+#: Figures of each source, by chapter where they are numbered so.
+FIGURES = {"Roul": {1: 12, 2: 10, 3: 32, 4: 9, 5: 17}, "Wellmann": 17, "Liffman": 20}
+
+
+@pytest.fixture
+def made(tmp_path):
+    """The page of some summaries: {case: {key: value}}."""
+
+    def of(summaries):
+        for case, summary in summaries.items():
+            (tmp_path / f"{case}.json").write_text(json.dumps(summary))
+        return maker.page(Results(tmp_path))
+
+    return of
+
+
+def row_of(text, what):
+    """The cells of a row by its second one, without what counts as theirs."""
+    found = [line for line in text.splitlines() if line.split(" | ")[1:2] == [what]]
+    assert len(found) == 1, what
+    cells = [cell.strip() for cell in found[0].strip("|").split("|")]
+    return cells[:3] + cells[4:]
+
+
+def test_the_page_in_docs_is_what_the_script_makes():
+    assert maker.main(["--check"]) == 0, "docs/reproduction/page.py makes it again"
+
+
+def test_check_sees_another_page(tmp_path):
+    other = tmp_path / "page.md"
+    other.write_text((ROOT / "docs/reproduction.md").read_text().replace("28.5", "28.6", 1))
+    assert maker.main(["--check", "-o", str(other)]) == 1
+    assert "28.6" in other.read_text()
+
+
+def test_every_row_is_whole():
+    seen = set()
+    for row in all_rows():
+        assert (ROOT / "cases" / f"{row['study']}.toml").exists(), row
+        assert row["what"] not in seen, row
+        seen.add(row["what"])
+        kinds = [key for key in ("range", "agrees") if key in row]
+        assert len(kinds) == 1 or not kinds and "gap" in row, row
+        if "range" in row:
+            assert row["range"][0] <= row["range"][1], row
+        if "limits" in row:
+            assert len(row["words"]) == len(row["limits"]) + 1
+            assert set(row["agrees"]) <= set(row["words"]), row
+    assert {row["rule"] for row in all_rows() if "rule" in row} == set(RULES), "a rule that no row uses"
+
+
+def test_rows_without_a_result_are_listed_and_only_become_fewer():
+    open_rows = [row["what"] for row in all_rows() if judged(row, RESULTS)[1] == ""]
+    assert open_rows == [row["what"] for row in all_rows() if "gap" in row]
+    assert len(open_rows) == OPEN_ROWS, "fewer: lower OPEN_ROWS; more: a result was lost"
+
+
+def test_the_list_of_the_sources_figures_is_whole():
+    listed = read_toml("sources")
+    for source, numbers in FIGURES.items():
+        every = [f"fig. {chapter}.{k + 1}" for chapter, n in numbers.items() for k in range(n)] if isinstance(
+            numbers, dict) else [f"fig. {k + 1}" for k in range(numbers)]
+        kinds = ("results", "sketches", "pictures", "others")
+        found = [one for kind in kinds for one in listed[source][kind] if one.startswith("fig.")]
+        assert sorted(found) == sorted(every), source
+
+
+def test_every_figure_of_the_sources_has_a_row():
+    listed, rows = read_toml("sources"), {}
+    for row in all_rows():
+        source, kind, places = re.fullmatch(r"(\w+) ((?:fig|eq|sect)\. |table |suggestion |)(.+)", row["source"]).groups()
+        for place in places.split(", "):
+            rows.setdefault(source, set()).add(kind + place)
+    assert rows.pop("Henderson") == {"1975"}
+    assert rows.keys() == listed.keys()
+    for source, places in rows.items():
+        assert places == set(listed[source]["results"]) | set(listed[source]["text"]), source
+
+
+def test_what_counts_as_theirs_is_in_every_row():
+    text = (ROOT / "docs/reproduction.md").read_text()
+    for row in all_rows():
+        line = next(line for line in text.splitlines() if line.split(" | ")[1:2] == [row["what"]])
+        assert line.split(" | ")[3] == band(row)
+        assert (band(row) == "") == ("range" not in row and "agrees" not in row), row
+
+
+def test_bands_by_hand():
+    assert band({"range": [27, 29], "unit": "deg"}) == "27 to 29 deg"
+    assert band({"limits": [0.01], "words": ["few", "many"], "agrees": ["few"], "says": "{percent:g}"}) == (
+        "few (at most 1 %)")
+    assert band({"limits": [0.8, 1.25], "words": ["a", "b", "a"], "agrees": ["a"], "says": ""}) == (
+        "a (at most 0.8 or above 1.25)")
+    assert band({"rule": "hardly changes", "within": 0.1, "agrees": ["hardly changes"]}) == (
+        "hardly changes (by at most 10 %)")
+
+
+def test_the_first_table_counts_the_rows():
+    text = (ROOT / "docs/reproduction.md").read_text()
+    agree = sum(judged(row, RESULTS)[1].startswith("agrees") for row in all_rows())
+    assert f"| all | {len(all_rows())} | {agree} | " in text and text.count("\n| [") == len(FILES)
+
+
+def test_every_key_is_one_that_summaries_have():
+    listed = re.findall(r"^\| `([^`]+)` \|", (ROOT / "docs/summary-keys.md").read_text(), flags=re.M)
+    known = re.compile("|".join(re.escape(key).replace(r"\*", r"[^.]+(\.[0-9]+)?") for key in listed))
+    rows = [row for row in all_rows() if "key" in row or "from" in row]
+    parts = {"steeper flank": "_left_deg", "fit quality": ".chi2_per_dof", "branch": ".branch", "kink": ".kink",
+             "contraction": ".contraction", "dip by itself": ".difference", "turning soft": ".at_rest",
+             "static friction": ".at_rest", "flatter flank": "_right_deg"}
+    for row in rows:
+        for key in [row["key"] + parts.get(row.get("rule"), "")] if "key" in row else [row["from"], row["to"]]:
+            assert known.fullmatch(key), key
+
+
+def test_agreement_by_its_rule():
+    row = {"unit": "deg", "range": [27, 29]}
+    assert agreement(Measured(28, 0.1), row) == "agrees"
+    assert agreement(Measured(30, 0.6), row) == "agrees"
+    assert agreement(Measured(30, 0.4), row) == "differs by 1 deg (2.5 standard errors)"
+    assert agreement(Measured(20, 10), row) == "spread too wide to tell"
+    assert agreement(Measured(28, NAN), row) == "no error, no statement"
+    # A ratio that cannot tell 1.09 from 1 says nothing, although its range holds 1.09.
+    ratio = {"range": [1.08, 1.10]}
+    assert agreement(Measured(1.0, 0.05), ratio) == "agrees"
+    assert agreement(Measured(1.0, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
+    assert agreement(Measured(1.07, 0.02), ratio | {"effect": 0.09}) == "agrees"
+
+
+def test_holm_by_hand():
+    assert holm([0.02, NAN, 0.01, 0.9]) == pytest.approx([0.04, NAN, 0.03, 0.9], nan_ok=True)
+    assert holm([0.4, 0.3]) == [0.6, 0.6]  # none below a smaller one's
+
+
+def test_fits_give_the_larger_error_and_quality_in_words(made):
+    text = made({
+        "fit-osl-point": {
+            "fit.osl.eta": 0.72, "fit.osl.eta.error": 0.004, "fit.osl.eta.bootstrap_error": 0.02,
+            "fit.osl.mu": -0.5, "fit.osl.mu.error": 0.03, "fit.osl.mu.bootstrap_error": "nan",
+            "fit.osl.chi2_per_dof": 1.3, "fit.osl.chi2_chance": 1.21, "fit.osl.rel_l2": 0.08},
+        "fit-asymmetric": {
+            "fit.cantelaube_asymmetric.kink": -0.3, "fit.cantelaube_asymmetric.kink.error": 0.1,
+            "fit.cantelaube_asymmetric.ray_deg": 4}})
+    assert row_of(text, "OSL, point source: η")[3:5] == ["0.720 ± 0.020", "agrees"]
+    assert row_of(text, "OSL, point source: μ")[3:5] == ["-0.500 ± 0.030", "differs by 0.18 (6.0 standard errors)"]
+    assert row_of(text, "OSL, point source, η and μ free: agreement")[3:5] == [
+        "beyond the errors: χ²/dof 1.30 (chance: up to 1.21), relative L2 8.0 %", "differs"]
+    assert row_of(text, "asymmetric point source: kink of the pressure")[3:5] == [
+        "dip: kink -0.30 ± 0.10 ρg on the ray at 4° from the vertical", "agrees"]
+
+
+def test_summaries_give_numbers_with_errors_and_words(made):
+    pour = {"dip.verdict": "dip", "dip.difference": 0.1, "dip.standard_error": 0.02, "dip.p_value": 0.001,
+            "dip.ratio": 0.8}
+    text = made({
+        "pile-point-source": pour | {
+            "repose.mean_deg": 28.4, "repose.mean_deg.standard_error": 0.3, "ensemble.realizations": 8,
+            "density.ratio": 1.02, "density.ratio.standard_error": 0.004, "dem.grains": 6500,
+            "source.interval": 0.03},
+        "pile-line-source": pour | {
+            "repose.mean_deg": 24, "repose.mean_deg.standard_error": 0.5, "heap.volume_fraction": 0.79},
+        "pile-elliptic": {
+            "dip.verdict": "undecided", "dip.difference": 0.22, "dip.standard_error": 0.2, "dip.p_value": "nan",
+            "dip.ratio": 0.7}})
+    assert row_of(text, "angle of repose, point source")[3:] == ["28.4 ± 0.3 deg", "agrees", "8",
+                                                                "`pile-point-source`"]
+    assert row_of(text, "angle of repose, line source")[3:5] == ["24.0 ± 0.5 deg",
+                                                                "differs by 2 deg (4.0 standard errors)"]
+    dip = ("dip: shoulder - centre = 0.100 ± 0.020 ρgh, p = 0.002 if there were none (0.004 over all pours); "
+           "centre over largest 0.80")
+    assert row_of(text, "base pressure, point source")[3:5] == [dip, "agrees"]
+    assert row_of(text, "base pressure, line source")[3:5] == [dip, "differs"]  # the source has no dip there
+    assert row_of(text, "base pressure, elliptic grains")[4] == "too few realizations to tell"
+    assert "| `pile-point-source` | 8 | 0.100 ± 0.020 | 0.002 | 0.004 | dip |" in text
+    assert "| `pile-elliptic` |  | 0.220 ± 0.200 | nan | nan | undecided |" in text
+    # The ratio of 0.22 ± 0.2 and 0.1 ± 0.02.
+    assert row_of(text, "depth of the dip, elliptic over round")[3:5] == ["2.200 ± 2.048",
+                                                                         "spread too wide to tell"]
+    assert row_of(text, "volume fraction, line source")[3:5] == ["0.790", "no error, no statement"]
+    assert "| 1.020 ± 0.004 | differs by 0.06 (15.0 standard errors) |" in text
+    assert "| `pile-point-source` | 6500 | 8 | 0.03 |" in text
+    assert row_of(text, "asymmetric line source, steeper flank")[3:6] == ["not run", "", ""]
+    # No command is made up where none was stored.
+    assert "grainfield run cases/pile-point-source.toml" not in text
+    assert "run before commands were stored" in text
+
+
+def test_dips_are_judged_over_all_pours(made):
+    """One of three pours at p = 0.04 is what chance alone makes of three, and a study that the sources
+    do not have counts too."""
+
+    def pour(difference, p):
+        return {"dip.difference": difference, "dip.standard_error": 0.02, "dip.p_value": p, "dip.ratio": 0.8}
+
+    text = made({"pile-point-source": pour(0.05, 0.02), "pile-line-source": pour(-0.01, 0.7),
+                 "another": pour(-0.3, 0.999)})
+    assert "| `pile-point-source` |  | 0.050 ± 0.020 | 0.04 | 0.08 | neither |" in text
+    assert "| `another` |  | -0.300 ± 0.020 | 0.002 | 0.006 | peak |" in text
+    assert row_of(text, "base pressure, point source")[4] == "uninformative"
+
+
+def test_a_ratio_is_judged_by_its_numerator_where_the_denominator_is_uncertain(made):
+    """-0.04 ± 0.03 over 0.05 ± 0.02 against 1.5: -0.115 off with an error of 0.03 sqrt 2."""
+    text = made({"pile-point-source": {"dip.difference": 0.05, "dip.standard_error": 0.02},
+                 "pile-elliptic": {"dip.difference": -0.04, "dip.standard_error": 0.03}})
+    assert row_of(text, "depth of the dip, elliptic over round")[3:5] == [
+        "-0.800 ± 0.849", "differs by 2.3 (2.7 standard errors)"]
+
+
+def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
+    laws = {"case.command": "grainfield run cases/contact-laws.toml --quick",
+            "dem.grains.least.ratio_1": 200, "dem.grains.least.ratio_025": 200}
+    for member, value in {"ratio_025": 1.2, "ratio_1": 1.4, "ratio_1_friction_025": 1,
+                          "ratio_025_friction_025": 0.88, "poisson_0": 1.4, "poisson_045": 1.45,
+                          "poisson_0_friction_025": 1.39}.items():
+        laws[f"sample.end_axial_stress_ratio.{member}"] = value
+        laws[f"sample.end_axial_stress_ratio.standard_error.{member}"] = 0.02
+    shear = {}
+    for key, (value, error) in {
+            "rve.contraction.hertz_05": (0.0002, 0.0002), "rve.dilation.hertz_05": (0.001, 0.0001),
+            "sample.axial_dip_strain.penalty_025": (0.07, 0.003),
+            "sample.pressure_ratio.penalty_025": (1.3, 0.02),
+            "sample.pressure_ratio.hertz_025": (1.2, 0.02)}.items():
+        shear[key] = value
+        shear[".standard_error.".join(key.rsplit(".", 1))] = error
+    text = made({"contact-laws": laws, "box-shear": shear, "box-compression": {
+        "sample.end_axial_stress_ratio.penalty_0": 0.1,
+        "sample.end_axial_stress_ratio.standard_error.penalty_0": 0.01, "sample.kinetic_share.penalty_0": 15}})
+
+    def said(what):
+        return row_of(text, what)[3:5]
+
+    assert row_of(text, "q/p from mu = 0.25 to 0.5, penalty law")[3:] == [
+        "rises: +0.400 ± 0.028", "agrees", "", "`contact-laws` (quick, 200 grains)"]
+    assert said("q/p from mu = 0.25 to 0.5, Hertz law") == ["undecided: +0.010 ± 0.028",
+                                                            "too few realizations to tell"]
+    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.5") == ["changes: +0.200 ± 0.028, +17 ± 2 %", "differs"]
+    # Above a tenth, but not by two errors: neither.
+    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.25") == ["between: +0.120 ± 0.028, +14 ± 3 %",
+                                                               "spread too wide to tell"]
+    assert said("q/p from nu = 0 to 0.45, mu = 0.5") == ["hardly changes: +0.050 ± 0.028, +4 ± 2 %", "agrees"]
+    assert said("q/p without friction, penalty law") == [
+        "0.100 ± 0.010", "agrees; slow flow, not at rest: kinetic over elastic energy up to 15"]
+    assert said("volume of the RVEs under shear, mu = 0.5") == [
+        "dilation: trace/3 falls by 0.00020 ± 0.00020, then rises by 0.00100 ± 0.00010", "differs"]
+    assert said("shear strain xz where the axial stress is least, penalty law, mu = 0.25") == [
+        "0.070 ± 0.003", "differs by 0.0075 (2.5 standard errors)"]
+    assert said("volumetric stress over its start, from penalty to Hertz law") == ["falls: -0.100 ± 0.028",
+                                                                                   "differs"]
+    assert row_of(text, "volumetric stress over its start, mu = 0")[3:6] == [
+        "not in this run: without friction no sample came to rest before it", "", ""]
+
+
+def test_one_sample_decides_nothing_and_no_run_is_said_so(made):
+    text = made({"contact-laws": {"sample.end_axial_stress_ratio.ratio_025": 1.2,
+                                  "sample.end_axial_stress_ratio.ratio_1": 1.201}})
+    assert row_of(text, "q/p from c^T/c^N = 0.25 to 1, mu = 0.5")[3:5] == ["undecided: +0.001, +0 %",
+                                                                         "too few realizations to tell"]
+    assert row_of(text, "volumetric stress over its start, mu = 0")[3] == "not run"
+
+
+def test_takes_a_finished_run_in(tmp_path):
+    run, results = tmp_path / "run", tmp_path / "results"
+    run.mkdir()
+    results.mkdir()
+    (run / "summary.json").write_text(json.dumps({"case.name": "pile-elliptic", "repose.mean_deg": 31.5,
+                                                  "case.command": "grainfield run pile-elliptic --set a=1"}))
+    (run / "profiles.md").write_text("# Profiles\n")
+
+    def picture(title, kind, content):
+        data = base64.b64encode(content).decode()
+        return f'<img width="9" height="9" alt="{title}" src="data:image/{kind};base64,{data}">'
+
+    (run / "report.html").write_text(picture("Stress", "png", b"A") + picture("Volume fraction", "png", b"PNG") +
+                                     picture("Vertical pressure on the base", "svg+xml", b"<svg/>"))
+    out = tmp_path / "page.md"
+    assert maker.main(["--results", str(results), "--add", str(run), "-o", str(out)]) == 0
+    assert (results / "pile-elliptic.json").read_text() == (run / "summary.json").read_text()
+    assert (results / "pile-elliptic.profiles.md").read_text() == "# Profiles\n"
+    assert (results / "pile-elliptic.base-pressure.svg").read_text() == "<svg/>"
+    assert (results / "pile-elliptic.volume-fraction.png").read_text() == "PNG"
+    assert len(list(results.iterdir())) == 4
+    text = out.read_text()
+    assert row_of(text, "angle of repose, elliptic grains")[3] == "31.5 deg"
+    assert "| `grainfield run pile-elliptic --set a=1` |" in text
+    assert "(reproduction/results/pile-elliptic.profiles.md)" in text
+    assert "![base-pressure](reproduction/results/" in text
+
+
+@pytest.mark.parametrize("name", ["../escaped", "/tmp/escaped", "a/b", "..", ".hidden", ""])
+def test_a_name_that_leads_elsewhere_is_refused(tmp_path, capsys, name):
+    run, results = tmp_path / "run", tmp_path / "results"
+    run.mkdir()
+    results.mkdir()
+    (run / "summary.json").write_text(json.dumps({"case.name": name}))
+    assert maker.main(["--results", str(results), "--add", str(run), "-o", str(tmp_path / "page.md")]) == 2
+    assert f'case.name: found "{name}"' in capsys.readouterr().err
+    assert not list(results.iterdir()) and not (tmp_path / "page.md").exists()
+
+
+def test_refuses_folders_and_files_that_are_none(tmp_path, capsys):
+    out = tmp_path / "page.md"
+    assert maker.main(["--results", str(tmp_path / "none"), "-o", str(out)]) == 2
+    assert "none: no such folder" in capsys.readouterr().err
+    assert maker.main(["--add", str(tmp_path), "-o", str(out)]) == 2
+    assert "no summary.json" in capsys.readouterr().err
+    for broken, complaint in {"{": "pile-elliptic.json: ", "[]": "not a JSON object",
+                              '{"a": [1]}': "a: found [1]; allowed: numbers and texts"}.items():
+        (tmp_path / "pile-elliptic.json").write_text(broken)
+        assert maker.main(["--results", str(tmp_path), "-o", str(out)]) == 2
+        assert complaint in capsys.readouterr().err
+    assert not out.exists()
