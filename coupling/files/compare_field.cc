@@ -190,27 +190,13 @@ Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
                     std::vector<ModelProfiles> models) {
   const double h = scene.facts.height;
   const int n = scene.field.realizations;
-  if (scene.scene == Scene::response) {
-    // In space the unit is F/h^2.
-    const bool space = scene.facts.dim == 3;
-    Comparison out = compare(std::move(profiles), std::move(models),
-                             space ? scene.unit * h : scene.facts.force, h, n);
-    if (space)
-      out.scale = {"h", "F/h^2", "load",
-                   fmt::format("F = {:.6g} N, h = {:.6g} m, F/h^2 = {:.6g} Pa; realizations: {}",
-                               scene.facts.force, h, scene.unit, n)};
-    return out;
-  }
-  Comparison out = compare(std::move(profiles), std::move(models), scene.unit * h, h, n);
-  if (scene.scene == Scene::heap) {
-    out.scale = {"h", "rho g h", "apex",
-                 fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
-                             "realizations: {}",
-                             h, scene.unit, n)};
-  } else {
-    out.scale = {"h", "N/m", "origin", fmt::format("h = {:.6g} m; realizations: {}", h, n)};
-  }
-  return out;
+  const Scale scale =
+      scene.scene == Scene::response ? scale_of_load(scene.facts.force, h, scene.facts.dim)
+      : scene.scene == Scene::heap
+          ? scale_of_heaps(h, scene.unit, scaled_alone(n))
+          : Scale{h,     scene.unit, kNan,
+                  "N/m", "origin",   fmt::format("h = {:.6g} m; realizations: {}", h, n)};
+  return compare(std::move(profiles), std::move(models), scale, n);
 }
 
 void add_figures_of(const SceneField& scene, const Comparison& comparison, std::size_t main,

@@ -31,9 +31,8 @@ void add_model(const Profile& p, const Eigen::VectorXd& model, ProfileColumn* ou
 }  // namespace
 
 std::string scale_note(const Comparison& c) {
-  if (!c.scale.note.empty()) return c.scale.note;
-  return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
-                     c.depth, c.load / c.depth, c.realizations);
+  return c.scale.load > 0 ? fmt::format("{}, realizations: {}", c.scale.note, c.realizations)
+                          : c.scale.note;
 }
 
 ProfileColumns profile_columns(const Comparison& c) {
