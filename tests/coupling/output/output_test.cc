@@ -430,7 +430,7 @@ TEST_F(Output, ProfilesHaveUnitsDifferencesAndNormalisation) {
   EXPECT_THAT(csv, HasSubstr("profile,depth_m,x_m,simulation_N/m,standard_error_N/m,flamant_N/m,"
                              "flamant_difference_N/m,flamant_difference_over_error\n"));
   EXPECT_THAT(csv, HasSubstr("depth 0.1 m,0.1,0,4,0.5,3,1,2\n"));
-  EXPECT_THAT(profiles_markdown(small()), HasSubstr("| 0.000  | 1.00 ± 0.12 | 0.75 (+2.0)     |"));
+  EXPECT_THAT(profiles_markdown(small()), HasSubstr("| 0.000  | 1.00 ± 0.12 | 0.75 (+2.0)      |"));
   EXPECT_THAT(profiles_latex(small()), HasSubstr("half plane, 50 \\%"));
   write_profiles(folder_.string(), small());
   EXPECT_EQ(files(), 3u);
