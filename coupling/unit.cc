@@ -55,19 +55,40 @@ std::optional<Powers> symbol(const std::string& name) {
   return std::nullopt;
 }
 
-// "mm2", "s^2", "kN"
+// "mm2", "s^2", "m-3", "kN"
 std::optional<Powers> factor(std::string word, int sign) {
   int power = 1;
-  if (word.size() > 1 && (word.back() == '2' || word.back() == '3')) {
+  if (word.size() > 1 && word.back() >= '1' && word.back() <= '3') {
     power = word.back() - '0';
     word.pop_back();
-    if (word.back() == '^') word.pop_back();
+    if (word.size() > 1 && word.back() == '-') {
+      power = -power;
+      word.pop_back();
+    } else if (power == 1) {
+      return std::nullopt;
+    }
+    if (word.size() > 1 && word.back() == '^') word.pop_back();
   }
   std::optional<Powers> out = symbol(word);
   if (!out || (out->radians && power != 1)) return std::nullopt;
   for (int& p : out->powers) p *= sign * power;
   out->ten *= sign * power;
   return out;
+}
+
+// Unicode's signs, and powers as other programs write them, as ours: "µm", "kg/m³", "kg/m**3".
+std::string plain(std::string text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> signs{{{"\u00b5", "u"},
+                                                                                {"\u03bc", "u"},
+                                                                                {"\u00b2", "2"},
+                                                                                {"\u00b3", "3"},
+                                                                                {"\u207b", "-"},
+                                                                                {"\u00b7", " "},
+                                                                                {"**", "^"}}};
+  for (const auto& [theirs, ours] : signs)
+    for (std::size_t at = 0; (at = text.find(theirs, at)) != std::string::npos;)
+      text.replace(at, theirs.size(), ours);
+  return text;
 }
 
 std::string kind(const Powers& unit) {
@@ -81,7 +102,7 @@ std::optional<Unit> parse_unit(const std::string& text) {
   Powers out;
   std::string word;
   int sign = 1, factors = 0;
-  for (const char ch : text + " ") {
+  for (const char ch : plain(text) + " ") {
     if (ch != ' ' && ch != '/') {
       word += ch;
       continue;

@@ -214,11 +214,12 @@ int export_deck(ExportRequest given) {
   folder.require_other_than(inputs);
   write_text_file(folder.staging("packing.data"), deck.data);
   write_text_file(folder.staging("in.lammps"), deck.input);
+  if (!deck.ids.empty()) write_text_file(folder.staging("ids.csv"), deck.ids);
   const auto written = folder.staged();
   note_gone(given.output, folder.publish());
-  say("{} of {}: {} spheres, {} walls{}\n", group, given.snapshots,
+  say("{} of {}: {} {}, {} walls{}\n", group, given.snapshots,
       static_cast<std::size_t>(setup.copies[0] * setup.copies[1]) * packing.grains.size(),
-      packing.walls.size(),
+      packing.dim == 2 ? "disks" : "spheres", packing.walls.size(),
       setup.loaded.empty() ? "" : fmt::format(", load on {}", setup.loaded.size()));
   for (const std::string& line : deck.notes) note("note: {}", line);
   say("{}\nin {}: lmp -in in.lammps; its first lines say what it needs and how to come back\n",

@@ -18,7 +18,6 @@
 #include "coupling/files/average_files.h"
 #include "coupling/files/compare_field.h"
 #include "coupling/files/places.h"
-#include "coupling/models/parse_choices.h"
 #include "coupling/output/field_file.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/other_file.h"
@@ -160,10 +159,9 @@ void add_average(CLI::App& app, Action& action) {
 void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("compare", "compare averaged fields with continuum models");
   auto request = std::make_shared<CompareRequest>();
-  auto models = std::make_shared<std::vector<std::string>>();
   command->add_option("fields", request->file, "FIELD.h5 of run or average")->required();
   command
-      ->add_option("--model", *models,
+      ->add_option("--model", request->models,
                    "NAME, NAME:p=v,... or LABEL=NAME:p=v,...; what the file knows is filled in: F, "
                    "h; of heaps rho_g, phi_deg, left_deg, right_deg, h")
       ->required()
@@ -189,7 +187,6 @@ void add_compare(CLI::App& app, Action& action) {
   add_output(*command, request->folder, "folder; default results/compare-FIELD");
   command->callback([=, &action] {
     action = [=] {
-      request->models = parse_choices(*models);
       if (request->folder.empty()) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
@@ -201,7 +198,7 @@ void add_compare(CLI::App& app, Action& action) {
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       for (const std::string& doubt : outcome.carried_doubts) note("warning: {}", doubt);
       for (const std::string& line : outcome.carried) say("{}\n", line);
-      say("{}\nreport: {}/report.html\n", judgement_text(outcome.judgement),
+      say("{}\nreport: {}/report.html\n", judgement_text(outcome.comparison.judgement),
           printable_name(request->folder));
       return 0;
     };

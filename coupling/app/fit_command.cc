@@ -4,13 +4,11 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "coupling/app/commands.h"
 #include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
 #include "coupling/app/threads_option.h"
-#include "coupling/case/shipped_cases.h"
 #include "coupling/files/fit_files.h"
 #include "coupling/output/judgement.h"
 #include "coupling/system/printable.h"
@@ -29,29 +27,23 @@ std::string shown(const std::vector<std::string>& names) {
 void add_fit(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "fit", "fit stress models to heaps: constants with errors, ranking, tables, report");
-  struct Given {
-    FitRequest request;
-    std::vector<std::string> models, components;
-    std::vector<double> heights;
-    double width = 0;
-  };
-  auto given = std::make_shared<Given>();
-  FitRequest& request = given->request;
+  auto given = std::make_shared<FitRequest>();
+  FitRequest& request = *given;
   command
       ->add_option("inputs", request.inputs,
                    "heaps: SNAPSHOT.h5 (its piles) or SNAPSHOT.h5:group of run or import; or one "
                    "FIELD.h5[:field] of run or average --frame heap")
       ->required();
   command
-      ->add_option("--model", given->models,
+      ->add_option("--model", request.models,
                    "NAME (grainfield keys fit), or NAME:p=free,q=0.3 or LABEL=NAME:... of a model "
                    "(grainfield model), repeatable; default all for symmetric heaps")
       ->allow_extra_args(false);
-  command->add_option("--heights", given->heights, "fit.heights: shares of the heap's height")
+  command->add_option("--heights", request.heights, "fit.heights: shares of the heap's height")
       ->delimiter(',');
-  command->add_option("--components", given->components, "fit.components")->delimiter(',');
-  auto* width = command->add_option("--width-diameters", given->width,
-                                    "fit.width_diameters: of the averaging (snapshots only)");
+  command->add_option("--components", request.components, "fit.components")->delimiter(',');
+  command->add_option("--width-diameters", request.width_diameters,
+                      "fit.width_diameters: of the averaging (snapshots only)");
   command->add_option("--case", request.case_file, "TOML file or shipped case: its [fit] counts");
   command->add_option("--set", request.overrides, "fit.KEY=VALUE, repeatable")
       ->allow_extra_args(false);
@@ -67,12 +59,7 @@ void add_fit(CLI::App& app, Action& action) {
   add_threads(*command, request.threads, "the results do not depend on it");
   command->callback([=, &action] {
     action = [=] {
-      FitRequest wanted = given->request;
-      if (!wanted.case_file.empty()) wanted.case_file = find_case(wanted.case_file);
-      const Overrides chosen =
-          fit_overrides(given->models, given->heights, given->components,
-                        width->count() > 0 ? std::optional(given->width) : std::nullopt);
-      wanted.overrides.insert(wanted.overrides.end(), chosen.begin(), chosen.end());
+      FitRequest wanted = *given;
       if (wanted.folder.empty()) {
         wanted.folder =
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
@@ -83,7 +70,7 @@ void add_fit(CLI::App& app, Action& action) {
       }();
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.gone.empty()) note("{}", outcome.gone);
-      say("{}\n{}\n", judgement_text(outcome.judgement), outcome.constants);
+      say("{}\n{}\n", judgement_text(outcome.comparison.judgement), outcome.constants);
       if (!outcome.carried.empty()) say("{}\n", outcome.carried);
       if (!outcome.coverage.empty()) say("{}\n", outcome.coverage);
       say("fitted to {}: {}\nreport: {}/report.html\n", shown(outcome.packings), outcome.note,

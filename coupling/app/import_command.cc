@@ -17,6 +17,7 @@
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
+#include "coupling/import/repeated_warnings.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_file.h"
 #include "coupling/output/other_file.h"
@@ -115,7 +116,7 @@ std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
   return text;
 }
 
-void show(const ImportedSnapshot& imported, bool default_gravity) {
+void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnings& repeated) {
   const dem::Snapshot& s = imported.snapshot;
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
@@ -130,7 +131,9 @@ void show(const ImportedSnapshot& imported, bool default_gravity) {
                                   : imported.units.name;
   say("  mean diameter {:.4g} m, density {:.4g} {} (the files are read as {})\n", sizes.diameter,
       sizes.density, s.dim == 2 ? "kg/m2" : "kg/m3", read_as);
-  const auto warn = [&](const std::string& text) { note("warning: {}: {}", imported.group, text); };
+  const auto warn = [&](const std::string& text) {
+    if (repeated.is_first(imported.group, text)) note("warning: {}: {}", imported.group, text);
+  };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   for (const std::string& text : imported.warnings) warn(text);
   for (const std::string& text : imported.notes) say("  {}\n", text);
@@ -214,6 +217,8 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option(
       "--load", given->load,
       "ID=FX,FY[,FZ]: the force applied to a grain, N; of several steps on the latest");
+  command->add_option("--ids", o.ids_file,
+                      "table id,original: grains get the original ids (of `export --to lammps`)");
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
   command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
   command->add_flag("--leave-out-distant", o.leave_out_distant,
@@ -223,6 +228,7 @@ void add_import(CLI::App& app, Action& action) {
       parse(*given);
       ImportOptions& options = given->options;
       require_other_file("-o", given->output, options.files);
+      if (!options.ids_file.empty()) require_other_file("-o", given->output, {options.ids_file});
       require_ending("-o", given->output, {".h5", ".hdf5"}, "HDF5");
       // Who adds reads first what is there: two of them at once would each lose the other's.
       std::unique_ptr<FileLock> lock;
@@ -244,6 +250,7 @@ void add_import(CLI::App& app, Action& action) {
         if (all > 1 && std::chrono::steady_clock::now() - start > patience)
           progress.show([&] { return fmt::format("{}: {} of {}", phase, done, all); });
       };
+      RepeatedWarnings repeated;
       import_snapshots(options, [&](ImportedSnapshot&& imported) {
         progress.end();
         std::string& group = imported.group;
@@ -261,8 +268,9 @@ void add_import(CLI::App& app, Action& action) {
         file.write_with([&](const std::string& temporary) {
           dem::write_snapshot(temporary, group, imported.snapshot);
         });
-        show(imported, !options.gravity);
+        show(imported, !options.gravity, repeated);
       });
+      for (const std::string& line : repeated.lines()) note("warning: {}", line);
       file.commit();
       return 0;
     };

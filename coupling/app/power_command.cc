@@ -12,7 +12,6 @@
 #include "coupling/files/compare_field.h"
 #include "coupling/files/fit_files.h"
 #include "coupling/judge/words.h"
-#include "coupling/models/parse_choices.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/text_table.h"
 #include "coupling/system/printable.h"
@@ -39,18 +38,20 @@ Judgement judgement_of(const PowerRequest& given) {
   if (given.inputs.size() == 1 && holds_responses(given.inputs.front())) {
     CompareRequest request;
     request.file = given.inputs.front();
-    request.models = parse_choices(given.models);
+    request.models = given.models;
     request.lines.components = given.components;
     request.lines.heights = given.heights;
     request.folder = given.folder;
-    return compare_field(request).judgement;
+    return compare_field(request).comparison.judgement;
   }
   FitRequest request;
   request.inputs = given.inputs;
-  request.overrides = fit_overrides(given.models, given.heights, given.components, std::nullopt);
+  request.models = given.models;
+  request.heights = given.heights;
+  request.components = given.components;
   request.folder = given.folder;
   request.threads = given.threads;
-  return fit_files(request).judgement;
+  return fit_files(request).comparison.judgement;
 }
 
 }  // namespace

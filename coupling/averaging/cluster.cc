@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -38,14 +39,13 @@ Cluster::Cluster(const dem::Snapshot& first, const Eigen::Vector3d& centre, doub
 
 Eigen::MatrixXd Cluster::places(const dem::Snapshot& state) const {
   const dem::Snapshot& first = *first_;
-  const bool counted = dem::counts_images(first) || dem::counts_images(state);
+  const dem::Displacements displacements(first, state);
   Eigen::MatrixXd out(size(), 3);
   for (Eigen::Index m = 0; m < size(); ++m) {
     const Member& member = members_[static_cast<std::size_t>(m)];
-    const dem::Grain &a = first.grains[member.grain], &b = state.grains[member.grain];
-    dem::Vec3 at = a.position + dem::displacement(a, b, first.cell, state.cell, counted);
+    dem::Vec3 at = first.grains[member.grain].position + displacements.of(member.grain);
     if (first.cell.is_periodic()) {
-      at += dem::shift_to(state.cell, dem::image_in(state.cell, first.cell, member.image));
+      at += dem::shift_to(state.cell, displacements.image_after(member.image));
     }
     out.row(m) = at.transpose();
   }

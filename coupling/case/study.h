@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "coupling/case/case.h"
-#include "coupling/output/summary_key.h"
+#include "coupling/output/figure.h"
 #include "dem/study/outlook.h"
 #include "dem/study/run.h"
 

@@ -79,11 +79,9 @@ ProfileShape shape_of(const Eigen::VectorXd& x, const Eigen::VectorXd& value,
 }
 
 // Everything but models and profiles.
-Comparison described(const std::vector<Profile>& profiles, double load, double depth,
-                     int realizations) {
+Comparison described(const std::vector<Profile>& profiles, const Scale& scale, int realizations) {
   Comparison c;
-  c.load = load;
-  c.depth = depth;
+  c.scale = scale;
   c.realizations = realizations > 0
                        ? realizations
                        : std::max<int>(1, static_cast<int>(profiles.front().samples.cols()));
@@ -96,10 +94,32 @@ Comparison described(const std::vector<Profile>& profiles, double load, double d
 
 }  // namespace
 
-Comparison without_models(std::vector<Profile> profiles, double load, double depth,
-                          int realizations) {
+Scale scale_of_load(double force, double h, int dim, const std::string& more) {
+  const bool space = dim == 3;
+  Scale out{h, space ? force / (h * h) : force / h, force, space ? "F/h^2" : "F/h", "load", ""};
+  out.note = fmt::format("F = {:.6g} N, h = {:.6g} m, {} = {:.6g} {}{}", force, h, out.stress,
+                         out.unit, space ? "Pa" : "N/m", more);
+  return out;
+}
+
+Scale scale_of_heaps(double h, double pressure, const std::string& what, const std::string& x_from,
+                     int dim) {
+  return {h,
+          pressure,
+          kNan,
+          "rho g h",
+          x_from,
+          fmt::format("h = {:.6g} m, rho g h = {:.6g} {}{}", h, pressure, dim == 3 ? "Pa" : "N/m",
+                      what)};
+}
+
+std::string scaled_alone(int realizations) {
+  return fmt::format("; every pile scaled by its own; realizations: {}", realizations);
+}
+
+Comparison without_models(std::vector<Profile> profiles, const Scale& scale, int realizations) {
   check(profiles, {});
-  Comparison c = described(profiles, load, depth, realizations);
+  Comparison c = described(profiles, scale, realizations);
   c.profiles = std::move(profiles);
   return c;
 }
@@ -118,13 +138,13 @@ std::string family_of(const std::string& model_name) {
   return model_name;
 }
 
-Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
-                   double depth, int realizations) {
+Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models,
+                   const Scale& scale, int realizations) {
   if (!profiles.empty() && models.empty()) {
     throw std::invalid_argument("nothing to compare with: no model");
   }
   check(profiles, models);
-  Comparison c = described(profiles, load, depth, realizations);
+  Comparison c = described(profiles, scale, realizations);
   for (const ModelProfiles& model : models) {
     ModelComparison result{model.key, model.label, model.family, {}, {}, {}};
     Totals totals;

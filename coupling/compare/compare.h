@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "continuum/constants.h"
 #include "coupling/compare/shape.h"
 #include "coupling/judge/judgement.h"
 
@@ -67,13 +68,22 @@ struct ModelComparison {
   std::vector<ProfileShape> shapes;  ///< of the model, one per profile
 };
 
-/// How lengths and values of a comparison are made dimensionless, in words.
+/// How lengths and stresses of a comparison are made dimensionless.
 struct Scale {
-  std::string length = "h";     ///< its name
-  std::string stress = "F/h";   ///< name of the unit of normalised profiles
+  double h = 0;                 ///< m
+  double unit = 0;              ///< of stresses, N/m (3D: Pa)
+  double load = kNan;           ///< F, N; nan: there is none
+  std::string stress = "F/h";   ///< name of the unit
   std::string x_from = "load";  ///< where x = 0
-  std::string note;             ///< one line for tables; empty: F, h, F/h and the realizations
+  std::string note;             ///< one line for tables
 };
+/// Of responses to a load: F/h, in space F/h^2. `more` ends the note.
+Scale scale_of_load(double force, double h, int dim = 2, const std::string& more = "");
+/// Of heaps: rho g h. `what` ends the note.
+Scale scale_of_heaps(double h, double pressure, const std::string& what,
+                     const std::string& x_from = "apex", int dim = 2);
+/// "; every pile scaled by its own; realizations: N".
+std::string scaled_alone(int realizations);
 
 struct Comparison {
   std::vector<Profile> profiles;
@@ -84,8 +94,6 @@ struct Comparison {
   std::vector<ModelComparison> results;    ///< in the order of models
   Judgement judgement;
   int realizations = 1;
-  double load = 0;   ///< F, N
-  double depth = 0;  ///< h, m
   Scale scale;
   int dim = 2;  ///< of the grains
 
@@ -96,20 +104,17 @@ struct Comparison {
   const char* column() const { return measured() ? "measured" : "simulation"; }
   /// What pictures call the profiles: "grains, mean of 8", "grains", "measured".
   std::string label() const;
-  /// Unit of normalised profiles: F/h, N/m; in space F/h^2, Pa.
-  double unit() const { return dim == 3 ? load / (depth * depth) : load / depth; }
 };
 
 /// The simulation alone: shapes of the profiles, no models, no verdict. Throws
 /// std::invalid_argument for no profile, sizes that differ, or a profile that is nan everywhere.
-Comparison without_models(std::vector<Profile> profiles, double load, double depth,
-                          int realizations = 0);
+Comparison without_models(std::vector<Profile> profiles, const Scale& scale, int realizations = 0);
 
 /// `realizations`: behind the profiles' errors; 0: as many as the profiles have samples. Throws
 /// std::invalid_argument for no profile, no model, sizes that differ, a simulation that is nan
 /// everywhere, or no point that both it and a model have.
-Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models, double load,
-                   double depth, int realizations = 0);
+Comparison compare(std::vector<Profile> profiles, std::vector<ModelProfiles> models,
+                   const Scale& scale, int realizations = 0);
 
 /// Indices of the models in the judgement's order; without models in their own order.
 std::vector<std::size_t> ranked(const Comparison& comparison);

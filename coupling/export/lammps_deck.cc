@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "coupling/export/lammps_ids.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -102,18 +103,18 @@ double volume_of(const dem::Snapshot& s, const dem::Grain& g) {
   return s.dim == 3 ? g.volume : 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
 }
 
-std::string data_of(const dem::Snapshot& s) {
+std::string data_of(const dem::Snapshot& s, const LammpsIds& ids) {
   const Box box = box_of(s);
-  std::string out =
-      fmt::format("Packing of spheres, SI units\n\n{} atoms\n2 atom types\n\n", s.grains.size());
+  std::string out = fmt::format("Packing of {}, SI units\n\n{} atoms\n2 atom types\n\n",
+                                s.dim == 2 ? "disks" : "spheres", s.grains.size());
   for (int a = 0; a < 3; ++a) {
     out += fmt::format("{:.17g} {:.17g} {}lo {}hi\n", box.low[a], box.high[a], kAxes[a], kAxes[a]);
   }
   out += "\nAtoms # sphere\n\n";
   for (const dem::Grain& g : s.grains) {
-    out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", g.id + 1, g.fixed ? 2 : 1,
-                       2 * g.radius, g.mass / volume_of(s, g), g.position.x(), g.position.y(),
-                       g.position.z());
+    out += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", ids.of(g.id),
+                       g.fixed ? 2 : 1, 2 * g.radius, g.mass / volume_of(s, g), g.position.x(),
+                       g.position.y(), g.position.z());
   }
   return out;
 }
@@ -215,12 +216,13 @@ bool has_fixed(const dem::Snapshot& s) {
   return std::any_of(s.grains.begin(), s.grains.end(), [](const auto& g) { return g.fixed; });
 }
 
-std::string import_command(const dem::Snapshot& s, const char* state) {
+std::string import_command(const dem::Snapshot& s, const char* state, const LammpsDeck& deck) {
   std::string out = fmt::format(
       "grainfield import --from lammps {0}.grains {0}.contacts --column 'i,j=c_ids[1..2]' --column "
-      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1} --group "
+      "'fnx,fny,fnz,ftx,fty,ftz=c_p[1..6]' --column 'sx,sy,sz=c_p[4..6]'{1}{2} --dim {3} --group "
       "/{0}",
-      state, has_fixed(s) ? " --fixed type=2" : "");
+      state, has_fixed(s) ? " --fixed type=2" : "", deck.ids.empty() ? "" : " --ids ids.csv",
+      s.dim);
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
     const dem::Wall& w = s.walls[k];
     int axis = 0;
@@ -260,7 +262,8 @@ std::string rest(const char* label) {
       label);
 }
 
-std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDeck& deck) {
+std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, const LammpsIds& ids,
+                     LammpsDeck& deck) {
   const dem::MaterialSetup& m = setup.material;
   const double gravity = s.gravity.norm();
   const bool flat = s.dim == 2;
@@ -277,17 +280,17 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
       setup.known ? "" : " -var law \"hooke K_N GAMMA_N ...\" -var step SECONDS";
   std::string out = fmt::format(
       "# lmp -in in.lammps{0}, or mpirun -n 8 lmp -in in.lammps{0}. Back:\n# {1} -o lammps.h5\n",
-      variables, import_command(s, "unloaded"));
+      variables, import_command(s, "unloaded", deck));
   if (!setup.known) {
     deck.notes.push_back(
         "the packing does not tell its law: in.lammps takes it and the time step from the command "
         "line, as its first line says; with CASE.toml before the packing the deck has both");
   }
   if (!setup.loaded.empty()) {
-    std::string ids;
-    out += "# " + import_command(s, "loaded") +
+    out += "# " + import_command(s, "loaded", deck) +
            fmt::format(" --load {}={:.17g},{:.17g},{:.17g} --add -o lammps.h5\n",
-                       setup.loaded.front() + 1, setup.force.x(), setup.force.y(), setup.force.z());
+                       ids.of(setup.loaded.front()), setup.force.x(), setup.force.y(),
+                       setup.force.z());
   }
   out += fmt::format(
       "units si\n{}atom_style sphere\natom_modify map array\nnewton off\nboundary {} {} {}\n"
@@ -331,7 +334,7 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, LammpsDec
   out += "# The springs of friction begin anew.\n" + rest("unloaded") + dump_of(s, "unloaded");
   if (!setup.loaded.empty()) {
     out += "\ngroup loaded id";
-    for (const std::int64_t id : setup.loaded) out += fmt::format(" {}", id + 1);
+    for (const std::int64_t id : setup.loaded) out += fmt::format(" {}", ids.of(id));
     out += fmt::format("\nfix load loaded addforce {:.17g} {:.17g} {:.17g}\nrun 2500\n",
                        setup.force.x(), setup.force.y(), setup.force.z()) +
            rest("loaded") + dump_of(s, "loaded");
@@ -361,8 +364,12 @@ LammpsDeck lammps_deck(const dem::Snapshot& given, const LammpsSetup& setup) {
   LammpsDeck deck;
   dem::Snapshot packing = given;
   if (!setup.known) leave_out_walls(packing, deck);
-  deck.data = data_of(packing);
-  deck.input = input_of(packing, setup, deck);
+  const LammpsIds ids(packing);
+  const bool copied = setup.copies[0] * setup.copies[1] > 1;
+  if (!ids.kept()) deck.notes.push_back(ids.note(copied));
+  if (!ids.kept() && !copied) deck.ids = ids.csv(packing);
+  deck.data = data_of(packing, ids);
+  deck.input = input_of(packing, setup, ids, deck);
   std::sort(deck.notes.begin(), deck.notes.end());
   deck.notes.erase(std::unique(deck.notes.begin(), deck.notes.end()), deck.notes.end());
   return deck;

@@ -28,8 +28,10 @@ struct LammpsSetup {
 };
 
 struct LammpsDeck {
-  std::string data;   ///< packing.data, for read_data; LAMMPS' ids are ours plus one
+  std::string data;   ///< packing.data, for read_data
   std::string input;  ///< in.lammps
+  /// ids.csv, LAMMPS' ids and ours, for import --ids; empty: LAMMPS has ours, 1 to 2^31 - 1.
+  std::string ids;
   /// What LAMMPS does differently, one line each.
   std::vector<std::string> notes;
 };

@@ -7,14 +7,15 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "continuum/settings.h"
-#include "coupling/compare/compare.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
+#include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
@@ -99,7 +100,10 @@ std::vector<std::string> chosen(const CompareRequest& request) {
   if (!heap_lines.empty()) return heap_lines;
   if (!heap_maps.empty()) return {heap_maps.front()};
   if (!others.empty()) return {others.front()};
-  throw std::invalid_argument(request.file + ": holds no averaged stress to compare");
+  throw std::invalid_argument(request.file +
+                              ": holds no averaged stress to compare (`grainfield average` and "
+                              "`grainfield import-field` make "
+                              "it)");
 }
 
 void require_same(const SceneField& first, const SceneField& next, const std::string& file) {
@@ -186,27 +190,13 @@ Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
                     std::vector<ModelProfiles> models) {
   const double h = scene.facts.height;
   const int n = scene.field.realizations;
-  if (scene.scene == Scene::response) {
-    // In space the unit is F/h^2.
-    const bool space = scene.facts.dim == 3;
-    Comparison out = compare(std::move(profiles), std::move(models),
-                             space ? scene.unit * h : scene.facts.force, h, n);
-    if (space)
-      out.scale = {"h", "F/h^2", "load",
-                   fmt::format("F = {:.6g} N, h = {:.6g} m, F/h^2 = {:.6g} Pa; realizations: {}",
-                               scene.facts.force, h, scene.unit, n)};
-    return out;
-  }
-  Comparison out = compare(std::move(profiles), std::move(models), scene.unit * h, h, n);
-  if (scene.scene == Scene::heap) {
-    out.scale = {"h", "rho g h", "apex",
-                 fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
-                             "realizations: {}",
-                             h, scene.unit, n)};
-  } else {
-    out.scale = {"h", "N/m", "origin", fmt::format("h = {:.6g} m; realizations: {}", h, n)};
-  }
-  return out;
+  const Scale scale =
+      scene.scene == Scene::response ? scale_of_load(scene.facts.force, h, scene.facts.dim)
+      : scene.scene == Scene::heap
+          ? scale_of_heaps(h, scene.unit, scaled_alone(n))
+          : Scale{h,     scene.unit, kNan,
+                  "N/m", "origin",   fmt::format("h = {:.6g} m; realizations: {}", h, n)};
+  return compare(std::move(profiles), std::move(models), scale, n);
 }
 
 void add_figures_of(const SceneField& scene, const Comparison& comparison, std::size_t main,
@@ -292,8 +282,12 @@ void add_shares(const std::vector<SceneField>& scenes, CompareOutcome& out) {
 }  // namespace
 
 CompareOutcome compare_field(const CompareRequest& request) {
-  OutputFolder results(request.folder, "grainfield compare " + request.file);
-  if (request.held.empty()) results.require_other_than({request.file});
+  const std::vector<ModelChoice> choices = parse_choices(request.models);
+  std::optional<OutputFolder> results;
+  if (!request.folder.empty()) {
+    results.emplace(request.folder, "grainfield compare " + request.file);
+    if (request.held.empty()) results->require_other_than({request.file});
+  }
   std::vector<SceneField> scenes;
   std::vector<FieldLine> lines;
   Field map;
@@ -344,10 +338,10 @@ CompareOutcome compare_field(const CompareRequest& request) {
   std::vector<ModelProfiles> models;
   std::vector<ModelMap> model_maps;
   std::vector<std::string> names;
-  for (const auto& choice : request.models) names.push_back(choice.name);
-  require_different(request.models);
+  for (const auto& choice : choices) names.push_back(choice.name);
+  require_different(choices);
   const bool flanks_apart = takes_flanks_apart(names);
-  for (const auto& choice : request.models) {
+  for (const auto& choice : choices) {
     require_known(choice, facts, request.file);
     if (scene.scene != Scene::layer) {
       require_subject({choice}, heap ? Subject::heap : Subject::load, facts.dim, "model");
@@ -381,18 +375,21 @@ CompareOutcome compare_field(const CompareRequest& request) {
   add_judgement(summary, comparison.judgement);
   require_documented(summary);
 
-  out.judgement = comparison.judgement;
   out.measured = measured;
-  const ReportRows made{{"fields", request.file},
-                        {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
-                        {"version", version_and_commit()}};
-  write_profiles(results.staging(), comparison);
-  write_judgement(results.staging(), comparison.judgement);
-  out.lacks = write_report(results.staging("report.html"),
-                           page_of(request, scene, comparison, map, model_maps, made))
-                  .complaint();
-  write_summary(results.staging("summary.json"), summary);
-  out.gone = told_of_gone(request.folder, results.publish());
+  if (results) {
+    const ReportRows made{{"fields", request.file},
+                          {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
+                          {"version", version_and_commit()}};
+    write_profiles(results->staging(), comparison);
+    write_judgement(results->staging(), comparison.judgement);
+    out.lacks = write_report(results->staging("report.html"),
+                             page_of(request, scene, comparison, map, model_maps, made))
+                    .complaint();
+    write_summary(results->staging("summary.json"), summary);
+    out.gone = told_of_gone(request.folder, results->publish());
+  }
+  out.comparison = std::move(comparison);
+  out.summary = std::move(summary);
   return out;
 }
 

@@ -3,9 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "coupling/compare/compare.h"
 #include "coupling/files/field_lines.h"
-#include "coupling/models/choice.h"
 #include "coupling/output/field_io.h"
+#include "coupling/output/tables.h"
 
 namespace grainfield::coupling {
 
@@ -13,13 +14,14 @@ struct CompareRequest {
   std::string file;                 ///< of write_fields
   NamedFields held{};               ///< instead: fields in memory; `file` only names them
   std::vector<std::string> fields;  ///< empty: see compare_field
-  std::vector<ModelChoice> models;
+  std::vector<std::string> models;  ///< as of parse_choices
   LineOptions lines;
-  std::string folder;  ///< of the outputs; made where missing
+  std::string folder;  ///< of the outputs, made where missing; empty: nothing is written
 };
 
 struct CompareOutcome {
-  Judgement judgement;
+  Comparison comparison;  ///< profiles, models and judgement
+  Summary summary;
   std::string lacks;  ///< of the report (ReportResult::complaint)
   /// Of what was measured, by field: share_text(), and share_doubt() where there is one.
   std::vector<std::string> carried, carried_doubts;
@@ -32,8 +34,8 @@ struct CompareOutcome {
 /// the lines of the file's responses, or a map's rows; in a file without responses the lines of the
 /// first heap average, or its map; else the first field. Models are seen through each field's own
 /// kernel: lines whose name starts with "base" along x, others in the plane. Writes profiles.*,
-/// summary.json and report.html. Throws std::invalid_argument for fields of different scenes, loads
-/// or sizes together, missing attributes, and what models throw.
+/// summary.json and report.html into the folder. Throws std::invalid_argument for fields of
+/// different scenes, loads or sizes together, missing attributes, and what models throw.
 CompareOutcome compare_field(const CompareRequest& request);
 
 }  // namespace grainfield::coupling

@@ -10,6 +10,7 @@
 
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
+#include "coupling/case/shipped_cases.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/files/measured_share.h"
@@ -107,7 +108,10 @@ Chosen choose(const std::vector<std::string>& inputs) {
     const std::vector<std::string> groups = dem::list_snapshots(input.file);
     const std::vector<std::string> fields = list_fields(input.file);
     if (groups.empty() && fields.empty()) {
-      throw std::invalid_argument(input.file + ": holds neither snapshots nor fields");
+      throw std::invalid_argument(
+          input.file +
+          ": holds neither snapshots nor fields (`grainfield import`, `average` and "
+          "`import-field` make them)");
     }
     if (!fields.empty()) {
       if (inputs.size() > 1) {
@@ -166,23 +170,28 @@ std::string coverage_of_heaps(const FitSetup& setup, const Observations& heaps,
   return coverage_text(coverage_of(heaps.data, models, options), heaps.data.realizations());
 }
 
-}  // namespace
-
-Overrides fit_overrides(const std::vector<std::string>& models, const std::vector<double>& heights,
-                        const std::vector<std::string>& components,
-                        std::optional<double> width_diameters) {
-  Overrides set;
+// All that the user chooses of [fit], as overrides of it.
+Overrides overrides_of(const FitRequest& request) {
+  Overrides set = request.overrides;
   std::vector<std::string> choices;
-  for (const std::string& text : models) {
+  for (const std::string& text : request.models) {
     for (std::string& one : split_choices(text)) choices.push_back(std::move(one));
   }
   if (!choices.empty()) set.push_back("fit.models=" + quoted_list(choices));
-  if (!heights.empty()) set.push_back(fmt::format("fit.heights=[{}]", fmt::join(heights, ", ")));
-  if (!components.empty()) set.push_back("fit.components=" + quoted_list(components));
-  if (width_diameters) set.push_back(fmt::format("fit.width_diameters={}", *width_diameters));
+  if (!request.heights.empty()) {
+    set.push_back(fmt::format("fit.heights=[{}]", fmt::join(request.heights, ", ")));
+  }
+  if (!request.components.empty()) {
+    set.push_back("fit.components=" + quoted_list(request.components));
+  }
+  if (request.width_diameters) {
+    set.push_back(fmt::format("fit.width_diameters={}", *request.width_diameters));
+  }
   return set;
 }
 
+// Section [fit] of a case file (other sections do not count) with overrides. Throws
+// std::invalid_argument "FILE:LINE: fit.KEY: ...".
 FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
   Draft draft;
   draft.file = case_file;
@@ -200,15 +209,14 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
   return draft.value.get<FitSetup>();
 }
 
-namespace {
-
 // What nobody has chosen follows what there is: the components, and the base where all places are
 // on it.
-void take_what_was_measured(const Field& field, const FitRequest& request, FitSetup& setup) {
+void take_what_was_measured(const Field& field, bool of_case, const Overrides& overrides,
+                            FitSetup& setup) {
   const auto chosen = [&](const std::string& key) {
-    return !request.case_file.empty() ||
-           std::any_of(request.overrides.begin(), request.overrides.end(),
-                       [&](const std::string& o) { return parse_override(o).path == key; });
+    return of_case || std::any_of(overrides.begin(), overrides.end(), [&](const std::string& o) {
+             return parse_override(o).path == key;
+           });
   };
   if (!chosen("fit.components")) {
     std::vector<std::string> there;
@@ -233,16 +241,21 @@ void require_no_width(const Overrides& overrides) {
 FitOutcome fit_files(const FitRequest& request) {
   Case value;
   value.study = "pile-fit";
-  value.get<FitSetup>() = read_fit_setup(request.case_file, request.overrides);
+  const Overrides overrides = overrides_of(request);
+  value.get<FitSetup>() =
+      read_fit_setup(request.case_file.empty() ? "" : find_case(request.case_file), overrides);
   Chosen chosen = choose(request.inputs);
-  if (request.field || !chosen.field.empty()) require_no_width(request.overrides);
+  if (request.field || !chosen.field.empty()) require_no_width(overrides);
   chosen.heaps.insert(chosen.heaps.end(), request.heaps.begin(), request.heaps.end());
   const std::string first = first_name(request);
-  OutputFolder results(request.folder, "grainfield fit " + first);
   std::vector<std::string> inputs{chosen.field_file};
   for (const SnapshotName& heap : chosen.heaps)
     if (!heap.held) inputs.push_back(heap.file);
-  results.require_other_than(inputs);
+  std::optional<OutputFolder> results;
+  if (!request.folder.empty()) {
+    results.emplace(request.folder, "grainfield fit " + first);
+    results->require_other_than(inputs);
+  }
   FitOutcome out;
   Observations data;
   std::function<dem::Snapshot()> drawn;
@@ -251,7 +264,9 @@ FitOutcome fit_files(const FitRequest& request) {
     const Field field =
         request.field ? *request.field : read_field(chosen.field_file, chosen.field);
     const bool measured = out.measured = field.is_measured();
-    if (measured) take_what_was_measured(field, request, value.get<FitSetup>());
+    if (measured) {
+      take_what_was_measured(field, !request.case_file.empty(), overrides, value.get<FitSetup>());
+    }
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
     if (measured) {
       if (const auto share = carried_share(field)) out.carried = share_text(*share);
@@ -269,14 +284,13 @@ FitOutcome fit_files(const FitRequest& request) {
   out.warnings = data.warnings;
   if (!request.coverage.empty()) {
     out.coverage = coverage_of_heaps(value.get<FitSetup>(), data, request);
-    write_text_file(results.staging("coverage.md"), out.coverage);
+    if (results) write_text_file(results->staging("coverage.md"), out.coverage);
   }
   const auto observe = [&](const FitSetup& setup) {
     return observe_heaps(setup, reader_of(chosen.heaps), request.threads);
   };
-  StudyResult result = heap_result(value, std::move(data), request.threads, observe, drawn);
-  out.constants = result.constants;
-  out.judgement = result.comparison.judgement;
+  HeapResult made = heap_result(value, std::move(data), request.threads, observe, drawn);
+  StudyResult& result = made.study;
   out.note = std::get<std::string>(result.summary.at("fit.weights"));
   result.summary["version"] = version_and_commit();
   result.summary["ensemble.realizations"] =
@@ -285,15 +299,20 @@ FitOutcome fit_files(const FitRequest& request) {
   require_documented(result.summary);
   const std::string settings = fit_text(value, out.packings);
   result.summary["case.hash"] = hash_text(settings);
-
-  write_profiles(results.staging(), result.comparison);
-  write_judgement(results.staging(), result.comparison.judgement);
-  for (const auto& [name, text] : result.texts) write_text_file(results.staging(name), text);
-  write_text_file(results.staging("fit.toml"), settings);
-  out.lacks =
-      write_report(results.staging("report.html"), result.page(result, nullptr)).complaint();
-  write_summary(results.staging("summary.json"), result.summary);
-  out.gone = told_of_gone(request.folder, results.publish());
+  if (results) {
+    write_profiles(results->staging(), result.comparison);
+    write_judgement(results->staging(), result.comparison.judgement);
+    for (const auto& [name, text] : result.texts) write_text_file(results->staging(name), text);
+    write_text_file(results->staging("fit.toml"), settings);
+    out.lacks =
+        write_report(results->staging("report.html"), result.page(result, nullptr)).complaint();
+    write_summary(results->staging("summary.json"), result.summary);
+    out.gone = told_of_gone(request.folder, results->publish());
+  }
+  out.constants = std::move(result.constants);
+  out.comparison = std::move(result.comparison);
+  out.summary = std::move(result.summary);
+  out.fits = std::move(made.fits);
   return out;
 }
 

@@ -16,6 +16,8 @@
 #include "coupling/files/measured_share.h"
 #include "coupling/files/placement.h"
 #include "coupling/import/format.h"
+#include "coupling/import/synonyms.h"
+#include "coupling/unit.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
 
@@ -36,6 +38,11 @@ constexpr Eigen::Index kLeastToFit = 10;
 // Of the values, in the median.
 constexpr double kLeastError = 1e-3, kMostError = 1;
 
+// Shears so many standard errors from 0 tell their sign; so many are enough, and so large a share
+// of them turned is no noise.
+constexpr double kClear = 2, kMostTurned = 0.75;
+constexpr long kEnoughShears = 3;
+
 constexpr double kSamePlace = 1e-9;   // of h
 constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
 constexpr double kSteepest = 80;      // degrees
@@ -54,6 +61,20 @@ const Units& stresses() {
                            {"N/m2", 1},   {"kN/m2", 1e3}, {"mbar", 1e2}, {"rho_g_h", kNan},
                            {"F/h", kNan}, {"F/h2", kNan}};
   return units;
+}
+
+// Whether one of `units` is of this kind, as that of parse_unit.
+bool is_of(const std::string& kind, const Units& units) {
+  return std::any_of(units.begin(), units.end(), [&](const auto& known) {
+    const std::optional<Unit> unit = parse_unit(known.first);
+    return unit && unit->kind == kind;
+  });
+}
+
+// The stresses of space and of a plane that has a thickness.
+bool is_per_area(const std::string& unit) {
+  const std::optional<Unit> known = parse_unit(unit);
+  return unit == "mbar" || (known && known->kind == parse_unit("Pa")->kind);
 }
 
 std::vector<std::string> names_of(const Units& units) {
@@ -110,10 +131,14 @@ class Reader {
   }
 
  private:
+  // By its name; else the only one that is the same without regard to capitals and signs.
   const Heading* find(const std::string& name) const {
     for (const Heading& h : headings_)
       if (h.name == name) return &h;
-    return nullptr;
+    const auto plainly = [&](const Heading& h) { return plain_column_name(h.name) == name; };
+    const auto at = std::find_if(headings_.begin(), headings_.end(), plainly);
+    if (at == headings_.end() || std::any_of(at + 1, headings_.end(), plainly)) return nullptr;
+    return &*at;
   }
   [[noreturn]] void refuse(const std::string& what) const {
     throw std::invalid_argument(fmt::format("{}:{}: {}", table_.file, table_.header_line, what));
@@ -127,6 +152,8 @@ class Reader {
       const double scale = !std::isnan(factor) ? factor : &units == &lengths() ? own : scaled(unit);
       return {{name, heading->index, std::nullopt, std::nullopt}, scale};
     }
+    if (const auto other = parse_unit(heading->unit); other && is_of(other->kind, units))
+      return {{name, heading->index, std::nullopt, std::nullopt}, std::pow(10.0, other->ten)};
     const auto names = names_of(units);
     refuse(heading->unit.empty()
                ? fmt::format("column {}: found no unit, expected one in brackets, such as {} ({}); "
@@ -285,10 +312,20 @@ void refuse_impossible(const Field& field) {
 
 }  // namespace
 
+namespace {
+
+ForeignTable table_of(const std::string& file) {
+  std::vector<std::string> units = names_of(lengths()), stresses_known = names_of(stresses());
+  units.insert(units.end(), stresses_known.begin(), stresses_known.end());
+  return scan_csv(file, {{"x", "y", "z", "r", "component", "value", "error"}, units});
+}
+
+}  // namespace
+
 std::string settle(MeasuredRequest& r) {
   check(r);
-  const std::vector<ForeignTable> tables = csv_format().scan(r.file);
-  const Reader columns(r, tables.front());
+  const ForeignTable table = table_of(r.file);
+  const Reader columns(r, table);
   for (const char* name : {"z", "r"}) {
     if (!columns.has(name)) continue;
     if (r.dim == 2)
@@ -299,8 +336,7 @@ std::string settle(MeasuredRequest& r) {
   const std::string unit = columns.unit("value");
   if (r.dim != 0) return "";
   r.dim = unit == "F/h2" ? 3 : 2;
-  static const std::vector<std::string> of_areas{"Pa", "kPa", "MPa", "N/m2", "kN/m2", "mbar"};
-  if (std::find(of_areas.begin(), of_areas.end(), unit) == of_areas.end()) return "";
+  if (!is_per_area(unit)) return "";
   if (r.geometry == "layer" && !std::isnan(r.load))
     throw std::invalid_argument(fmt::format(
         "--dim: is missing, and values in {} under a load in N are those of three dimensions: give "
@@ -315,8 +351,7 @@ Field measured_field(const MeasuredRequest& given) {
   MeasuredRequest request = given;
   settle(request);
   const double h = request.height;
-  const std::vector<ForeignTable> tables = csv_format().scan(request.file);
-  const ForeignTable& table = tables.front();
+  const ForeignTable table = table_of(request.file);
   const Reader columns(request, table);
   const bool space = request.dim == 3;
   const bool radial = columns.has("r") && !columns.has("x");
@@ -349,7 +384,9 @@ Field measured_field(const MeasuredRequest& given) {
       row.refuse(fmt::format("{} at x = {:g} m is there already, at {}:{}", row.text(component),
                              x.of(row), request.file, there->second.line));
   });
-  if (found.empty()) throw std::invalid_argument(request.file + ": holds no value");
+  if (found.empty())
+    throw std::invalid_argument(
+        request.file + ": holds no value, expected a row for each below the line of names");
 
   Field out;
   const auto n = static_cast<Eigen::Index>(found.size());
@@ -395,6 +432,33 @@ Field measured_field(const MeasuredRequest& given) {
   return out;
 }
 
+namespace {
+
+// Where most shear stresses pull the floor inwards: a heap spreads, and its free side (tension
+// positive: sigma_xx < 0, sigma_xy = -sigma_xx tan(slope)) and its floor hold it; else empty.
+std::string turned_shears(const Field& field) {
+  const std::string name = field.points.cols() == 3 ? "sigma_xz" : "sigma_xy";
+  const Column* shear = field.find(name);
+  if (shear == nullptr) return "";
+  long clear = 0, turned = 0;
+  for (Eigen::Index k = 0; k < shear->value.size(); ++k) {
+    const double x = field.points(k, 0), value = shear->value[k], error = shear->error[k];
+    if (!(x * value != 0) || std::isnan(value)) continue;
+    if (std::abs(value) < kClear * error) continue;  // an unknown error is nan
+    ++clear;
+    turned += x * value < 0;
+  }
+  if (clear < kEnoughShears ||
+      static_cast<double>(turned) <= kMostTurned * static_cast<double>(clear))
+    return "";
+  return fmt::format(
+      "{} of {} shear stresses ({}) are those of a heap that pulls its floor inwards: a heap that "
+      "spreads has shear above 0 right of the axis (x > 0), below 0 left of it; turn their signs",
+      turned, clear, name);
+}
+
+}  // namespace
+
 std::vector<std::string> measured_doubts(const Field& field) {
   const std::optional<MeasuredHeap> heap = measured_heap(field);
   const std::optional<CarriedShare> carried = carried_share(field);
@@ -417,6 +481,7 @@ std::vector<std::string> measured_doubts(const Field& field) {
                     "heap presses; turn their signs",
                     pulls, base.size()));
   }
+  if (const std::string turned = turned_shears(field); !turned.empty()) out.push_back(turned);
   Eigen::Index values = 0;
   for (const Column& column : field.columns) values += column.value.array().isFinite().count();
   if (values < kLeastToFit) {

@@ -8,7 +8,6 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/upright.h"
 #include "coupling/files/placement.h"
-#include "coupling/strain/motion.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -64,7 +63,8 @@ StrainOutcome strain_files(const StrainRequest& request) {
   StrainResult found = strain(before, after, placed.to_packing(points), options);
   StrainOutcome out;
   out.report = found.report();  // names places in the packing, with its height upright
-  out.doubt = doubtful_images(before, after);
+  out.images = found.images;
+  out.doubt = found.doubt;
   out.field = std::move(found.field);
   out.field.points = points;
   out.field.nx = grid ? nx : 0;

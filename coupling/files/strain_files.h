@@ -23,7 +23,8 @@ struct StrainRequest {
 struct StrainOutcome {
   Field field;         ///< StrainResult::field on the frame's points, with measure, width and frame
   std::string report;  ///< StrainResult::report()
-  std::string doubt;   ///< doubtful_images(): not empty: displacements may be those of images
+  std::string images;  ///< what was done where a state has no images of a periodic cell; or empty
+  std::string doubt;   ///< not empty: displacements may be those of images
 };
 
 /// What a user gave of it, checked and completed, before strain_files(): the support of the measure

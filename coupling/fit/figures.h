@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "coupling/output/summary_key.h"
+#include "coupling/output/figure.h"
 
 namespace grainfield::coupling {
 

@@ -295,12 +295,9 @@ Comparison profiles_of(const EnsembleFits& fits) {
     }
   }
   Comparison out =
-      compare(std::move(profiles), std::move(models), unit * h, h, data.realizations());
+      compare(std::move(profiles), std::move(models),
+              scale_of_heaps(h, unit, scaled_alone(data.realizations())), data.realizations());
   out.judgement = fits.judgement;
-  out.scale = {"h", "rho g h", "apex",
-               fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
-                           "realizations: {}",
-                           h, unit, data.realizations())};
   return out;
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
-
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/setup.h"
@@ -39,9 +37,9 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
 
 }  // namespace
 
-StudyResult heap_result(const Case& value, Observations heaps, int threads,
-                        const std::function<Observations(const FitSetup&)>& observe,
-                        std::function<dem::Snapshot()> drawn) {
+HeapResult heap_result(const Case& value, Observations heaps, int threads,
+                       const std::function<Observations(const FitSetup&)>& observe,
+                       std::function<dem::Snapshot()> drawn) {
   StudyResult out;
   out.value = value;
   const auto fits =
@@ -64,7 +62,7 @@ StudyResult heap_result(const Case& value, Observations heaps, int threads,
   out.page = [fits, drawn](const StudyResult& result, const Realization* first) {
     return page_of(result, first, *fits, drawn);
   };
-  return out;
+  return {std::move(out), fits};
 }
 
 }  // namespace grainfield::coupling

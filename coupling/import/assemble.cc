@@ -1,4 +1,5 @@
-// Grains and walls. Contacts are in assemble_contacts.cc.
+// A packing of the rows of grains and walls: its dimension, cell, places and masses. Rows are read
+// in assemble_rows.cc, contacts in assemble_contacts.cc.
 #include "coupling/import/assemble.h"
 
 #include <fmt/format.h>
@@ -12,223 +13,34 @@
 #include <tuple>
 #include <utility>
 
-#include "coupling/import/outline_text.h"
 #include "dem/shapes/polygon.h"
 #include "dem/snapshot/cell_places.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 
 namespace {
 
-// Of a quaternion's length from 1: what is written with six digits.
-constexpr double kUnit = 1e-5;
-// Values of the column of fixed grains in a message.
-constexpr std::size_t kMostMarks = 6;
 // Median radii from the middle of the packing: a warning, and a refusal.
 constexpr double kFar = 1e6, kTooFar = 1e9;
-
-// Two that should be equal and are written with five digits or more.
-bool contradict(double a, double b) { return std::abs(a - b) > 1e-4 * std::abs(a); }
-
-std::array<double, 4> orientation_of(const ForeignRow& row,
-                                     const std::array<ForeignColumn, 4>& columns, std::int64_t id) {
-  std::array<double, 4> q{};
-  double squared = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    q[k] = row.number(columns[k]);
-    squared += q[k] * q[k];
-  }
-  const double size = std::sqrt(squared);
-  if (std::abs(size - 1) > kUnit)
-    row.refuse(fmt::format("grain {}: found a quaternion of length {:g}, allowed: 1", id, size));
-  // One that is a unit up to rounding keeps its bits.
-  if (std::abs(size - 1) > 1e-12)
-    for (double& part : q) part /= size;
-  return q;
-}
-
-// A fix between two planes has one contact per grain, that with the nearer: else each of its walls
-// would bear it once more.
-bool nearest_of_its_fix(const std::vector<WallChoice>& walls, std::size_t wall,
-                        const dem::Vec3& centre) {
-  const auto distance = [&](const WallChoice& w) { return std::abs(centre[w.axis] - w.position); };
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    if (k == wall || walls[k].fix != walls[wall].fix) continue;
-    const double other = distance(walls[k]), own = distance(walls[wall]);
-    if (other < own || (other == own && k < wall)) return false;
-  }
-  return true;
-}
+// Radii along z that are rounding.
+constexpr double kFlat = 1e-9;
+// Between a volume that is told and that of the radius: what three digits leave.
+constexpr double kSameVolume = 1e-2;
 
 }  // namespace
-
-std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file, line); }
-
-void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& column) {
-  if (!column.unit) return;
-  const bool plane =
-      column.unit->kind == parse_unit(column.name == "volume" ? "m2" : "kg/m2")->kind;
-  (plane ? plane_units_ : space_units_)
-      .push_back(fmt::format("{}:{}: column {}: found \"{}\"", table.file, table.header_line,
-                             column.name,
-                             (*table.columns)[static_cast<std::size_t>(column.index)]));
-}
-
-void Assembly::add_grains(const ForeignTable& table) {
-  const TableColumns columns(table, names_);
-  if (first_file_.empty()) first_file_ = table.file;
-  const ForeignColumn id = find_id(table, columns);
-  const PlaceColumns places = place_columns(table, columns);
-  has_z_ = has_z_ || places.place[2];
-  for (std::size_t a = 0; a < 3; ++a)
-    axis_told_[a] = axis_told_[a] && (!places.carried_back[a] || places.image[a]);
-  const ShapeColumns shape = shape_columns(columns);
-  warn_of_shapes(table, columns, shape);
-  const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
-  const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
-  const ForeignColumn spin_x = columns.find("spin_x"), spin_y = columns.find("spin_y");
-  std::array<ForeignColumn, 4> quaternion{columns.find("qw")};
-  if (quaternion[0])
-    quaternion = {quaternion[0], columns.need("qx"), columns.need("qy"), columns.need("qz")};
-  const ForeignColumn material = columns.find("material");
-  cell_ = table.box && table.box->is_periodic() ? *table.box : dem::Cell<3>{};
-  const ForeignColumn radius = columns.find("radius"), outline = columns.find("outline");
-  const ForeignColumn diameter = columns.find("diameter");
-  if (!radius && !diameter && !outline && !shape) columns.missing("radius");
-  const ForeignColumn mass = columns.find("mass");
-  const ForeignColumn density = columns.find("density");
-  if (!mass && !density && !(options_.density > 0))
-    columns.missing("mass", "or --density",
-                    options_.dim == 3 ? "mass (kg) or density (kg/m3) tells it"
-                                      : "mass (kg) or density (kg/m2) tells it");
-  const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
-  if (!mass) remember_unit(table, density);
-  remember_unit(table, volume);
-  const ForeignColumn fixed = columns.find("fixed");
-  const ForeignColumn mark =
-      options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
-  std::vector<std::array<ForeignColumn, 7>> wall_columns;
-  for (const WallChoice& wall : options_.walls) {
-    wall_columns.emplace_back();
-    for (std::size_t k = 0; !wall.fix.empty() && k < 7; ++k)
-      wall_columns.back()[k] =
-          columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1), k < 4 ? "fx" : "px");
-  }
-  reader_.read(table, [&](const ForeignRow& row) {
-    const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
-    GrainRow r;
-    r.source = {row.file, row.line};
-    dem::Grain& g = r.grain;
-    // Without a column the rows are counted: from 0 where the format says so, else from 1.
-    g.id = id ? row.told_id(id).id
-              : static_cast<std::int64_t>(rows_.size()) + (format_.rows_are_ids ? 0 : 1);
-    read_place(places, row, r);
-    g.velocity = {value(vx), value(vy), value(vz)};
-    g.angle = value(angle);
-    g.spin = value(spin);
-    g.angular_velocity = {value(spin_x), value(spin_y), g.spin};
-    if (quaternion[0]) g.orientation = orientation_of(row, quaternion, g.id);
-    g.material = row.text(material);
-    if (!row.empty(outline)) {
-      try {
-        g.outline = parse_outline(row.text(outline), outline.unit ? outline.unit->ten : 0);
-      } catch (const std::invalid_argument& e) {
-        row.refuse(fmt::format("grain {}: {}", g.id, e.what()));
-      }
-    } else if (shape) {
-      read_shape(shape, row, g);
-    } else {
-      if (row.empty(radius) && row.empty(diameter))
-        row.refuse(fmt::format("grain {} has neither a radius nor an outline", g.id));
-      g.radius = row.empty(radius) ? row.number(diameter) / 2 : row.number(radius);
-      if (!row.empty(radius) && !row.empty(diameter) &&
-          contradict(2 * g.radius, row.number(diameter)))
-        row.refuse(
-            fmt::format("grain {}: found radius {} m and diameter {} m, allowed: twice the "
-                        "radius, or one of the columns",
-                        g.id, g.radius, row.number(diameter)));
-      if (!(g.radius > 0))
-        row.refuse(fmt::format("grain {}: found radius {} m, allowed: above 0", g.id, g.radius));
-    }
-    g.fixed = row.flag(fixed);
-    if (mark) {
-      const auto& values = options_.fixed_values;
-      const std::string_view text = row.text(mark);
-      const bool marked = std::find(values.begin(), values.end(), text) != values.end();
-      some_marked_ = some_marked_ || marked;
-      g.fixed = g.fixed || marked;
-      if (marks_.size() <= kMostMarks &&
-          std::find(marks_.begin(), marks_.end(), text) == marks_.end())
-        marks_.emplace_back(text);
-    }
-    g.mass = value(mass);
-    r.density = mass ? 0 : density ? row.number(density) : options_.density;
-    if (mass && !row.empty(density)) r.told_density = row.number(density);
-    const double given = mass ? g.mass : r.density;
-    if (!(given > 0) && !(g.fixed && given == 0))
-      row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
-                             mass ? "mass" : "density", given));
-    r.has_inertia = !row.empty(inertia);
-    g.inertia = value(inertia);
-    g.volume = value(volume);
-    if (volume.index >= 0 && !volume.unit) r.volume_ten = table.units.length;
-    if (g.volume < 0 || g.inertia < 0)
-      row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
-                             g.volume < 0 ? "volume" : "inertia", std::min(g.volume, g.inertia)));
-    for (std::size_t w = 0; w < wall_columns.size(); ++w) {
-      const auto& c = wall_columns[w];
-      if (!c[0] || row.number(c[0]) == 0) continue;
-      if (!nearest_of_its_fix(options_.walls, w, g.position)) continue;
-      wall_forces_.push_back(
-          {g.id, w, dem::Vec3(row.number(c[1]), row.number(c[2]), row.number(c[3])),
-           dem::Vec3(row.number(c[4]), row.number(c[5]), row.number(c[6])), r.source});
-    }
-    rows_.push_back(std::move(r));
-  });
-}
-
-void Assembly::add_walls(const ForeignTable& table) {
-  const TableColumns columns(table, names_);
-  const ForeignColumn name = columns.need("name"), x = columns.need("x"), y = columns.need("y"),
-                      nx = columns.need("nx"), ny = columns.need("ny"), z = columns.find("z"),
-                      nz = columns.find("nz"), friction = columns.find("friction"),
-                      material = columns.find("material");
-  reader_.read(table, [&](const ForeignRow& row) {
-    dem::Wall wall;
-    wall.name = std::string(row.text(name));
-    if (wall.name.empty()) row.refuse("the wall has no name");
-    for (std::size_t w = 0; w < wall_sources_.size(); ++w)
-      if (out_.snapshot.walls[w].name == wall.name)
-        row.refuse(
-            fmt::format("wall {} is there already, at {}", wall.name, wall_sources_[w].where()));
-    for (const WallChoice& choice : options_.walls)
-      if (choice.name == wall.name)
-        row.refuse(fmt::format("wall {} is there already, by --wall", wall.name));
-    wall.point = {row.number(x), row.number(y), z ? row.number(z) : 0};
-    wall.normal = {row.number(nx), row.number(ny), nz ? row.number(nz) : 0};
-    wall.friction = row.empty(friction) ? options_.friction : row.coefficient(friction);
-    wall.material = row.text(material);
-    if (!(wall.point.cwiseAbs().maxCoeff() <= dem::kMostNumber))
-      row.refuse(fmt::format("wall {}: found a point beyond {:g} m, allowed: up to that", wall.name,
-                             dem::kMostNumber));
-    const double length = wall.normal.norm();
-    if (!(length > 0 && std::isfinite(length)))
-      row.refuse(fmt::format("wall {}: its normal has length {:g}", wall.name, length));
-    // A normal that is a unit vector up to rounding keeps its bits.
-    if (std::abs(length - 1) > 1e-12) wall.normal /= length;
-    out_.snapshot.walls.push_back(wall);
-    wall_sources_.push_back({row.file, row.line});
-  });
-}
 
 void Assembly::settle_dimension() {
   dem::Snapshot& s = out_.snapshot;
   const double z = rows_.front().grain.position.z();
-  const auto other = std::find_if(rows_.begin(), rows_.end(),
-                                  [&](const GrainRow& row) { return row.grain.position.z() != z; });
+  // Rounding leaves a plane packing some digits along z.
+  const auto off_plane = [&](const GrainRow& row) {
+    return std::abs(row.grain.position.z() - z) > kFlat * row.grain.radius;
+  };
+  const auto other = std::find_if(rows_.begin(), rows_.end(), off_plane);
   s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
   if (const auto& told = s.dim == 2 ? space_units_ : plane_units_; !told.empty())
     throw std::invalid_argument(
@@ -249,8 +61,10 @@ void Assembly::settle_dimension() {
     throw std::invalid_argument(fmt::format("{}: grain {} is a superellipsoid, allowed: --dim 3",
                                             solid->source.where(), solid->grain.id));
   if (s.dim == 3 && polygon != rows_.end())
-    throw std::invalid_argument(fmt::format("{}: grain {} is a polygon; 3D takes spheres",
-                                            polygon->source.where(), polygon->grain.id));
+    throw std::invalid_argument(
+        fmt::format("{}: grain {} is a polygon; 3D takes spheres and superellipsoids, "
+                    "--dim 2 a plane packing",
+                    polygon->source.where(), polygon->grain.id));
 }
 
 // The axes that repeat, of the packing's dimension.
@@ -260,7 +74,9 @@ void Assembly::settle_cell() {
   s.cell = cell_;
   if (!options_.periodic.empty()) s.cell = {};
   for (const PeriodicAxis& p : options_.periodic) {
-    if (p.axis >= s.dim) throw std::invalid_argument("--periodic z: the packing is in 2D");
+    if (p.axis >= s.dim)
+      throw std::invalid_argument(
+          "--periodic z: the packing is in 2D, allowed: x, y (--dim 3 for grains in space)");
     s.cell.periodic[static_cast<std::size_t>(p.axis)] = true;
     s.cell.low[p.axis] = p.low;
     s.cell.edges(p.axis, p.axis) = p.high - p.low;
@@ -282,6 +98,10 @@ void Assembly::complete(GrainRow& row) const {
     try {
       const std::array<double, 2> c = dem::centroid_of(g.outline);
       g.outline = dem::centred_outline(g.outline);
+      if (std::hypot(c[0], c[1]) > dem::circumradius_of(g.outline))
+        throw std::invalid_argument(fmt::format(
+            "its corners lie about ({:g}, {:g}), allowed: about (0, 0), relative to x and y", c[0],
+            c[1]));
       const double cosine = std::cos(g.angle), sine = std::sin(g.angle);
       g.position.x() += cosine * c[0] - sine * c[1];
       g.position.y() += sine * c[0] + cosine * c[1];
@@ -301,10 +121,17 @@ void Assembly::complete(GrainRow& row) const {
     gyration = (plane ? 0.5 : 0.4) * g.radius * g.radius;
   }
   if (row.volume_ten != 0) g.volume *= std::pow(10.0, out_.snapshot.dim * row.volume_ten);
+  const bool round = g.outline.empty() && g.axes.isZero(0);
+  if (round && g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
+    throw std::invalid_argument(fmt::format(
+        "{}: grain {}: found volume {:g} and radius {:g} m, which makes {:g}, allowed: those that "
+        "agree; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
+        row.source.where(), g.id, g.volume, g.radius, volume));
   if (g.volume == 0) g.volume = volume;
-  if (row.density > 0) g.mass = row.density * g.volume;
-  // In 2D a density may be one of spheres.
+  // In 2D a density may be one of spheres; that of a dump is.
   const double as_spheres = 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
+  const bool sphere = row.sphere_density && round && out_.snapshot.dim == 2;
+  if (row.density > 0) g.mass = row.density * (sphere ? as_spheres : g.volume);
   if (row.told_density > 0 && g.mass > 0 && contradict(g.mass, row.told_density * g.volume) &&
       (!g.outline.empty() || contradict(g.mass, row.told_density * as_spheres)))
     throw std::invalid_argument(fmt::format(
@@ -339,7 +166,8 @@ void Assembly::place(GrainRow& row) const {
             fmt::format("found the image flag {} along {}, where nothing repeats; --periodic "
                         "{}=LOW:HIGH says where",
                         row.image[a], "xyz"[a], "xyz"[a]));
-      if (cell.periodic[a] && images_told_) g.image[a] = row.image[a] + away[a];
+      // Without flags they are those of the place: displacements.h decides on their use.
+      if (cell.periodic[a]) g.image[a] = (axis_told_[a] ? row.image[a] : 0) + away[a];
     }
   } catch (const dem::TooFarAway& e) {
     refuse(e.what());
@@ -420,9 +248,11 @@ void Assembly::check_places() {
     const double radii = (grains[k].position - middle).norm() / radius;
     if (radii <= kFar) continue;
     if (!(radii <= kTooFar))
-      throw std::invalid_argument(fmt::format(
-          "{}: grain {} is {:.3g} median radii from the middle of the packing, allowed: up to {:g}",
-          rows_[k].source.where(), grains[k].id, radii, kTooFar));
+      throw std::invalid_argument(
+          fmt::format("{}: grain {} is {:.3g} median radii from the middle of the packing, "
+                      "allowed: up to {:g}; "
+                      "correct its place or leave it out of the file",
+                      rows_[k].source.where(), grains[k].id, radii, kTooFar));
     if (far++ == 0) first = grains[k].id;
   }
   if (far > 0)
@@ -439,7 +269,9 @@ void Assembly::settle_walls() {
   for (const WallChoice& choice : options_.walls) {
     if (choice.axis >= s.dim)
       throw std::invalid_argument(
-          fmt::format("--wall {}: a wall across z in a packing in 2D", choice.name));
+          fmt::format("--wall {}: a wall across z in a packing in 2D, allowed: x, y (--dim 3 for "
+                      "grains in space)",
+                      choice.name));
     dem::Wall wall;
     wall.name = choice.name;
     wall.point.setZero();
@@ -456,31 +288,24 @@ void Assembly::settle_walls() {
 void Assembly::settle() {
   dem::Snapshot& s = out_.snapshot;
   if (rows_.empty())
-    throw std::invalid_argument(fmt::format("{}: the tables of grains hold no row", first_file_));
+    throw std::invalid_argument(fmt::format(
+        "{}: the tables of grains hold no row, expected one of each grain", first_file_));
   settle_dimension();
   settle_cell();
   check_vectors();
   check_fixed();
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const GrainRow& a, const GrainRow& b) { return a.grain.id < b.grain.id; });
-  for (std::size_t k = 1; k < rows_.size(); ++k)
-    if (rows_[k].grain.id == rows_[k - 1].grain.id)
-      throw std::invalid_argument(fmt::format("{}: grain {} is there already, at {}",
-                                              rows_[k].source.where(), rows_[k].grain.id,
-                                              rows_[k - 1].source.where()));
   for (GrainRow& row : rows_) {
     if (s.dim == 2) row.grain.position.z() = row.grain.velocity.z() = 0;
     complete(row);
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    images_told_ = images_told_ && (!s.cell.periodic[a] || axis_told_[a]);
-  images_told_ = s.cell.is_periodic() && (images_told_ || lie_outside());
-  if (images_told_) s.attributes["images"] = "counted";
-  for (GrainRow& row : rows_) {
-    place(row);
-    s.grains.push_back(std::move(row.grain));
-  }
+  if (s.cell.is_periodic()) s.attributes["images"] = images_of_files();
+  for (GrainRow& row : rows_) place(row);
+  join_repeated_grains();
+  for (GrainRow& row : rows_) s.grains.push_back(std::move(row.grain));
   check_places();
+  if (format_.copies_have_numbers) sort_for_copies();
   rows_ = {};
   const std::size_t tables = s.walls.size();
   settle_walls();
@@ -514,6 +339,17 @@ std::int64_t Assembly::wall_of(std::string_view text) const {
     if (same) return -1 - static_cast<std::int64_t>(w);
   }
   return 0;
+}
+
+int Assembly::facet_of(std::int64_t wall, std::string_view text) const {
+  const std::size_t tables = out_.snapshot.walls.size() - options_.walls.size();
+  const auto w = static_cast<std::size_t>(-1 - wall);
+  if (w < tables) return 0;
+  const std::vector<std::string>& ids = options_.walls[w - tables].ids;
+  auto at = std::find(ids.begin(), ids.end(), text);
+  const std::optional<double> number = dem::parse_number(text);  // "3.0" is the wall 3, too
+  if (at == ids.end() && number) at = std::find(ids.begin(), ids.end(), fmt::format("{}", *number));
+  return at == ids.end() ? 0 : 1 + static_cast<int>(at - ids.begin());
 }
 
 std::string Assembly::known_grains() const {

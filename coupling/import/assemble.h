@@ -1,7 +1,10 @@
 // Tables of one step to a snapshot.
 #pragma once
 #include <array>
+#include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +13,9 @@
 #include "coupling/import/import.h"
 
 namespace grainfield::coupling {
+
+/// Whether two numbers differ that should be equal and are written with five digits or more.
+inline bool contradict(double a, double b) { return std::abs(a - b) > 1e-4 * std::abs(a); }
 
 class Assembly {
  public:
@@ -29,17 +35,29 @@ class Assembly {
   ImportedSnapshot finish();
 
  private:
+  /// Values of the column of fixed grains in a message.
+  static constexpr std::size_t kMostMarks = 6;
   /// Where a row stands, for messages.
   struct Source {
     const std::string* file;
     long long line;
+    int table = 0;  ///< the number of the table
     std::string where() const;
+  };
+  /// Tables of one kind, the first of them before the second.
+  using TwoTables = std::pair<int, int>;
+  struct Repeats {
+    long long rows = 0;    ///< of the second that are in the first, too
+    long long turned = 0;  ///< of them, those that name the grains the other way round
+    const std::string *first = nullptr, *second = nullptr;  ///< files
   };
   struct GrainRow {
     dem::Grain grain;
-    double density = 0;       ///< 0: has its mass
-    double told_density = 0;  ///< beside the mass; 0: none
+    double density = 0;           ///< 0: has its mass
+    double told_density = 0;      ///< beside the mass; 0: none
+    bool sphere_density = false;  ///< the density is that of a sphere in 2D, too
     bool has_inertia = false;
+    int digits = 0;                     ///< of an id that was printed without its last ones
     int volume_ten = 0;                 ///< a volume is of lengths times 10 to this
     std::array<int, 3> image{0, 0, 0};  ///< told
     Source source;
@@ -55,12 +73,17 @@ class Assembly {
     Source source;
     bool turned = false;  ///< the row names the second of the two first
     bool joined = false;  ///< with a row of the other direction
+    bool again = false;   ///< is in a table before, too
+    bool copied = false;  ///< one of the two was told by a copy's number
+    int facet = 0;        ///< of the wall, as facet_of() has it
     [[noreturn]] void refuse(const std::string& what) const;
   };
   struct Tally {                                              ///< of contacts
     std::vector<std::pair<std::int64_t, std::int64_t>> idle;  ///< no force, and a gap
     long long left_out = 0;                                   ///< distant
     long long far = 0;                                        ///< forces across gaps
+    long long pointed = 0, off_surface = 0;                   ///< round pairs with points; far off
+    std::string first_off;
     std::string first_far;
   };
 
@@ -99,6 +122,14 @@ class Assembly {
   void warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
                       const ShapeColumns& taken);
   ForeignColumn find_id(const ForeignTable& table, const TableColumns& columns);
+  /// A column of molecules: its values, where they are numbers above 0.
+  struct Bodies {
+    ForeignColumn column;
+    std::set<std::string, std::less<>> met;
+    bool repeated = false;
+    void add(const ForeignRow& row);
+  };
+  static ForeignColumn find_bodies(const TableColumns& columns);
 
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
@@ -118,10 +149,24 @@ class Assembly {
   void place(GrainRow& row) const;
   /// Whether grains lie so far out of the cell that their places have not been carried back.
   bool lie_outside() const;
+  /// The snapshot's attribute `images` (displacements.h). Says where flags are there along some
+  /// axes only.
+  std::string images_of_files();
   /// Mass, volume and moments of a superellipsoid.
   double complete_superellipsoid(dem::Grain& grain) const;
+  /// Drops the tables of grains that an earlier file has, too; throws for any other id that is
+  /// there twice.
+  void join_repeated_grains();
+  /// What two rows of one grain say differently: "x = 1 and 2"; "": nothing.
+  std::string difference_of(const GrainRow& a, const GrainRow& b) const;
+  /// Throws unless the second table has the rows of the first and no other.
+  void require_repeated(const TwoTables& tables, const Repeats& repeats, long long rows_of_first,
+                        long long rows_of_second, const char* kind) const;
+  void tell_repeated(const Repeats& repeats, const char* kind);
   std::int64_t index_of(std::int64_t id) const;       ///< -1: unknown
   std::int64_t wall_of(std::string_view text) const;  ///< -1 - w; 0: unknown
+  /// Which of the ids of the wall a row names, from 1; 0: its name.
+  int facet_of(std::int64_t wall, std::string_view text) const;
   /// nan where the file tells no spring.
   void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
   /// What a row of contacts tells.
@@ -132,6 +177,8 @@ class Assembly {
   struct Ends {
     std::int64_t i = 0, j = 0;
     bool swapped = false;
+    int facet = 0;
+    bool copied = false;  ///< one of them was told by a copy's number
   };
   Ends ends_of(const ContactColumns& columns, const ForeignRow& row, int digits) const;
   /// A grain's index or a wall, of one column; 0-based, -1 - w.
@@ -139,10 +186,29 @@ class Assembly {
                                       int digits) const;
   std::optional<std::int64_t> grain_of(const ForeignRow& row, const ForeignColumn& column,
                                        int digits) const;
+  /// Columns that tell the centre of a copy.
+  struct CopyColumns {
+    std::array<ForeignColumn, 3> point, normal;
+    ForeignColumn overlap;
+  };
+  /// The grain whose copy has the number `copy`, the first or the second of a row. Throws where
+  /// none or several fit.
+  std::int64_t original_of(const ForeignRow& row, const CopyColumns& columns, std::int64_t copy,
+                           bool copy_is_first) const;
+  /// Grains with a copy, but not themselves, whose surface passes `point`, `outwards` to the
+  /// centre.
+  std::vector<std::int64_t> originals_of(const dem::Vec3& point, const dem::Vec3& outwards,
+                                         double overlap) const;
+  void sort_for_copies();
+  /// Throws where the id of a row is that of a grain and of a wall.
+  void refuse_two_meanings(const ForeignRow& row, const ForeignColumn& column) const;
   [[noreturn]] void refuse_unknown(const ForeignRow& row, const ForeignColumn& column) const;
   /// A force of normal and tangential size, on the first grain.
+  /// `side`: -1 where a wall is first.
   dem::Vec3 force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
-                           const dem::Contact& contact) const;
+                           const dem::Contact& contact, double side) const;
+  /// Throws unless it is a direction across the normal; makes it one to the last digit.
+  static void check_tangent(const ForeignRow& row, const dem::Vec3& normal, dem::Vec3& tangent);
 
   void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
   /// Image, normal and point; false: it is none, or left out.
@@ -155,6 +221,10 @@ class Assembly {
   /// Keeps one of the rows of a contact that stands there in both directions; throws for any other
   /// that is there twice.
   void join_directions();
+  /// Drops the tables of contacts that an earlier file has, too.
+  void join_repeated_contacts(std::vector<ContactRow>& rows,
+                              const std::map<TwoTables, Repeats>& repeats);
+  bool of_polygons(const dem::Contact& contact) const;
   [[noreturn]] void refuse_twice(const ContactRow& row, const ContactRow& other,
                                  bool same_force) const;
   void tell_tally();
@@ -164,6 +234,7 @@ class Assembly {
   const ImportFormat& format_;
   ColumnNames& names_;
   TableReader& reader_;
+  int tables_ = 0;  // that were added
   std::vector<GrainRow> rows_;
   std::vector<WallForce> wall_forces_;
   std::vector<ContactRow> contacts_;
@@ -175,11 +246,12 @@ class Assembly {
   bool some_marked_ = false;
   bool has_z_ = false;
   bool contacts_expected_ = true;
-  bool images_told_ = true;  // along every axis that is periodic
-  std::array<bool, 3> axis_told_{true, true, true};
+  std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
-  std::string first_file_;  // of grains
-  dem::Cell<3> cell_;       // of the files
+  std::string first_file_;          // of grains
+  std::vector<std::int64_t> by_x_;  // of grains, where copies have numbers
+  double least_radius_ = 0, largest_radius_ = 0;
+  dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "coupling/import/assemble.h"
@@ -33,6 +34,14 @@ ColumnTriple find_triple(const TableColumns& columns, const std::string& stem, i
   return columns.find(stem + "x") ? need_triple(columns, stem, dim) : ColumnTriple{};
 }
 
+// Of a tangential direction's length, and of its cosine to the normal: what few digits leave.
+constexpr double kOffUnit = 1e-2;
+// Share of the normal force that is rounding, whose direction is any.
+constexpr double kNoForce = 1e-6;
+
+// Share of a force along z that is rounding in 2D.
+constexpr double kFlatForce = 1e-9;
+
 // Thrown where an id is met that was printed without its last digits.
 struct RoundedId {};
 
@@ -55,6 +64,7 @@ int printed_digits(TableReader& reader, const ForeignTable& table,
 
 struct Assembly::ContactColumns {
   ForeignColumn i, j, wall, friction, spring, sliding, fn, ft;
+  CopyColumns copies;
   ColumnTriple force, normal_part, tangential_part, point, normal, springs, tangent;
 };
 
@@ -64,7 +74,15 @@ Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) 
   c.i = columns.need("i");
   c.wall = columns.find("wall");
   c.j = c.wall ? columns.find("j") : columns.need("j");
-  c.force = find_triple(columns, "f", dim);
+  // A force beside its tangential part is told apart by the user.
+  const bool in_parts = names_.chose("fnx") && columns.find("fnx");
+  if (!in_parts) c.force = find_triple(columns, "f", dim);
+  if (c.force && columns.find("ftx") && !names_.chose("fx"))
+    columns.missing(
+        "fnx",
+        "beside ftx, fx may be the whole force (--column fx,fy,fz=fx,fy,fz) or its normal "
+        "part (--column fnx,fny,fnz=fx,fy,fz)",
+        "beside ftx, fx may be the whole force or its normal part: leave one out");
   if (!c.force && columns.find("fnx")) {
     c.normal_part = need_triple(columns, "fn", dim);
     if (!columns.find("ftx"))
@@ -74,7 +92,8 @@ Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) 
   } else if (!c.force) {
     c.fn = columns.find("fn");
     if (!c.fn) columns.missing(columns.find("ftx") ? "fnx" : "fx", "", "forces (n, dim) tells it");
-    c.ft = columns.need("ft");
+    c.ft = columns.find("ft");
+    if (!c.ft) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
     c.tangent = find_triple(columns, "t", dim);
   }
   c.point = find_triple(columns, "p", dim);
@@ -83,12 +102,18 @@ Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) 
   c.spring = columns.find("spring");
   c.sliding = columns.find("sliding");
   c.springs = find_triple(columns, "s", dim);
+  if (format_.copies_have_numbers)
+    c.copies = {{c.point.x, c.point.y, c.point.z},
+                {c.normal.x, c.normal.y, c.normal.z},
+                columns.need_theirs("overlap", "px")};
   return c;
 }
 
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
   const ContactColumns columns = contact_columns(named);
+  named.require_length_units();
+  ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;
   const auto given = given_;
@@ -158,38 +183,73 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
   const bool number =
       text.find_first_not_of("0123456789+-.eE") == std::string_view::npos && !text.empty();
   if (!number)
-    row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}", text, known_grains()));
+    row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}{}", text, known_grains(),
+                           options_.files.empty() ? "" : "; --wall NAME:AXIS=POSITION names it"));
   const std::int64_t id = row.told_id(column).id;
   const std::string hint =
       options_.files.empty()
           ? ""
-          : fmt::format("; a wall or facet of that number: --wall NAME:AXIS=POSITION:ids={}", id);
+          : fmt::format(
+                "; a wall or facet of that number: --wall NAME:AXIS=POSITION:ids={}; a grain "
+                "that the table of grains lacks: write all of them",
+                id);
   row.refuse(fmt::format("contact of the unknown grain {}; {}{}", id, known_grains(), hint));
 }
 
+void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& column) const {
+  const std::string_view text = row.text(column);
+  const std::int64_t wall = wall_of(text);
+  if (wall == 0 || text.find_first_not_of("0123456789+-.eE") != std::string_view::npos ||
+      index_of(row.told_id(column).id) < 0)
+    return;
+  const std::size_t tables = out_.snapshot.walls.size() - options_.walls.size();
+  const auto w = static_cast<std::size_t>(-1 - wall);
+  if (w < tables || !options_.walls[w - tables].fix.empty()) return;
+  row.refuse(
+      fmt::format("{} is a grain and one of the ids of wall {}, allowed: one meaning; a column "
+                  "wall with its name "
+                  "tells contacts with the wall (--column wall=THEIRS), or leave it out of ids=",
+                  row.text(column), out_.snapshot.walls[w].name));
+}
+
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
-  if (!row.empty(c.wall)) {
+  const std::string_view told = c.wall ? row.text(c.wall) : std::string_view();
+  if (!row.empty(c.wall) && told != "nan" && told != "NaN") {
     const std::int64_t wall = wall_of(row.text(c.wall));
     if (wall == 0) refuse_unknown(row, c.wall);
     const auto grain = grain_of(row, c.i, digits);
     if (!grain) refuse_unknown(row, c.i);
-    return {*grain, wall, false};
+    return {*grain, wall, false, facet_of(wall, row.text(c.wall))};
   }
-  if (!c.j) row.refuse("the contact names no wall");
-  const auto first = body_of(row, c.i, digits), second = body_of(row, c.j, digits);
+  if (!c.j)
+    row.refuse("the contact names no wall, expected the name or an id of one, or a column j");
+  auto first = body_of(row, c.i, digits), second = body_of(row, c.j, digits);
+  bool copied = false;
+  if (format_.copies_have_numbers && bool(first) != bool(second) && first.value_or(0) >= 0 &&
+      second.value_or(0) >= 0) {
+    const std::int64_t copy = row.told_id(first ? c.j : c.i).id;
+    if ((copied = copy >= 0)) (first ? second : first) = original_of(row, c.copies, copy, !first);
+  }
   if (!first) refuse_unknown(row, c.i);
   if (!second) refuse_unknown(row, c.j);
+  // Where no other column or table tells contacts with walls, an id that is both is in doubt.
+  if (!c.wall && !names_.chose("wall"))
+    for (const ForeignColumn* column : {&c.i, &c.j}) refuse_two_meanings(row, *column);
   if (*first < 0 && *second < 0)
-    row.refuse(fmt::format("contact of two walls, {} and {}", row.text(c.i), row.text(c.j)));
-  if (*first < 0) return {*second, *first, true};
-  return {*first, *second, false};
+    row.refuse(
+        fmt::format("contact of two walls, {} and {}, allowed: of a grain and a wall; leave it out",
+                    row.text(c.i), row.text(c.j)));
+  if (*first < 0) return {*second, *first, true, facet_of(*first, row.text(c.i))};
+  return {*first, *second, false, *second < 0 ? facet_of(*second, row.text(c.j)) : 0, copied};
 }
 
 void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row, int digits) {
   const dem::Snapshot& s = out_.snapshot;
   const Ends ends = ends_of(columns, row, digits);
-  ContactRow r{{}, {row.file, row.line}, ends.swapped};
+  ContactRow r{{}, {row.file, row.line, tables_}, ends.swapped};
   dem::Contact& c = r.contact;
+  r.facet = ends.facet;
+  r.copied = ends.copied;
   c.i = ends.i;
   c.j = ends.j;
   const bool pointed = columns.point && !row.empty(columns.point.x);
@@ -202,12 +262,13 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
   if (s.dim == 2) c.normal.z() = 0;
   const double sign = side * format_.force_sign * (options_.flip_forces ? -1 : 1);
   if (columns.fn) {
-    c.force = (options_.flip_forces ? -1 : 1) * force_of_sizes(columns, row, c);
+    c.force = (options_.flip_forces ? -1 : 1) * force_of_sizes(columns, row, c, side);
   } else {
     c.force = sign * (columns.force
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
   }
+  if (s.dim == 2 && std::abs(c.force.z()) <= kFlatForce * c.force.norm()) c.force.z() = 0;
   if (s.dim == 2 && c.force.z() != 0)
     row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                            c.force.z()));
@@ -220,21 +281,42 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
               row.empty(columns.sliding));
 }
 
+void Assembly::check_tangent(const ForeignRow& row, const Vec3& normal, Vec3& tangent) {
+  const double length = tangent.norm();
+  if (!(std::abs(length - 1) <= kOffUnit && std::abs(tangent.dot(normal)) <= kOffUnit))
+    row.refuse(fmt::format(
+        "columns tx, ty, tz: found a direction of length {:g} at {:.3g} degrees from the normal, "
+        "allowed: 1 at 90 degrees; what are no directions (torques, forces) take another name: "
+        "--column ftx,fty,ftz=... are the components of a tangential force",
+        length,
+        std::acos(std::clamp(tangent.dot(normal) / length, -1.0, 1.0)) * 180 / std::numbers::pi));
+  tangent /= length;
+}
+
 dem::Vec3 Assembly::force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
-                                   const dem::Contact& c) const {
+                                   const dem::Contact& c, double side) const {
   const double fn = row.number(columns.fn), ft = row.number(columns.ft);
   const dem::Snapshot& s = out_.snapshot;
   if (!columns.normal)
     row.refuse("column fn: a size, and no normal: nx, ny (3D: nz) tell its direction");
-  Vec3 normal = columns.normal.of(row), tangent = Vec3::Zero();
+  // Seen from the grain where a wall is first.
+  const bool together = format_.directions_turn_together;
+  Vec3 normal = (together ? 1 : side) * columns.normal.of(row), tangent = Vec3::Zero();
+  const double length = normal.norm();
+  if (!(length > 0 && std::isfinite(length)))
+    row.refuse(fmt::format("the contact's normal has length {:g}", length));
+  normal /= length;
+  double sign = 1;
   if (columns.tangent) {
-    tangent = columns.tangent.of(row);
+    tangent = (together ? 1 : side) * columns.tangent.of(row);
+    if (std::abs(ft) > kNoForce * std::abs(fn)) check_tangent(row, normal, tangent);
+    sign = format_.force_sign;
   } else if (s.dim == 2) {
     tangent = {-normal.y(), normal.x(), 0};
   } else if (ft != 0) {
     row.refuse("column ft: a size, and no direction: tx, ty, tz tell it");
   }
-  if (!format_.directions_turn_together) return ft * tangent - fn * normal;
+  if (!together) return sign * ft * tangent - fn * normal;
   // MercuryDPM: towards i of a pair, away from it of a wall, and the tangent likewise.
   const Vec3 outwards = c.point - s.grains[static_cast<std::size_t>(c.i)].position;
   const Vec3 near = outwards + dem::shift_to(s.cell, dem::nearest_image(s.cell, outwards));

@@ -16,9 +16,6 @@ using dem::Vec3;
 
 // Cosine, see assemble_pairs.cc.
 constexpr double kLeastTowards = 0.5;
-// Two rows of one contact say the same force up to this share: what six digits leave.
-constexpr double kSameForce = 2e-5;
-constexpr double kSamePoint = 1e-3;  // radii
 
 }  // namespace
 
@@ -72,75 +69,6 @@ void Assembly::warn_of_normals() {
         given_.across, given_.at_walls, given_.first_across));
 }
 
-void Assembly::join_directions() {
-  const dem::Snapshot& s = out_.snapshot;
-  const auto same_pair = [](const ContactRow& a, const ContactRow& b) {
-    return a.contact.i == b.contact.i && a.contact.j == b.contact.j &&
-           a.contact.image == b.contact.image;
-  };
-  const auto polygons = [&](const dem::Contact& c) {
-    const auto has_outline = [&](std::int64_t k) {
-      return !s.grains[static_cast<std::size_t>(k)].outline.empty();
-    };
-    return c.j >= 0 && has_outline(c.i) && has_outline(c.j);
-  };
-  std::vector<ContactRow> kept;
-  kept.reserve(contacts_.size());
-  std::size_t group = 0;  // where the rows of the pair begin
-  for (ContactRow& row : contacts_) {
-    if (kept.empty() || !same_pair(kept.back(), row)) group = kept.size();
-    const dem::Contact& c = row.contact;
-    const double radius = s.grains[static_cast<std::size_t>(c.i)].radius;
-    bool joined = false;
-    for (std::size_t k = group; k < kept.size() && !joined; ++k) {
-      ContactRow& other = kept[k];
-      const dem::Contact& d = other.contact;
-      // Of a pair the image is told apart already, and the point may stand at either grain.
-      const bool at_points = c.j < 0 || polygons(c);
-      const bool same_point = !at_points || (c.point - d.point).norm() <= kSamePoint * radius;
-      const bool same_force =
-          (c.force - d.force).norm() <= kSameForce * std::max(c.force.norm(), d.force.norm());
-      if (other.turned != row.turned && !other.joined && same_point && same_force) {
-        joined = other.joined = true;
-        ++out_.twice;
-        continue;
-      }
-      // Two facets of one wall may touch a grain, two polygons at two points.
-      if (c.j < 0 && !(c.force == d.force && c.point == d.point && c.force.squaredNorm() > 0))
-        continue;
-      if (polygons(c) && c.point != d.point) continue;
-      refuse_twice(row, other, same_force);
-    }
-    if (!joined) kept.push_back(std::move(row));
-  }
-  contacts_ = std::move(kept);
-}
-
-void Assembly::refuse_twice(const ContactRow& row, const ContactRow& other, bool same_force) const {
-  const dem::Snapshot& s = out_.snapshot;
-  const dem::Contact& c = row.contact;
-  const std::int64_t i = s.grains[static_cast<std::size_t>(c.i)].id;
-  if (c.j < 0)
-    row.refuse(fmt::format("the contact of grain {} and wall {} is there already, at {}", i,
-                           s.walls[static_cast<std::size_t>(-1 - c.j)].name, other.source.where()));
-  const std::int64_t j = s.grains[static_cast<std::size_t>(c.j)].id;
-  std::string why;
-  if (other.turned != row.turned && !same_force)
-    why = "; the two rows name the grains in both orders, allowed: opposite forces";
-  if (s.cell.is_periodic()) {
-    double width = std::numeric_limits<double>::infinity();
-    for (Eigen::Index a = 0; a < 3; ++a)
-      if (s.cell.periodic[static_cast<std::size_t>(a)])
-        width = std::min(width, s.cell.edges.col(a).norm());
-    why += fmt::format(
-        "; grains that touch through two images of a cell (its least width is {:g} m) "
-        "need contact points",
-        width);
-  }
-  row.refuse(fmt::format("the contact of grains {} and {} is there already, at {}{}", i, j,
-                         other.source.where(), why));
-}
-
 // What was left out and kept, as numbers and sentences.
 void Assembly::tell_tally() {
   auto& idle = tally_.idle;
@@ -149,6 +77,11 @@ void Assembly::tell_tally() {
   out_.left_out = tally_.left_out;
   out_.forceless = std::count_if(contacts_.begin(), contacts_.end(),
                                  [](const ContactRow& row) { return row.contact.force.isZero(0); });
+  if (tally_.off_surface > 0)
+    out_.warnings.push_back(fmt::format(
+        "{} of {} contact points lie farther than half a radius off the surfaces of their grains "
+        "(the first: {}): are they the centres of grains, or in another unit?",
+        tally_.off_surface, tally_.pointed, tally_.first_off));
   if (tally_.far > 0)
     out_.warnings.push_back(
         fmt::format("{} contacts bear a force across a gap between their grains (the first: {}): "
@@ -164,8 +97,8 @@ ImportedSnapshot Assembly::finish() {
   if (const std::string text = deep_overlaps(s); !text.empty()) out_.warnings.push_back(text);
   std::stable_sort(contacts_.begin(), contacts_.end(),
                    [](const ContactRow& a, const ContactRow& b) {
-                     return std::tuple(a.contact.i, a.contact.j, a.contact.image) <
-                            std::tuple(b.contact.i, b.contact.j, b.contact.image);
+                     return std::tuple(a.contact.i, a.contact.j, a.contact.image, a.source.table) <
+                            std::tuple(b.contact.i, b.contact.j, b.contact.image, b.source.table);
                    });
   join_directions();
   tell_tally();

@@ -18,8 +18,12 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
-// Names, plain, that tell a shape or a body of several grains.
-bool tells_shape(const std::string& plain) {
+// Names that tell a shape or a body of several grains.
+bool tells_shape(const std::string& name) {
+  // "c_shape[1]": a compute's, a fix's, a variable's.
+  const bool prefixed = name.size() > 2 && name[1] == '_' &&
+                        std::string_view("cfvdi").find(name[0]) != std::string_view::npos;
+  const std::string plain = plain_column_name(prefixed ? name.substr(2) : name);
   constexpr std::array starts{"shape",         "blockiness", "roundness", "aspect",
                               "elongation",    "flatness",   "clump",     "multisphere",
                               "idmultisphere", "nvert",      "vertices",  "corner",
@@ -45,6 +49,23 @@ ForeignColumn Assembly::find_id(const ForeignTable& table, const TableColumns& c
   if (rows_.empty())
     out_.notes.push_back(table.file + ": no column id: the grains are counted from 1 in its order");
   return id;
+}
+
+ForeignColumn Assembly::find_bodies(const TableColumns& columns) {
+  for (const std::string& name : columns.names()) {
+    const std::string plain = plain_column_name(name);
+    for (const char* body : {"mol", "molid", "molecule", "moleculeid", "cmol", "rigidbody"})
+      if (plain == body) return columns.need_theirs(name);
+  }
+  return {};
+}
+
+void Assembly::Bodies::add(const ForeignRow& row) {
+  if (!column || repeated) return;
+  const std::string_view text = row.text(column);
+  if (text.empty() || text == "0") return;
+  repeated = met.find(text) != met.end();
+  met.emplace(text);
 }
 
 Assembly::PlaceColumns Assembly::place_columns(const ForeignTable& table,
@@ -122,9 +143,9 @@ Assembly::ShapeColumns Assembly::shape_columns(const TableColumns& columns) cons
   if (!all("axis_") && all("diameter_")) out.axis_factor = 0.5;
   if (!out) return out;
   out.exponents = {columns.find("exponent_1"), columns.find("exponent_2")};
-  if (out.exponents[0]) return out;
+  if (out.exponents[0] || out.exponents[1]) return out;
   out.exponents = {columns.find("blockiness_2"), columns.find("blockiness_1")};
-  out.blockiness = bool(out.exponents[0]);
+  out.blockiness = out.exponents[0] || out.exponents[1];
   return out;
 }
 
@@ -167,7 +188,7 @@ void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& col
            std::any_of(taken.exponents.begin(), taken.exponents.end(), is);
   };
   for (const std::string& name : columns.names())
-    if (tells_shape(plain_column_name(name)) && !used(name)) left.push_back(name);
+    if (tells_shape(name) && !used(name)) left.push_back(name);
   if (left.empty()) return;
   out_.warnings.push_back(
       fmt::format("{}:{}: the columns {} tell of shapes and are not taken: every row is read as {}",
@@ -182,6 +203,19 @@ bool Assembly::lie_outside() const {
   return std::any_of(rows_.begin(), rows_.end(), [&](const GrainRow& row) {
     return dem::depth_outside(cell, row.grain.position) > 2 * row.grain.radius;
   });
+}
+
+std::string Assembly::images_of_files() {
+  std::vector<std::string> told, untold;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (out_.snapshot.cell.periodic[a]) (axis_told_[a] ? told : untold).emplace_back(kAxes[a]);
+  if (untold.empty()) return "counted";
+  if (told.empty()) return lie_outside() ? "not carried back" : "untold";
+  out_.notes.push_back(fmt::format(
+      "{}: images are counted along {} only: displacements along {} will be the shortest ways "
+      "(i{} or {}u counts them)",
+      first_file_, fmt::join(told, ", "), fmt::join(untold, ", "), untold.front(), untold.front()));
+  return fmt::format("counted along {}", fmt::join(told, " "));
 }
 
 }  // namespace grainfield::coupling

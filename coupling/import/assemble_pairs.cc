@@ -23,7 +23,8 @@ constexpr double kDistant = 2;
 // centre, least, and of the way from the wall to the centre of a disk or sphere, radii, where no
 // point is told: disks and spheres lie on what they touch, corners of polygons may stand out far.
 constexpr double kLeastCosine = 0.5, kLeastCosineOfPolygon = 0.1, kLeastHeight = 0.25;
-constexpr double kNotUnit = 1e-3;      // of a normal's length from 1
+constexpr double kNotUnit = 1e-3;    // of a normal's length from 1
+constexpr double kOffSurface = 0.5;  // radii from both surfaces to a contact point, but for overlap
 constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's normal
 // Of the Coulomb limit: a contact this near to it slides.
 constexpr double kSliding = 1e-6;
@@ -73,7 +74,7 @@ void Assembly::check_wall_distance(const ContactRow& row, bool has_point) const 
   if (has_point && height <= kDistant * a.radius)
     row.refuse(fmt::format(
         "the point ({:g}, {:g}, {:g}) m of the contact with wall {} is {:g} m from "
-        "grain {} of radius {:g} m, allowed: up to {:g} radii",
+        "grain {} of radius {:g} m, allowed: up to {:g} radii; are points and places in one unit?",
         c.point.x(), c.point.y(), c.point.z(), wall.name, arm, a.id, a.radius, kDistant));
   row.refuse(fmt::format(
       "grain {} of radius {:g} m in contact with wall {} at a distance of {:g} m: is the wall "
@@ -129,7 +130,9 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
   set_image(row, has_point);
   const Vec3 branch = dem::second_place(s, c) - a.position;
   const double d = branch.norm();
-  if (!(d > 0)) row.refuse(fmt::format("grains {} and {} have the same centre", a.id, b.id));
+  if (!(d > 0))
+    row.refuse(fmt::format("grains {} and {} have the same centre, allowed: a place for each", a.id,
+                           b.id));
   const bool apart = gap_of(s, c) > kGap * std::min(a.radius, b.radius);
   if (apart && c.force.isZero(0)) {
     tally_.idle.emplace_back(c.i, c.j);
@@ -148,6 +151,15 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
     // The middle of the chord in which two overlapping circles cross.
     const double arm = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
     if (!has_point) c.point = a.position + arm * c.normal;
+  }
+  if (has_point && !polygons && a.axes.isZero(0) && b.axes.isZero(0)) {
+    const Vec3 second = dem::second_place(s, c);
+    const double overlap = std::max(0., a.radius + b.radius - d);
+    const double off = std::max(std::abs((c.point - a.position).norm() - a.radius),
+                                std::abs((c.point - second).norm() - b.radius));
+    ++tally_.pointed;
+    if (off > overlap + kOffSurface * std::min(a.radius, b.radius) && tally_.off_surface++ == 0)
+      tally_.first_off = fmt::format("{} and {}", a.id, b.id);
   }
   if (!check_pair_distance(row, has_point)) return false;
   if (apart && tally_.far++ == 0) tally_.first_far = fmt::format("{} and {}", a.id, b.id);
@@ -174,10 +186,16 @@ bool Assembly::check_pair_distance(const ContactRow& row, bool has_point) {
         "and {:g} m from grain {} of radius {:g} m, allowed: up to {:g} radii from each",
         c.point.x(), c.point.y(), c.point.z(), (c.point - a.position).norm(), a.id, a.radius,
         (c.point - second).norm(), b.id, b.radius, kDistant));
+  if (d < a.radius + b.radius)
+    row.refuse(fmt::format(
+        "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m, less than "
+        "their radii: are radii and places in one unit (--units, \"radius (mm)\")?",
+        a.id, b.id, a.radius, b.radius, d));
   const char* remedy = options_.files.empty()
                            ? "periodic={\"x\": (low, high)} says where"
                            : "--periodic AXIS=LOW:HIGH says where, --leave-out-distant imports "
-                             "the packing without such contacts";
+                             "the packing without such contacts; or do the contacts count ids from "
+                             "another number than the grains?";
   row.refuse(fmt::format(
       "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
       "periodic boundary? {}",
@@ -197,6 +215,11 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   if (std::abs(c.spring) > dem::kMostNumber)
     refuse(fmt::format("found a spring of {:.3g} N, allowed: up to {:g} N", c.spring,
                        dem::kMostNumber));
+  // A grain's own image, behind a gap.
+  if (c.i == c.j && c.force.isZero(0) && s.cell.is_periodic()) {
+    tally_.idle.emplace_back(c.i, c.j);
+    return;
+  }
   check_periods(row);
   if (c.j >= 0 && c.i > c.j) {
     std::swap(c.i, c.j);
@@ -214,7 +237,14 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
       refuse(e.what());
     }
   }
-  if (has_normal) check_given_normal(c);
+  if (has_normal) {
+    check_given_normal(c);
+    // Points and forces are made from it below.
+    const double length = c.normal.norm();
+    if (!(length > 0 && std::isfinite(length)))
+      refuse(fmt::format("the contact's normal has length {:g}", length));
+    if (std::abs(length - 1) > 1e-12) c.normal /= length;
+  }
   if (c.j < 0 ? !settle_wall_contact(row, has_point) : !settle_pair(row, has_normal, has_point))
     return;
   const double length = c.normal.norm();

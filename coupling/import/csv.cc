@@ -35,6 +35,7 @@ struct HeadLine {
 struct Head {
   std::vector<HeadLine> lines;
   char separator = 0;
+  HeadWords known;
 };
 
 Head head_of(Lines& lines) {
@@ -91,28 +92,33 @@ bool is_row(const std::vector<std::string>& values, char separator) {
 }
 
 // "-", "m", "[mm]" under the names.
-std::optional<std::string> told_unit(std::string value) {
+std::optional<std::string> told_unit(std::string value, const HeadWords& known) {
   if (value.size() > 2 && std::string("([{").find(value.front()) != std::string::npos)
     value = std::string(trimmed(std::string_view(value).substr(1, value.size() - 2)));
   if (value.empty() || value == "-" || value == "1") return "";
-  if (parse_unit(value)) return value;
+  const auto& units = known.units;
+  if (parse_unit(value) || std::find(units.begin(), units.end(), value) != units.end())
+    return value;
   return std::nullopt;
 }
 
-bool is_units(const std::vector<std::string>& values) {
+bool is_units(const std::vector<std::string>& values, const HeadWords& known) {
   bool any = false;
   for (const std::string& value : values) {
-    const auto unit = told_unit(value);
+    const auto unit = told_unit(value, known);
     if (!unit) return false;
     any = any || !unit->empty();
   }
   return any;
 }
 
-int known_names(const std::vector<std::string>& values) {
-  return static_cast<int>(std::count_if(values.begin(), values.end(), [](const std::string& value) {
-    return is_known_name(heading_of(value, 0).name);
-  }));
+int known_names(const std::vector<std::string>& values, const HeadWords& known) {
+  return static_cast<int>(
+      std::count_if(values.begin(), values.end(), [&](const std::string& value) {
+        const std::string name = heading_of(value, 0).name;
+        return is_known_name(name) || std::find(known.names.begin(), known.names.end(),
+                                                plain_column_name(name)) != known.names.end();
+      }));
 }
 
 // The one by which a line has the most names that are known. Without any: the one of which the
@@ -125,7 +131,7 @@ char separator_of(const Head& head) {
     for (const HeadLine& line : head.lines) {
       const auto values = values_of(line, separator);
       if (values.size() < 2) continue;
-      const int known = is_row(values, separator) ? 0 : known_names(values);
+      const int known = is_row(values, separator) ? 0 : known_names(values, head.known);
       // A comment counts where rows have as many values: any other is only words.
       const auto as_many = [&](const HeadLine& other) {
         return !other.comment && values_of(other, separator).size() == values.size();
@@ -187,13 +193,18 @@ class HeaderSearch {
     if (names == none) names = most_known(true);
     if (names == none) names = words_before_numbers();
     if (names == none) refuse();
-    const std::size_t units = names + 1;
-    const bool has_units =
-        units < none && !rows_[units] && !head_.lines[units].comment && is_units(values_[units]);
+    // A line of units stands below the names, or above them, also as a comment.
+    const auto of_units = [&](std::size_t k) {
+      return k < none && !rows_[k] && is_units(values_[k], head_.known) &&
+             count_of(values_[k]) <= values_[names].size() &&
+             (!head_.lines[k].comment || count_of(values_[k]) == count_of(values_[names]));
+    };
+    const std::size_t below = names + 1, above = names == 0 ? none : names - 1;
+    const std::size_t units = of_units(below) ? below : of_units(above) ? above : none;
     table.columns = std::make_shared<const std::vector<std::string>>(
-        has_units ? with_units(values_[names], values_[units]) : values_[names]);
+        units < none ? with_units(values_[names], values_[units]) : values_[names]);
     table.header_line = head_.lines[names].line;
-    table.first = head_.lines[has_units ? units : names].behind;
+    table.first = head_.lines[units < none && units == below ? units : names].behind;
   }
 
  private:
@@ -204,7 +215,7 @@ class HeaderSearch {
     for (std::size_t k = 0; k < values_.size(); ++k) {
       if (rows_[k] || head_.lines[k].comment != comment) continue;
       if (comment && !has_row_of(count_of(values_[k]))) continue;
-      const int known = known_names(values_[k]);
+      const int known = known_names(values_[k], head_.known);
       if (known <= most) continue;
       most = known;
       best = k;
@@ -227,10 +238,10 @@ class HeaderSearch {
       if (!head_.lines[k].comment) found = k;
     return found;
   }
-  static std::vector<std::string> with_units(std::vector<std::string> names,
-                                             const std::vector<std::string>& units) {
+  std::vector<std::string> with_units(std::vector<std::string> names,
+                                      const std::vector<std::string>& units) const {
     for (std::size_t k = 0; k < std::min(names.size(), units.size()); ++k) {
-      const std::string unit = *told_unit(units[k]);
+      const std::string unit = *told_unit(units[k], head_.known);
       if (!unit.empty()) names[k] += fmt::format(" ({})", unit);
     }
     return names;
@@ -254,27 +265,29 @@ class HeaderSearch {
   std::vector<bool> rows_;  // more numbers than words
 };
 
-std::vector<ForeignTable> scan(const std::string& file) {
+}  // namespace
+
+ForeignTable scan_csv(const std::string& file, HeadWords&& known) {
   Lines lines(file);
-  const Head head = head_of(lines);
+  Head head = head_of(lines);
+  head.known = std::move(known);
   if (head.lines.empty()) refuse_empty(file);
   ForeignTable table;
   table.file = file;
   table.separator = separator_of(head);
-  table.units_in_header = true;
   table.any_names = true;
   HeaderSearch(file, head, table.separator).find(table);
   table.decimal_commas = has_decimal_commas(lines, table);
-  return {table};
+  return table;
 }
-
-}  // namespace
 
 ImportFormat csv_format() {
   ImportFormat format;
   format.name = "csv";
   format.summary = "tables of grains, contacts and walls with a line of names";
-  format.scan = scan;
+  format.scan = [](const std::string& file, ColumnNames&) {
+    return std::vector<ForeignTable>{scan_csv(file)};
+  };
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
     for (const OurColumn& column : our_columns(kind)) {
       // Scaled places are told by dumps alone, which tell the box, too.

@@ -44,7 +44,9 @@ std::vector<dem::Reach<D>> round_grains(const dem::Snapshot& s, std::vector<std:
   std::vector<dem::Reach<D>> out;
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     const dem::Grain& g = s.grains[k];
-    if (!g.outline.empty() || (g.position - middle).cwiseAbs().maxCoeff() > side) continue;
+    if (!g.outline.empty() || !g.axes.isZero(0) ||
+        (g.position - middle).cwiseAbs().maxCoeff() > side)
+      continue;
     out.push_back({part_of<D>(g.position), g.radius, g.fixed});
     index.push_back(k);
   }
@@ -104,13 +106,13 @@ Found search(const dem::Snapshot& s) {
 }  // namespace
 
 std::string deep_overlaps(const dem::Snapshot& s) {
-  if (!s.cell.is_periodic()) return "";
   const Found found = s.dim == 2 ? search<2>(s) : search<3>(s);
   if (found.count == 0) return "";
   return fmt::format(
       "pairs of grains that overlap by more than half the smaller radius: {}{} (the first: {} and "
-      "{}); is the period narrower than the packing, or are the radii diameters?",
-      found.count, found.count == kMost ? " or more" : "", found.i, found.j);
+      "{}); are the radii diameters, or in another unit than the places{}?",
+      found.count, found.count == kMost ? " or more" : "", found.i, found.j,
+      s.cell.is_periodic() ? ", or is the period narrower than the packing" : "");
 }
 
 }  // namespace grainfield::coupling

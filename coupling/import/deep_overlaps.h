@@ -1,4 +1,4 @@
-// Grains that a period narrower than the packing has laid upon each other.
+// Grains that lie upon each other: a wrong unit of the radii, or a period that is too narrow.
 #pragma once
 #include <string>
 
@@ -6,8 +6,8 @@
 
 namespace grainfield::coupling {
 
-/// How many pairs of round grains of a periodic packing overlap by more than half the smaller
-/// radius, and which is the first; one sentence. Counts up to 10,000. Empty: none, or no cell.
+/// How many pairs of disks or spheres overlap by more than half the smaller radius, and which is the
+/// first; one sentence. Counts up to 10,000. Empty: none.
 std::string deep_overlaps(const dem::Snapshot& packing);
 
 }  // namespace grainfield::coupling

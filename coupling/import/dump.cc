@@ -25,6 +25,7 @@ class DumpScan {
   explicit DumpScan(const std::string& file) : lines_(file) {
     table_.file = file;
     table_.any_names = true;
+    table_.prefixes = true;
     table_.columns = std::make_shared<const std::vector<std::string>>();
   }
 
@@ -256,7 +257,9 @@ class DumpScan {
 
 }  // namespace
 
-std::vector<ForeignTable> scan_dump(const std::string& file) { return DumpScan(file).tables(); }
+std::vector<ForeignTable> scan_dump(const std::string& file, ColumnNames&) {
+  return DumpScan(file).tables();
+}
 
 std::vector<std::pair<std::string, std::string>> dump_columns(
     const std::vector<std::pair<std::string, std::string>>& contact) {

@@ -11,6 +11,8 @@
 
 #include "continuum/model.h"
 #include "coupling/import/assemble.h"
+#include "coupling/import/ids_table.h"
+#include "coupling/import/step_names.h"
 #include "coupling/import/steps.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
@@ -35,7 +37,8 @@ TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   if (columns.find("name") && columns.find("nx")) return TableKind::walls;
   // Forces and no places: contacts, of which a column of ids is missing.
   const bool forces = has("fx") || has("fnx") || has("fn");
-  if (has("i") || (forces && !has("radius") && !has("diameter"))) return TableKind::contacts;
+  const bool sized = has("radius") || has("diameter") || has("outline");
+  if (!sized && (has("i") || forces)) return TableKind::contacts;
   return TableKind::grains;
 }
 
@@ -271,9 +274,11 @@ void import_snapshots(const ImportOptions& options,
   const auto tell = [&](const char* phase, std::size_t done, std::size_t all) {
     if (options.progress) options.progress(phase, done, all);
   };
+  const auto steps_by_name = steps_of_names(options.files);
   for (std::size_t k = 0; k < options.files.size(); ++k) {
     tell("files looked through", k, options.files.size());
-    for (ForeignTable& table : format.scan(options.files[k])) {
+    for (ForeignTable& table : format.scan(options.files[k], names)) {
+      if (format.steps_by_name) table.step = steps_by_name[k];
       const TableKind kind = kind_of(table, names);
       steps.add(std::move(table), kind);
     }
@@ -298,6 +303,7 @@ void import_snapshots(const ImportOptions& options,
     assembly.settle();
     for (const ForeignTable& table : tables.contacts) assembly.add_contacts(table);
     ImportedSnapshot done = assembly.finish();
+    if (!options.ids_file.empty()) restore_ids(options.ids_file, done.snapshot);
     // Of several states the latest is the loaded one: the others are what the load has changed.
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](const StepChoice& other) { return other.step > choice.step; })) {

@@ -59,6 +59,7 @@ struct ImportOptions {
   bool without_contacts = false;   ///< grains alone are enough
   bool flip_forces = false;        ///< the files' forces act on j: all are turned
   bool leave_out_distant = false;  ///< pairs across periodic boundaries are left out, and no cell
+  std::string ids_file;  ///< a table of the files' ids and the grains' original ones; empty: none
   std::vector<PeriodicAxis> periodic;  ///< instead of those that a dump tells
   /// Told now and then: what is done of how many, "files looked through", "steps read".
   std::function<void(const char* phase, std::size_t done, std::size_t all)> progress = {};

@@ -10,6 +10,7 @@ ImportFormat lammps_format() {
   format.name = "lammps";
   format.summary = "dump custom of the atoms, dump local of their pairs";
   format.scan = scan_dump;
+  format.densities_of_spheres = true;
   format.columns = dump_columns({
       // Ellipsoids: compute property/atom shapex is a diameter.
       {"diameter_x", "shapex"},

@@ -9,6 +9,7 @@ ImportFormat liggghts_format() {
   format.name = "liggghts";
   format.summary = "dump custom of the atoms, dump local of pair/gran/local and wall/gran/local";
   format.scan = scan_dump;
+  format.densities_of_spheres = true;
   format.columns = dump_columns({
       // Superquadrics: half axes, blockiness, quaternion w x y z.
       {"axis_x", "shapex"},

@@ -16,6 +16,7 @@
 //   columns)
 //
 // j below 0 is the wall -1-j. The force on i is fn n + ft t; of a wall both directions are turned.
+// A copy across a periodic side has a number beyond those of the particles; it is never first.
 // Sources: MercuryDPM's page "Visualising Your Results" (Documentation/Pages/Analysing.dox), and
 // BaseInteraction::writeToFStat and DPMBase::writeFstatHeader of version 1 of the .fstat.
 #include <fmt/format.h>
@@ -140,7 +141,9 @@ class MercuryScan {
   std::vector<ForeignTable> found_;
 };
 
-std::vector<ForeignTable> scan(const std::string& file) { return MercuryScan(file).tables(); }
+std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
+  return MercuryScan(file).tables();
+}
 
 }  // namespace
 
@@ -152,6 +155,7 @@ ImportFormat mercury_format() {
   format.rows_are_ids = true;
   format.steps_by_time = true;
   format.directions_turn_together = true;
+  format.copies_have_numbers = true;
   for (const char* name :
        {"x", "y",  "z",  "vx", "vy", "vz", "radius", "spin", "spin_x", "spin_y", "angle", "i",
         "j", "px", "py", "pz", "fn", "ft", "nx",     "ny",   "nz",     "tx",     "ty",    "tz"})

@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -11,8 +14,9 @@
 namespace grainfield::coupling {
 namespace {
 
-// Times of two files are one up to what was rounded in printing.
-constexpr double kSameTime = 1e-9;
+// Times of two files are one up to what was rounded in printing: of all digits; and of six, where
+// the next step is farther off than some times that.
+constexpr double kSameTime = 1e-9, kPrintedTime = 5e-6, kShareOfGap = 0.2;
 
 // Briefly.
 std::string list_of(const std::vector<long long>& all) {
@@ -43,15 +47,36 @@ void StepList::for_each(const std::function<void(ForeignTable&)>& change) {
 
 void StepList::number_by_time() {
   std::vector<double> times;
-  for (const Entry& entry : entries_) times.push_back(entry.table.time.value_or(0));
+  for (const Entry& entry : entries_)
+    if (entry.kind == TableKind::grains) times.push_back(entry.table.time.value_or(0));
   std::sort(times.begin(), times.end());
   const auto same = [](double a, double b) { return b - a <= kSameTime * std::abs(b); };
   times.erase(std::unique(times.begin(), times.end(), same), times.end());
-  for (Entry& entry : entries_) {
+  std::vector<double> others;  // of contacts without grains
+  // Where the time is in `all`: the nearest, where the times between are farther apart.
+  const auto place_in = [](const std::vector<double>& all, double time) {
+    const auto above = std::lower_bound(all.begin(), all.end(), time);
+    auto best = above;
+    if (above == all.end() || (above != all.begin() && time - *(above - 1) < *above - time))
+      best = above == all.begin() ? above : above - 1;
+    if (best == all.end()) return all.end();
+    double gap = std::numeric_limits<double>::infinity();
+    if (best != all.begin()) gap = std::min(gap, *best - *(best - 1));
+    if (best + 1 != all.end()) gap = std::min(gap, *(best + 1) - *best);
+    const double off = std::abs(*best - time);
+    const bool good = off <= kSameTime * std::abs(time) ||
+                      (off <= kPrintedTime * std::abs(time) && off < kShareOfGap * gap);
+    return good ? best : all.end();
+  };
+  for (const Entry& entry : entries_) {
     const double time = entry.table.time.value_or(0);
-    const auto at = std::lower_bound(times.begin(), times.end(), time - kSameTime * std::abs(time));
-    entry.table.step = at - times.begin();
+    if (place_in(times, time) == times.end()) others.push_back(time);
   }
+  times.insert(times.end(), others.begin(), others.end());
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end(), same), times.end());
+  for (Entry& entry : entries_)
+    entry.table.step = place_in(times, entry.table.time.value_or(0)) - times.begin();
 }
 
 // Numbers at the ends of files' names: of one file for each kind they tell nothing.
@@ -68,8 +93,9 @@ void StepList::drop_step_numbers() {
 void StepList::drop_repeated(std::vector<ForeignTable>& tables) {
   for (std::size_t k = 0; k < tables.size();) {
     const auto again = [&](const ForeignTable& other) {
-      return other.file == tables[k].file && other.header_line > tables[k].header_line &&
-             other.broken.empty() && other.arrays == nullptr;
+      return other.file == tables[k].file && *other.columns == *tables[k].columns &&
+             other.header_line > tables[k].header_line && other.broken.empty() &&
+             other.arrays == nullptr;
     };
     const auto last = std::find_if(tables.rbegin(), tables.rend(), again);
     if (last == tables.rend()) {
@@ -114,6 +140,26 @@ void StepList::settle(bool by_time) {
     drop_repeated(tables.grains);
     drop_repeated(tables.contacts);
   }
+  find_parts();
+}
+
+// Files of contacts that begin with one step and share more are parts of one table (a file for each
+// processor or kind of pairs). A continued run's begin later.
+void StepList::find_parts() {
+  std::map<std::string, std::vector<long long>> steps;
+  for (const auto& [step, tables] : steps_)
+    for (const ForeignTable& table : tables.contacts)
+      if (steps[table.file].empty() || steps[table.file].back() != step)
+        steps[table.file].push_back(step);
+  std::erase_if(steps, [](const auto& file) { return file.second.size() < 2; });
+  for (auto a = steps.begin(); a != steps.end(); ++a)
+    for (auto b = std::next(a); b != steps.end(); ++b) {
+      if (a->second.front() != b->second.front()) continue;
+      std::vector<long long> both;
+      std::set_intersection(a->second.begin(), a->second.end(), b->second.begin(), b->second.end(),
+                            std::back_inserter(both));
+      if (both.size() >= 2) parts_.emplace_back(a->first, b->first);
+    }
 }
 
 bool StepList::is_whole(const StepTables& tables, bool without_contacts) const {
@@ -122,6 +168,12 @@ bool StepList::is_whole(const StepTables& tables, bool without_contacts) const {
       !std::all_of(tables.contacts.begin(), tables.contacts.end(), good))
     return false;
   if (without_contacts && tables.contacts.empty()) return true;
+  const auto of_file = [&](const std::string& file) {
+    return std::any_of(tables.contacts.begin(), tables.contacts.end(),
+                       [&](const ForeignTable& table) { return table.file == file; });
+  };
+  for (const auto& [a, b] : parts_)
+    if (of_file(a) != of_file(b)) return false;
   return !tables.contacts.empty() &&
          std::all_of(contact_kinds_.begin(), contact_kinds_.end(), [&](const auto* kind) {
            return std::any_of(

@@ -48,6 +48,7 @@ class StepList {
   void share_names(ForeignTable& table);
   void number_by_time();
   void drop_step_numbers();
+  void find_parts();
   void drop_repeated(std::vector<ForeignTable>& tables);
   bool is_whole(const StepTables& tables, bool without_contacts) const;
   std::vector<long long> whole_steps(bool without_contacts) const;
@@ -58,6 +59,7 @@ class StepList {
   std::vector<std::string> warnings_;
   /// Kinds of tables of contacts: by their columns.
   std::vector<const std::vector<std::string>*> contact_kinds_;
+  std::vector<std::pair<std::string, std::string>> parts_;  ///< files that have all steps both
   bool stepped_ = false;
   std::string broken_;  ///< the first table that is truncated
 };

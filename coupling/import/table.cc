@@ -39,6 +39,15 @@ std::vector<std::string> expanded(const std::string& list) {
   return out;
 }
 
+// "-fx", "|fx|", "x*", "dx/dt": something else than the name without them.
+bool has_signs(const std::string& name) {
+  const auto sign = [](char ch) {
+    return std::isalnum(static_cast<unsigned char>(ch)) == 0 &&
+           std::string_view(" _-.:#[]").find(ch) == std::string_view::npos;
+  };
+  return name.starts_with('-') || std::any_of(name.begin(), name.end(), sign);
+}
+
 const OurColumn* our_column(const std::string& name) {
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
     for (const OurColumn& column : our_columns(kind))
@@ -110,6 +119,11 @@ std::vector<ColumnNames::Candidate> ColumnNames::candidates(const std::string& o
   return out;
 }
 
+bool ColumnNames::chose(const std::string& ours) const {
+  return std::any_of(chosen_.begin(), chosen_.end(),
+                     [&](const auto& pair) { return pair.first == ours; });
+}
+
 void ColumnNames::mark_used(const std::string& ours, const std::string& theirs) {
   used_.insert(ours + "=" + theirs);
 }
@@ -123,9 +137,12 @@ void ColumnNames::require_all_used() const {
 }
 
 Heading heading_of(const std::string& text, int index) {
-  const std::size_t open = text.find_last_of("([");
+  const std::size_t open = text.find_last_of("([{");
   if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
-  const std::size_t close = text.find_first_of(")]", open);
+  const std::size_t close = text.find_first_of(")]}", open);
+  // "fx (N) x1000" says more than a unit.
+  if (close != std::string::npos && !trimmed(std::string_view(text).substr(close + 1)).empty())
+    return {std::string(trimmed(text)), "", index};
   const std::string_view all = text;
   const std::string_view inner = trimmed(all.substr(open + 1, close - open - 1));
   const bool whole = inner.find_first_not_of("0123456789") == std::string_view::npos;
@@ -138,14 +155,15 @@ TableColumns::TableColumns(const ForeignTable& table, ColumnNames& names)
     : table_(table), names_(names) {
   for (const std::string& column : *table.columns) {
     const int index = static_cast<int>(headings_.size());
-    headings_.push_back(table.units_in_header ? heading_of(column, index)
-                                              : Heading{column, "", index});
+    const bool ours = table.arrays != nullptr && !table.any_names;
+    headings_.push_back(ours ? Heading{column, "", index} : heading_of(column, index));
   }
 }
 
 std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading& heading) const {
   const OurColumn* known = our_column(ours);
   if (known == nullptr || known->unit.empty()) return std::nullopt;
+  if (known->unit == "m") note_length(heading);
   if (heading.unit.empty()) {
     // A volume is one of the plane or of space: its table's unit is told by its reader.
     const int ten = known->unit == "m3" ? 0 : table_.units.ten_of(known->unit);
@@ -156,13 +174,41 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
   for (const std::string& allowed : {known->unit, known->plane_unit})
     if (unit && unit->kind == parse_unit(allowed)->kind) return unit;
   throw std::invalid_argument(fmt::format(
-      "{}:{}: column {}: found the unit \"{}\", allowed: {}", table_.file, table_.header_line,
+      "{}:{}: column {}: found the unit \"{}\", allowed: {}{}", table_.file, table_.header_line,
       heading.name == ours ? ours : fmt::format("{} ({})", heading.name, ours), heading.unit,
       known->unit == "1"
           ? "none, a number without a unit"
           : fmt::format("{}{} or another unit of that kind, of {}", known->unit,
                         known->plane_unit == known->unit ? "" : " (2D: " + known->plane_unit + ")",
-                        known_symbols())));
+                        known_symbols()),
+      unit ? ""
+           : fmt::format("; where it is no unit: --column '{}={}'", ours,
+                         (*table_.columns)[static_cast<std::size_t>(heading.index)])));
+}
+
+void TableColumns::note_length(const Heading& heading) const {
+  if (heading.unit.empty()) {
+    bare_lengths_.push_back(heading.name);
+    return;
+  }
+  const std::optional<Unit> unit = parse_unit(heading.unit);
+  if (unit && unit->ten != table_.units.ten_of("m") && told_length_.empty()) {
+    told_length_ = heading.name;
+    told_unit_ = heading.unit;
+  }
+}
+
+void TableColumns::require_length_units() const {
+  if (told_length_.empty() || bare_lengths_.empty()) return;
+  std::vector<std::string> bare = bare_lengths_;
+  std::sort(bare.begin(), bare.end());
+  bare.erase(std::unique(bare.begin(), bare.end()), bare.end());
+  throw std::invalid_argument(
+      fmt::format("{0}:{1}: found the unit {2} of {3} and none of {4}, expected one of each "
+                  "length, such as \"{5} "
+                  "({2})\" or \"{5} (m)\"",
+                  table_.file, table_.header_line, told_unit_, told_length_, fmt::join(bare, ", "),
+                  bare.front()));
 }
 
 // "3.6", or "3.6 mm" in a unit of our column's kind, in SI. Nothing for any other text.
@@ -195,8 +241,16 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
   wanted.push_back(plain_column_name(ours));
   auto found = none;
   for (auto at = headings_.begin(); at != none; ++at) {
+    if (has_signs(at->name)) continue;
     const std::string plain = plain_column_name(at->name);
     if (std::find(wanted.begin(), wanted.end(), plain) == wanted.end()) continue;
+    // Ix, Iy, Iz are moments of inertia.
+    const bool flag = ours == "ix" || ours == "iy" || ours == "iz";
+    if (flag && at->name.front() == 'I') continue;
+    // "v_x" of a dump is a variable's, not a velocity.
+    if (table_.prefixes && at->name.size() > 2 && at->name[1] == '_' &&
+        std::string_view("cfvid").find(at->name[0]) != std::string_view::npos)
+      continue;
     if (names_.claims(at->name) ||
         names_.claims(table_.columns->at(static_cast<std::size_t>(at->index))))
       continue;
@@ -231,7 +285,12 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
                                               table_.file, table_.header_line, candidate.theirs));
     if (candidate.chosen) names_.mark_used(ours, candidate.theirs);
     if (at == headings_.end()) return {ours, -1, constant, std::nullopt};
-    return {ours, at->index, std::nullopt, unit_of(ours, *at)};
+    // A name that was chosen in full may hold any bracket: "x (centroid)".
+    Heading heading = *at;
+    const bool full =
+        candidate.chosen && columns[static_cast<std::size_t>(at->index)] == candidate.theirs;
+    if (full && !parse_unit(heading.unit)) heading.unit.clear();
+    return {ours, at->index, std::nullopt, unit_of(ours, heading)};
   }
   const auto at = plainly(ours);
   if (at == headings_.end()) return {ours, -1, std::nullopt, std::nullopt};

@@ -32,6 +32,7 @@ struct ArrayColumn {
   std::vector<double> numbers;
   std::vector<std::string> words;
   std::vector<std::int64_t> whole;
+  bool single = false;  ///< numbers were of four bytes: whole ones from 2^24 on are rounded
 
   std::size_t rows() const { return std::max({numbers.size(), words.size(), whole.size()}); }
 };
@@ -50,12 +51,12 @@ struct ForeignTable {
   Lines::Place first;                                       ///< of the rows
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
-  bool units_in_header = false;  ///< "x (mm)" is a column x in mm
-  bool decimal_commas = false;   ///< numbers are written as 0,005
-  bool any_names = false;        ///< names that other programs have for our columns are taken, too
-  std::string told_units;        ///< "FILE:LINE" where the file itself says what it is in
-  UnitSystem units;              ///< of columns that tell none
-  std::string broken;            ///< not empty: why the table cannot be read (truncated)
+  bool decimal_commas = false;  ///< numbers are written as 0,005
+  bool prefixes = false;        ///< "c_", "f_", "v_", "i_", "d_" say what made a column (dumps)
+  bool any_names = false;       ///< names that other programs have for our columns are taken, too
+  std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
+  UnitSystem units;             ///< of columns that tell none
+  std::string broken;           ///< not empty: why the table cannot be read (truncated)
   /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
   /// long as `rows`.
   std::shared_ptr<const std::vector<ArrayColumn>> arrays;
@@ -85,6 +86,8 @@ class ColumnNames {
     bool chosen = false;
   };
   std::vector<Candidate> candidates(const std::string& ours) const;
+  /// Whether the user names a column for ours.
+  bool chose(const std::string& ours) const;
   void mark_used(const std::string& ours, const std::string& theirs);
   /// Whether the user or the format names this column of theirs as one of ours.
   bool claims(const std::string& theirs) const;
@@ -99,8 +102,8 @@ class ColumnNames {
   std::map<std::string, std::vector<std::string>> taken_;  // by file
 };
 
-/// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]". A whole number in
-/// square brackets, "c_p[1]", is part of the name.
+/// A column's name with a unit in brackets behind it: "value (kPa)", "x [mm]", "r {um}". A whole
+/// number in square brackets, "c_p[1]", is part of the name.
 struct Heading {
   std::string name, unit;
   int index = -1;
@@ -133,8 +136,12 @@ class TableColumns {
                             const std::string& argument = "") const;
   /// Names of the table's columns, without units.
   std::vector<std::string> names() const;
+  /// Throws std::invalid_argument where of the lengths that were found some have a unit other than
+  /// the table's and others none.
+  void require_length_units() const;
 
  private:
+  void note_length(const Heading& heading) const;
   std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
   std::optional<double> constant_of(const std::string& ours, const std::string& text) const;
   /// The heading that plainly is ours, or the only one of another program's name for it; else end.
@@ -143,6 +150,8 @@ class TableColumns {
   const ForeignTable& table_;
   ColumnNames& names_;
   std::vector<Heading> headings_;
+  mutable std::vector<std::string> bare_lengths_;  // found, without a unit
+  mutable std::string told_length_, told_unit_;    // the first with another than the table's
 };
 
 /// An id as a file tells it.

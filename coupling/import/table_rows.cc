@@ -33,7 +33,10 @@ std::string_view ForeignRow::text(const ForeignColumn& column) const {
 bool ForeignRow::empty(const ForeignColumn& column) const {
   const ArrayColumn* array = array_of(column);
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
-  return !column || (!column.constant && text(column).empty());
+  if (!column || column.constant) return !column;
+  const std::string_view told = text(column);
+  // What R and pandas write for none.
+  return told.empty() || told == "NA" || told == "<NA>" || told == "None";
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
@@ -54,7 +57,8 @@ double ForeignRow::number(const ForeignColumn& column) const {
     return column.unit ? in_si(std::string(told), *column.unit) : dem::parse_number(told);
   };
   if (array != nullptr && !array->whole.empty()) {
-    value = static_cast<double>(array->whole[place]);
+    value = column.unit ? in_si(fmt::format("{}", array->whole[place]), *column.unit)
+                        : static_cast<double>(array->whole[place]);
   } else if (array != nullptr && array->words.empty()) {
     value = array->numbers[place];
     // As the same number in a text would be.
@@ -72,9 +76,14 @@ double ForeignRow::number(const ForeignColumn& column) const {
   } else {
     value = read(text(column));
   }
-  if (!value || !std::isfinite(*value))
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number", name_of(column),
-                       text(column)));
+  if (!value || !std::isfinite(*value)) {
+    const std::string_view told = text(column);
+    const bool comma = array == nullptr && std::count(told.begin(), told.end(), ',') == 1;
+    refuse(fmt::format("column {}: found \"{}\", expected a finite number{}", name_of(column), told,
+                       comma ? ": is the comma one of decimals or of thousands? Decimal commas are "
+                               "read in tables with semicolons"
+                             : ""));
+  }
   return *value;
 }
 
@@ -84,19 +93,23 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   std::string told =
       column.constant ? fmt::format("{}", *column.constant) : std::string(text(column));
   if (decimal_commas) std::replace(told.begin(), told.end(), ',', '.');
-  if (const auto value = dem::parse_integer(told)) return {*value, 0};
+  // A floating-point number in memory may be rounded, whatever its digits.
+  const bool floating = array != nullptr && !array->numbers.empty();
+  if (const auto value = dem::parse_integer(told); value && !floating) return {*value, 0};
   const std::optional<double> value = dem::parse_number(told);
-  // Above, doubles are no longer one apart.
-  constexpr double most = 9007199254740992.0;
+  // Above, numbers of this type are no longer one apart.
+  const bool single = array != nullptr && array->single;
+  const double most = single ? 16777216.0 : 9007199254740992.0;
   if (!value || *value != std::floor(*value) || !(std::abs(*value) < most)) {
     const bool large = value && std::abs(*value) >= most && std::isfinite(*value);
     refuse(fmt::format(
         "column {}: found \"{}\", expected {}", column.constant ? column.name : name_of(column),
         told,
         large
-            ? "a whole number with all of its digits: as a floating-point number one from 2^53 on "
-              "may stand for its neighbour"
-            : "a whole number"));
+            ? fmt::format("a whole number with all of its digits: as a floating-point number{} one "
+                          "from {} on may stand for its neighbour",
+                          single ? " of four bytes" : "", single ? "2^24" : "2^53")
+            : std::string("a whole number")));
   }
   const std::size_t e = told.find_first_of("eE");
   if (e == std::string::npos) return {static_cast<std::int64_t>(*value), 0};
@@ -110,6 +123,11 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
 
 bool ForeignRow::flag(const ForeignColumn& column) const {
   if (empty(column)) return false;
+  const std::string_view told = column.constant ? std::string_view() : text(column);
+  for (const std::string_view yes : {"True", "true", "TRUE"})
+    if (told == yes) return true;
+  for (const std::string_view no : {"False", "false", "FALSE"})
+    if (told == no) return false;
   const double value = number(column);
   if (value != 0 && value != 1)
     refuse(fmt::format("column {}: found {}, allowed: 0, 1", name_of(column), value));
@@ -178,14 +196,20 @@ void TableReader::read(const ForeignTable& table,
           std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(both), fields.end(), blank);
       for (std::size_t k = both; k < columns; ++k) fits = fits && (*table.columns)[k].empty();
       if (!fits)
-        row.refuse(fmt::format("{} values where the header at line {} names {} columns",
-                               fields.size(), table.header_line, columns));
+        row.refuse(fmt::format("{} values where the header at line {} names {} columns{}",
+                               fields.size(), table.header_line, columns,
+                               fields.size() == columns + 1
+                                   ? "; are the first ones names of rows (R: write.table(..., "
+                                     "row.names = FALSE) leaves them out)?"
+                                   : ""));
       padded.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(both));
       padded.resize(columns);
       row.fields = &padded;
     } else if (table.rows < 0 && std::all_of(fields.begin(), fields.end(),
                                              [](std::string_view f) { return f.empty(); })) {
       continue;
+    } else if (table.rows < 0 && std::equal(fields.begin(), fields.end(), table.columns->begin())) {
+      continue;  // the line of names once more, of tables that were put behind each other
     }
     take(row);
   }

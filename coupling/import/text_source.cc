@@ -221,6 +221,26 @@ struct TextSource::Parts {
     return count;
   }
 
+  // Opens the file and sets its packing; returns its first bytes, unpacked.
+  std::string settle_packing() {
+    std::array<char, kHead> bytes{};
+    const auto head = [&] {
+      open();
+      return std::string(bytes.data(), read_bytes(bytes.data(), kHead));
+    };
+    const std::string start = head();
+    const auto told = packing_of(start);
+    if (!told) return start;
+    packing = *told;
+    if (packing == Packing::zstd && !is_whole_zstd(file))
+      throw std::invalid_argument(file +
+                                  ": is damaged or cut off: its packing does not fit its end");
+    std::string inner = head();
+    if (packing_of(inner))
+      throw std::invalid_argument(file + ": is packed twice; unpack it once first");
+    return inner;
+  }
+
   // To the first byte of the text.
   void begin() {
     open();
@@ -236,21 +256,7 @@ TextSource::TextSource(const std::string& file) : parts_(std::make_unique<Parts>
   Parts& p = *parts_;
   p.file = file;
   require_regular_file(file, "a text file");
-  std::array<char, kHead> bytes{};
-  const auto head = [&] {
-    p.open();
-    return std::string_view(bytes.data(), p.read_bytes(bytes.data(), kHead));
-  };
-  std::string_view start = head();
-  if (const auto packing = packing_of(start)) {
-    p.packing = *packing;
-    if (p.packing == Packing::zstd && !is_whole_zstd(file))
-      throw std::invalid_argument(file +
-                                  ": is damaged or cut off: its packing does not fit its end");
-    start = head();
-    if (packing_of(start))
-      throw std::invalid_argument(file + ": is packed twice; unpack it once first");
-  }
+  const std::string start = p.settle_packing();
   if (const std::string kind = foreign_kind(start); !kind.empty())
     throw std::invalid_argument(file + ": is " + kind);
   std::tie(p.encoding, p.mark) = encoding_of(start);
@@ -260,6 +266,23 @@ TextSource::TextSource(const std::string& file) : parts_(std::make_unique<Parts>
         ": holds bytes of 0: it is binary, expected a text file (of a binary dump LAMMPS' tool "
         "binary2txt makes one)");
   p.begin();
+}
+
+std::string TextSource::all_bytes(const std::string& file) {
+  require_regular_file(file, "a file");
+  Parts p;
+  p.file = file;
+  p.settle_packing();
+  p.open();
+  std::string out;
+  for (std::size_t count = kBlock; count > 0;) {
+    const std::size_t old = out.size();
+    out.resize(old + kBlock);
+    count = p.read_bytes(out.data() + old, kBlock);
+    out.resize(old + count);
+    p.place = static_cast<std::streamoff>(out.size());
+  }
+  return out;
 }
 
 TextSource::~TextSource() = default;

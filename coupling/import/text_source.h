@@ -26,6 +26,9 @@ class TextSource {
   /// once; of any other by reading on, or by beginning anew.
   void seek(std::streamoff place);
 
+  /// All bytes of a file of any kind, unpacked. Throws likewise, but for what is no text.
+  static std::string all_bytes(const std::string& file);
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <charconv>
 #include <cstring>
 
 namespace grainfield::coupling {
@@ -42,8 +43,45 @@ VtkType vtk_type(const std::string& name) {
   return {};
 }
 
+void add_cells(VtkCells kind, const std::vector<std::int64_t>& points,
+               const std::vector<std::int64_t>& ends, std::int64_t before, VtkData& data) {
+  std::int64_t begin = 0;
+  for (const std::int64_t end : ends) {
+    const std::size_t row = data.cells++;
+    if (begin < 0 || end <= begin || end > static_cast<std::int64_t>(points.size())) {
+      begin = end;
+      continue;
+    }
+    const std::int64_t* of_cell = points.data() + begin;
+    const std::int64_t size = end - begin;
+    begin = end;
+    if (kind == VtkCells::vertices || (kind == VtkCells::any && size == 1)) {
+      for (std::int64_t k = 0; k < size; ++k) data.vertices.push_back({before + of_cell[k], row});
+    } else if (kind != VtkCells::others && size == 2) {
+      data.lines.push_back({before + of_cell[0], before + of_cell[1], row});
+    }
+  }
+}
+
+std::string decoded_name(std::string_view name) {
+  std::string out;
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    unsigned code = 0;
+    const char* two = name.data() + k + 1;
+    if (name[k] == '%' && k + 2 < name.size() &&
+        std::from_chars(two, two + 2, code, 16).ptr == two + 2) {
+      out += static_cast<char>(code);
+      k += 2;
+    } else {
+      out += name[k];
+    }
+  }
+  return out;
+}
+
 void append_values(const char* from, std::size_t count, const VtkType& type, bool big,
                    VtkArray& out) {
+  out.single = out.single || (type.real && type.bytes == 4);
   for (std::size_t k = 0; k < count; ++k) {
     std::uint64_t bits = 0;
     for (std::size_t b = 0; b < type.bytes; ++b) {

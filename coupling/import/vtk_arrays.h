@@ -2,7 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "coupling/import/table.h"
 
 namespace grainfield::coupling {
 
@@ -10,17 +13,39 @@ namespace grainfield::coupling {
 struct VtkArray {
   std::string name;
   std::size_t components = 1;
+  bool single = false;              ///< told as Float32: whole numbers from 2^24 on are rounded
   std::vector<double> numbers;      ///< of floating-point types
   std::vector<std::int64_t> whole;  ///< of integer types
 
   std::size_t rows() const { return (numbers.size() + whole.size()) / components; }
 };
 
-struct VtkData {
-  VtkArray points;                               ///< three components
-  std::vector<VtkArray> of_points, of_cells;     ///< point data, cell data
-  std::vector<std::vector<std::int64_t>> lines;  ///< points of the cells that have two
+/// Numbers of points, and the row of the cell data that is theirs.
+struct VtkVertex {
+  std::int64_t point = 0;
+  std::size_t row = 0;
 };
+struct VtkLine {
+  std::int64_t first = 0, second = 0;
+  std::size_t row = 0;
+};
+
+struct VtkData {
+  VtkArray points;                            ///< three components
+  std::vector<VtkArray> of_points, of_cells;  ///< point data, cell data
+  std::vector<VtkVertex> vertices;            ///< points that are cells, alone or with others
+  std::vector<VtkLine> lines;                 ///< cells of two points
+  std::size_t cells = 0;                      ///< of any kind
+};
+
+enum class VtkCells { vertices, lines, any, others };
+/// Counts the cells whose points end at `ends` among `points` (numbers of a piece, whose first
+/// point is `before` in all) and keeps vertices and lines of them. `any`: by their points.
+void add_cells(VtkCells kind, const std::vector<std::int64_t>& points,
+               const std::vector<std::int64_t>& ends, std::int64_t before, VtkData& data);
+
+/// The blanks and other letters that stand as "%20" in the names of legacy files.
+std::string decoded_name(std::string_view name);
 
 /// Legacy files (.vtk, ASCII and binary) of POLYDATA and UNSTRUCTURED_GRID. Throws
 /// std::invalid_argument "FILE:LINE: ..." or "FILE: ...".
@@ -38,5 +63,11 @@ VtkType vtk_type(const std::string& name);
 /// `count` values of `type` from the bytes at `from`; `big`: the highest byte first.
 void append_values(const char* from, std::size_t count, const VtkType& type, bool big,
                    VtkArray& out);
+
+/// Points with a radius as grains, lines and other cells with forces as contacts. Contacts that
+/// name no grains lie on lines between them: by the ids of their points, by the points' numbers
+/// where these have none. Throws std::invalid_argument naming the file and the array.
+std::vector<ForeignTable> vtk_tables(const std::string& file, const VtkData& data,
+                                     ColumnNames& names);
 
 }  // namespace grainfield::coupling

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <stdexcept>
 #include <string_view>
 
@@ -14,6 +14,12 @@ namespace grainfield::coupling {
 namespace {
 
 class LegacyReader {
+  struct Cells {
+    std::vector<std::int64_t> points, ends;
+  };
+  static constexpr std::array kKinds{VtkCells::vertices, VtkCells::lines, VtkCells::any,
+                                     VtkCells::others};
+
  public:
   LegacyReader(const std::string& file, std::string_view bytes) : file_(file), rest_(bytes) {}
 
@@ -32,6 +38,9 @@ class LegacyReader {
       if (key.empty()) break;
       section(key);
     }
+    // Vertices come first in the rows of the cell data, wherever they stand in the file.
+    for (std::size_t kind = 0; kind < kKinds.size(); ++kind)
+      add_cells(kKinds[kind], cells_[kind].points, cells_[kind].ends, 0, data_);
     return std::move(data_);
   }
 
@@ -80,6 +89,7 @@ class LegacyReader {
     const VtkType type = vtk_type(type_name);
     if (type.bytes == 0) refuse(type_name, "a type of numbers, such as float, double, int, long");
     const std::size_t values = components * rows;
+    out.single = type.real && type.bytes == 4;
     if (binary_) {
       line();  // the rest of this one
       if (rest_.size() < values * type.bytes)
@@ -108,9 +118,14 @@ class LegacyReader {
     if (key == "POINTS") {
       const std::size_t rows = count();
       data_.points = array("points", 3, rows, std::string(word()));
-    } else if (key == "VERTICES" || key == "LINES" || key == "POLYGONS" || key == "CELLS" ||
-               key == "TRIANGLE_STRIPS") {
-      cells();
+    } else if (key == "VERTICES") {
+      cells(0);
+    } else if (key == "LINES") {
+      cells(1);
+    } else if (key == "CELLS") {
+      cells(2);
+    } else if (key == "POLYGONS" || key == "TRIANGLE_STRIPS") {
+      cells(3);
     } else if (key == "CELL_TYPES") {
       const std::size_t rows = count();
       array("types", 1, rows, "int");
@@ -129,7 +144,8 @@ class LegacyReader {
     }
   }
 
-  void cells() {
+  void cells(std::size_t kind) {
+    Cells& out = cells_[kind];
     const std::size_t rows = count(), values = count();
     const std::string_view before = rest_;
     const long long line_before = line_;
@@ -139,31 +155,28 @@ class LegacyReader {
       const VtkArray all = array("cells", 1, values, "int");
       for (std::size_t k = 0; k < all.whole.size();) {
         const auto size = static_cast<std::size_t>(std::max<std::int64_t>(all.whole[k], 0));
-        if (size == 2 && k + 2 < all.whole.size())
-          data_.lines.push_back({all.whole[k + 1], all.whole[k + 2]});
+        for (std::size_t p = k + 1; p <= k + size && p < all.whole.size(); ++p)
+          out.points.push_back(all.whole[p]);
+        out.ends.push_back(static_cast<std::int64_t>(out.points.size()));
         k += 1 + size;
       }
       return;
     }
     // Version 5: where each cell begins among the points of all.
-    const VtkArray offsets = array("offsets", 1, rows, std::string(word()));
+    VtkArray offsets = array("offsets", 1, rows, std::string(word()));
     require("CONNECTIVITY");
-    const VtkArray points = array("connectivity", 1, values, std::string(word()));
-    for (std::size_t k = 0; k + 1 < offsets.whole.size(); ++k) {
-      const auto at = static_cast<std::size_t>(offsets.whole[k]);
-      if (offsets.whole[k + 1] - offsets.whole[k] == 2 && at + 1 < points.whole.size())
-        data_.lines.push_back({points.whole[at], points.whole[at + 1]});
-    }
+    out.points = array("connectivity", 1, values, std::string(word())).whole;
+    if (!offsets.whole.empty()) out.ends.assign(offsets.whole.begin() + 1, offsets.whole.end());
   }
 
   void field() {
     word();  // its name
     const std::size_t arrays = count();
     for (std::size_t k = 0; k < arrays; ++k) {
-      std::string name(word());
+      std::string name = decoded_name(word());
       if (name == "METADATA") {  // behind the array before
         section(name);
-        name = std::string(word());
+        name = decoded_name(word());
       }
       const std::size_t components = count(), rows = count();
       VtkArray made = array(name, components, rows, std::string(word()));
@@ -172,7 +185,7 @@ class LegacyReader {
   }
 
   void attribute(const std::string& key) {
-    const std::string name(word());
+    const std::string name = decoded_name(word());
     const std::string type(word());
     std::size_t components = 0;
     if (key == "SCALARS") {
@@ -199,6 +212,7 @@ class LegacyReader {
   bool binary_ = false;
   std::size_t rows_ = 0;
   std::vector<VtkArray>* into_ = nullptr;
+  std::array<Cells, kKinds.size()> cells_;
   VtkData data_;
 };
 

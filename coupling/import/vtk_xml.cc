@@ -1,6 +1,7 @@
 // VTK's XML files: .vtp and .vtu (docs.vtk.org, "VTK XML Formats"). Bytes lie in the elements as
 // base64, or behind them all as base64 or as they are, each array with its sizes before it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -89,6 +90,7 @@ class XmlReader {
   VtkData read() {
     const pugi::xml_node top = document_.child("VTKFile");
     const std::string kind = top.attribute("type").as_string();
+    refuse_list(top);
     if (kind != "PolyData" && kind != "UnstructuredGrid")
       refuse(
           fmt::format("found the type \"{}\", expected PolyData or UnstructuredGrid: points with "
@@ -108,27 +110,44 @@ class XmlReader {
     throw std::invalid_argument(file_ + ": " + what);
   }
 
+  // A file that only names others: of times, blocks or pieces.
+  void refuse_list(const pugi::xml_node& top) const {
+    std::vector<std::string> files;
+    for (const auto& one : top.select_nodes(".//DataSet/@file | .//Piece/@Source"))
+      files.emplace_back(one.attribute().value());
+    if (files.empty()) return;
+    const std::size_t all = files.size();
+    if (all > 5) files.resize(5);
+    refuse(fmt::format("only lists the files that hold the points; give these: {}{}",
+                       fmt::join(files, " "), all > 5 ? fmt::format(" ... ({})", all) : ""));
+  }
+
   void add(const pugi::xml_node& piece) {
     const auto before = static_cast<std::int64_t>(data_.points.rows());
     append(array(piece.child("Points").child("DataArray")), data_.points);
-    for (const pugi::xml_node one : piece.child("PointData").children("DataArray"))
-      append(array(one), named(data_.of_points, one));
-    for (const pugi::xml_node one : piece.child("CellData").children("DataArray"))
-      append(array(one), named(data_.of_cells, one));
-    for (const char* cells : {"Lines", "Cells"}) {
+    const auto add_data = [&](const char* name, std::vector<VtkArray>& all) {
+      for (const pugi::xml_node one : piece.child(name).children("DataArray"))
+        if (std::string(one.attribute("type").as_string()) != "String")
+          append(array(one), named(all, one));
+    };
+    add_data("PointData", data_.of_points);
+    add_data("CellData", data_.of_cells);
+    // In the order in which the rows of the cell data are theirs.
+    struct Kind {
+      const char* name;
+      VtkCells cells;
+    };
+    for (const auto& [name, cells] :
+         {Kind{"Verts", VtkCells::vertices}, Kind{"Lines", VtkCells::lines},
+          Kind{"Polys", VtkCells::others}, Kind{"Strips", VtkCells::others},
+          Kind{"Cells", VtkCells::any}}) {
       VtkArray points, ends;
-      for (const pugi::xml_node one : piece.child(cells).children("DataArray")) {
-        const std::string name = one.attribute("Name").as_string();
-        if (name == "connectivity") points = array(one);
-        if (name == "offsets") ends = array(one);
+      for (const pugi::xml_node one : piece.child(name).children("DataArray")) {
+        const std::string part = one.attribute("Name").as_string();
+        if (part == "connectivity") points = array(one);
+        if (part == "offsets") ends = array(one);
       }
-      std::int64_t begin = 0;
-      for (const std::int64_t end : ends.whole) {
-        if (end - begin == 2 && begin >= 0 && end <= static_cast<std::int64_t>(points.whole.size()))
-          data_.lines.push_back({before + points.whole[static_cast<std::size_t>(begin)],
-                                 before + points.whole[static_cast<std::size_t>(begin) + 1]});
-        begin = end;
-      }
+      add_cells(cells, points.whole, ends.whole, before, data_);
     }
   }
 
@@ -146,6 +165,7 @@ class XmlReader {
     }
     to.numbers.insert(to.numbers.end(), from.numbers.begin(), from.numbers.end());
     to.whole.insert(to.whole.end(), from.whole.begin(), from.whole.end());
+    to.single = to.single || from.single;
   }
 
   VtkArray array(const pugi::xml_node& node) const {
@@ -156,9 +176,10 @@ class XmlReader {
                       form = node.attribute("format").as_string("ascii");
     const VtkType type = vtk_type(type_name);
     if (type.bytes == 0) {
-      if (node.empty() || type_name == "String") return out;
+      if (node.empty()) return out;
       refuse(fmt::format("array {}: found the type \"{}\", expected numbers", out.name, type_name));
     }
+    out.single = type.real && type.bytes == 4;
     if (form == "ascii") {
       std::vector<std::string_view> lines, words;
       split(node.child_value(), '\n', lines);

@@ -52,7 +52,7 @@ const Comment* best_of(const std::vector<Comment>& comments, std::size_t count) 
   return best;
 }
 
-std::vector<ForeignTable> scan(const std::string& file) {
+std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
   Lines lines(file);
   std::vector<Comment> comments;
   std::vector<std::string_view> fields;
@@ -77,8 +77,11 @@ std::vector<ForeignTable> scan(const std::string& file) {
     if (const Comment* best = best_of(comments, fields.size())) return named(*best);
     throw std::invalid_argument(fmt::format(
         "{}: no comment line above names the {} columns; expected \"#format id_x_y_z_r\" or "
-        "\"# id x y z r mass\"",
-        lines.where(), fields.size()));
+        "\"# id x y z r mass\"{}",
+        lines.where(), fields.size(),
+        line.find(',') == std::string_view::npos
+            ? " (a line of names without # is read by --from csv)"
+            : "; a table with commas is read by --from csv"));
   }
   // No rows: the last comment names the columns of an empty table.
   if (comments.empty()) throw std::invalid_argument(file + ": is empty");

@@ -34,7 +34,9 @@ JudgementTable table_of(const Judgement& judgement);
 /// How many realizations would distinguish each model from the best.
 JudgementTable power_table(const Judgement& judgement);
 
-/// "0.35 ± 0.02": to two digits of the error; without one three digits of the value.
+/// "0.350 ± 0.021": to two digits of the error; without one four digits of the value.
 std::string with_error(double value, double error);
+/// The value alone to the digits that it has there. `error`: above 0.
+std::string to_digits_of(double value, double error);
 
 }  // namespace grainfield::coupling

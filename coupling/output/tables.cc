@@ -7,11 +7,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "coupling/judge/words.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/profile_columns.h"
 #include "coupling/output/text_table.h"
 #include "dem/snapshot/number.h"
 
@@ -40,75 +41,69 @@ std::string number(double value) {
   return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
 }
 
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
+constexpr double kSameField = 1e-3;  // of the largest value: fields nearer than this are one
 
-constexpr std::size_t kModelsAcross = 2;      // side by side in a table of LaTeX
-constexpr const char* kModelWidth = "3.6cm";  // of a model's three columns
+bool same_field(const ModelProfiles& a, const ModelProfiles& b) {
+  double off = 0, largest = 0;
+  for (std::size_t k = 0; k < a.values.size(); ++k) {
+    for (Eigen::Index i = 0; i < a.values[k].size(); ++i) {
+      const double one = a.values[k][i], other = b.values[k][i];
+      if (!std::isfinite(one) || !std::isfinite(other)) continue;
+      off = std::max(off, std::fabs(one - other));
+      largest = std::max({largest, std::fabs(one), std::fabs(other)});
+    }
+  }
+  return largest > 0 && off < kSameField * largest;
+}
 
-// The models that tables for reading show, and the labels of those that they leave out.
+// The columns of models that tables for reading show, and what they leave out.
 struct Shown {
   std::vector<std::size_t> models;  // indices
+  std::vector<std::string> labels;  // one for each: all models of that field
   std::string note;                 // empty: none is left out
 };
 
+// The nearest fields, and of the other families the nearest one.
 Shown shown_models(const Comparison& c) {
-  const std::vector<std::size_t> order = ranked(c);
+  Shown all;
+  for (const std::size_t m : ranked(c)) {
+    const auto same = std::find_if(all.models.begin(), all.models.end(), [&](std::size_t other) {
+      return same_field(c.models[m], c.models[other]);
+    });
+    if (same == all.models.end()) {
+      all.models.push_back(m);
+      all.labels.push_back(c.models[m].label);
+    } else {
+      all.labels[static_cast<std::size_t>(same - all.models.begin())] += "; " + c.models[m].label;
+    }
+  }
   Shown out;
   std::vector<std::string> aside;
-  for (std::size_t m = 0; m < order.size(); ++m) {
-    if (m < kModelsShown)
-      out.models.push_back(order[m]);
-    else
-      aside.push_back(c.models[order[m]].label);
+  bool other = false;  // a model of another family than the first is shown
+  for (std::size_t k = 0; k < all.models.size(); ++k) {
+    const bool differs = c.models[all.models[k]].family != c.models[all.models.front()].family;
+    if (k < kModelsShown || (differs && !other)) {
+      out.models.push_back(all.models[k]);
+      out.labels.push_back(all.labels[k]);
+      other = other || differs;
+    } else {
+      aside.push_back(all.labels[k]);
+    }
   }
-  if (!aside.empty())
-    out.note = fmt::format("Of {} models the {} that rank first; in profiles.csv also: {}.",
-                           order.size(), kModelsShown, fmt::join(aside, "; "));
+  if (!aside.empty()) {
+    out.note = fmt::format(
+        "Of {} fields the {} that rank first{}; in profiles.csv also: {}.", all.models.size(),
+        kModelsShown, out.models.size() > kModelsShown ? " and the best of another family" : "",
+        fmt::join(aside, "; "));
+  }
   return out;
 }
 
-struct Style {
-  std::string begin, separator, end;  // of a row
-};
-
-// Header and rows of one profile with the models `shown`, normalised by its scale.
-std::vector<std::vector<std::string>> normalised(
-    const Comparison& c, const std::vector<std::size_t>& shown, std::size_t k, int rows,
-    const std::function<std::string(std::string)>& math) {
-  const Profile& p = c.profiles[k];
-  const double unit = c.unit();
-  std::vector<std::vector<std::string>> table(1);
-  table[0] = {math(fmt::format("x/{}", c.scale.length)), c.column(), "standard error"};
-  for (std::size_t m : shown) {
-    table[0].push_back(c.models[m].label);
-    table[0].push_back("difference");
-    table[0].push_back("difference/error");
-  }
-  for (Eigen::Index i : chosen(p.mean, rows)) {
-    std::vector<std::string> row{cell(p.x[i] / c.depth), cell(p.mean[i] / unit),
-                                 cell(error_at(p, i) / unit)};
-    for (std::size_t m : shown) {
-      const double value = c.models[m].values[k][i], difference = p.mean[i] - value;
-      row.push_back(cell(value / unit));
-      row.push_back(cell(difference / unit));
-      row.push_back(cell(difference / error_at(p, i)));
-    }
-    table.push_back(std::move(row));
-  }
-  return table;
-}
-
-std::string join(const std::vector<std::string>& cells, const Style& style) {
-  std::string line = style.begin;
-  for (std::size_t k = 0; k < cells.size(); ++k) line += (k ? style.separator : "") + cells[k];
-  return line + style.end + "\n";
-}
-
-// The name of a unit inside $...$.
-std::string math_latex(const std::string& text) {
-  const std::size_t at = text.find("rho");
-  if (at == std::string::npos) return text;
-  return fmt::format("{}\\{}", text.substr(0, at), text.substr(at));
+// A model's value to the digits of the grains' beside it, and its distance from them in errors.
+std::string model_cell(double grains, double error, double model) {
+  if (!std::isfinite(model)) return "-";
+  if (!(error > 0)) return fmt::format("{:.4g}", model);
+  return fmt::format("{} ({:+.1f})", to_digits_of(model, error), (grains - model) / error);
 }
 
 std::string quote_csv(const std::string& text) {
@@ -118,101 +113,77 @@ std::string quote_csv(const std::string& text) {
   return out + "\"";
 }
 
-std::string normalisation(const Comparison& c) {
-  if (!c.scale.note.empty()) return c.scale.note;
-  return fmt::format("F = {:.6g} N, h = {:.6g} m, F/h = {:.6g} N/m, realizations: {}", c.load,
-                     c.depth, c.load / c.depth, c.realizations);
-}
-
 }  // namespace
 
 std::string profiles_csv(const Comparison& c) {
-  std::string text = "# " + normalisation(c) + "\n# " + c.profiles.front().quantity +
-                     ": compression positive; x from the " + c.scale.x_from + "\n";
-  const std::string unit = c.profiles.front().unit;
-  text += fmt::format("profile,depth_m,x_m,{1}_{0},standard_error_{0}", unit, c.column());
-  for (const ModelProfiles& m : c.models)
-    for (const std::string& name :
-         {fmt::format("{}_{}", m.key, unit), fmt::format("{}_difference_{}", m.key, unit),
-          fmt::format("{}_difference_over_error", m.key)})
-      text += fmt::format(",{}", quote_csv(name));
-  text += "\n";
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    const Profile& p = c.profiles[k];
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (const ModelProfiles& m : c.models) {
-        const double value = m.values[k][i], difference = p.mean[i] - value;
-        text += fmt::format(",{},{},{}", number(value), number(difference),
-                            number(difference / error_at(p, i)));
-      }
-      text += "\n";
-    }
+  const ProfileColumns table = profile_columns(c);
+  std::string text;
+  for (const std::string& note : table.notes) text += "# " + note + "\n";
+  text += "profile";
+  for (const ProfileColumn& column : table.columns) {
+    text += "," + quote_csv(column.unit == "1" ? column.name : column.name + "_" + column.unit);
   }
-  for (const Profile& p : c.beside) {
-    for (Eigen::Index i = 0; i < p.x.size(); ++i) {
-      text += fmt::format("{},{:.9g},{:.9g},{},{}", quote_csv(p.name), p.depth, p.x[i],
-                          number(p.mean[i]), number(error_at(p, i)));
-      for (std::size_t m = 0; m < c.models.size(); ++m) text += ",nan,nan,nan";
-      text += "\n";
-    }
+  text += "\n";
+  for (std::size_t k = 0; k < table.profile.size(); ++k) {
+    text += quote_csv(table.profile[k]);
+    for (const ProfileColumn& column : table.columns) text += "," + number(column.values[k]);
+    text += "\n";
   }
   return text;
 }
 
-std::string profiles_markdown(const Comparison& c, int rows) {
+std::vector<Table> profile_tables(const Comparison& c, int rows) {
   const Shown shown = shown_models(c);
-  std::string text = "# Profiles\n\n" + normalisation(c) + "\n";
-  if (!shown.note.empty()) text += "\n" + shown.note + "\n";
+  const double unit = c.scale.unit;
+  std::vector<Table> out;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    text += fmt::format("\n## {}\n\n{} in units of {}\n\n", c.profiles[k].name,
-                        c.profiles[k].quantity, c.scale.stress);
-    const auto table = normalised(c, shown.models, k, rows, [](std::string s) { return s; });
-    const Style style{"| ", " | ", " |"};
-    text += join(table[0], style);
-    text += join(std::vector<std::string>(table[0].size(), "---:"), style);
-    for (std::size_t r = 1; r < table.size(); ++r) text += join(table[r], style);
+    const Profile& p = c.profiles[k];
+    Table table{p.name,
+                fmt::format("{} in units of {}", p.quantity, c.scale.stress),
+                {"x/h", c.column()},
+                {}};
+    table.header.insert(table.header.end(), shown.labels.begin(), shown.labels.end());
+    for (const Eigen::Index i : chosen(p.mean, rows)) {
+      const double grains = p.mean[i] / unit, error = error_at(p, i) / unit;
+      std::vector<std::string> row{fmt::format("{:.3f}", p.x[i] / c.scale.h),
+                                   with_error(grains, error)};
+      for (const std::size_t m : shown.models) {
+        row.push_back(model_cell(grains, error, c.models[m].values[k][i] / unit));
+      }
+      table.rows.push_back(std::move(row));
+    }
+    out.push_back(std::move(table));
+  }
+  return out;
+}
+
+std::string profiles_note(const Comparison& c) {
+  std::string out = scale_note(c) + ".";
+  if (!c.models.empty()) {
+    out += fmt::format(
+        " In brackets behind a model's value: ({} - model) / standard error. Models whose fields "
+        "differ by less than {:g} % of the largest value share a column.",
+        c.column(), 100 * kSameField);
+  }
+  const std::string aside = shown_models(c).note;
+  return aside.empty() ? out : out + " " + aside;
+}
+
+std::string profiles_markdown(const Comparison& c, int rows) {
+  std::string text = "# Profiles\n\n" + profiles_note(c) + "\n";
+  for (const Table& table : profile_tables(c, rows)) {
+    text += fmt::format("\n## {}\n\n{}\n\n{}", table.title, table.caption,
+                        markdown_table(table.header, table.rows));
   }
   return text;
 }
 
 std::string profiles_latex(const Comparison& c, int rows) {
-  const Shown shown = shown_models(c);
-  std::string text = "% " + normalisation(c) + "\n";
-  if (!shown.note.empty()) text += "% " + shown.note + "\n";
-  const Style style{"  ", " & ", " \\\\"};
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    const auto table =
-        normalised(c, shown.models, k, rows, [](std::string s) { return "$" + s + "$"; });
-    // A few models per table: more are wider than a page.
-    for (std::size_t from = 0; from == 0 || from < shown.models.size(); from += kModelsAcross) {
-      const std::size_t to = std::min(from + kModelsAcross, shown.models.size());
-      std::vector<std::string> models{"", "", ""};
-      std::vector<std::string> heads{table[0][0], c.column(), "error"};
-      for (std::size_t m = from; m < to; ++m) {
-        models.push_back(fmt::format("\\multicolumn{{3}}{{p{{{}}}}}{{\\centering {}}}", kModelWidth,
-                                     escape_latex(c.models[shown.models[m]].label)));
-        heads.insert(heads.end(), {"model", "diff.", "diff./error"});
-      }
-      text += fmt::format(
-          "\\begin{{table}}\n\\footnotesize\\setlength{{\\tabcolsep}}{{4pt}}\n\\caption{{{}: {} in "
-          "units "
-          "of ${}${}}}\n\\begin{{tabular}}{{{}}}\n\\hline\n",
-          escape_latex(c.profiles[k].name), escape_latex(c.profiles[k].quantity),
-          math_latex(c.scale.stress), from > 0 ? ", continued" : "",
-          std::string(3 + 3 * (to - from), 'r'));
-      if (to > from) text += join(models, style);
-      text += join(heads, style) + "\\hline\n";
-      for (std::size_t r = 1; r < table.size(); ++r) {
-        std::vector<std::string> row(table[r].begin(), table[r].begin() + 3);
-        const auto first = table[r].begin() + 3;
-        row.insert(row.end(), first + static_cast<std::ptrdiff_t>(3 * from),
-                   first + static_cast<std::ptrdiff_t>(3 * to));
-        text += join(row, style);
-      }
-      text += "\\hline\n\\end{tabular}\n\\end{table}\n";
-    }
+  std::string text = "% " + profiles_note(c) + "\n";
+  for (const Table& table : profile_tables(c, rows)) {
+    text += fmt::format("\\begin{{table}}\n\\footnotesize\n\\caption{{{}: {}}}\n{}\\end{{table}}\n",
+                        escape_latex(table.title), escape_latex(table.caption),
+                        latex_table(table.header, table.rows));
   }
   return text;
 }

@@ -4,8 +4,10 @@
 #include <map>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "coupling/compare/compare.h"
+#include "coupling/output/text_table.h"
 
 namespace grainfield::coupling {
 
@@ -14,9 +16,14 @@ namespace grainfield::coupling {
 /// units; comment lines (#) before give the scale and the number of realizations. Profiles `beside`
 /// follow, without models (nan).
 std::string profiles_csv(const Comparison& comparison);
-/// The same rows for reading, normalised by the scale: at most `rows` rows per profile and the
-/// kModelsShown models nearest to the simulation, nearest first (in the order of the models where
-/// there is no ranking); a line names those left out.
+/// The same rows for reading, a table for each profile, normalised by the scale: position, value ±
+/// standard error to two digits of it, and a column for each field with its value and, in brackets,
+/// its distance from the value in errors. At most `rows` rows; the kModelsShown fields nearest to
+/// the simulation and the nearest of another family, nearest first (in the order of the models
+/// where there is no ranking).
+std::vector<Table> profile_tables(const Comparison& comparison, int rows = 25);
+/// The scale, what the cells are, and which models are left out: one paragraph.
+std::string profiles_note(const Comparison& comparison);
 std::string profiles_markdown(const Comparison& comparison, int rows = 25);
 std::string profiles_latex(const Comparison& comparison, int rows = 25);
 inline constexpr std::size_t kModelsShown = 3;

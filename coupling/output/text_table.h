@@ -5,6 +5,13 @@
 
 namespace grainfield::coupling {
 
+/// A table as every page and file shows it.
+struct Table {
+  std::string title, caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
 /// Columns are padded to one width, so that the text is a table on a terminal too.
 std::string markdown_table(const std::vector<std::string>& header,
                            const std::vector<std::vector<std::string>>& rows);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -204,11 +205,8 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     return row;
   });
   if (reference) {
-    const bool counted = dem::counts_images(*reference) || dem::counts_images(snapshot);
-    grid.add_vector("displacement", [&](std::size_t k) -> dem::Vec3 {
-      return dem::displacement(reference->grains[k], grains[k], reference->cell, snapshot.cell,
-                               counted);
-    });
+    const dem::Displacements displacements(*reference, snapshot);
+    grid.add_vector("displacement", [&](std::size_t k) { return displacements.of(k); });
     if (spheres)
       grid.add_vector("rotation",
                       [&](std::size_t k) { return turn_between(reference->grains[k], grains[k]); });

@@ -86,6 +86,7 @@ py::array array_of(const Eigen::VectorXd& values);
 HeldField held(coupling::Field field);
 
 void add_data(py::module_& module);
+void add_results(py::module_& module);
 void add_commands(py::module_& module);
 void add_engine(py::module_& module);
 

@@ -16,9 +16,6 @@
 #include "coupling/files/measured_field.h"
 #include "coupling/files/places.h"
 #include "coupling/files/strain_files.h"
-#include "coupling/judge/words.h"
-#include "coupling/models/parse_choices.h"
-#include "coupling/output/judgement.h"
 #include "coupling/python/bindings.h"
 #include "coupling/run/run_request.h"
 #include "coupling/structure/packing_structure.h"
@@ -123,13 +120,12 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
   return out;
 }
 
-std::pair<HeldField, std::string> strain(const Source& before, const Source& after,
-                                         const py::object& points, const std::string& grid,
-                                         const std::string& frame, const std::string& up,
-                                         const std::string& measure,
-                                         const std::optional<std::string>& support,
-                                         const std::optional<double>& width, int least_grains,
-                                         int threads) {
+// The field, and what it lacks and why it is doubtful, a sentence each.
+std::pair<HeldField, std::vector<std::string>> strain(
+    const Source& before, const Source& after, const py::object& points, const std::string& grid,
+    const std::string& frame, const std::string& up, const std::string& measure,
+    const std::optional<std::string>& support, const std::optional<double>& width, int least_grains,
+    int threads) {
   coupling::StrainRequest request;
   request.frame = frame;
   request.up = up;
@@ -149,7 +145,10 @@ std::pair<HeldField, std::string> strain(const Source& before, const Source& aft
     require_columns(request.points, dim, fmt::format("the packing is {}D", dim));
   }
   coupling::StrainOutcome outcome = coupling::strain_files(request);
-  return {held(std::move(outcome.field)), outcome.report};
+  std::vector<std::string> lines;
+  for (std::string* line : {&outcome.report, &outcome.images, &outcome.doubt})
+    if (!line->empty()) lines.push_back(std::move(*line));
+  return {held(std::move(outcome.field)), std::move(lines)};
 }
 
 // A number of each grain.
@@ -274,12 +273,14 @@ py::list models() {
   return out;
 }
 
-py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& packings,
-             const std::optional<HeldField>& field, const std::vector<std::string>& names,
-             const std::vector<double>& heights, const std::vector<std::string>& components,
-             const std::optional<double>& width_diameters, const std::string& case_name,
-             const std::vector<std::string>& sets, const std::vector<int>& coverage, int draws,
-             const std::string& folder, int threads) {
+coupling::FitOutcome fit(const std::vector<std::string>& files,
+                         const std::vector<Packing>& packings,
+                         const std::optional<HeldField>& field,
+                         const std::vector<std::string>& models, const std::vector<double>& heights,
+                         const std::vector<std::string>& components,
+                         const std::optional<double>& width_diameters, const std::string& case_name,
+                         const std::vector<std::string>& sets, const std::vector<int>& coverage,
+                         int draws, const std::string& folder, int threads) {
   coupling::FitRequest request;
   request.inputs = files;
   for (const Packing& packing : packings)
@@ -290,58 +291,38 @@ py::dict fit(const std::vector<std::string>& files, const std::vector<Packing>& 
     throw std::invalid_argument(
         "fit: found inputs of several kinds or none, allowed: files, or packings in memory, or one "
         "field in memory");
-  if (!case_name.empty()) request.case_file = coupling::find_case(case_name);
+  request.case_file = case_name;
   request.overrides = sets;
-  for (std::string& text : coupling::fit_overrides(names, heights, components, width_diameters))
-    request.overrides.push_back(std::move(text));
+  request.models = models;
+  request.heights = heights;
+  request.components = components;
+  request.width_diameters = width_diameters;
   request.coverage = coverage;
   request.draws = draws;
   request.folder = folder;
   request.threads = threads;
-  coupling::FitOutcome outcome;
-  {
-    const Released released(true);
-    outcome = coupling::fit_files(request);
-  }
-  py::dict out;
-  out["packings"] = outcome.packings;
-  out["note"] = outcome.note;
-  out["warnings"] = outcome.warnings;
-  out["verdict"] = coupling::sentence(outcome.judgement);
-  out["judgement"] = coupling::judgement_json(outcome.judgement);
-  out["coverage"] = outcome.coverage;
-  out["carried"] = outcome.carried;
-  out["measured"] = outcome.measured;
-  return out;
+  const Released released(true);
+  return coupling::fit_files(request);
 }
 
-py::dict compare(const std::string& file,
-                 const std::vector<std::pair<std::string, HeldField>>& fields_held,
-                 const std::vector<std::string>& names, const std::vector<std::string>& fields,
-                 const std::vector<std::string>& components, const std::vector<double>& heights,
-                 const std::vector<double>& origin, const std::string& folder) {
+coupling::CompareOutcome compare(const std::string& file,
+                                 const std::vector<std::pair<std::string, HeldField>>& fields_held,
+                                 const std::vector<std::string>& models,
+                                 const std::vector<std::string>& fields,
+                                 const std::vector<std::string>& components,
+                                 const std::vector<double>& heights,
+                                 const std::vector<double>& origin, const std::string& folder) {
   coupling::CompareRequest request;
   request.file = file;
   for (const auto& [name, field] : fields_held) request.held.emplace_back(name, *field.field);
   request.fields = fields;
-  request.models = coupling::parse_choices(names);
+  request.models = models;
   request.lines.components = components;
   request.lines.heights = heights;
   request.lines.origin = origin;
   request.folder = folder;
-  coupling::CompareOutcome outcome;
-  {
-    const Released released(true);
-    outcome = coupling::compare_field(request);
-  }
-  py::dict out;
-  out["verdict"] = coupling::sentence(outcome.judgement);
-  out["judgement"] = coupling::judgement_json(outcome.judgement);
-  out["lacks"] = outcome.lacks;
-  out["carried"] = outcome.carried;
-  out["doubts"] = outcome.carried_doubts;
-  out["measured"] = outcome.measured;
-  return out;
+  const Released released(true);
+  return coupling::compare_field(request);
 }
 
 std::pair<HeldField, std::string> import_field(const std::string& file, const std::string& geometry,

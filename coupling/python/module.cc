@@ -36,6 +36,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = grainfield::coupling::version_and_commit();
   grainfield::python::add_data(module);
+  grainfield::python::add_results(module);
   grainfield::python::add_commands(module);
   grainfield::python::add_engine(module);
 }

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "coupling/output/text_table.h"
 #include "coupling/report/picture.h"
 
 namespace grainfield::coupling {
@@ -14,12 +15,6 @@ struct Text {
   std::string title;     ///< heading, or empty
   std::string body;      ///< plain text; an empty line starts a paragraph
   bool verdict = false;  ///< shown large
-};
-
-struct Table {
-  std::string title, caption;
-  std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
 };
 
 using Section = std::variant<Text, Picture, Table>;

@@ -8,6 +8,7 @@
 
 #include "coupling/case/study.h"
 #include "coupling/export/packing_page.h"
+#include "coupling/judge/words.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/vtu.h"
@@ -21,7 +22,13 @@
 namespace grainfield::coupling {
 namespace {
 
-std::string shown(const Summary& summary, const std::string& key) {
+// Figures that other parts of a page show: its verdict and how it was made; and what is declared of
+// other figures.
+constexpr const char* kElsewhere[] = {
+    "case.", "version", "warnings", "ensemble.", "verdict.",  "compare.",     "model.",
+    "time.", "memory.", "sweep.",   "*.",        "dem.steps", "dem.time_step"};
+
+std::string figure_text(const Summary& summary, const std::string& key) {
   const auto at = summary.find(key);
   if (at == summary.end()) return "";
   if (const auto* number = std::get_if<double>(&at->second)) {
@@ -58,13 +65,7 @@ Report plain_page(const StudyResult& result, const Realization*) {
   Report out;
   out.title = title_of(result.value);
   add_verdict(out, result.comparison.judgement);
-  std::vector<std::string> keys;
-  for (const auto& [key, unused] : result.summary) {
-    const bool aside = key.starts_with("case.") || key.starts_with("time.") ||
-                       key.starts_with("memory.") || key == "verdict.sentence";
-    if (!aside) keys.push_back(key);
-  }
-  add_rows(out, "Figures", figure_rows(result.summary, keys));
+  add_rows(out, "Figures", figure_rows(result, true));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
@@ -98,43 +99,57 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
 
 std::string title_of(const Case& value) { return value.title.empty() ? value.name : value.title; }
 
-std::string shown_with_error(const Summary& summary, const std::string& key) {
-  const std::string error = shown(summary, key + ".standard_error");
-  return shown(summary, key) + (error.empty() || error == "-" ? "" : " +- " + error);
+std::string shown_with_error(const Summary& summary, const std::string& key,
+                             std::string error_key) {
+  if (error_key.empty()) error_key = key + ".standard_error";
+  const auto at = summary.find(key), error = summary.find(error_key);
+  const auto* value = at == summary.end() ? nullptr : std::get_if<double>(&at->second);
+  const auto* spread = error == summary.end() ? nullptr : std::get_if<double>(&error->second);
+  if (value == nullptr || spread == nullptr || std::isnan(*spread))
+    return figure_text(summary, key);
+  return with_error(*value, *spread);
 }
 
-ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys) {
+ReportRows figure_rows(const StudyResult& result, bool families) {
   ReportRows rows;
-  for (const std::string& key : keys) {
-    const std::string value = shown(summary, key);
-    const SummaryKey* declared = find_summary_key(key);
-    if (value.empty() || declared == nullptr) continue;
-    rows.emplace_back(
-        fmt::format("{} ({})", declared->meaning, key),
-        shown_with_error(summary, key) + (declared->unit == "-" ? "" : " " + declared->unit));
+  for (const SummaryKey& declared : summary_keys()) {
+    const std::string& pattern = declared.pattern;
+    const bool family = pattern.find('*') != std::string::npos;
+    const bool elsewhere = std::any_of(std::begin(kElsewhere), std::end(kElsewhere),
+                                       [&](const char* part) { return pattern.starts_with(part); });
+    if (elsewhere || (family && !families && !pattern.starts_with("average."))) continue;
+    for (const auto& [key, unused] : result.summary) {
+      if (family ? find_summary_key(key) != &declared : key != pattern) continue;
+      rows.emplace_back(fmt::format("{} ({})", declared.meaning, key),
+                        shown_with_error(result.summary, key) +
+                            (declared.unit == "-" ? "" : " " + declared.unit));
+    }
   }
   return rows;
 }
 
-void add_energy_rows(const Summary& summary, ReportRows& rows) {
-  std::vector<std::string> keys;
-  for (const SummaryKey& key : summary_keys()) {
-    if (key.pattern.starts_with("energy.")) keys.push_back(key.pattern);
+std::vector<OverviewColumn> overview_of(const std::vector<StudyResult>& members) {
+  std::vector<OverviewColumn> out = members.front().overview;
+  for (const SummaryKey& declared : summary_keys()) {
+    const bool known = !declared.heading.empty() &&
+                       std::any_of(members.begin(), members.end(), [&](const StudyResult& member) {
+                         return member.summary.count(declared.pattern) != 0;
+                       });
+    if (known) out.push_back({declared.heading, declared.pattern, declared.error_key});
   }
-  const ReportRows energies = figure_rows(summary, keys);
-  rows.insert(rows.end(), energies.begin(), energies.end());
+  return out;
 }
 
 ReportRows origin_rows(const StudyResult& result) {
   ReportRows rows;
   for (const char* key : {"case.command", "case.hash", "version", "ensemble.realizations",
                           "ensemble.seed", "dem.steps", "dem.time_step"}) {
-    const std::string value = shown(result.summary, key);
+    const std::string value = figure_text(result.summary, key);
     if (!value.empty()) rows.emplace_back(key, value);
   }
   for (const auto& model : result.value.models) {
     rows.emplace_back("model " + model.label,
-                      shown(result.summary, "model." + model.label + ".name"));
+                      figure_text(result.summary, "model." + model.label + ".name"));
   }
   return rows;
 }
@@ -170,7 +185,7 @@ void add_identity(Summary& summary, const Case& value) {
 
 void add_comparison(Summary& summary, const Comparison& comparison, std::size_t main) {
   for (const auto& [key, number] : summary_figures(comparison, main)) summary[key] = number;
-  const double unit = comparison.unit();
+  const double unit = comparison.scale.unit;
   summary["response.peak_over_F_per_h"] = comparison.shapes[main].peak / unit;
   if (const double error = comparison.shape_errors[main].peak; std::isfinite(error)) {
     summary["response.peak_over_F_per_h.standard_error"] = error / unit;

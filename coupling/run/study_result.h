@@ -48,7 +48,8 @@ struct StudyResult {
   /// Builds report.html from this result and its first realization (null without grains). Empty:
   /// a page with the sentence and the figures.
   std::function<Report(const StudyResult&, const Realization*)> page;
-  std::vector<OverviewColumn> overview;  ///< of a sweep's table; may be empty
+  /// Columns of a sweep's table besides those of figures with a heading; may be empty.
+  std::vector<OverviewColumn> overview;
   /// Frames of this member in a sweep's report, grains and models. Empty: one curve in the frames
   /// that all members share.
   std::vector<Frame> sweep_frames;
@@ -63,12 +64,17 @@ struct StudyResult {
 
 /// The case's title; its name where it has none.
 std::string title_of(const Case& value);
-/// Those of the figures that the summary holds, with meaning and unit, for a table of the report.
-ReportRows figure_rows(const Summary& summary, const std::vector<std::string>& keys);
-/// Adds the figures energy.*, which are there with motion.energy_balance.
-void add_energy_rows(const Summary& summary, ReportRows& rows);
-/// "VALUE +- ERROR" of KEY and KEY.standard_error; without the latter, or with none, "VALUE".
-std::string shown_with_error(const Summary& summary, const std::string& key);
+/// The figures of the grains and of the study in the order of their declarations, with meaning and
+/// unit, for a table of the report. `families`: also those declared with a '*', which other tables
+/// of a page may show.
+ReportRows figure_rows(const StudyResult& result, bool families = false);
+/// Columns of a sweep's table: StudyResult::overview, then every figure of the members that is
+/// declared with a heading.
+std::vector<OverviewColumn> overview_of(const std::vector<StudyResult>& members);
+/// A figure as pages show it: with_error() of judge/words.h of KEY and of `error_key`, by default
+/// KEY.standard_error; a text or a number without error as it is; "" without the figure.
+std::string shown_with_error(const Summary& summary, const std::string& key,
+                             std::string error_key = "");
 /// Case, seed, version and models, likewise.
 ReportRows origin_rows(const StudyResult& result);
 

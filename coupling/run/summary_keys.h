@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/output/summary_key.h"
+#include "coupling/output/figure.h"
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {

@@ -15,34 +15,19 @@
 namespace grainfield::coupling {
 namespace {
 
-std::string number(const Summary& summary, const std::string& key) {
-  const auto at = summary.find(key);
-  if (at == summary.end()) return "-";
-  if (const auto* value = std::get_if<double>(&at->second)) {
-    return std::isnan(*value) ? "-" : fmt::format("{:.4g}", *value);
-  }
-  if (const auto* text = std::get_if<std::string>(&at->second)) return *text;
-  return std::to_string(std::get<std::int64_t>(at->second));
-}
-
-// A number with its standard error where it has one.
-std::string with_error(const Summary& summary, const OverviewColumn& column) {
-  const std::string value = number(summary, column.key), error = number(summary, column.error());
-  return error == "-" ? value : value + " ± " + error;
-}
-
 Table overview(const Case& value, const std::vector<SweepCase>& members,
-               const std::vector<StudyResult>& results) {
+               const std::vector<StudyResult>& results,
+               const std::vector<OverviewColumn>& columns) {
   Table table;
   table.title = "Side by side";
   table.caption = "Each folder holds the member's own report.html.";
   table.header = {value.sweep.key, "folder"};
-  for (const OverviewColumn& column : results.front().overview)
-    table.header.push_back(column.heading);
+  for (const OverviewColumn& column : columns) table.header.push_back(column.heading);
   for (std::size_t m = 0; m < members.size(); ++m) {
     std::vector<std::string> row{value.sweep.values[m], members[m].suffix};
-    for (const OverviewColumn& column : results.front().overview) {
-      row.push_back(with_error(results[m].summary, column));
+    for (const OverviewColumn& column : columns) {
+      row.push_back(shown_with_error(results[m].summary, column.key, column.error_key));
+      if (row.back().empty()) row.back() = "-";
     }
     table.rows.push_back(std::move(row));
   }
@@ -119,7 +104,7 @@ Picture side_by_side(const Case& value, const std::vector<StudyResult>& results)
 }
 
 // Whether a member has units of its own: F/h of its load, rho g h of its pile.
-bool has_scale(const Comparison& c) { return c.depth > 0 && c.unit() > 0; }
+bool has_scale(const Comparison& c) { return c.scale.h > 0 && c.scale.unit > 0; }
 
 }  // namespace
 
@@ -136,7 +121,7 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
       const Comparison& c = results[m].comparison;
       if (p >= c.profiles.size()) continue;
       const Profile& own = c.profiles[p];
-      const double length = scaled ? c.depth : 1, unit = scaled ? c.unit() : 1;
+      const double length = scaled ? c.scale.h : 1, unit = scaled ? c.scale.unit : 1;
       frame.series.push_back({fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]),
                               own.x / length, own.mean / unit, own.error / unit, m == 0});
     }
@@ -146,10 +131,8 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
   const char* const title =
       one.scale.x_from == "load" ? "Response of every member" : "Pressure of every member";
   const std::string normal = first.quantity == "-sigma_yy" ? "-σ_{yy}" : "-σ_{zz}";
-  const std::string stress = one.dim == 3 && one.scale.stress == "F/h" ? "F/h^2" : one.scale.stress;
   Picture picture =
-      scaled ? curves(title, fmt::format("x / {}", one.scale.length),
-                      fmt::format("{}  ({})", normal, stress), frames)
+      scaled ? curves(title, "x / h", fmt::format("{}  ({})", normal, one.scale.stress), frames)
              : curves(title, "x (m)", fmt::format("{}  ({})", normal, first.unit), frames);
   picture.caption = "Mean over realizations; the band is the first member's standard error.";
   return picture;
@@ -227,10 +210,11 @@ std::string write_sweep(const std::string& folder, const Case& value,
                         ? value.sweep.values[m]
                         : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]));
   }
-  const auto differences = sweep_differences(results.front().overview, summaries);
+  const std::vector<OverviewColumn> columns = overview_of(results);
+  const auto differences = sweep_differences(columns, summaries);
   std::string sentence = differences_sentence(differences, names);
   if (!sentence.empty()) {
-    sentence += left_out(results.front().overview, differences, summaries.front());
+    sentence += left_out(columns, differences, summaries.front());
     add_differences(all, differences, members);
     all["sweep.sentence"] = sentence;
     report.sections.emplace_back(Text{"Between the members", sentence, true});
@@ -263,7 +247,7 @@ std::string write_sweep(const std::string& folder, const Case& value,
     }
   };
   own(&StudyResult::sweep_sections);
-  report.sections.emplace_back(overview(value, members, results));
+  report.sections.emplace_back(overview(value, members, results, columns));
   if (!differences.empty()) report.sections.emplace_back(table_of(differences, names));
   own(&StudyResult::sweep_tables);
   std::string lacks;

@@ -1,16 +1,14 @@
 #include "coupling/strain/motion.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "coupling/averaging/average.h"
+#include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -61,14 +59,15 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
   motion.mass.resize(grains);
   std::vector<dem::Vec3> turn(static_cast<std::size_t>(grains));
   motion.turns = dim == 2 || tells_orientation(before) || tells_orientation(after);
-  const bool counted = dem::counts_images(before) || dem::counts_images(after);
+  const dem::Displacements displacements(before, after);
+  motion.images = displacements.images();
+  motion.doubt = displacements.doubt();
   for (std::size_t g = 0; g < before.grains.size(); ++g) {
     const Eigen::Index k = row[g];
     if (k < 0) continue;
     const dem::Grain &a = before.grains[g], &b = after.grains[g];
     motion.position.row(k) = a.position.head(dim).transpose();
-    motion.displacement.row(k) =
-        dem::displacement(a, b, before.cell, after.cell, counted).head(dim).transpose();
+    motion.displacement.row(k) = displacements.of(g).head(dim).transpose();
     motion.mass[k] = a.mass;
     turn[static_cast<std::size_t>(k)] = turn_between(a, b, before.dim);
   }
@@ -88,11 +87,7 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
     motion.branch.row(c) = second - motion.position.row(p);
     motion.relative.row(c) = motion.displacement.row(q) - motion.displacement.row(p);
     if (before.cell.is_periodic())  // the image moves with the cell's edges
-      motion.relative.row(c) +=
-          (dem::shift_to(after.cell, dem::image_in(after.cell, before.cell, contact.image)) -
-           dem::shift_to(before.cell, contact.image))
-              .head(dim)
-              .transpose();
+      motion.relative.row(c) += displacements.of_image(contact.image).head(dim).transpose();
     const dem::Vec3 &turn_p = turn[static_cast<std::size_t>(p)],
                     &turn_q = turn[static_cast<std::size_t>(q)];
     if (dim == 2) {  // dw x r = dw (-r_y, r_x)
@@ -107,27 +102,6 @@ GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after
     ++c;
   }
   return motion;
-}
-
-std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& after) {
-  if (!after.cell.is_periodic() || dem::counts_images(before) || dem::counts_images(after))
-    return "";
-  constexpr double kFar = 1.0 / 3;  // of the shortest edge; beyond a half another image is nearer
-  double edge = std::numeric_limits<double>::infinity();
-  for (Eigen::Index a = 0; a < 3; ++a)
-    if (after.cell.periodic[static_cast<std::size_t>(a)])
-      edge = std::min(edge, after.cell.edges.col(a).norm());
-  long long far = 0;
-  for (std::size_t g = 0; g < before.grains.size(); ++g)
-    far += dem::displacement(before.grains[g], after.grains[g], before.cell, after.cell, false)
-               .norm() > kFar * edge;
-  if (far == 0) return "";
-  return fmt::format(
-      "{} of {} grains have moved by more than a third of the periodic cell and no images are "
-      "told: "
-      "the shortest way may be that of an image; import unwrapped places (xu yu zu) or image flags "
-      "(ix iy iz)",
-      far, before.grains.size());
 }
 
 }  // namespace grainfield::coupling

@@ -20,15 +20,12 @@ struct GrainMotion {
   Eigen::MatrixXd slip;           ///< the same of the two bodies' points at the contact: with spins
                                   ///< (Roul 2.69), m
   bool turns = true;              ///< false: spheres of which no state tells an orientation
+  std::string images, doubt;      ///< of dem::Displacements between the two states
 };
 
 /// Turns of the grains are taken modulo a full turn, nearest to zero; of spheres as the vector
 /// along the axis of the turn from one orientation to the other. Throws std::invalid_argument as
 /// require_same_grains().
 GrainMotion grain_motion(const dem::Snapshot& before, const dem::Snapshot& after);
-
-/// Of states in a periodic cell that tell no images: that some grains have moved by more than a
-/// third of it, where the shortest way may be that of an image; a sentence. Empty: none.
-std::string doubtful_images(const dem::Snapshot& before, const dem::Snapshot& after);
 
 }  // namespace grainfield::coupling

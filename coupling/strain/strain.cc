@@ -148,6 +148,8 @@ StrainResult strain(const dem::Snapshot& before, const dem::Snapshot& after,
   });
 
   StrainResult result;
+  result.images = motion.images;
+  result.doubt = motion.doubt;
   result.field.points = points;
   for (std::size_t c = 0; c < values.names.size(); ++c)
     result.field.add(values.names[c].first, values.names[c].second).value =

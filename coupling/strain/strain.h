@@ -46,6 +46,7 @@ struct StrainResult {
   Field field;
   std::vector<Eigen::Index> too_few;     ///< points with nan for want of grains or contacts
   std::vector<Eigen::Index> degenerate;  ///< points with nan for want of rank or condition
+  std::string images, doubt;             ///< as GrainMotion has them
 
   /// One line: how many points have no strain and why, with the first of each; "" if all have.
   std::string report() const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dem/snapshot/images.h"
+#include "dem/snapshot/displacements.h"
 #include "dem/snapshot/same_grain.h"
 
 namespace grainfield::dem {
@@ -13,17 +13,15 @@ ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after) {
     throw std::invalid_argument("snapshots do not belong together: different numbers of grains");
   }
   ContactChanges c;
-  const bool counted = counts_images(before) || counts_images(after);
+  const Displacements displacements(before, after);
   for (std::size_t k = 0; k < before.grains.size(); ++k) {
     const Grain& a = before.grains[k];
     const Grain& b = after.grains[k];
     if (a.id != b.id || !same_radius(a, b)) {
       throw std::invalid_argument("snapshots do not belong together: different grains");
     }
-    const Vec3 way = after.cell.is_periodic() ? displacement(a, b, before.cell, after.cell, counted)
-                                              : Vec3(b.position - a.position);
     c.max_displacement_over_radius =
-        std::max(c.max_displacement_over_radius, way.norm() / a.radius);
+        std::max(c.max_displacement_over_radius, displacements.of(k).norm() / a.radius);
   }
   // Both lists are sorted by (i, j).
   auto a = before.contacts.begin();

@@ -13,8 +13,15 @@
 namespace grainfield::dem {
 namespace {
 
-// Coordinates along the periodic edges, 0 along the others: the least squares' ones, so that what
-// is across all periodic edges has none.
+// As images are counted.
+int whole(double turns) {
+  if (std::fabs(turns) <= kMostImages) return static_cast<int>(turns);
+  throw TooFarAway(fmt::format("a place {:g} edges of the periodic cell away, allowed: up to {}",
+                               turns, kMostImages));
+}
+
+}  // namespace
+
 Vec3 along_edges(const Cell<3>& cell, const Vec3& v) {
   Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
   for (int a = 0; a < 3; ++a)
@@ -24,15 +31,6 @@ Vec3 along_edges(const Cell<3>& cell, const Vec3& v) {
     if (!cell.periodic[static_cast<std::size_t>(a)]) square(a, a) = 1;
   return square.ldlt().solve(edges.transpose() * v);
 }
-
-// As images are counted.
-int whole(double turns) {
-  if (std::fabs(turns) <= kMostImages) return static_cast<int>(turns);
-  throw TooFarAway(fmt::format("a place {:g} edges of the periodic cell away, allowed: up to {}",
-                               turns, kMostImages));
-}
-
-}  // namespace
 
 Vec3 shift_to(const Cell<3>& cell, const std::array<int, 3>& image) {
   Vec3 shift = Vec3::Zero();
@@ -65,41 +63,25 @@ std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch) {
   return best;
 }
 
-bool counts_images(const Snapshot& s) {
-  const auto told = s.attributes.find("images");
-  if (told != s.attributes.end() && told->second == "counted") return true;
-  return std::any_of(s.grains.begin(), s.grains.end(), [](const Grain& g) {
-    return g.image != std::array<int, 3>{0, 0, 0};
-  });
+Eigen::Matrix3i edges_exchanged(const Cell<3>& after, const Cell<3>& before) {
+  Eigen::Matrix3i exchange = Eigen::Matrix3i::Identity();
+  for (int a = 0; a < 3; ++a) {
+    if (!before.periodic[a] || !after.periodic[a]) continue;
+    const Vec3 turns = along_edges(after, before.edges.col(a));
+    for (int b = 0; b < 3; ++b)
+      exchange(b, a) =
+          after.periodic[b] ? static_cast<int>(std::round(std::clamp(turns[b], -2.0, 2.0))) : 0;
+  }
+  const bool once = exchange.cwiseAbs().maxCoeff() <= 1;
+  return once && std::abs(exchange.determinant()) == 1 ? exchange : Eigen::Matrix3i::Identity();
 }
 
 std::array<int, 3> image_in(const Cell<3>& after, const Cell<3>& before,
                             const std::array<int, 3>& image) {
   if (image == std::array<int, 3>{0, 0, 0}) return image;
-  // Columns: the old edges in new ones.
-  Eigen::Matrix3d exchange = Eigen::Matrix3d::Identity();
-  for (int a = 0; a < 3; ++a) {
-    if (!before.periodic[a] || !after.periodic[a]) continue;
-    const Vec3 turns = along_edges(after, before.edges.col(a));
-    for (int b = 0; b < 3; ++b) exchange(b, a) = after.periodic[b] ? std::round(turns[b]) : 0;
-  }
-  const bool once = exchange.cwiseAbs().maxCoeff() <= 1;
-  if (!once || std::fabs(std::fabs(exchange.determinant()) - 1) > 0.5) return image;
-  std::array<int, 3> out{};
-  for (int b = 0; b < 3; ++b) {
-    for (int a = 0; a < 3; ++a) out[b] += static_cast<int>(exchange(b, a)) * image[a];
-  }
-  return out;
-}
-
-Vec3 displacement(const Grain& a, const Grain& b, const Cell<3>& cell_of_a,
-                  const Cell<3>& cell_of_b, bool counted) {
-  const Vec3 moved = b.position - a.position;
-  if (!counted) return moved + shift_to(cell_of_b, nearest_image(cell_of_b, moved));
-  const std::array<int, 3> from = image_in(cell_of_b, cell_of_a, a.image);
-  std::array<int, 3> crossed{};
-  for (std::size_t k = 0; k < 3; ++k) crossed[k] = b.image[k] - from[k];
-  return moved + shift_to(cell_of_b, crossed);
+  const Eigen::Vector3i out =
+      edges_exchanged(after, before) * Eigen::Vector3i(image[0], image[1], image[2]);
+  return {out[0], out[1], out[2]};
 }
 
 std::array<int, 3> edges_away(const Cell<3>& cell, const Vec3& place) {

@@ -6,7 +6,7 @@
 
 namespace grainfield::dem {
 
-/// What lies more edges of the cell away is refused: nearest_image, wrapped and displacement throw
+/// What lies more edges of the cell away is refused: nearest_image and wrapped throw
 /// std::invalid_argument saying how many.
 inline constexpr int kMostImages = 1'000'000;
 
@@ -18,18 +18,11 @@ std::array<int, 3> nearest_image(const Cell<3>& cell, const Vec3& branch);
 /// (seen across the axes that are not periodic); itself where it is there already.
 Vec3 wrapped(const Cell<3>& cell, const Vec3& place);
 
-/// Whether some grain's image is counted: engines do, most other programs do not tell.
-bool counts_images(const Snapshot& s);
 /// `image`, counted in the edges of `before`, in those of `after`: a cell that flows exchanges
 /// whole edges when it slants too much (moving_cell.h). For one exchange between the two, and
 /// strains below a half; a cell that has been strained further counts as not exchanged.
 std::array<int, 3> image_in(const Cell<3>& after, const Cell<3>& before,
                             const std::array<int, 3>& image);
-/// How far a grain of `a` has come in `b`, m: by its images where they are `counted`, otherwise the
-/// shortest way in the cell of `b`. Of a cell that flows: the copy that was in the cell in `a`.
-Vec3 displacement(const Grain& a, const Grain& b, const Cell<3>& cell_of_a,
-                  const Cell<3>& cell_of_b, bool counted);
-
 /// Where the second grain of a pair is, as the first one meets it, m.
 inline Vec3 second_place(const Snapshot& s, const Contact& c) {
   const Vec3& place = s.grains[static_cast<std::size_t>(c.j)].position;

@@ -51,6 +51,7 @@ enum class Habit {
   rounded_ids,
   wall_first,
   other_names,
+  copies,
   flipped
 };
 const std::vector<Habit>& habits();

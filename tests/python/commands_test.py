@@ -1,6 +1,7 @@
 """Every function gives what the command of its name gives, to the bit, and refuses with its words."""
 
 import json
+import os
 import subprocess
 import warnings
 
@@ -189,16 +190,65 @@ def test_fit_gives_back_the_constants(file, tmp_path):
             "fit.bootstrap=20", "-o", tmp_path / "f")
     # These name the packings.
     same_summary(here.summary, summary_of(tmp_path / "f"), "case.hash", "fit.warnings")
-    np.testing.assert_array_equal(here.profiles["osl"], gf.read(tmp_path / "f" / "profiles.csv")["osl"])
+    same_table(here.profiles, gf.read(tmp_path / "f" / "profiles.csv"))
     for name, true in (("eta", ETA), ("mu", MU)):
         value, error = here.constants["osl"][name]
         assert 0 < error < 0.01
         assert abs(value - true) < 0.02, name  # 25 rows of grains: the steps of the surface count
     assert here.folder is None and "osl" in here.verdict.lower()
     with open(tmp_path / "f" / "verdict.json", encoding="utf-8") as written:
-        assert here.judgement == json.load(written)
-    assert here.judgement["best_model"] == here.summary["verdict.best_model"]
+        assert here.judgement.to_dict() == dict(here.judgement) == json.load(written)
+    assert str(here.judgement) == (tmp_path / "f" / "verdict.md").read_text()
+    assert here.judgement.latex() == (tmp_path / "f" / "verdict.tex").read_text()
+    for name, fit in here.fits.items():
+        for one in fit.parameters:
+            key = f"fit.{name}.{one.name}"
+            assert here.constants[name][one.name] == (one.value, one.error)
+            assert (one.value, one.error, one.bootstrap_error, one.jackknife_error) == tuple(
+                here.summary[key + end] for end in ("", ".error", ".bootstrap_error", ".jackknife_error"))
+            assert one.low < one.value < one.high and one.unit == "-" and one.meaning
+        assert fit.chi2_per_dof == here.summary[f"fit.{name}.chi2_per_dof"]
+        assert fit.correlation.shape == (len(fit.parameters),) * 2
 
+
+def same_table(here, there):
+    """As far as a CSV file holds it, nine digits; names, units and comments in full."""
+    assert list(here) == list(there) and here.units == there.units and here.notes == there.notes
+    for name, values in here.items():
+        if name == "profile":
+            assert values.tolist() == there[name].tolist()
+        else:
+            np.testing.assert_array_equal([float(f"{value:.9g}") for value in values], there[name])
+
+
+def test_a_judgement_is_an_object(file):
+    here = gf.fit(HEAPS, ["osl", "bcc"], heights=[0.15, 0.3], set={"fit.bootstrap": 0}).judgement
+    first, second = here.models
+    assert first.name == here.best == here["best_model"] == "osl" and first.supported == "yes"
+    assert first.behind == 0 and second.behind > 0 and second.distinguishable == "yes"
+    assert here.realizations == 3 and here.headlines[0] in str(here) and here.headlines[0] in repr(here)
+    for model, row in zip(here["models"], here.models):
+        for name, value in model.items():
+            there = getattr(row, name)
+            assert value == there or value is None and not np.isfinite(there), name
+    table = here.table
+    assert len(table["model"]) == 2 and list(table.rows())[0]["model"] == first.label
+    assert len(here.power) > 0 and list(here) == list(here.to_dict())
+
+
+def test_without_a_folder_nothing_is_written(tmp_path):
+    done = python(f"""
+import os, sys
+sys.path.insert(0, {os.path.dirname(__file__)!r})
+os.environ["TMPDIR"] = {str(tmp_path)!r}
+os.chdir({str(tmp_path)!r})
+import grainfield as gf
+from scene import heap
+fit = gf.fit([heap(1), heap(2)], ["bcc"], heights=[0.2], set={{"fit.bootstrap": 0}})
+field = gf.average([heap(1), heap(2)], frame="heap", cuts=[0.2])
+print(fit.folder, gf.compare(field, "bcc").folder, os.listdir({str(tmp_path)!r}))
+""")
+    assert done.stdout == "None None []\n", done.stderr
 
 def test_compare(tmp_path):
     field = gf.average(HEAPS, frame="heap", cuts=[0.1, 0.3])
@@ -209,7 +259,11 @@ def test_compare(tmp_path):
     there = summary_of(tmp_path / "c")
     for here in (gf.compare(field, models), gf.compare(tmp_path / "f.h5", models, folder=tmp_path / "d")):
         same_summary(here.summary, there)
+        same_table(here.profiles, gf.read(tmp_path / "c" / "profiles.csv"))
         assert here.measures["true"]["rel_l2"] < here.measures["other"]["rel_l2"]
+        for label, one in here.measures.items():
+            for name, value in one.items():
+                assert value == there[f"compare.{label}.{name}"], name
         assert here.verdict == there["verdict.sentence"]
         assert here.verdict.startswith(here.judgement["headlines"][0])
     assert (tmp_path / "d" / "report.html").exists()

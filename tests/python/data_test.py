@@ -253,8 +253,48 @@ def test_ids_beyond_doubles_keep_their_last_digit():
                                  contacts={"i": ids[:1], "j": ids[1:], "forces": [[-1.0, 0.0]]})
     assert packing.ids.tolist() == ids.tolist()
     assert len(packing.contacts) == 1
-    with pytest.raises(ValueError, match="beyond 2\\^53"):
+    with pytest.raises(ValueError, match="numbers of float64 from 2\\^53 on"):
         gf.packing([0, 0.0199], [0.01, 0.01], 0.01, ids=ids.astype(float), density=2500)
+
+
+@pytest.mark.parametrize(("kind", "bits"), [(np.float32, 24), (np.float16, 11)])
+def test_short_numbers_round_ids_earlier(kind, bits):
+    ids = np.arange(3) + 2**bits - 2  # the last is 2^bits, which 2^bits + 1 becomes, too
+    pair = {"i": ids[:1].astype(kind), "j": ids[1:2].astype(kind), "forces": [[-1.0, 0.0]]}
+    row = dict(x=[0, 0.0199, 0.0398], y=[0.01] * 3, radius=0.01, ids=ids, density=2500)
+    assert gf.packing(**row, contacts=pair).contacts.pairs.tolist() == [[0, 1]]
+    with pytest.raises(ValueError, match=rf"contacts.j: found numbers of {np.dtype(kind)} from 2\^{bits} on"):
+        gf.packing(**row, contacts={**pair, "j": ids[2:].astype(kind)})
+
+
+class Frame:
+    """Columns as a DataFrame has them: its truth is ambiguous."""
+
+    def __init__(self, **columns):
+        self._of, self.columns = columns, list(columns)
+
+    def __getitem__(self, name):
+        return self._of[name]
+
+    def __bool__(self):
+        raise ValueError("the truth value is ambiguous")
+
+
+def test_contacts_are_any_table():
+    row = dict(x=[0, 0.0199, 0.0398], y=[0.01] * 3, radius=0.01, density=2500)
+    structured = np.array([(0, 1, -1.0, 0.5), (1, 2, -2.0, 0.0)],
+                          dtype=[("i", "i8"), ("j", "i8"), ("fx", "f8"), ("fy", "f8")])
+    vectors = np.zeros(2, dtype=[("i", "i4"), ("j", "i4"), ("forces", "f8", (2,))])
+    vectors["i"], vectors["j"] = structured["i"], structured["j"]
+    vectors["forces"] = np.stack([structured["fx"], structured["fy"]], axis=1)
+    frame = Frame(**{name: structured[name] for name in structured.dtype.names})
+    wall = Frame(name=["floor"], x=[0.0], y=[0.0], nx=[0.0], ny=[1.0])
+    for contacts in (structured, structured.view(np.recarray), vectors, frame):
+        packing = gf.packing(**row, contacts=contacts, walls=wall)
+        assert packing.contacts.forces.tolist() == [[-1.0, 0.5], [-2.0, 0.0]]
+        assert packing.walls.names == ["floor"]
+    with pytest.raises(ValueError, match="contacts: found list, allowed: columns by their names, as a dict"):
+        gf.packing(**row, contacts=[(0, 1, -1.0, 0.5)])
 
 
 def test_masked_values_are_none():
@@ -266,6 +306,15 @@ def test_masked_values_are_none():
 def test_a_period_is_two_numbers():
     with pytest.raises(ValueError, match=r"periodic: found 0.1 for x, allowed: \(low, high\)"):
         gf.packing([0], [0], 0.01, density=2500, periodic={"x": 0.1})
+
+
+def test_periods_are_a_dict_or_pairs():
+    made = [gf.packing([0], [0], 0.01, density=2500, periodic=given)
+            for given in ({"x": (-0.1, 0.1)}, [("x", (-0.1, 0.1))])]
+    for packing in made:
+        assert packing.cell["periodic"].tolist() == [True, False] and packing.cell["edges"][0].tolist() == [0.2, 0]
+    with pytest.raises(ValueError, match=r"periodic: found \['x', 0.1\], allowed: \(low, high\) of each axis"):
+        gf.packing([0], [0], 0.01, density=2500, periodic=["x", 0.1])
 
 
 def test_what_is_no_number_is_named():

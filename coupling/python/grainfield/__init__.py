@@ -31,7 +31,7 @@ from ._data import Contacts, Field, Packing, Summary, Table, Walls
 from ._engine import Engine
 from ._files import Collection, read, write
 from ._packing import packing
-from ._results import CompareResult, FitResult, Result, Structure
+from ._results import CompareResult, FitResult, Judgement, Result, Structure
 
 __all__ = [
     "Collection",
@@ -40,6 +40,7 @@ __all__ = [
     "Engine",
     "Field",
     "FitResult",
+    "Judgement",
     "Model",
     "Packing",
     "Result",

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
-from ._results import CompareResult, FitResult, Folder, Result, Structure
+from ._results import CompareResult, FitResult, Result, Structure
 
 atexit.register(_core.finish_ranks)
 
@@ -151,7 +151,7 @@ def strain(
     before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
     width: m; default three mean diameters. Raises ValueError.
     """
-    core, report = _core.strain(
+    core, lines = _core.strain(
         before=_core_of(before),
         after=_core_of(after),
         points=_points(points),
@@ -165,7 +165,7 @@ def strain(
         threads=threads,
     )
     field = Field(core, name="strain")
-    field.warnings = [report] if report else []
+    field.warnings = lines
     _warn(field.warnings)
     return field
 
@@ -281,8 +281,8 @@ def compare(
 
     field: a Field (with its base response, if it has one), several by name, or "FIELD.h5". models:
     "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a list of these, or {label: model}. fields: only
-    these. folder: where profiles.*, summary.json and report.html go; without it they are read and
-    removed. Raises ValueError.
+    these. folder: where profiles.*, summary.json and report.html go; without it nothing is written.
+    Raises ValueError.
     """
     held: list = []
     if isinstance(field, Field):
@@ -290,20 +290,19 @@ def compare(
     if isinstance(field, Mapping):
         held = [(name, one._core) for name, one in field.items()]
         field = "field"
-    with Folder(folder) as place:
-        found = _core.compare(
-            file=os.fspath(field),
-            held=held,
-            models=_choices(models),
-            fields=_list(fields),
-            components=_list(components),
-            heights=[float(share) for share in heights],
-            origin=[float(place) for place in origin],
-            folder=place,
-        )
-        result = CompareResult(found, place, None if folder is None else place)
-    _warn([found["lacks"], *found["doubts"]])
-    return result
+    place = None if folder is None else os.fspath(folder)
+    outcome = _core.compare(
+        file=os.fspath(field),
+        held=held,
+        models=_choices(models),
+        fields=_list(fields),
+        components=_list(components),
+        heights=[float(share) for share in heights],
+        origin=[float(coordinate) for coordinate in origin],
+        folder=place or "",
+    )
+    _warn([outcome.lacks, *outcome.doubts])
+    return CompareResult(outcome, place)
 
 
 def fit(
@@ -334,25 +333,24 @@ def fit(
     files = [os.fspath(one) for one in given if not isinstance(one, (Field, Packing))]
     if len(fields) > 1:
         raise ValueError("fit: a field is fitted alone; average all packings into one (frame=\"heap\")")
-    with Folder(folder) as place:
-        found = _core.fit(
-            files=files,
-            packings=packings,
-            field=fields[0] if fields else None,
-            models=_list(models),
-            heights=[float(share) for share in heights],
-            components=_list(components),
-            width_diameters=width_diameters,
-            case=case,
-            sets=_overrides(set),
-            coverage=_list(coverage),
-            draws=draws,
-            folder=place,
-            threads=threads,
-        )
-        result = FitResult(found, place, None if folder is None else place)
-    _warn(result.warnings)
-    return result
+    place = None if folder is None else os.fspath(folder)
+    outcome = _core.fit(
+        files=files,
+        packings=packings,
+        field=fields[0] if fields else None,
+        models=_list(models),
+        heights=[float(share) for share in heights],
+        components=_list(components),
+        width_diameters=width_diameters,
+        case=case,
+        sets=_overrides(set),
+        coverage=_list(coverage),
+        draws=draws,
+        folder=place or "",
+        threads=threads,
+    )
+    _warn([outcome.lacks, *outcome.warnings])
+    return FitResult(outcome, place)
 
 
 class _ProgressLine:

@@ -8,7 +8,7 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _show
 
 PLANE_STRESS = ("sigma_xx", "sigma_yy", "sigma_xy")
 _UNITS = ("m", "N/m", "N/m2", "Pa")  # of tables' headers
@@ -48,6 +48,10 @@ class _Rows:
 
     def __dir__(self) -> list[str]:
         return sorted(set(super().__dir__()) | set(self._names))
+
+    def to_pandas(self) -> Any:
+        """A DataFrame, a row each; vectors as NAME_x, NAME_y, NAME_z; .attrs["units"]."""
+        return _show.rows_frame(self)
 
 
 class Contacts(_Rows):
@@ -176,6 +180,9 @@ class Packing(_Rows):
         grains, contacts, walls = self._core.counts()
         return f"<Packing: {self.dim}D, {grains} grains, {contacts} contacts, {walls} walls>"
 
+    def _repr_html_(self) -> str:
+        return _show.packing(self)
+
     @property
     def outlines(self) -> list[np.ndarray]:
         """Corners (k, 2) of polygons about their centroids before they are turned, m; empty: round."""
@@ -292,6 +299,9 @@ class Field:
     def __repr__(self) -> str:
         return f"<Field {self.name}: {len(self)} points, {', '.join(self.columns[:4])}, ...>"
 
+    def _repr_html_(self) -> str:
+        return _show.field(self)
+
     def error(self, name: str) -> np.ndarray | None:
         """Standard error of the mean over realizations (n); None where there is none."""
         return self._named(self._core.error, name)
@@ -311,6 +321,16 @@ class Field:
         if self.shape is None:
             raise ValueError("the points are no grid")
         return self[name].reshape(self.shape[::-1])
+
+    def to_pandas(self) -> Any:
+        """A DataFrame, a row for each point: its coordinates, the columns, COLUMN_error; .attrs has
+        units and attributes."""
+        return _show.field_frame(self)
+
+    def to_xarray(self) -> Any:
+        """A Dataset: a grid's coordinates, or points; the columns, COLUMN_error, and COLUMN_samples with
+        the dimension realization. Units are in the attributes of each."""
+        return _show.field_dataset(self)
 
     def plot(self, column: str | None = None, ax: Any = None) -> Any:
         """Draws a grid as a map, lines as profiles with bands of one error; returns the axes.
@@ -343,6 +363,13 @@ class Table(dict):
         super().__init__(columns)
         self.units = dict(units)
         self.notes = notes  #: the comment lines
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with .attrs["units"] and .attrs["notes"]."""
+        return _show.frame(dict(self), self.units, notes=self.notes)
+
+    def _repr_html_(self) -> str:
+        return _show.columns(self)
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """One dictionary per row."""

@@ -30,18 +30,49 @@ def _whole(where: str, value: Any) -> Any:
 
 def _ids(where: str, array: np.ndarray) -> np.ndarray:
     """Whole numbers to their last digit, or as they are."""
-    if array.dtype.kind == "f" and (np.abs(array) > 2**53).any():
-        raise ValueError(f"{where}: found floating-point numbers beyond 2^53, where ids are rounded, "
-                         "allowed: whole numbers (dtype int64)")
+    if array.dtype.kind == "f":
+        bits = min(np.finfo(array.dtype).nmant, 52) + 1
+        if (np.abs(array) >= 2.0**bits).any():
+            raise ValueError(f"{where}: found numbers of {array.dtype} from 2^{bits} on, where ids are rounded, "
+                             "allowed: whole numbers (dtype int64)")
     if array.dtype.kind == "u" and (array > np.iinfo(np.int64).max).any():
         raise ValueError(f"{where}: found an id beyond 2^63, allowed: below")
     return array.astype(np.int64) if array.dtype.kind in "iu" else array.astype(float)
 
 
-def _periods(periodic: Mapping[str, tuple[float, float]] | None) -> list[str]:
-    """"x=0.0:0.1" of {"x": (0, 0.1)}."""
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or hasattr(value, "columns") or _names(value) is not None
+
+
+def _names(value: Any) -> tuple[str, ...] | None:
+    """The columns of a structured array, or of a compound dataset of HDF5."""
+    return getattr(getattr(value, "dtype", None), "names", None)
+
+
+def _table(name: str, value: Any) -> dict[str, Any]:
+    """Columns by their names, of a mapping, a structured array or a DataFrame."""
+    if value is None:
+        return {}
+    if isinstance(value, Mapping):
+        return dict(value)
+    if hasattr(value, "columns"):
+        return {str(column): value[column] for column in value.columns}
+    if (names := _names(value)) is not None:
+        rows = value if isinstance(value, np.ndarray) else np.asarray(value)
+        return {column: rows[column] for column in names}
+    raise ValueError(f"{name}: found {type(value).__name__}, allowed: columns by their names, as a dict, a structured "
+                     "array or a DataFrame")
+
+
+def _periods(periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, Any]] | None) -> list[str]:
+    """"x=0.0:0.1" of {"x": (0, 0.1)}, or of [("x", (0, 0.1))]."""
     out = []
-    for axis, ends in (periodic or {}).items():
+    try:
+        axes = {} if periodic is None else dict(periodic)
+    except (TypeError, ValueError):
+        raise ValueError(f"periodic: found {periodic!r}, allowed: (low, high) of each axis in m, such as "
+                         '{"x": (0, 0.1)}') from None
+    for axis, ends in axes.items():
         if np.ndim(ends) != 1 or len(ends) != 2:
             raise ValueError(f"periodic: found {ends!r} for {axis}, allowed: (low, high) in m, such as "
                              f'{{"{axis}": (0, 0.1)}}')
@@ -80,8 +111,8 @@ def packing(
     radius: Any,
     z: Any = None,
     *,
-    contacts: Mapping[str, Any] | None = None,
-    walls: Mapping[str, Any] | Sequence[str] | None = None,
+    contacts: Any = None,
+    walls: Any = None,
     ids: Any = None,
     mass: Any = None,
     density: float = 0,
@@ -90,7 +121,7 @@ def packing(
     outlines: Sequence[Any] | None = None,
     friction: float | None = None,
     gravity: Sequence[float] | None = None,
-    periodic: Mapping[str, tuple[float, float]] | None = None,
+    periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, Any]] | None = None,
     load: tuple[int, Sequence[float]] | None = None,
     time: float = 0,
     flip_forces: bool = False,
@@ -103,7 +134,7 @@ def packing(
     part of the apparatus. outlines: for each grain corners (k, 2) about (x, y), m, or None.
     gravity: m/s2; default 9.81 down. periodic: {"x": (0, 0.1)}. load: (id, force) on that grain, N.
 
-    contacts: columns of n contacts. i, j (ids; j may be a wall's name), forces (n, dim), N, on i;
+    contacts: columns of n contacts, as a dict, a structured array or a DataFrame. i, j (ids; j may be a wall's name), forces (n, dim), N, on i;
     optional points and normals (n, dim), friction, spring, sliding; or any of the names of
     docs/import.md. walls: their columns (name, x, y, nx, ny, ...), or texts such as "floor:y=0".
     friction: of contacts and walls that have no column of it.
@@ -145,11 +176,11 @@ def packing(
             for corners in outlines
         ]
     given.update({name: each(value) for name, value in columns.items()})
-    texts = [walls] if isinstance(walls, str) else [] if isinstance(walls, Mapping) else walls or []
+    texts = [walls] if isinstance(walls, str) else [] if walls is None or _is_table(walls) else walls
     core = _core.packing(
         _columns("grains", given, dim, _SHORT),
-        _columns("contacts", contacts or {}, dim, _SHORT),
-        _columns("walls", walls if isinstance(walls, Mapping) else {}, dim, {}),
+        _columns("contacts", _table("contacts", contacts), dim, _SHORT),
+        _columns("walls", _table("walls", walls) if _is_table(walls) else {}, dim, {}),
         {
             "dim": dim,
             "gravity": None if gravity is None else list(gravity),

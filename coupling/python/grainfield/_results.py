@@ -4,29 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
-from typing import Any, Callable, Mapping, Sequence
+from collections.abc import Mapping as MappingBase
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _show
 from ._data import Summary, Table, read_table
 from ._files import Collection, fields_of, packings_of
-
-
-class Folder:
-    """The folder of a result: the one asked for, or one that goes when it has been read."""
-
-    def __init__(self, folder: str | os.PathLike | None):
-        self.kept = None if folder is None else os.fspath(folder)
-
-    def __enter__(self) -> str:
-        self._own = tempfile.TemporaryDirectory(prefix="grainfield-") if self.kept is None else None
-        return self.kept if self._own is None else os.path.join(self._own.name, "result")
-
-    def __exit__(self, *_: Any) -> None:
-        if self._own is not None:
-            self._own.cleanup()
 
 
 class Structure:
@@ -69,53 +54,130 @@ class _Profiles:
         return plot_profiles(self.profiles, ax, profile, self._of)
 
 
-class CompareResult(_Profiles):
-    """verdict (a sentence), judgement (verdict.json as a dict), summary, profiles (a Table of profiles.csv), and measures: of each
-    model by its label rel_l2, max, chi2_per_dof, dof. folder: of the report, None if not kept."""
+def _profiles(outcome: Any) -> Table:
+    notes, profile, columns = outcome.profiles()
+    arrays = {"profile": np.array(profile)} | {name: values for name, _, values in columns}
+    return Table(arrays, {"profile": "1"} | {name: unit for name, unit, _ in columns}, notes)
 
-    def __init__(self, found: Mapping[str, Any], folder: str, kept: str | None):
-        self.verdict: str = found["verdict"]
-        self.judgement: dict[str, Any] = json.loads(found["judgement"])
-        self.folder = kept
-        self.summary = Summary(_core.read_summary(os.path.join(folder, "summary.json")))
-        self.profiles = read_table(os.path.join(folder, "profiles.csv"))
-        self._of = "measured" if found["measured"] else "grains"
-        self.measures: dict[str, dict[str, float]] = {}
-        for key, value in self.summary.under("compare.").items():
-            label, _, name = key.partition(".")
-            if "." not in name:
-                self.measures.setdefault(label, {})[name] = value
+
+class Judgement(MappingBase):
+    """Which models the grains support (docs/verdict.md): what terminal and report show, as an object.
+
+    models: nearest first, each with name, label, family, equations, free, misfit, chance, relative_l2,
+    behind, behind_error, heights_behind, heights_error, distinguishable, agrees, supported ("yes",
+    "no", "unknown"), realizations_needed and so on; nan where nothing is known. best: the name of the
+    best; distinguishable; equations; position (value, standard error) between two families; rival;
+    realizations; headlines, agreement, notes, doubts: its sentences; table, power: what it prints.
+    str(judgement) is the terminal's text, judgement.latex() verdict.tex. As a mapping it is
+    verdict.json: judgement["best_model"].
+    """
+
+    def __init__(self, core: Any):
+        self._core = core
+        self.models: list[Any] = core.models
+        self.best: str = core.best
+        self.distinguishable: str = core.distinguishable
+        self.equations: str = core.equations
+        self.position: tuple[float, float] = core.position
+        self.families: tuple[str, str] = core.families  #: at positions 0 and 1
+        self.rival: str = core.rival
+        self.realizations: int = core.realizations
+        self.headlines: list[str] = core.headlines()
+        self.agreement: str = core.agreement()
+        self.notes: list[str] = core.notes()
+        self.doubts: list[str] = core.doubts
+        self._json: dict[str, Any] = json.loads(core.json())
+
+    @staticmethod
+    def _columns(table: Any) -> Table:
+        columns = {name: np.array([row[k] for row in table.rows]) for k, name in enumerate(table.header)}
+        return Table(columns, {name: "text" for name in columns}, [table.note] if table.note else [])
+
+    @property
+    def table(self) -> Table:
+        """The models as they are shown, in words."""
+        return self._columns(self._core.table())
+
+    @property
+    def power(self) -> Table:
+        """How many realizations would distinguish each model from the best, in words."""
+        return self._columns(self._core.power())
+
+    def latex(self) -> str:
+        return self._core.latex()
+
+    def to_dict(self) -> dict[str, Any]:
+        """verdict.json."""
+        return json.loads(self._core.json())
+
+    def __getitem__(self, key: str) -> Any:
+        return self._json[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._json)
+
+    def __len__(self) -> int:
+        return len(self._json)
+
+    def __str__(self) -> str:
+        return self._core.text()
 
     def __repr__(self) -> str:
-        return f"<CompareResult: {self.verdict}>"
+        return f"<Judgement: {self._core.sentence()}>"
+
+    def _repr_html_(self) -> str:
+        return _show.judgement(self)
 
 
-class FitResult(_Profiles):
-    """verdict, judgement (verdict.json as a dict), note, warnings, packings (their names), coverage (a text), summary, profiles, and
-    constants: {model: {constant: (value, standard error)}}, the error nan where none is known.
-    folder: of the report, None if not kept."""
+class _Judged(_Profiles):
+    """What the results of compare and fit share."""
 
-    def __init__(self, found: Mapping[str, Any], folder: str, kept: str | None):
-        self.verdict: str = found["verdict"]
-        self.judgement: dict[str, Any] = json.loads(found["judgement"])
-        self.note: str = found["note"]
-        self.warnings: list[str] = found["warnings"]
-        self.packings: list[str] = found["packings"]
-        self.coverage: str = found["coverage"]
-        self.folder = kept
-        self.summary = Summary(_core.read_summary(os.path.join(folder, "summary.json")))
-        self.profiles = read_table(os.path.join(folder, "profiles.csv"))
-        self._of = "measured" if found["measured"] else "grains"
-        fits = self.summary.under("fit.")
-        self.constants: dict[str, dict[str, tuple[float, float]]] = {}
-        for key, error in fits.items():
-            if key.endswith(".error") and key.count(".") == 2:
-                name, constant, _ = key.split(".")
-                value = fits[f"{name}.{constant}"]
-                self.constants.setdefault(name, {})[constant] = (value, error)
+    def __init__(self, outcome: Any, folder: str | None):
+        self._core = outcome
+        self.judgement = Judgement(outcome.judgement)
+        self.verdict: str = outcome.judgement.sentence()
+        self.folder = folder
+        self.summary = Summary(outcome.summary)
+        self.profiles = _profiles(outcome)
+        self._of = "measured" if outcome.measured else "grains"
 
     def __repr__(self) -> str:
-        return f"<FitResult: {self.verdict}>"
+        return f"<{type(self).__name__}: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return _show.judgement(self.judgement)
+
+
+class CompareResult(_Judged):
+    """verdict (a sentence), judgement (a Judgement), summary, profiles (a Table: the rows of
+    profiles.csv), and measures: of each model by its label rel_l2, max, chi2_per_dof, chance, dof.
+    folder: of the files and the report; None: none were written."""
+
+    def __init__(self, outcome: Any, folder: str | None):
+        super().__init__(outcome, folder)
+        self.measures: dict[str, dict[str, float]] = outcome.measures()
+
+
+class FitResult(_Judged):
+    """verdict, judgement (a Judgement), note, warnings, packings (their names), coverage (a text),
+    summary, profiles (a Table: the rows of profiles.csv); constants: {model: {constant: (value,
+    standard error)}}, the error nan where none is known; and fits: of each model by its name the fit,
+    with parameters (name, unit, meaning, value, error, low, high, covariance_error, bootstrap_error,
+    jackknife_error, at_bound, determined), correlation, chi2_per_dof, chance, rel_l2, note and so on.
+    folder: of the files and the report; None: none were written."""
+
+    def __init__(self, outcome: Any, folder: str | None):
+        super().__init__(outcome, folder)
+        self.note: str = outcome.note
+        self.warnings: list[str] = outcome.warnings
+        self.packings: list[str] = outcome.packings
+        self.coverage: str = outcome.coverage
+        self.fits: dict[str, Any] = {one.name: one for one in outcome.fits}
+        self.constants: dict[str, dict[str, tuple[float, float]]] = {
+            name: {p.name: (p.value, p.error) for p in one.parameters}
+            for name, one in self.fits.items()
+            if one.parameters
+        }
 
 
 class Result(_Profiles):

@@ -15,7 +15,7 @@
 #include "coupling/heap/cone_windows.h"
 #include "coupling/heap/scaled.h"
 #include "coupling/run/averaging_setup.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/study/cone.h"

@@ -8,7 +8,7 @@
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/models/subject.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -75,14 +75,20 @@ void check_cone_models(const Case& value) {
 void compare_cones(const ConeEnsemble& cones, StudyResult& out, ConePage& page) {
   const double h = cones.height(), pressure = cones.pressure();
   const int n = cones.base().realizations();
-  const double load = pressure * h * h;  // whose F/h^2 is rho g h
+  const Scale scale = scale_of_heaps(
+      h, pressure,
+      fmt::format(" (rho = {:.6g} kg/m3 times mean volume fraction {:.4g}); every cone scaled by "
+                  "its own; means over the angle at radius |x|; realizations: {}",
+                  cones.mean(&ConeFrame::grain_density), cones.mean(&ConeFrame::volume_fraction),
+                  n),
+      "apex", 3);
   std::vector<Profile> own = cones.profiles();
   if (out.value.models.empty()) {
-    out.comparison = without_models(std::move(own), load, h, n);
+    out.comparison = without_models(std::move(own), scale, n);
     out.comparison.dim = 3;
   } else {
     std::vector<ModelProfiles> all = models_of(cones, out, page, own);
-    out.comparison = compare(std::move(own), std::move(all), load, h, n);
+    out.comparison = compare(std::move(own), std::move(all), scale, n);
     out.comparison.dim = 3;
     for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
       // The response.* keys speak of a load.
@@ -98,13 +104,6 @@ void compare_cones(const ConeEnsemble& cones, StudyResult& out, ConePage& page) 
           cones.spanned(), weight));
     }
   }
-  out.comparison.scale = {
-      "h", "rho g h", "apex",
-      fmt::format("h = {:.6g} m, rho g h = {:.6g} Pa (rho = {:.6g} kg/m3 times mean volume "
-                  "fraction {:.4g}); every cone scaled by its own; means over the angle at "
-                  "radius |x|; realizations: {}",
-                  h, pressure, cones.mean(&ConeFrame::grain_density),
-                  cones.mean(&ConeFrame::volume_fraction), n)};
 }
 
 }  // namespace grainfield::coupling

@@ -8,7 +8,7 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.grains_lost", "-", "grains that left the floor"},
       {"cone.pour_time", "s", "simulated time of pouring"},
       {"cone.awake_mean", "-", "grains awake, mean over the pouring"},
-      {"cone.height", "m", "h of a cone: its highest point above the floor"},
+      {"cone.height", "m", "h of a cone: its highest point above the floor", "h (m)"},
       {"cone.foot", "m", "radius at which the flank's line meets the floor"},
       {"cone.apex_height", "m",
        "height of the cone that the flank's line spans, which is the models': above cone.height "
@@ -17,11 +17,12 @@ std::vector<SummaryKey> cone_figures() {
       {"cone.model_over_weight", "-",
        "weight of that cone, of the grains' density and volume fraction, over that of the grains"},
       {"cone.repose_deg", "deg",
-       "slope of the flank: line through the surface between 15 % and 85 % of the height"},
+       "slope of the flank: line through the surface between 15 % and 85 % of the height",
+       "repose (deg)"},
       {"cone.sector_repose_deviation_deg", "deg",
        "standard deviation of the slopes of eight sectors; nan where half of them have too few "
        "columns for a line"},
-      {"cone.volume_fraction", "-", "mean of the inside"},
+      {"cone.volume_fraction", "-", "mean of the inside", "volume fraction"},
       {"cone.rho_g_h", "Pa",
        "unit of pressure: grain density times cone.volume_fraction times g times height"},
       {"cone.mean_diameter", "m", "of the grains"},

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/judge/words.h"
 #include "coupling/report/judgement.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -15,14 +16,14 @@ constexpr const char* kPressure = "-σ_{zz}  (ρgh)";
 
 void add_cone_profiles(Report& report, const StudyResult& result, const ConePage& page) {
   const Comparison& c = result.comparison;
-  Picture picture =
-      radial_profiles("Vertical pressure by radius", "radius / h, to both sides", kPressure, c);
+  Picture picture = curves("Vertical pressure by radius", "radius / h, to both sides", kPressure,
+                           profile_frames(c));
   picture.caption = fmt::format(
       "Mean over the angle about the axis; on the base the forces on the floor, above it {}. "
       "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike; their cone has the flanks of the "
       "grains', its apex above theirs where that is round. The grey band is one standard "
       "error on either side.",
-      page.averaged, c.unit(), c.depth);
+      page.averaged, c.scale.unit, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 
   const Column& shear = *page.rings.find("sigma_rz");
@@ -45,10 +46,7 @@ void add_cone_base(Report& report, const ConePage& page) {
   table.header = {"radius / h", "pressure", "over sectors", "radial shear", "over sectors"};
   const auto of = [&](const char* name, Eigen::Index k, double sign) {
     const Column& column = *page.rings.find(name);
-    if (!std::isfinite(column.value[k])) return std::string("-");
-    const std::string value = fmt::format("{:.3f}", sign * column.value[k]);
-    if (column.error.size() == 0 || !std::isfinite(column.error[k])) return value;
-    return fmt::format("{} ± {:.3f}", value, column.error[k]);
+    return with_error(sign * column.value[k], column.error.size() ? column.error[k] : std::nan(""));
   };
   const auto error = [&](const char* name, Eigen::Index k) {
     const double value = page.rings.find(name)->value[k];
@@ -121,7 +119,7 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   Report report;
   report.title = title_of(result.value);
   report.subtitle = fmt::format("{} cone{}, h = {:.4g} m", c.realizations,
-                                c.realizations == 1 ? "" : "s", c.depth);
+                                c.realizations == 1 ? "" : "s", c.scale.h);
   add_verdict(report, c.judgement);
   add_cone_profiles(report, result, page);
   if (first != nullptr) {
@@ -130,42 +128,12 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   add_cone_maps(report, c, page);
   add_cone_dip(report, result);
   add_cone_base(report, page);
-  if (!c.models.empty()) add_radial_tables(report, c, "ρgh");
-  add_rows(report, "Figures",
-           figure_rows(result.summary, {"dem.grains",
-                                        "dem.contacts",
-                                        "cone.grains_lost",
-                                        "cone.height",
-                                        "cone.apex_height",
-                                        "cone.model_over_height",
-                                        "cone.model_over_weight",
-                                        "cone.foot",
-                                        "cone.repose_deg",
-                                        "cone.sector_repose_deviation_deg",
-                                        "cone.volume_fraction",
-                                        "cone.rho_g_h",
-                                        "cone.coordination",
-                                        "base.weight_ratio",
-                                        "cone.base_over_weight",
-                                        "dip.centre",
-                                        "dip.shoulder",
-                                        "dip.difference",
-                                        "dip.standard_error",
-                                        "dip.p_value",
-                                        "dip.sector_error",
-                                        "dip.contacts_in_disk",
-                                        "dip.ratio",
-                                        "base.largest_pressure",
-                                        "base.largest_at",
-                                        "base.largest_shear",
-                                        "base.largest_shear_at",
-                                        "cone.pour_time",
-                                        "cone.awake_mean",
-                                        "dem.time_step",
-                                        "time.dem_cpu_s",
-                                        "dem.unbalanced_force_ratio",
-                                        "average.coarse_graining.balance_rms",
-                                        "average.width"}));
+  if (!c.models.empty()) {
+    report.sections.emplace_back(distances_table(c, "ρgh", "r/h"));
+    report.sections.emplace_back(shapes_table(c, "ρgh", "r/h"));
+    add_profile_tables(report, c);
+  }
+  add_rows(report, "Figures", figure_rows(result));
   add_rows(report, "How it was made", origin_rows(result));
   return report;
 }

@@ -125,13 +125,7 @@ StudyResult analyse_cones(const Case& value, const std::vector<std::string>& fil
   out.page = [page](const StudyResult& result, const Realization* first) {
     return cone_page(result, first, page);
   };
-  out.overview = {{"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
-                  {"p of a dip, one-sided", "dip.p_value", ""},
-                  {"repose (deg)", "cone.repose_deg", ""},
-                  {"h (m)", "cone.height", ""},
-                  {"centre pressure (rho g h)", "dip.centre", ""},
-                  {"shoulder pressure (rho g h)", "dip.shoulder", ""},
-                  {"volume fraction", "cone.volume_fraction", ""}};
+  out.overview = {{"shoulder pressure (rho g h)", "dip.shoulder", ""}};
   return out;
 }
 

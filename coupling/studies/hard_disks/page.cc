@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/judge/words.h"
 #include "dem/collisions/gas.h"
 
 namespace grainfield::coupling {
@@ -129,10 +130,7 @@ std::vector<Chart> cooling_charts(const GasResults& results) {
   return {over, chart};
 }
 
-std::string shown(const GasValue& v) {
-  return std::isfinite(v.error) ? fmt::format("{:.5g} ± {:.1g}", v.mean, v.error)
-                                : fmt::format("{:.5g}", v.mean);
-}
+std::string shown(const GasValue& v) { return with_error(v.mean, v.error); }
 
 }  // namespace
 

@@ -7,20 +7,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <sstream>
 
 #include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/hard_disks/keys.h"
 #include "coupling/studies/hard_disks/page.h"
 #include "dem/collisions/gas.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
-
-using Figures = std::map<std::string, std::vector<double>>;
 
 GasValue value_of(const std::vector<double>& samples) {
   const auto n = static_cast<double>(samples.size());
@@ -29,25 +26,6 @@ GasValue value_of(const std::vector<double>& samples) {
   for (const double x : samples) square += (x - mean) * (x - mean);
   const double none = std::numeric_limits<double>::quiet_NaN();
   return {mean, samples.size() > 1 ? std::sqrt(square / (n * (n - 1))) : none};
-}
-
-std::vector<double> column_of(const dem::Snapshot& snapshot, const char* name,
-                              const std::string& file) {
-  const auto at = snapshot.attributes.find(std::string("gas:") + name);
-  if (at == snapshot.attributes.end()) {
-    throw std::invalid_argument(fmt::format("{}: has no attribute gas:{}", file, name));
-  }
-  std::vector<double> out;
-  std::istringstream words(at->second);
-  for (std::string word; words >> word;) {
-    const auto number = dem::parse_number(word);
-    if (!number) {
-      throw std::invalid_argument(
-          fmt::format("{}: gas:{} holds \"{}\"; it must hold numbers", file, name, word));
-    }
-    out.push_back(*number);
-  }
-  return out;
 }
 
 // A column's mean over realizations, row by row.
@@ -68,10 +46,8 @@ class GasAnalysis {
     results_.setup = value.get<dem::HardDisksSetup>();
     for (const std::string& file : files) {
       realizations_.push_back(read_realization(file));
-      for (const auto& [key, figure] : realizations_.back().figures) {
-        figures_[key].push_back(figure);
-      }
     }
+    figures_ = simulated_figures(files);
     for (const double f : results_.setup.fractions) results_.states.push_back(state_of(f));
   }
 
@@ -119,12 +95,12 @@ class GasAnalysis {
     }
     std::map<std::string, std::vector<std::vector<double>>> columns;
     for (std::size_t r = 0; r < files_.size(); ++r) {
-      for (const char* column : dem::kCoolingColumns) {
-        columns[column].push_back(column_of(realizations_[r][state], column, files_[r]));
-        if (columns[column].back().size() != columns["time"].front().size()) {
-          throw std::invalid_argument(
-              fmt::format("{}: gas:{} is not as long as the others", files_[r], column));
-        }
+      const RecordedColumns own =
+          recorded_columns(realizations_[r][state], "gas", dem::kCoolingColumns, files_[r]);
+      for (const auto& [column, values] : own) columns[column].push_back(values);
+      if (own.at("time").size() != columns["time"].front().size()) {
+        throw std::invalid_argument(
+            fmt::format("{}: gas:time is not as long as the others'", files_[r]));
       }
     }
     out.time = columns["time"].front();
@@ -169,11 +145,7 @@ class GasAnalysis {
       grains.caption = caption;
       out.sections.emplace_back(std::move(grains));
     }
-    add_rows(
-        out, "Figures",
-        figure_rows(result.summary,
-                    {"dem.grains", "gas.pressure_largest_difference", "gas.haff_largest_difference",
-                     "gas.energy_drift_per_collision", "gas.overlap", "gas.events"}));
+    add_rows(out, "Figures", figure_rows(result));
     add_rows(out, "How it was made", origin_rows(result));
     return out;
   }
@@ -181,7 +153,7 @@ class GasAnalysis {
   const Case& value_;
   const std::vector<std::string>& files_;
   std::vector<Realization> realizations_;
-  Figures figures_;
+  FigureSamples figures_;
   GasResults results_;
 };
 

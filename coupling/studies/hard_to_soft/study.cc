@@ -3,56 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <sstream>
-
 #include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/hard_to_soft/keys.h"
-#include "dem/snapshot/number.h"
 #include "dem/study/hard_to_soft.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// Numbers between spaces; throws std::invalid_argument naming the file.
-std::vector<double> switch_numbers(const dem::Snapshot& s, const std::string& name,
-                                   const std::string& file) {
-  const auto at = s.attributes.find("switch:" + name);
-  std::vector<double> out;
-  if (at != s.attributes.end()) {
-    std::istringstream words(at->second);
-    for (std::string word; words >> word;) {
-      const auto number = dem::parse_number(word);
-      if (!number) {
-        throw std::invalid_argument(
-            fmt::format("{}: switch:{} holds \"{}\"; it must hold numbers", file, name, word));
-      }
-      out.push_back(*number);
-    }
-  }
-  if (out.empty()) {
-    throw std::invalid_argument(fmt::format("{}: has no values of switch:{}", file, name));
-  }
-  return out;
-}
-
 std::vector<char> soft_ones(const dem::Snapshot& s, const std::string& file) {
+  constexpr const char* kSoft[] = {"soft_grains"};
   std::vector<char> out;
-  for (const double value : switch_numbers(s, "soft_grains", file)) out.push_back(value != 0);
-  return out;
-}
-
-Chart switch_chart(const std::map<std::string, Eigen::VectorXd>& columns, const char* title,
-                   const char* y, const char* caption,
-                   const std::vector<std::pair<const char*, const char*>>& lines) {
-  Chart out{title, "time / sqrt(d/g)", y, caption, {}, false};
-  for (const auto& [name, label] : lines) {
-    Frame frame;
-    frame.title = label;
-    frame.series.push_back({"grains", columns.at("time"), columns.at(name), {}, true});
-    out.frames.push_back(std::move(frame));
+  for (const double value : recorded_columns(s, "switch", kSoft, file).at(kSoft[0])) {
+    out.push_back(value != 0);
   }
   return out;
 }
@@ -88,14 +53,7 @@ Report switch_page(const StudyResult& result, const Realization* first,
     }
   }
   for (const Chart& chart : charts) out.sections.emplace_back(chart.picture());
-  add_rows(out, "Figures",
-           figure_rows(
-               result.summary,
-               {"dem.grains", "dem.contacts", "dem.steps", "dem.time_step",
-                "dem.unbalanced_force_ratio", "base.weight_ratio", "switch.at_rest", "switch.time",
-                "switch.soft_share", "switch.collisions", "switch.to_soft", "switch.to_hard",
-                "switch.pressed", "switch.lost_impulses", "switch.lost_soft", "switch.switched",
-                "switch.balance_error", "switch.iterations", "switch.halved"}));
+  add_rows(out, "Figures", figure_rows(result));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
@@ -103,46 +61,19 @@ Report switch_page(const StudyResult& result, const Realization* first,
 StudyResult analyse_switch(const Case& value, const std::vector<std::string>& files,
                            int /*threads*/) {
   StudyResult out = begin_result(value, files);
-  std::map<std::string, std::vector<double>> figures;
-  std::map<std::string, Eigen::VectorXd> columns;
-  for (const std::string& file : files) {
-    const Realization one = read_realization(file);
-    for (const auto& [key, figure] : one.figures) figures[key].push_back(figure);
-    if (!columns.empty()) continue;
-    for (const char* name : dem::kSwitchColumns) {
-      std::vector<double> values = switch_numbers(one["pile"], name, file);
-      columns[name] =
-          Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    }
-  }
-  add_figures(out.summary, figures);
+  add_figures(out.summary, simulated_figures(files));
+  const RecordedColumns columns = recorded_columns(read_realization(files.front())["pile"],
+                                                   "switch", dem::kSwitchColumns, files.front());
   out.comparison.judgement.findings = {switch_sentence(out.summary)};
-  std::string csv;
-  for (const char* name : dem::kSwitchColumns)
-    csv += fmt::format("{}{}", csv.empty() ? "" : ",", name);
-  csv += "\n";
-  for (Eigen::Index k = 0; k < columns.at("time").size(); ++k) {
-    std::string row;
-    for (const char* name : dem::kSwitchColumns) {
-      row += fmt::format("{}{:.9g}", row.empty() ? "" : ",", columns.at(name)[k]);
-    }
-    csv += row + "\n";
-  }
-  out.texts.emplace_back("history.csv", csv);
-  out.overview = {{"at rest", "switch.at_rest", ""},
-                  {"soft", "switch.soft_share", ""},
-                  {"impulses", "switch.collisions", ""},
-                  {"lost by them / (m g d)", "switch.lost_impulses", ""},
-                  {"by soft contacts", "switch.lost_soft", ""},
-                  {"balance / (m g d)", "switch.balance_error", ""}};
+  out.texts.emplace_back("history.csv", recorded_csv(columns, dem::kSwitchColumns));
   const std::vector<Chart> charts{
-      switch_chart(columns, "Soft grains", "share", "Of the first realization.",
-                   {{"soft", "soft grains"}}),
-      switch_chart(columns, "Energy", "energy / (m g d)", "Of the first realization.",
-                   {{"kinetic", "kinetic"},
-                    {"elastic", "elastic, with springs of friction"},
-                    {"lost_impulses", "taken by impulses"},
-                    {"lost_soft", "taken by soft contacts"}})};
+      recorded_chart(columns, "Soft grains", "share", "Of the first realization.",
+                     {{"soft", "soft grains"}}),
+      recorded_chart(columns, "Energy", "energy / (m g d)", "Of the first realization.",
+                     {{"kinetic", "kinetic"},
+                      {"elastic", "elastic, with springs of friction"},
+                      {"lost_impulses", "taken by impulses"},
+                      {"lost_soft", "taken by soft contacts"}})};
   out.sweep_charts = charts;
   out.page = [charts](const StudyResult& result, const Realization* first) {
     return switch_page(result, first, charts);

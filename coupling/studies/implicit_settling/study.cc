@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numbers>
-#include <sstream>
 
 #include "continuum/closed/liffman.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/ensemble.h"
+#include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/implicit_settling/keys.h"
 #include "coupling/studies/lattice_pile/keys.h"
-#include "dem/snapshot/number.h"
 #include "dem/study/implicit_settling.h"
 
 namespace grainfield::coupling {
@@ -33,26 +29,19 @@ class SettlingAnalysis {
   SettlingAnalysis(const Case& value, const std::vector<std::string>& files)
       : value_(value), files_(files), setup_(setup_of(value)) {
     rows_ = dem::lattice_rows(setup_.lattice);
-    for (const std::string& file : files) {
-      const Realization one = read_realization(file);
-      for (const auto& [key, figure] : one.figures) figures_[key].push_back(figure);
-    }
     // The lattice is perfect: realizations are alike, and the first one is shown.
     const Realization first = read_realization(files.front());
-    for (const char* name : dem::kSettlingColumns) {
-      columns_[name] = column(first["pile"], name, files.front());
-    }
+    columns_ = recorded_columns(first["pile"], "settling", dem::kSettlingColumns, files.front());
     measure(first["pile"]);
   }
 
   StudyResult run() const {
     StudyResult out = begin_result(value_, files_);
-    add_figures(out.summary, figures_);
+    add_figures(out.summary, simulated_figures(files_));
     out.summary["settling.normal_max_error"] = largest_error(normal_, hard_normal_);
     out.summary["settling.horizontal_max_error"] = largest_error(horizontal_, hard_horizontal_);
     for (const char* loss : {"lost_normal", "lost_tangential", "lost_well", "lost_scheme"}) {
-      const Eigen::VectorXd& values = columns_.at(loss);
-      out.summary[std::string("settling.") + loss] = values[values.size() - 1];
+      out.summary[std::string("settling.") + loss] = columns_.at(loss).back();
     }
     out.comparison.judgement.findings = {sentence(out.summary)};
     const double halved = std::get<double>(out.summary.at("settling.halved"));
@@ -63,15 +52,7 @@ class SettlingAnalysis {
                       halved));
     }
     out.texts.emplace_back("profiles.csv", base_csv());
-    out.texts.emplace_back("history.csv", history_csv());
-    out.overview = {{"at rest", "settling.at_rest", ""},
-                    {"N: largest error", "settling.normal_max_error", ""},
-                    {"H: largest error", "settling.horizontal_max_error", ""},
-                    {"spread / d", "settling.spread", ""},
-                    {"its speed / sqrt(g d)", "settling.spread_speed", ""},
-                    {"iterations a solve", "settling.iterations", ""},
-                    {"halved", "settling.halved", ""},
-                    {"balance / (m g d)", "settling.balance_error", ""}};
+    out.texts.emplace_back("history.csv", recorded_csv(columns_, dem::kSettlingColumns));
     out.sweep_charts = charts();
     const std::vector<Chart> all = charts();
     out.page = [all](const StudyResult& result, const Realization* first) {
@@ -81,28 +62,6 @@ class SettlingAnalysis {
   }
 
  private:
-  static Eigen::VectorXd column(const dem::Snapshot& pile, const std::string& name,
-                                const std::string& file) {
-    const auto at = pile.attributes.find("settling:" + name);
-    if (at == pile.attributes.end()) {
-      throw std::invalid_argument(fmt::format("{}: has no attribute settling:{}", file, name));
-    }
-    std::vector<double> values;
-    std::istringstream words(at->second);
-    for (std::string word; words >> word;) {
-      const auto number = dem::parse_number(word);
-      if (!number) {
-        throw std::invalid_argument(
-            fmt::format("{}: settling:{} holds \"{}\"; it must hold numbers", file, name, word));
-      }
-      values.push_back(*number);
-    }
-    if (values.empty()) {
-      throw std::invalid_argument(fmt::format("{}: settling:{} is empty", file, name));
-    }
-    return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  }
-
   void measure(const dem::Snapshot& pile) {
     const int base = rows_.front();
     x_ = normal_ = horizontal_ = hard_normal_ = hard_horizontal_ = Eigen::VectorXd::Zero(base);
@@ -150,21 +109,6 @@ class SettlingAnalysis {
     }
     return out;
   }
-  std::string history_csv() const {
-    std::string out;
-    for (const char* name : dem::kSettlingColumns) {
-      out += fmt::format("{}{}", out.empty() ? "" : ",", name);
-    }
-    out += "\n";
-    for (Eigen::Index k = 0; k < columns_.at("time").size(); ++k) {
-      std::string row;
-      for (const char* name : dem::kSettlingColumns) {
-        row += fmt::format("{}{:.9g}", row.empty() ? "" : ",", columns_.at(name)[k]);
-      }
-      out += row + "\n";
-    }
-    return out;
-  }
 
   std::vector<Chart> charts() const {
     Chart base{"Forces of the base disks",
@@ -175,38 +119,24 @@ class SettlingAnalysis {
                {},
                false};
     for (const bool normal : {true, false}) {
-      Frame frame;
-      frame.title = normal ? "N" : "H";
-      frame.series.push_back({"grains", x_, normal ? normal_ : horizontal_, {}, true});
-      frame.series.back().points = true;
-      frame.series.push_back(
-          {"closed form", x_, normal ? hard_normal_ : hard_horizontal_, {}, false});
-      base.frames.push_back(std::move(frame));
+      base.frames.push_back(
+          {normal ? "N" : "H",
+           {{"grains", x_, normal ? normal_ : horizontal_, {}, true, false, -1, true},
+            {"closed form", x_, normal ? hard_normal_ : hard_horizontal_, {}, false}}});
     }
-    const Eigen::VectorXd& time = columns_.at("time");
-    const auto history = [&](const char* title, const char* y, const char* caption,
-                             const std::vector<std::pair<const char*, const char*>>& lines) {
-      Chart out{title, "time / sqrt(d/g)", y, caption, {}, false};
-      for (const auto& [name, label] : lines) {
-        Frame frame;
-        frame.title = label;
-        frame.series.push_back({"grains", time, columns_.at(name), {}, true});
-        out.frames.push_back(std::move(frame));
-      }
-      return out;
-    };
     return {base,
-            history("Energy", "energy / (m g d)",
-                    "Kinetic energy, and what dashpots, friction and wells have taken.",
-                    {{"kinetic", "kinetic"},
-                     {"lost_normal", "taken by dashpots along the normal"},
-                     {"lost_tangential", "taken by friction"},
-                     {"lost_well", "taken by wells"},
-                     {"lost_scheme", "taken by the scheme"}}),
-            history("Newton's method", "iterations a solve", "Means between the records.",
-                    {{"iterations", "iterations"}}),
-            history("Creep", "spread / d", "By how much the outermost base disks have parted.",
-                    {{"spread", "spread"}})};
+            recorded_chart(columns_, "Energy", "energy / (m g d)",
+                           "Kinetic energy, and what dashpots, friction and wells have taken.",
+                           {{"kinetic", "kinetic"},
+                            {"lost_normal", "taken by dashpots along the normal"},
+                            {"lost_tangential", "taken by friction"},
+                            {"lost_well", "taken by wells"},
+                            {"lost_scheme", "taken by the scheme"}}),
+            recorded_chart(columns_, "Newton's method", "iterations a solve",
+                           "Means between the records.", {{"iterations", "iterations"}}),
+            recorded_chart(columns_, "Creep", "spread / d",
+                           "By how much the outermost base disks have parted.",
+                           {{"spread", "spread"}})};
   }
 
   static Report page(const StudyResult& result, const Realization* first,
@@ -221,28 +151,7 @@ class SettlingAnalysis {
     const dem::Snapshot* pile = first != nullptr ? first->find("pile") : nullptr;
     if (pile != nullptr) out.sections.emplace_back(packing("Network of forces", *pile));
     for (const Chart& chart : charts) out.sections.emplace_back(chart.picture());
-    add_rows(out, "Figures",
-             figure_rows(result.summary, {"dem.grains",
-                                          "dem.contacts",
-                                          "dem.steps",
-                                          "dem.time_step",
-                                          "dem.unbalanced_force_ratio",
-                                          "base.weight_ratio",
-                                          "settling.at_rest",
-                                          "settling.time",
-                                          "settling.normal_max_error",
-                                          "settling.horizontal_max_error",
-                                          "settling.row_contacts",
-                                          "settling.iterations",
-                                          "settling.most_iterations",
-                                          "settling.halved",
-                                          "settling.balance_error",
-                                          "settling.lost_normal",
-                                          "settling.lost_tangential",
-                                          "settling.lost_well",
-                                          "settling.lost_scheme",
-                                          "settling.spread",
-                                          "settling.spread_speed"}));
+    add_rows(out, "Figures", figure_rows(result));
     add_rows(out, "How it was made", origin_rows(result));
     return out;
   }
@@ -251,8 +160,7 @@ class SettlingAnalysis {
   const std::vector<std::string>& files_;
   dem::ImplicitSettlingSetup setup_;
   std::vector<int> rows_;
-  std::map<std::string, std::vector<double>> figures_;
-  std::map<std::string, Eigen::VectorXd> columns_;
+  RecordedColumns columns_;
   Eigen::VectorXd x_, normal_, horizontal_, hard_normal_, hard_horizontal_;  // of base disks, m g
 };
 

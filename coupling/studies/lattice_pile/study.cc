@@ -78,13 +78,7 @@ class LatticePileAnalysis {
                                    fmt::format("{:g}°", lattice_.slope_deg));
     out.sweep_x = "x / B";
     out.sweep_y = "force / (m g)";
-    out.overview = {{"disks", "dem.grains", ""},
-                    {"rows", "liffman.rows", ""},
-                    {"N: largest error", "liffman.normal_max_error", ""},
-                    {"H: largest error", "liffman.horizontal_max_error", ""},
-                    {"N: lines", "liffman.line_normal_max_difference", ""},
-                    {"H: lines", "liffman.line_horizontal_max_difference", ""},
-                    {"contacts in rows", "liffman.row_contacts", ""}};
+    out.overview = {{"disks", "dem.grains", ""}};
     return out;
   }
 
@@ -237,15 +231,16 @@ class LatticePileAnalysis {
     }
     out.summary["time.continuum_s"] = seconds;
     const double h = heap_.height(), unit = known.numbers.at("rho_g") * h;
-    out.comparison = compare(std::move(profiles), std::move(models), unit * h, h,
-                             static_cast<int>(files_.size()));
-    out.comparison.scale = {
-        "h", "rho g h", "middle",
-        fmt::format(
-            "h = {:.6g} m, rho g h = {:.6g} N/m, rho g = {:.6g} N/m2 of the lattice; forces "
-            "of the base disks over their spacing {:.6g} m, N/d as -sigma_yy and H/d as "
-            "sigma_xy; m g = {:.6g} N; realizations: {}",
-            h, unit, unit / h, spacing_, weight_, files_.size())};
+    out.comparison = compare(
+        std::move(profiles), std::move(models),
+        scale_of_heaps(
+            h, unit,
+            fmt::format(", rho g = {:.6g} N/m2 of the lattice; forces of the base disks over their "
+                        "spacing {:.6g} m, N/d as -sigma_yy and H/d as sigma_xy; m g = {:.6g} N; "
+                        "realizations: {}",
+                        unit / h, spacing_, weight_, files_.size()),
+            "middle"),
+        static_cast<int>(files_.size()));
     for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
       if (key.compare(0, 8, "compare.") == 0) out.summary[key] = figure;
     }
@@ -282,37 +277,7 @@ class LatticePileAnalysis {
     in.weight = weight;
     in.width = width;
     in.spacing = spacing;
-    in.figures = figure_rows(result.summary, {"dem.grains",
-                                              "liffman.rows",
-                                              "dem.contacts",
-                                              "liffman.row_contacts",
-                                              "base.weight_ratio",
-                                              "liffman.grain_weight",
-                                              "liffman.softness",
-                                              "dem.max_overlap_ratio",
-                                              "liffman.normal_largest",
-                                              "liffman.horizontal_largest",
-                                              "liffman.normal_max_error",
-                                              "liffman.horizontal_max_error",
-                                              "liffman.line_normal_max_difference",
-                                              "liffman.line_horizontal_max_difference",
-                                              "liffman.normal_centre",
-                                              "liffman.line_normal_centre",
-                                              "liffman.horizontal_slope",
-                                              "liffman.horizontal_explained",
-                                              "liffman.maximum_lines_level",
-                                              "liffman.minimum_lines_level",
-                                              "measured.places",
-                                              "measured.normal_rms",
-                                              "measured.shear_rms",
-                                              "measured.normal_chi2",
-                                              "measured.shear_chi2",
-                                              "measured.normal_centre",
-                                              "measured.shear_slope_ratio",
-                                              "measured.shear_explained",
-                                              "dem.unbalanced_force_ratio",
-                                              "dem.kinetic_to_elastic_energy"});
-    add_energy_rows(result.summary, in.figures);
+    in.figures = figure_rows(result);
     in.made = origin_rows(result);
     return lattice_pile_report(in);
   }
@@ -327,7 +292,7 @@ class LatticePileAnalysis {
   Eigen::MatrixXd points_;               // of the base disks, heap's frame
   Eigen::MatrixXd normal_, horizontal_;  // base disks x realizations, N
   Eigen::VectorXd lattice_normal_, lattice_horizontal_, line_normal_, line_horizontal_;
-  std::map<std::string, std::vector<double>> figures_;
+  FigureSamples figures_;
 };
 
 // N and H of the base disks (means over realizations) against the closed form of hard close-packed

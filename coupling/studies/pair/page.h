@@ -11,9 +11,9 @@ namespace grainfield::coupling {
 
 struct PairResults {
   dem::PairSetup setup;
-  PairColumns profile;              ///< of the first realization
+  RecordedColumns profile;          ///< of the first realization
   std::vector<PairImpact> impacts;  ///< of a collision
-  PairColumns loops;                ///< of random loops, all realizations together
+  RecordedColumns loops;            ///< of random loops, all realizations together
 };
 
 /// Force against depth and time, energies, restitution, loops: what there is of them.

@@ -20,11 +20,9 @@
 namespace grainfield::coupling {
 namespace {
 
-using RealizationFigures = std::map<std::string, std::vector<double>>;
-
 struct Collected {
-  RealizationFigures figures;
-  std::vector<PairColumns> profiles, loops;
+  FigureSamples figures;
+  std::vector<RecordedColumns> profiles, loops;
 };
 
 Collected collect(const std::vector<std::string>& files) {
@@ -33,16 +31,16 @@ Collected collect(const std::vector<std::string>& files) {
     const Realization one = read_realization(file);
     for (const auto& [key, figure] : one.figures) out.figures[key].push_back(figure);
     out.profiles.push_back(pair_profile(one, file));
-    if (PairColumns loops = pair_loops(one, file); !loops.empty()) {
+    if (RecordedColumns loops = pair_loops(one, file); !loops.empty()) {
       out.loops.push_back(std::move(loops));
     }
   }
   return out;
 }
 
-PairColumns joined(const std::vector<PairColumns>& parts) {
-  PairColumns out;
-  for (const PairColumns& part : parts) {
+RecordedColumns joined(const std::vector<RecordedColumns>& parts) {
+  RecordedColumns out;
+  for (const RecordedColumns& part : parts) {
     for (const auto& [name, values] : part) {
       out[name].insert(out[name].end(), values.begin(), values.end());
     }
@@ -134,36 +132,9 @@ Report page_of(const StudyResult& result, const Realization* first, const PairRe
   if (Table impacts = pair_impact_table(pair.impacts); !impacts.rows.empty()) {
     out.sections.emplace_back(std::move(impacts));
   }
-  add_rows(out, "Figures",
-           figure_rows(result.summary,
-                       {"pair.restitution_normal", "pair.closed_form.restitution_normal",
-                        "pair.restitution_tangential", "pair.closed_form.restitution_tangential",
-                        "pair.duration", "pair.closed_form.duration", "pair.max_depth",
-                        "pair.closed_form.max_depth", "pair.max_force", "pair.energy_lost",
-                        "pair.work", "pair.stored_most", "pair.loops", "pair.loop_work_over_energy",
-                        "pair.loop_work_over_energy_mean", "pair.loops_crossing",
-                        "pair.loops_unsettled", "pair.stable_time_step", "dem.time_step"}));
+  add_rows(out, "Figures", figure_rows(result));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
-}
-
-std::vector<OverviewColumn> overview_of(const dem::PairSetup& setup) {
-  if (setup.kind == "collision") {
-    return {{"e_n", "pair.restitution_normal", ""},
-            {"closed form", "pair.closed_form.restitution_normal", ""},
-            {"e_t", "pair.restitution_tangential", ""},
-            {"closed form of e_t", "pair.closed_form.restitution_tangential", ""},
-            {"duration (s)", "pair.duration", ""},
-            {"closed form (s)", "pair.closed_form.duration", ""},
-            {"largest depth (m)", "pair.max_depth", ""},
-            {"closed form (m)", "pair.closed_form.max_depth", ""}};
-  }
-  return {{"work (J)", "pair.work", ""},
-          {"stored at most (J)", "pair.stored_most", ""},
-          {"largest |loop work| / energy", "pair.loop_work_over_energy", ""},
-          {"mean", "pair.loop_work_over_energy_mean", ""},
-          {"crossing more than twice", "pair.loops_crossing", ""},
-          {"not settled", "pair.loops_unsettled", ""}};
 }
 
 StudyResult analyse_pair(const Case& value, const std::vector<std::string>& files,
@@ -183,7 +154,6 @@ StudyResult analyse_pair(const Case& value, const std::vector<std::string>& file
   if (!pair.impacts.empty()) out.texts.emplace_back("impacts.csv", pair_impacts_csv(pair.impacts));
   if (!all.loops.empty()) out.texts.emplace_back("loops.csv", pair_loops_csv(all.loops));
   out.sweep_charts = pair_sweep_charts(pair);
-  out.overview = overview_of(value.get<dem::PairSetup>());
   out.page = [pair](const StudyResult& result, const Realization* first) {
     return page_of(result, first, pair);
   };

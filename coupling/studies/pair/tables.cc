@@ -5,11 +5,7 @@
 
 #include <cmath>
 #include <numeric>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
-
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -40,43 +36,9 @@ const NamedUnits& loop_units() {
   return all;
 }
 
-std::vector<double> column_of(const dem::Snapshot& snapshot, const std::string& name,
-                              const std::string& file) {
-  const auto at = snapshot.attributes.find("pair:" + name);
-  if (at == snapshot.attributes.end()) {
-    throw std::invalid_argument(fmt::format("{}: has no attribute pair:{}", file, name));
-  }
-  std::vector<double> out;
-  std::istringstream words(at->second);
-  for (std::string word; words >> word;) {
-    const auto number = dem::parse_number(word);
-    if (!number) {
-      throw std::invalid_argument(
-          fmt::format("{}: pair:{} holds \"{}\"; it must hold numbers", file, name, word));
-    }
-    out.push_back(*number);
-  }
-  return out;
-}
-
-template <std::size_t N>
-PairColumns pair_columns_of(const Realization& realization, const char* const (&names)[N],
-                            const std::string& file) {
-  const dem::Snapshot& snapshot = realization.snapshots.front().second;
-  PairColumns out;
-  for (const char* name : names) {
-    out[name] = column_of(snapshot, name, file);
-    if (out[name].size() != out[names[0]].size()) {
-      throw std::invalid_argument(fmt::format("{}: pair:{} has {} numbers, pair:{} {}", file, name,
-                                              out[name].size(), names[0], out[names[0]].size()));
-    }
-  }
-  return out;
-}
-
 std::string cell(double value) { return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value); }
 
-std::string columns_csv(const std::vector<PairColumns>& realizations, const NamedUnits& units,
+std::string columns_csv(const std::vector<RecordedColumns>& realizations, const NamedUnits& units,
                         const char* index) {
   std::string out = "realization";
   if (*index != 0) out += fmt::format(",{}", index);
@@ -103,21 +65,21 @@ double mean_of(const std::map<std::string, std::vector<double>>& figures, const 
 
 }  // namespace
 
-PairColumns pair_profile(const Realization& realization, const std::string& file) {
-  return pair_columns_of(realization, dem::kPairColumns, file);
+RecordedColumns pair_profile(const Realization& realization, const std::string& file) {
+  return recorded_columns(realization.snapshots.front().second, "pair", dem::kPairColumns, file);
 }
 
-PairColumns pair_loops(const Realization& realization, const std::string& file) {
-  const auto& attributes = realization.snapshots.front().second.attributes;
-  if (!attributes.contains(std::string("pair:") + dem::kLoopColumns[0])) return {};
-  return pair_columns_of(realization, dem::kLoopColumns, file);
+RecordedColumns pair_loops(const Realization& realization, const std::string& file) {
+  const dem::Snapshot& state = realization.snapshots.front().second;
+  if (!state.attributes.contains(std::string("pair:") + dem::kLoopColumns[0])) return {};
+  return recorded_columns(state, "pair", dem::kLoopColumns, file);
 }
 
-std::string pair_profiles_csv(const std::vector<PairColumns>& realizations) {
+std::string pair_profiles_csv(const std::vector<RecordedColumns>& realizations) {
   return columns_csv(realizations, profile_units(), "");
 }
 
-std::string pair_loops_csv(const std::vector<PairColumns>& realizations) {
+std::string pair_loops_csv(const std::vector<RecordedColumns>& realizations) {
   return columns_csv(realizations, loop_units(), "loop");
 }
 

@@ -6,22 +6,20 @@
 #include <vector>
 
 #include "coupling/run/realization_file.h"
+#include "coupling/run/recorded.h"
 #include "coupling/studies/pair/closed_forms.h"
 
 namespace grainfield::coupling {
 
-/// Equally long columns by the names of dem::kPairColumns or dem::kLoopColumns.
-using PairColumns = std::map<std::string, std::vector<double>>;
-
 /// The profile of a realization, one row a record. Throws std::invalid_argument naming the file and
 /// the column that is missing or broken.
-PairColumns pair_profile(const Realization& realization, const std::string& file);
+RecordedColumns pair_profile(const Realization& realization, const std::string& file);
 /// Its random loops, one row a loop, likewise; empty columns where there are none.
-PairColumns pair_loops(const Realization& realization, const std::string& file);
+RecordedColumns pair_loops(const Realization& realization, const std::string& file);
 
 /// profiles.csv and loops.csv: the realizations' columns one after the other, with their number.
-std::string pair_profiles_csv(const std::vector<PairColumns>& realizations);
-std::string pair_loops_csv(const std::vector<PairColumns>& realizations);
+std::string pair_profiles_csv(const std::vector<RecordedColumns>& realizations);
+std::string pair_loops_csv(const std::vector<RecordedColumns>& realizations);
 
 /// An impact, mean over realizations, beside its closed form.
 struct PairImpact {

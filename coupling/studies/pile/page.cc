@@ -7,45 +7,30 @@
 #include <tuple>
 
 #include "coupling/report/judgement.h"
+#include "coupling/run/comparison_page.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// In units of h and rho g h.
-Series series_of(const Comparison& c, const Profile& p, const std::string& label, bool simulation) {
-  Series out{label, p.x / c.depth, p.mean / c.unit(), {}, simulation};
-  if (p.error.size() > 0) out.error = p.error / c.unit();
-  return out;
-}
-
-void add_models(const Comparison& c, std::size_t profile, Frame& frame) {
-  for (std::size_t m = 0; m < c.models.size(); ++m) {
-    const DrawnLine line = drawn_line(c, m, profile);
-    frame.series.push_back({c.models[m].label, line.x / c.depth, line.y / c.unit(), {}, false});
-  }
-}
 
 std::string scale_note(const Comparison& c) {
   if (c.scale.stress == "N/m") return c.scale.note + ".";
   return fmt::format(
       "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own). "
       "The grey band is one standard error over {} realization{} on either side.",
-      c.depth, c.unit(), c.realizations, c.realizations == 1 ? "" : "s");
+      c.scale.h, c.scale.unit, c.realizations, c.realizations == 1 ? "" : "s");
 }
 
 void add_base(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   for (std::size_t k = 0; k < c.profiles.size(); ++k) {
     if (c.profiles[k].key != "base") continue;
-    Frame frame;
-    frame.series.push_back(series_of(c, c.profiles[k], c.label() + ", base forces", true));
+    Frame frame = profile_frame(c, k);
+    frame.title.clear();
+    frame.series.front().label += ", base forces";
     for (const Profile& p : c.beside) {
-      if (p.key.compare(0, 5, "base_") != 0) continue;
-      Series s = series_of(c, p, p.name, false);
-      s.error.resize(0);
-      frame.series.push_back(std::move(s));
+      if (!p.key.starts_with("base_")) continue;
+      frame.series.push_back({p.name, p.x / c.scale.h, p.mean / c.scale.unit, {}, false});
     }
-    add_models(c, k, frame);
     Picture picture = curves("Vertical pressure on the base", "x / h (apex at 0)",
                              "-σ_{yy}  (ρ g h)", {std::move(frame)});
     picture.caption = fmt::format(
@@ -68,11 +53,7 @@ void add_cuts(Report& report, const PileReport& in) {
     std::vector<Frame> frames;
     for (std::size_t k = 0; k < c.profiles.size(); ++k) {
       if (c.profiles[k].key == "base" || c.profiles[k].quantity != quantity) continue;
-      Frame frame;
-      frame.title = c.profiles[k].name;
-      frame.series.push_back(series_of(c, c.profiles[k], c.label(), true));
-      add_models(c, k, frame);
-      frames.push_back(std::move(frame));
+      frames.push_back(profile_frame(c, k));
     }
     if (frames.empty()) continue;
     Picture picture =
@@ -97,7 +78,7 @@ void add_maps(Report& report, const PileReport& in) {
     for (Eigen::Index p = 0; p < value.size(); ++p) {
       if (!(grains->value[p] > 0.05)) value[p] = std::nan("");
     }
-    return Map{title, in.map.nx, in.map.ny, in.map.points / c.depth, value};
+    return Map{title, in.map.nx, in.map.ny, in.map.points / c.scale.h, value};
   };
   const std::string averaged = "Averaged by " + in.averaged + ". ";
   Picture density = maps("Volume fraction", "x / h", "y / h", "volume fraction",
@@ -107,7 +88,7 @@ void add_maps(Report& report, const PileReport& in) {
       "Area of the grains over the area of the kernel that lies inside the heap; white: no "
       "grains. In units of the height h.";
   report.sections.emplace_back(std::move(density));
-  const double unit = 1 / c.unit();
+  const double unit = 1 / c.scale.unit;
   Picture stress = maps(
       "Stress", "x / h", "y / h", "ρ g h",
       {map("vertical pressure -σ_yy", "sigma_yy", -unit),
@@ -127,20 +108,8 @@ std::string error_note(int realizations) {
 void add_tables(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   if (!c.results.empty()) {
-    Table distances{
-        fmt::format("Distance of the models from the {}", c.subject()),
-        fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
-                    "Misfit and verdict are above.",
-                    c.subject()),
-        {"model", "relative L2", fmt::format("largest difference ({})", c.scale.stress), "in"},
-        {}};
-    for (const std::size_t m : ranked(c)) {
-      const ModelComparison& r = c.results[m];
-      distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
-                                fmt::format("{:.3g}", r.overall.largest / c.unit()),
-                                r.overall.largest_in});
-    }
-    report.sections.emplace_back(std::move(distances));
+    report.sections.emplace_back(distances_table(c, c.scale.stress));
+    add_profile_tables(report, c);
   }
   if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
   add_rows(report, "Figures", in.figures, error_note(c.realizations));

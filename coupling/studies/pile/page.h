@@ -17,8 +17,8 @@ struct PileReport {
   const dem::Snapshot* pile = nullptr;  ///< of the realization that is drawn; may be null
   /// The same pile under changed gravity: label ("g = 8.829 m/s2"), snapshot.
   std::vector<std::pair<std::string, const dem::Snapshot*>> changed;
-  /// Profile "base" and horizontal cuts in units of comparison.unit() and .depth; `beside` holds
-  /// other averages of the base ("base_METHOD").
+  /// Profile "base" and horizontal cuts in units of comparison.scale; `beside`
+  /// holds other averages of the base ("base_METHOD").
   Comparison comparison;
   Field map;             ///< scaled to comparison's h and rho g h, heap's frame; may be empty
   std::string averaged;  ///< how, for captions: "coarse graining, lucy kernel, w = 0.0055 m"

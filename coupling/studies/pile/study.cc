@@ -50,15 +50,6 @@ class PileAnalysis {
                                                        const Realization* first) {
       return page(result, first, averaged, beside, flat);
     };
-    out.overview = {{"dip ratio", "dip.ratio", ""},
-                    {"dip difference (rho g h)", "dip.difference", "dip.standard_error"},
-                    {"p of a dip, one-sided", "dip.p_value", ""},
-                    {"repose (deg)", "repose.mean_deg", ""},
-                    {"left - right (deg)", "repose.left_minus_right_deg", ""},
-                    {"volume fraction", "heap.volume_fraction", ""},
-                    {"contacts per grain", "heap.coordination", ""},
-                    {"centre pressure (rho g h)", "dip.centre", ""},
-                    {"sigma_xx / sigma_yy on the axis", "axis.stress_ratio", ""}};
     return out;
   }
 
@@ -205,11 +196,16 @@ class PileAnalysis {
     std::vector<Profile> profiles{profile(piles_.base(), "base", "base", 0)};
     for (Profile& p : cuts(piles_.methods().front(), false)) profiles.push_back(std::move(p));
     const int n = static_cast<int>(files_.size());
+    const Scale scale =
+        scale_of_heaps(h, unit,
+                       fmt::format(" (rho = {:.6g} kg/m2 times mean volume fraction {:.4g}){}",
+                                   piles_.mean(&PileFrame::grain_density),
+                                   piles_.mean(&PileFrame::volume_fraction), scaled_alone(n)));
     if (value_.models.empty()) {
-      out.comparison = without_models(std::move(profiles), unit * h, h, n);
+      out.comparison = without_models(std::move(profiles), scale, n);
     } else {
       std::vector<ModelProfiles> all = models(out, profiles);
-      out.comparison = compare(std::move(profiles), std::move(all), unit * h, h, n);
+      out.comparison = compare(std::move(profiles), std::move(all), scale, n);
       for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
         // The response.* keys speak of a load.
         if (key.compare(0, 9, "response.") != 0) out.summary[key] = figure;
@@ -220,13 +216,6 @@ class PileAnalysis {
       if (&a == &piles_.methods().front()) continue;
       for (Profile& p : cuts(a, true)) out.comparison.beside.push_back(std::move(p));
     }
-    const double density = piles_.mean(&PileFrame::grain_density);
-    const double fraction = piles_.mean(&PileFrame::volume_fraction);
-    out.comparison.scale = {
-        "h", "rho g h", "apex",
-        fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m (rho = {:.6g} kg/m2 times mean volume "
-                    "fraction {:.4g}); every pile scaled by its own; realizations: {}",
-                    h, unit, density, fraction, n)};
   }
 
   void add_own_figures(Summary& summary) const {
@@ -378,47 +367,8 @@ class PileAnalysis {
     in.comparison = result.comparison;
     in.map = result.map;
     in.averaged = averaged;
-    in.figures = figure_rows(result.summary, {"dem.grains",
-                                              "dem.contacts",
-                                              "repose.mean_deg",
-                                              "dem.repose_angle_left_deg",
-                                              "dem.repose_angle_right_deg",
-                                              "pile.height",
-                                              "heap.volume_fraction",
-                                              "heap.rho_g_h",
-                                              "heap.coordination",
-                                              "pile.volume_fraction_centre",
-                                              "pile.volume_fraction_surface",
-                                              "density.ratio",
-                                              "density.p_value",
-                                              "base.weight_ratio",
-                                              "relaxation.base_weight_ratio_before",
-                                              "relaxation.level_error_before",
-                                              "relaxation.force_change",
-                                              "relaxation.mean_displacement",
-                                              "axis.stress_ratio",
-                                              "dip.centre",
-                                              "dip.window_ratio",
-                                              "dip.difference",
-                                              "dip.standard_error",
-                                              "dip.p_value",
-                                              "measured.places",
-                                              "measured.normal_rms",
-                                              "measured.shear_rms",
-                                              "measured.normal_chi2",
-                                              "measured.shear_chi2",
-                                              "measured.normal_centre",
-                                              "measured.shear_slope_ratio",
-                                              "measured.shear_explained",
-                                              "source.interval",
-                                              "dem.time_step",
-                                              "time.dem_cpu_s",
-                                              "dem.max_overlap_ratio",
-                                              "dem.unbalanced_force_ratio",
-                                              "average.coarse_graining.balance_rms",
-                                              "average.particle_centre.balance_rms"});
+    in.figures = figure_rows(result);
     add_reasons(in.figures, flat);
-    add_energy_rows(result.summary, in.figures);
     in.changes = changes_of(result.summary);
     in.made = origin_rows(result);
     return pile_report(in);

@@ -9,6 +9,7 @@
 
 #include "coupling/elastic_constants/elastic_map.h"
 #include "coupling/elastic_constants/symmetry.h"
+#include "coupling/judge/words.h"
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
@@ -239,10 +240,9 @@ void add_symmetry(const Fits& fits, Summary& summary, Table& table, int resample
                             ? "undecided: needs 4 piles"
                             : fmt::format("{} (p = {:.2g})", verdict, s.p_realizations)});
   table.rows.push_back(
-      {"C11/C22 (1 if isotropic)",
-       fmt::format("{:.3f} ± {:.3f}", s.normal_ratio.value, s.normal_ratio.error)});
+      {"C11/C22 (1 if isotropic)", with_error(s.normal_ratio.value, s.normal_ratio.error)});
   table.rows.push_back({"4 C66/(C11 + C22 - 2 C12) (1 if isotropic)",
-                        fmt::format("{:.3f} ± {:.3f}", s.shear_ratio.value, s.shear_ratio.error)});
+                        with_error(s.shear_ratio.value, s.shear_ratio.error)});
   table.rows.push_back({"stress left over: isotropic, orthotropic",
                         fmt::format("{:.1f} %, {:.1f} %", 100 * s.residual_isotropic,
                                     100 * s.residual_orthotropic)});
@@ -362,7 +362,7 @@ TopicResult elastic_constants_of_piles(const PileSet& piles) {
     figures.rows.push_back({std::string(key) == "elastic.young_pooled"
                                 ? "E, all piles pooled (N/m)"
                                 : "E, pooled without rearranged piles (N/m)",
-                            fmt::format("{:.4g} ± {:.2g}", value(key), error(key))});
+                            with_error(value(key), error(key))});
   }
   out.sections.emplace_back(std::move(figures));
   out.sections.emplace_back(piles_table(piles, fits));

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "coupling/judge/words.h"
 #include "coupling/run/study_result.h"
 #include "coupling/statistics/correlation.h"
 #include "coupling/statistics/spread.h"
@@ -256,7 +257,7 @@ void add_contacts(const PileSet& piles, TopicResult& out) {
       const auto at = found.figures.find(prefix + key);
       if (at == found.figures.end()) return std::string("1");
       const Spread m = spread_of(at->second);
-      return fmt::format("{:.4g} ± {:.2g}{}", factor * m.mean, factor * m.standard_error, unit);
+      return with_error(factor * m.mean, factor * m.standard_error) + unit;
     };
     table.rows.push_back({found.states[s],
                           s == 0 ? "1" : fmt::format("{:.3g}", piles.gravity_ratios()[s - 1]),

@@ -79,12 +79,8 @@ Comparison pressures(const PileSet& piles) {
         "fields.heights: no row of the map has three points with values: {}",
         gaps.empty() ? "allowed: heights inside the heap" : gaps + " (fields.rve_diameters)"));
   }
-  Comparison out = without_models(std::move(profiles), unit * h, h, piles.count());
-  out.scale = {"h", "rho g h", "apex",
-               fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; every pile scaled by its own; "
-                           "realizations: {}",
-                           h, unit, piles.count())};
-  return out;
+  return without_models(std::move(profiles), scale_of_heaps(h, unit, scaled_alone(piles.count())),
+                        piles.count());
 }
 
 void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summary& summary) {
@@ -149,15 +145,7 @@ Report page_of(const StudyResult& result, const Realization* first, const std::s
   out.sections.emplace_back(Text{
       "Points without a value",
       gaps.empty() ? "Every point whose RVE is inside the heap has enough grains." : gaps, false});
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : result.summary) {
-    const bool aside = key.ends_with(".least") || key.ends_with(".most") ||
-                       key.ends_with(".standard_error") || key.rfind("case.", 0) == 0 ||
-                       key.rfind("time.", 0) == 0 || key.rfind("memory.", 0) == 0 ||
-                       key == "verdict.sentence";
-    if (!aside) keys.push_back(key);
-  }
-  add_rows(out, "Figures", figure_rows(result.summary, keys));
+  add_rows(out, "Figures", figure_rows(result, true));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
 }
@@ -179,10 +167,6 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
     out.texts.insert(out.texts.end(), result.texts.begin(), result.texts.end());
     sentence += (sentence.empty() ? "" : " ") + result.sentence;
   }
-  out.overview = {{"E (N/m)", "elastic.young", ""},
-                  {"RVE (grains)", "rve_size.grains", ""},
-                  {"g2", "fabric.g2", ""},
-                  {"coordination", "heap.coordination", ""}};
   out.comparison.judgement.findings = {sentence};
   const std::string gaps = piles.gaps_text();
   out.page = [looked, gaps, change = piles.change()](const StudyResult& result,

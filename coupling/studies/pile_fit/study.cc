@@ -33,7 +33,7 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
   const auto observe = [&](const FitSetup& setup) {
     return observe_heaps(setup, heaps_of_runs(files), threads);
   };
-  StudyResult out = heap_result(value, observe(value.get<FitSetup>()), threads, observe);
+  StudyResult out = heap_result(value, observe(value.get<FitSetup>()), threads, observe).study;
   out.realizations = files;
   add_identity(out.summary, value);
   return out;

@@ -5,36 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "continuum/constants.h"
 #include "coupling/report/judgement.h"
+#include "coupling/run/comparison_page.h"
 
 namespace grainfield::coupling {
 namespace {
 
-std::string shown(double value, int digits = 3) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
-}
-
-// Profile k and the models there, lengths in h and stresses in F/h.
+// With the share of the depth in its title.
 Frame frame(const Comparison& c, std::size_t k) {
   const Profile& p = c.profiles[k];
-  const double unit = c.load / c.depth;
-  Frame result;
-  result.title = k < c.profiles.size() && p.depth < c.depth && p.key != "base"
-                     ? fmt::format("{} ({:.2g} h)", p.name, p.depth / c.depth)
-                     : p.name;
-  Series simulation;
-  simulation.label = c.label();
-  simulation.simulation = true;
-  simulation.x = p.x / c.depth;
-  simulation.y = p.mean / unit;
-  if (p.error.size()) simulation.error = p.error / unit;
-  result.series.push_back(simulation);
-  for (std::size_t m = 0; m < c.models.size(); ++m) {
-    const DrawnLine line = drawn_line(c, m, k);
-    result.series.push_back({c.models[m].label, line.x / c.depth, line.y / unit, {}, false});
-  }
-  return result;
+  Frame out = profile_frame(c, k);
+  if (p.depth < c.scale.h && p.key != "base")
+    out.title += fmt::format(" ({:.2g} h)", p.depth / c.scale.h);
+  return out;
 }
 
 void add_profiles(Report& report, const Comparison& c) {
@@ -45,7 +28,7 @@ void add_profiles(Report& report, const Comparison& c) {
       "Vertical pressure added by the load, in units of F/h = {:.4g} N/m (F = {:.4g} N, h = {:.4g} "
       "m). The models are smoothed with the kernel of the averaging. The grey band is one standard "
       "error on either side.",
-      c.load / c.depth, c.load, c.depth);
+      c.scale.unit, c.scale.load, c.scale.h);
   const auto add = [&](const std::string& title, const std::vector<Frame>& frames) {
     if (frames.empty()) return;
     Picture picture = curves(title, "x / h", "response of -σ_{yy}  (F/h)", frames);
@@ -67,7 +50,7 @@ const ModelMap& nearest(const std::vector<ModelMap>& maps, const Comparison& c) 
 void add_maps(Report& report, const PointLoadReport& in) {
   const Column* column = in.map.find("sigma_yy");
   if (!column || in.map.nx < 2 || in.map.ny < 2) return;
-  const double unit = in.comparison.load / in.comparison.depth, h = in.comparison.depth;
+  const double unit = in.comparison.scale.unit, h = in.comparison.scale.h;
   const Eigen::VectorXd simulation = -column->value / unit;
   const auto map = [&](const std::string& title, const Eigen::VectorXd& value) {
     return Map{title, in.map.nx, in.map.ny, in.map.points / h, value};
@@ -98,44 +81,9 @@ void add_base_before(Report& report, const PointLoadReport& in) {
 
 void add_tables(Report& report, const PointLoadReport& in) {
   const Comparison& c = in.comparison;
-  Table distances{
-      fmt::format("Distance of the models from the {}", c.subject()),
-      fmt::format("Relative L2: root of the sum of squared differences over that of the {}. "
-                  "Misfit and verdict are above.",
-                  c.subject()),
-      {"model", "relative L2", "largest difference (F/h)", "at x/h", "in"},
-      {}};
-  for (const std::size_t m : ranked(c)) {
-    const ModelComparison& r = c.results[m];
-    distances.rows.push_back({r.label, fmt::format("{:.1f} %", 100 * r.overall.rel_l2),
-                              shown(r.overall.largest * c.depth / c.load),
-                              shown(r.overall.largest_at / c.depth, 2), r.overall.largest_in});
-  }
-  report.sections.emplace_back(std::move(distances));
-
-  Table shapes{"Shape of the profiles",
-               "Peak in F/h, widths and places in h, integral over x in F; standard errors of the "
-               "grains by leaving one realization out at a time.",
-               {"profile", "of", "peak", "at", "full width at half maximum", "rms width", "peaks",
-                "integral"},
-               {}};
-  const auto with_error = [](double value, double error) {
-    return std::isfinite(error) ? shown(value) + " ± " + shown(error, 1) : shown(value);
-  };
-  const auto row = [&](const std::string& profile, const std::string& of, const ProfileShape& s,
-                       const ProfileShape& error) {
-    shapes.rows.push_back(
-        {profile, of, with_error(s.peak / c.unit(), error.peak / c.unit()),
-         shown(s.peak_at / c.depth, 2), with_error(s.fwhm / c.depth, error.fwhm / c.depth),
-         with_error(s.rms_width / c.depth, error.rms_width / c.depth), fmt::format("{}", s.peaks),
-         with_error(s.integral / c.load, error.integral / c.load)});
-  };
-  const ProfileShape exact{kNan, kNan, kNan, kNan, 0, kNan};
-  for (std::size_t k = 0; k < c.profiles.size(); ++k) {
-    row(c.profiles[k].name, c.subject(), c.shapes[k], c.shape_errors[k]);
-    for (const ModelComparison& r : c.results) row("", r.label, r.shapes[k], exact);
-  }
-  report.sections.emplace_back(std::move(shapes));
+  report.sections.emplace_back(distances_table(c, "F/h"));
+  report.sections.emplace_back(shapes_table(c, "F/h"));
+  add_profile_tables(report, c);
   add_rows(report, "Figures", in.figures);
   add_rows(report, "How it was made", in.made);
 }
@@ -146,8 +94,9 @@ Report point_load_report(const PointLoadReport& in) {
   const Comparison& c = in.comparison;
   Report report;
   report.title = in.title;
-  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
-                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.subtitle =
+      fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.scale.load,
+                  c.scale.h, c.realizations, c.realizations == 1 ? "" : "s");
   add_verdict(report, c.judgement);
   if (in.loaded) report.sections.emplace_back(packing("The loaded packing", *in.loaded));
   if (in.loaded && in.unloaded)
@@ -172,15 +121,7 @@ Report layer_page(const StudyResult& result, const Realization* first) {
   page.base_unloaded = result.base_unloaded;
   page.map = result.map;
   page.models = result.model_maps;
-  page.figures = figure_rows(
-      result.summary,
-      {"dem.grains", "dem.contacts", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
-       "dem.unbalanced_force_ratio", "dem.kinetic_to_elastic_energy", "base.weight_ratio",
-       "load.contacts_gained", "load.contacts_lost", "load.newly_sliding", "load.no_rearrangement",
-       "response.total_over_load", "response.peak", "response.peak_over_F_per_h", "response.width",
-       "response.peaks", "average.coarse_graining.balance_rms",
-       "average.particle_centre.balance_rms"});
-  add_energy_rows(result.summary, page.figures);
+  page.figures = figure_rows(result);
   page.made = origin_rows(result);
   return point_load_report(page);
 }

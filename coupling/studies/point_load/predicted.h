@@ -7,7 +7,7 @@
 
 #include "coupling/averaging/kernel.h"
 #include "coupling/models/models.h"
-#include "coupling/output/summary_key.h"
+#include "coupling/output/figure.h"
 #include "coupling/output/tables.h"
 #include "coupling/report/report.h"
 

@@ -17,7 +17,7 @@
 #include "coupling/models/model_record.h"
 #include "coupling/models/models.h"
 #include "coupling/run/averaging_setup.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space_page.h"
@@ -313,14 +313,11 @@ class SpaceLoadAnalysis {
     }
     out.summary["time.continuum_s"] = seconds;
     predicted_.add_peak(facts, *kernel_, out.summary);
-    out.comparison = compare(profiles(), std::move(models), force_, layer_.depth);
+    out.comparison =
+        compare(profiles(), std::move(models),
+                scale_of_load(force_, layer_.depth, 3, "; means over the angle at radius |x|"));
     out.comparison.judgement.noun = "layer";
     out.comparison.dim = 3;
-    out.comparison.scale.stress = "F/h^2";
-    out.comparison.scale.note = fmt::format(
-        "F = {:.6g} N, h = {:.6g} m, F/h^2 = {:.6g} Pa, realizations: {}; means over the angle at "
-        "radius |x|",
-        force_, layer_.depth, out.comparison.unit(), out.comparison.realizations);
   }
 
   // On the grid of the base, from values at radii_.all, linear between them.

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "coupling/report/judgement.h"
-#include "coupling/run/radial_page.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/point_load/predicted.h"
 
@@ -13,14 +13,14 @@ namespace {
 constexpr const char* kStressLabel = "response of -σ_{zz}  (F/h²)";
 
 void add_radial(Report& report, const Comparison& c) {
-  Picture picture = radial_profiles("Response by radius, against the models",
-                                    "radius / h, to both sides", kStressLabel, c);
+  Picture picture = curves("Response by radius, against the models", "radius / h, to both sides",
+                           kStressLabel, profile_frames(c));
   picture.caption = fmt::format(
       "Vertical pressure added by the load, mean over the angle about it, in units of F/h² = "
       "{:.4g} "
       "Pa (F = {:.4g} N, h = {:.4g} m). The models are smoothed with the kernel of the averaging. "
       "The grey band is one standard error on either side.",
-      c.unit(), c.load, c.depth);
+      c.scale.unit, c.scale.load, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 }
 
@@ -38,11 +38,11 @@ Picture side_views(const std::string& title, const Field& grains, const std::str
                    const Comparison& c, const std::string& seen) {
   Eigen::MatrixXd points(grains.points.rows(), 2);
   points << grains.points.col(0), grains.points.col(column);
-  points /= c.depth;
-  const Eigen::VectorXd simulation = -grains.find("sigma_zz")->value / c.unit();
+  points /= c.scale.h;
+  const Eigen::VectorXd simulation = -grains.find("sigma_zz")->value / c.scale.unit;
   std::vector<Map> all{{"grains", grains.nx, rows, points, simulation}};
   if (model != nullptr) {
-    const Eigen::VectorXd there = -*model / c.unit();
+    const Eigen::VectorXd there = -*model / c.scale.unit;
     all.push_back({label, grains.nx, rows, points, there});
     all.push_back({"grains - " + label, grains.nx, rows, points, simulation - there});
   }
@@ -84,8 +84,9 @@ Report space_load_page(const StudyResult& result, const Realization* first,
   const Comparison& c = result.comparison;
   Report report;
   report.title = title_of(result.value);
-  report.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.load,
-                                c.depth, c.realizations, c.realizations == 1 ? "" : "s");
+  report.subtitle =
+      fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.scale.load,
+                  c.scale.h, c.realizations, c.realizations == 1 ? "" : "s");
   add_verdict(report, c.judgement);
   add_radial(report, c);
   add_maps(report, page, c);
@@ -94,38 +95,13 @@ Report space_load_page(const StudyResult& result, const Realization* first,
         slice("The loaded packing, cut in the middle", (*first)["loaded"]));
   }
   add_before(report, page);
-  add_radial_tables(report, c, "F/h²");
+  report.sections.emplace_back(distances_table(c, "F/h²", "r/h"));
+  report.sections.emplace_back(shapes_table(c, "F/h²", "r/h"));
+  add_profile_tables(report, c);
   for (Section& section : predicted_sections(result.summary)) {
     report.sections.push_back(std::move(section));
   }
-  ReportRows figures = figure_rows(result.summary, {"dem.grains",
-                                                    "dem.contacts",
-                                                    "dem.volume_fraction",
-                                                    "layer.depth",
-                                                    "layer.F_over_h2",
-                                                    "load.force",
-                                                    "load.force_over_weight",
-                                                    "dem.unbalanced_force_ratio",
-                                                    "dem.kinetic_to_elastic_energy",
-                                                    "base.weight_ratio",
-                                                    "load.contacts_gained",
-                                                    "load.contacts_lost",
-                                                    "load.newly_sliding",
-                                                    "load.no_rearrangement",
-                                                    "load.max_displacement_over_radius",
-                                                    "response.total_over_load",
-                                                    "response.within_over_load",
-                                                    "response.peak",
-                                                    "response.peak_over_F_per_h",
-                                                    "response.width",
-                                                    "response.peaks",
-                                                    "response.ring",
-                                                    "response.ring_less_axis",
-                                                    "response.ring_at",
-                                                    "response.ring_p",
-                                                    "average.coarse_graining.balance_rms",
-                                                    "average.width"});
-  add_energy_rows(result.summary, figures);
+  ReportRows figures = figure_rows(result);
   add_rows(report, "Figures", figures);
   add_rows(report, "How it was made", origin_rows(result));
   return report;

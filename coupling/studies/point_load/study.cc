@@ -234,7 +234,8 @@ class PointLoadAnalysis {
       add_model(out.summary, choice, e.figures, e.seconds);
     }
     out.summary["time.continuum_s"] = seconds;
-    out.comparison = compare(profiles(), std::move(models), facts.force, facts.height);
+    out.comparison =
+        compare(profiles(), std::move(models), scale_of_load(facts.force, facts.height));
     out.comparison.judgement.noun = "layer";
   }
 

@@ -131,13 +131,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
     out.sections.emplace_back(contact_angles("Directions of the contacts", loaded));
   }
   for (Section& s : fit_tables(fits)) out.sections.push_back(std::move(s));
-  add_rows(out, "Figures",
-           figure_rows(
-               result.summary,
-               {"dem.grains", "dem.volume_fraction", "layer.depth", "layer.F_over_h",
-                "load.contacts_gained", "load.contacts_lost", "load.newly_sliding",
-                "load.no_rearrangement", "response.total_over_load", "response.peak_over_F_per_h",
-                "response.width", "response.peaks", "average.coarse_graining.balance_rms"}));
+  add_rows(out, "Figures", figure_rows(result));
   add_rows(out, "How it was made", origin_rows(result));
   return out;
 }

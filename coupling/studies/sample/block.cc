@@ -8,7 +8,7 @@
 
 #include "continuum/constants.h"
 #include "continuum/model.h"
-#include "coupling/studies/sample/state_figures.h"
+#include "coupling/studies/sample/figures.h"
 #include "dem/study/sample_path.h"
 
 namespace grainfield::coupling {

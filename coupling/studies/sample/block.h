@@ -63,7 +63,7 @@ BlockComparison compare_block(const BlockSetup& setup, const StateTable& table,
 std::string block_csv(const BlockComparison& comparison);
 
 /// By summary key block.LAW.*, a number for each realization.
-std::map<std::string, std::vector<double>> block_figures(const BlockComparison& comparison);
+FigureSamples block_figures(const BlockComparison& comparison);
 
 /// Curves side by side, the table of the stages, the remarks.
 std::vector<Section> block_sections(const BlockComparison& comparison);

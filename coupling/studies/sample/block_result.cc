@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupling/case/declare.h"
+#include "coupling/judge/words.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/sample/block.h"
 
@@ -30,10 +31,7 @@ Spread spread_in(const Eigen::MatrixXd& values, Index state) {
   return spread_of(known);
 }
 
-std::string spread_told(const Spread& s) {
-  return std::isnan(s.standard_error) ? fmt::format("{:.4g}", s.mean)
-                                      : fmt::format("{:.4g} ± {:.1g}", s.mean, s.standard_error);
-}
+std::string shown(const Spread& s) { return with_error(s.mean, s.standard_error); }
 
 std::string block_number(double value) {
   return std::isnan(value) ? "nan" : fmt::format("{:.6g}", value);
@@ -98,9 +96,8 @@ Table stages_table(const BlockComparison& c) {
     auto& row = table.rows.emplace_back();
     row.push_back(fmt::format("{:.4g}", c.strain[k]));
     for (const BlockQuantity& q : c.quantities) {
-      row.push_back(spread_told(spread_in(q.grains, k)));
-      for (const std::string& law : c.laws)
-        row.push_back(spread_told(stage_of(q, law, k).difference));
+      row.push_back(shown(spread_in(q.grains, k)));
+      for (const std::string& law : c.laws) row.push_back(shown(stage_of(q, law, k).difference));
     }
   }
   return table;
@@ -143,68 +140,102 @@ std::string block_csv(const BlockComparison& c) {
 
 namespace {
 
-using Figures = std::map<std::string, std::vector<double>>;
+using Value = std::optional<double>;
 
-// How far a law is off in a quantity, of the realizations that it has an answer for.
-void add_distance(const BlockComparison& c, const BlockQuantity& q, const std::string& law,
-                  const std::string& begin, Figures& out) {
-  const Index n = c.loading + 1;
-  const auto put = [&](const char* key, double value) { out[begin + key].push_back(value); };
-  for (Index r = 0; r < q.grains.cols(); ++r) {
-    if (!q.laws.at(law).col(r).allFinite()) continue;
-    const VectorXd grains = q.grains.col(r).head(n);
-    const VectorXd off = q.laws.at(law).col(r).head(n) - grains;
-    put("rel_l2", off.norm() / grains.norm());
-    put("end_ratio", q.laws.at(law)(n - 1, r) / grains[n - 1]);
-    const double most = kHasLeft * grains.cwiseAbs().maxCoeff();
-    Index left = 0;
-    while (left < n && std::fabs(off[left]) <= most) ++left;
-    put("leaves", left < n ? 1 : 0);
-    if (left < n) put("leaves_at", c.strain[left]);
+// One realization that a law has an answer for: the driving stress, or the mean stress beside it.
+struct LawPath {
+  LawPath(const BlockComparison& all, const BlockQuantity& q, const std::string& name, Index r)
+      : c(all), grains(q.grains.col(r)), block(q.laws.at(name).col(r)) {
+    off = (block - grains).head(loading());
+    const double most = kHasLeft * grains.head(loading()).cwiseAbs().maxCoeff();
+    while (left < loading() && std::fabs(off[left]) <= most) ++left;
   }
+
+  Index loading() const { return c.loading + 1; }
+  bool leaves() const { return left < loading(); }
+  Index back() const { return grains.size() - loading(); }
+
+  const BlockComparison& c;
+  VectorXd grains, block, off;  // off: of the loading
+  Index left = 0;               // first state in which the law has left the grains
+};
+using L = const LawPath&;
+
+Value unloading_rel_l2(L p) {
+  if (p.back() == 0) return {};
+  return (p.block - p.grains).tail(p.back()).norm() / p.grains.tail(p.back()).norm();
 }
 
-// The driving stress on the way back.
-void add_unloading(const BlockComparison& c, const std::string& law, Figures& out) {
-  const BlockQuantity& q = c.quantities.front();
-  const Index back = c.strain.size() - 1 - c.loading, middle = c.loading + (back + 1) / 2;
-  if (back == 0) return;
-  for (Index r = 0; r < q.grains.cols(); ++r) {
-    const VectorXd block = q.laws.at(law).col(r), grains = q.grains.col(r);
-    if (!block.allFinite()) continue;
-    out["block." + law + ".unloading_rel_l2"].push_back((block - grains).tail(back).norm() /
-                                                        grains.tail(back).norm());
-    out["block." + law + ".unloading_stiffness"].push_back((block[middle] - block[c.loading]) /
-                                                           (grains[middle] - grains[c.loading]));
-    // Over grains that carry next to nothing any more a ratio says nothing.
-    if (const double end = grains[grains.size() - 1];
-        std::fabs(end) >= kUnloaded * grains.cwiseAbs().maxCoeff()) {
-      out["block." + law + ".unloaded_ratio"].push_back(block[block.size() - 1] / end);
-    }
+Value unloading_slopes(L p) {
+  const Index from = p.c.loading, middle = from + (p.back() + 1) / 2;
+  if (p.back() == 0) return {};
+  return (p.block[middle] - p.block[from]) / (p.grains[middle] - p.grains[from]);
+}
+
+// Over grains that carry next to nothing any more a ratio says nothing.
+Value unloaded_ratio(L p) {
+  const double end = p.grains[p.grains.size() - 1];
+  const bool carries = std::fabs(end) >= kUnloaded * p.grains.cwiseAbs().maxCoeff();
+  return p.back() == 0 || !carries ? Value() : Value(p.block[p.block.size() - 1] / end);
+}
+
+const std::vector<Figure<LawPath>>& distance_rows() {
+  // clang-format off
+  static const std::vector<Figure<LawPath>> rows{
+      {"rel_l2", "-", "root of the squared difference of the driving stress between block and grains over that of the grains, loading", [](L p) { return p.off.norm() / p.grains.head(p.loading()).norm(); }},
+      {"end_ratio", "-", "driving stress of the block over the grains' at its end", [](L p) { return p.block[p.c.loading] / p.grains[p.c.loading]; }},
+      {"leaves", "-", "share of the samples that the block leaves: its driving stress is off by more than 10 % of the grains' largest", [](L p) { return p.leaves() ? 1 : 0; }},
+      {"leaves_at", "-", "imposed strain of the first such state, of these samples", [](L p) { return p.leaves() ? Value(p.c.strain[p.left]) : Value(); }},
+  };
+  // clang-format on
+  return rows;
+}
+
+const std::vector<Figure<LawPath>>& unloading_rows() {
+  // clang-format off
+  static const std::vector<Figure<LawPath>> rows{
+      {"unloading_rel_l2", "-", "as rel_l2, of the driving stress in the unloading", unloading_rel_l2},
+      {"unloading_stiffness", "-", "slope of the block's driving stress to the middle state of the unloading over the grains'", unloading_slopes},
+      {"unloaded_ratio", "-", "driving stress of the block at the end of the unloading over the grains', of samples that still carry a hundredth of their largest", unloaded_ratio},
+  };
+  // clang-format on
+  return rows;
+}
+
+// The same rows of the mean stress, where another one drives.
+std::vector<SummaryKey> of_mean_stress() {
+  std::vector<SummaryKey> out = declared(distance_rows(), "block.*.pressure_");
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].meaning = fmt::format("as {}, of the mean stress", distance_rows()[k].key);
   }
+  return out;
 }
 
 }  // namespace
 
-std::map<std::string, std::vector<double>> block_figures(const BlockComparison& c) {
-  Figures out;
+FigureSamples block_figures(const BlockComparison& c) {
+  FigureSamples out;
   const BlockQuantity &driving = c.quantities.front(), &volume = c.quantities.back();
   for (const std::string& law : c.laws) {
     const std::string begin = "block." + law + ".";
-    add_distance(c, driving, law, begin, out);
     for (const BlockQuantity& q : c.quantities) {
-      if (q.name == "p" && &q != &driving) add_distance(c, q, law, begin + "pressure_", out);
+      const bool drives = &q == &driving;
+      if (!drives && q.name != "p") continue;
+      for (Index r = 0; r < q.grains.cols(); ++r) {
+        if (!q.laws.at(law).col(r).allFinite()) continue;
+        const LawPath path(c, q, law, r);
+        add_samples(distance_rows(), path, out, drives ? begin : begin + "pressure_");
+        if (drives) add_samples(unloading_rows(), path, out, begin);
+      }
     }
     for (Index r = 0; r < volume.grains.cols(); ++r) {
       const double off = volume.laws.at(law)(c.loading, r) - volume.grains(c.loading, r);
       if (std::isfinite(off)) out[begin + "volumetric_difference"].push_back(off);
     }
-    add_unloading(c, law, out);
     if (law != kPlasticBlock) continue;
-    out[begin + "friction_deg"] = c.friction;
-    out[begin + "dilation_deg"] = c.dilation;
+    if (!c.friction.empty()) out[begin + "friction_deg"] = c.friction;
+    if (!c.dilation.empty()) out[begin + "dilation_deg"] = c.dilation;
   }
-  std::erase_if(out, [](const auto& entry) { return entry.second.empty(); });
   return out;
 }
 
@@ -229,7 +260,7 @@ Table leaving_table(const BlockComparison& c) {
     for (const std::string& law : c.laws) {
       const auto found = figures.find(fmt::format("block.{}.{}", law, name));
       any = any || found != figures.end();
-      row.push_back(found == figures.end() ? "–" : spread_told(spread_of(found->second)));
+      row.push_back(found == figures.end() ? "–" : shown(spread_of(found->second)));
     }
     if (any) table.rows.push_back(std::move(row));
   }
@@ -289,30 +320,16 @@ void declare_block_keys(SectionKeys s) {
 }
 
 std::vector<SummaryKey> block_summary_keys() {
-  return {
-      {"block.*.rel_l2", "-",
-       "root of the squared difference of the driving stress between block and grains over that of "
-       "the grains, loading"},
-      {"block.*.end_ratio", "-", "driving stress of the block over the grains' at its end"},
+  std::vector<SummaryKey> out{
       {"block.*.volumetric_difference", "-",
-       "volumetric strain of the block less the grains' there"},
-      {"block.*.leaves", "-",
-       "share of the samples that the block leaves: its driving stress is off by more than 10 % of "
-       "the grains' largest"},
-      {"block.*.leaves_at", "-", "imposed strain of the first such state, of these samples"},
-      {"block.*.pressure_rel_l2", "-", "as rel_l2, of the mean stress where another one drives"},
-      {"block.*.pressure_end_ratio", "-", "mean stress of the block over the grains' at the end"},
-      {"block.*.pressure_leaves", "-", "as leaves, of the mean stress"},
-      {"block.*.pressure_leaves_at", "-", "as leaves_at, of the mean stress"},
-      {"block.*.unloading_rel_l2", "-", "as rel_l2, of the driving stress in the unloading"},
-      {"block.*.unloading_stiffness", "-",
-       "slope of the block's driving stress to the middle state of the unloading over the grains'"},
-      {"block.*.unloaded_ratio", "-",
-       "driving stress of the block at the end of the unloading over the grains', of samples that "
-       "still carry a hundredth of their largest"},
-      {"block.mohr_coulomb.friction_deg", "deg", "friction angle that the block had"},
-      {"block.mohr_coulomb.dilation_deg", "deg", "dilation angle that it had"},
-  };
+       "volumetric strain of the block less the grains' at the end of the loading"}};
+  for (const auto& part : {declared(distance_rows(), "block.*."), of_mean_stress(),
+                           declared(unloading_rows(), "block.*.")}) {
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  out.push_back({"block.mohr_coulomb.friction_deg", "deg", "friction angle that the block had"});
+  out.push_back({"block.mohr_coulomb.dilation_deg", "deg", "dilation angle that it had"});
+  return out;
 }
 
 }  // namespace grainfield::coupling

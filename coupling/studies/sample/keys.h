@@ -1,4 +1,4 @@
-// The section of samples, and their figures.
+// The section of samples.
 #pragma once
 #include "coupling/case/study.h"
 
@@ -7,8 +7,5 @@ namespace grainfield::coupling {
 void declare_sample_keys(SectionKeys s);
 
 inline constexpr KeySection kSampleKeys{"sample", KeyRole::grains, declare_sample_keys};
-
-/// Keys of its figures in summary.json.
-std::vector<SummaryKey> sample_figures();
 
 }  // namespace grainfield::coupling

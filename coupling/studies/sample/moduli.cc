@@ -13,32 +13,32 @@
 namespace grainfield::coupling {
 namespace {
 
-struct ModulusColumn {
-  const char *key, *unit, *meaning;
-  double (*of)(const ProbedState&, std::size_t);
+// One realization of a state.
+struct Probed {
+  const ProbedState& state;
+  std::size_t r;
 };
 
-const std::vector<ModulusColumn>& modulus_columns() {
-  using S = const ProbedState&;
-  using I = std::size_t;
+const std::vector<Figure<Probed>>& modulus_columns() {
+  using M = const Probed&;
   // clang-format off
-  static const std::vector<ModulusColumn> columns{
-      {"young", "Pa", "Young's modulus, isotropic fit", [](S s, I r) { return s.moduli[r].young; }},
-      {"poisson", "-", "Poisson's ratio, isotropic fit", [](S s, I r) { return s.moduli[r].poisson; }},
-      {"bulk", "Pa", "bulk modulus, isotropic fit", [](S s, I r) { return s.moduli[r].bulk; }},
-      {"shear", "Pa", "shear modulus, isotropic fit", [](S s, I r) { return s.moduli[r].shear; }},
-      {"e_h", "Pa", "Young's modulus in the level, transversely isotropic fit about z", [](S s, I r) { return s.moduli[r].e_h; }},
-      {"e_v", "Pa", "Young's modulus along z, likewise", [](S s, I r) { return s.moduli[r].e_v; }},
-      {"nu_h", "-", "Poisson's ratio in the level, likewise", [](S s, I r) { return s.moduli[r].nu_h; }},
-      {"nu_vh", "-", "strain of the level over that along z when z is loaded, likewise", [](S s, I r) { return s.moduli[r].nu_vh; }},
-      {"g_vh", "Pa", "shear modulus of planes along z, likewise; needs a probe xz", [](S s, I r) { return s.moduli[r].g_vh; }},
-      {"residual_isotropic", "-", "root of the squared stress that the isotropic fit leaves over all of it", [](S s, I r) { return s.moduli[r].residual_isotropic; }},
-      {"residual_transverse", "-", "the same of the transversely isotropic fit", [](S s, I r) { return s.moduli[r].residual_transverse; }},
-      {"asymmetry", "-", "largest |C_ab - C_ba| of the axes over the mean C_aa; 0 where the stress has a potential", [](S s, I r) { return s.asymmetry[r]; }},
-      {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back", [](S s, I r) { return s.odd[r]; }},
-      {"gained", "-", "contacts that are new after a probe over all, the largest of the probes", [](S s, I r) { return s.gained[r]; }},
-      {"lost", "-", "contacts that are gone after a probe over all, likewise", [](S s, I r) { return s.lost[r]; }},
-      {"newly_sliding", "-", "contacts that slide after a probe and did not before over all, likewise", [](S s, I r) { return s.sliding[r]; }},
+  static const std::vector<Figure<Probed>> columns{
+      {"young", "Pa", "Young's modulus, isotropic fit", [](M m) { return m.state.moduli[m.r].young; }},
+      {"poisson", "-", "Poisson's ratio, isotropic fit", [](M m) { return m.state.moduli[m.r].poisson; }},
+      {"bulk", "Pa", "bulk modulus, isotropic fit", [](M m) { return m.state.moduli[m.r].bulk; }},
+      {"shear", "Pa", "shear modulus, isotropic fit", [](M m) { return m.state.moduli[m.r].shear; }},
+      {"e_h", "Pa", "Young's modulus in the level, transversely isotropic fit about z", [](M m) { return m.state.moduli[m.r].e_h; }},
+      {"e_v", "Pa", "Young's modulus along z, likewise", [](M m) { return m.state.moduli[m.r].e_v; }},
+      {"nu_h", "-", "Poisson's ratio in the level, likewise", [](M m) { return m.state.moduli[m.r].nu_h; }},
+      {"nu_vh", "-", "strain of the level over that along z when z is loaded, likewise", [](M m) { return m.state.moduli[m.r].nu_vh; }},
+      {"g_vh", "Pa", "shear modulus of planes along z, likewise; needs a probe xz", [](M m) { return m.state.moduli[m.r].g_vh; }},
+      {"residual_isotropic", "-", "root of the squared stress that the isotropic fit leaves over all of it", [](M m) { return m.state.moduli[m.r].residual_isotropic; }},
+      {"residual_transverse", "-", "the same of the transversely isotropic fit", [](M m) { return m.state.moduli[m.r].residual_transverse; }},
+      {"asymmetry", "-", "largest |C_ab - C_ba| of the axes over the mean C_aa; 0 where the stress has a potential", [](M m) { return m.state.asymmetry[m.r]; }},
+      {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back", [](M m) { return m.state.odd[m.r]; }},
+      {"gained", "-", "contacts that are new after a probe over all, the largest of the probes", [](M m) { return m.state.gained[m.r]; }},
+      {"lost", "-", "contacts that are gone after a probe over all, likewise", [](M m) { return m.state.lost[m.r]; }},
+      {"newly_sliding", "-", "contacts that slide after a probe and did not before over all, likewise", [](M m) { return m.state.sliding[m.r]; }},
   };
   // clang-format on
   return columns;
@@ -92,19 +92,18 @@ std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files) {
   return out;
 }
 
-std::map<std::string, std::vector<double>> moduli_figures(const std::vector<ProbedState>& states) {
-  std::map<std::string, std::vector<double>> out;
+FigureSamples moduli_figures(const std::vector<ProbedState>& states) {
+  FigureSamples out;
   for (const ProbedState& state : states) {
-    for (const ModulusColumn& column : modulus_columns()) {
-      std::vector<double> values;
-      for (std::size_t r = 0; r < state.moduli.size(); ++r) {
-        if (state.lacking[r].empty()) values.push_back(column.of(state, r));
-      }
-      const bool known = !values.empty() && std::all_of(values.begin(), values.end(),
-                                                        [](double v) { return std::isfinite(v); });
-      if (known) out[fmt::format("moduli.{}.{}", state.state, column.key)] = values;
+    for (std::size_t r = 0; r < state.moduli.size(); ++r) {
+      if (!state.lacking[r].empty()) continue;
+      add_samples(modulus_columns(), {state, r}, out, fmt::format("moduli.{}.", state.state));
     }
   }
+  std::erase_if(out, [](const auto& entry) {
+    return !std::all_of(entry.second.begin(), entry.second.end(),
+                        [](double v) { return std::isfinite(v); });
+  });
   return out;
 }
 
@@ -156,10 +155,7 @@ std::vector<Section> moduli_sections(const std::vector<ProbedState>& states,
 }
 
 std::vector<SummaryKey> moduli_summary_keys() {
-  std::vector<SummaryKey> out;
-  for (const ModulusColumn& column : modulus_columns()) {
-    out.push_back({fmt::format("moduli.*.{}", column.key), column.unit, column.meaning});
-  }
+  std::vector<SummaryKey> out = declared(modulus_columns(), "moduli.*.");
   out.push_back({"moduli.*.p_isotropic", "-",
                  "chance of a fit this far from isotropy if the grains are isotropic: over "
                  "realizations where there are enough of them (Hotelling), else over all equations "

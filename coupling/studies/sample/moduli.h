@@ -1,6 +1,5 @@
 // Elastic moduli of a sample from small strains at rest (dem/study/sample_probe.h).
 #pragma once
-#include <map>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct ProbedState {
 std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files);
 
 /// By summary key moduli.STATE.*, a number for each realization.
-std::map<std::string, std::vector<double>> moduli_figures(const std::vector<ProbedState>& states);
+FigureSamples moduli_figures(const std::vector<ProbedState>& states);
 /// Of all realizations together: the chances and the word of the symmetry.
 void add_symmetry(const std::vector<ProbedState>& states, Summary& summary);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "continuum/constants.h"
+#include "coupling/output/figure.h"
 #include "coupling/strain/hull.h"
 #include "dem/study/sample_setup.h"
 
@@ -65,15 +66,14 @@ std::vector<std::string> rve_warnings(const RveTable& table);
 std::string rve_csv(const RveTable& table);
 
 /// By summary key, a number for each realization.
-std::map<std::string, std::vector<double>> rve_figures(const RveTable& table,
-                                                       const std::string& deformation);
+FigureSamples rve_figures(const RveTable& table, const std::string& deformation);
 
 /// The largest RVEs of a simple shear where the mean of their trace/3 over the realizations is
 /// least after the first state. (The least of each realization by itself would tell of contraction
 /// wherever they scatter.)
 struct Contraction {
-  std::map<std::string, std::vector<double>> figures;  ///< by summary key, or empty
-  double strain = kNan;                                ///< shear strain xz of the samples there
+  FigureSamples figures;       ///< by summary key, or empty
+  double strain = kNan;        ///< shear strain xz of the samples there
   double strain_error = kNan;  ///< by the bootstrap over realizations; nan of one
 };
 Contraction rve_contraction(const RveTable& table);

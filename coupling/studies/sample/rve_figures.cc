@@ -12,6 +12,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Of = double (*)(const RveValue&);
+using Value = std::optional<double>;
 
 double symmetric(const Matrix3d& m, int a, int b) { return 0.5 * (m(a, b) + m(b, a)); }
 
@@ -90,6 +91,15 @@ double axial_stress_ratio(const std::vector<RveValue>& values) {
   return 3 * (axial - lateral) / (axial + 2 * lateral);
 }
 
+// Largest |boundary - inside| over |inside| of the RVEs in a state.
+double closure(const std::vector<RveValue>& values) {
+  double worst = 0;
+  for (const RveValue& v : values) {
+    worst = std::max(worst, (v.boundary - v.inside).norm() / v.inside.norm());
+  }
+  return worst;
+}
+
 // Largest mean shear strain of the hulls beside the component that is imposed.
 double other_shear(const std::vector<RveValue>& values, const Axis& imposed) {
   double largest = 0;
@@ -102,44 +112,41 @@ double other_shear(const std::vector<RveValue>& values, const Axis& imposed) {
   return largest;
 }
 
-// Largest |boundary - inside| over |inside| of the RVEs in a state.
-double closure(const std::vector<RveValue>& values) {
-  double worst = 0;
-  for (const RveValue& v : values) {
-    worst = std::max(worst, (v.boundary - v.inside).norm() / v.inside.norm());
-  }
-  return worst;
-}
+// One sample's RVEs of one radius.
+struct RvesOfSample {
+  const RveStates& states;
+  std::size_t loading;                // the last state of it
+  const Matrix3d &stress, &gradient;  // of the sample at its end
+  std::string deformation;
 
-void add_of_radius(const RveTable& table, std::size_t r, const std::string& deformation,
-                   std::map<std::string, std::vector<double>>& out) {
-  const Axis axis = axis_of(deformation);
-  const auto loading = static_cast<std::size_t>(table.loading);
-  const auto put = [&](const char* key, double value) {
-    out[fmt::format("rve.r{:g}.{}", table.radii[r], key)].push_back(value);
-  };
-  for (std::size_t k = 0; k < table.values[r].size(); ++k) {
-    const RveStates& states = table.values[r][k];
-    const std::vector<RveValue>& end = states[loading];
-    put("grains", mean_over(end, [](const RveValue& v) { return v.count; }).mean);
-    put("error_bar", late_bar(states, loading, boundary_zz));
-    put("grain_error_bar", late_bar(states, loading, grains_zz));
-    put("closure", closure(states.front()));
-    const double zz = table.stresses[k][loading](2, 2);
-    put("stress_ratio", mean_over(end, boundary_zz).mean / zz);
-    if (deformation != "simple_shear") put("axial_stress_ratio", axial_stress_ratio(end));
-    put("grain_stress_ratio", mean_over(end, grains_zz).mean / zz);
-    put("field_ratio", mean_over(end, [](const RveValue& v) { return v.field_zz; }).mean / zz);
-    std::vector<double> hull, fit;
-    for (const RveValue& v : end) {
-      hull.push_back(symmetric(v.hull, axis.a, axis.b));
-      fit.push_back(symmetric(v.fit, axis.a, axis.b));
-    }
-    put("strain_ratio", mean_of(hull) / symmetric(table.gradients[k][loading], axis.a, axis.b));
-    put("fit_ratio", mean_of(fit) / mean_of(hull));
-    put("other_shear",
-        other_shear(end, axis) / std::fabs(symmetric(table.gradients[k][loading], axis.a, axis.b)));
+  const std::vector<RveValue>& end() const { return states[loading]; }
+  double mean(Of of) const { return mean_over(end(), of).mean; }
+  double strain(Matrix3d RveValue::*of) const {
+    const Axis axis = axis_of(deformation);
+    std::vector<double> all;
+    for (const RveValue& v : end()) all.push_back(symmetric(v.*of, axis.a, axis.b));
+    return mean_of(all);
   }
+};
+
+const std::vector<Figure<RvesOfSample>>& rve_rows() {
+  using R = const RvesOfSample&;
+  // clang-format off
+  static const std::vector<Figure<RvesOfSample>> rows{
+      {"grains", "-", "grains of an RVE whose radius is so many sample.radius", [](R r) { return r.mean([](const RveValue& v) { return v.count; }); }},
+      {"error_bar", "-", "s/sqrt(N) of sigma_zz over the RVEs of a sample, over its mean; mean of the second half of the loading; the stress from the forces on the boundary over the hull", [](R r) { return late_bar(r.states, r.loading, boundary_zz); }},
+      {"grain_error_bar", "-", "the same of the stress from all contacts of the RVEs' grains over the sphere", [](R r) { return late_bar(r.states, r.loading, grains_zz); }},
+      {"closure", "-", "largest |boundary - inside| over |inside| of the stress from the forces on the boundary and from the contacts inside, at rest", [](R r) { return closure(r.states.front()); }},
+      {"stress_ratio", "-", "sigma_zz of the RVEs from the forces on their boundary over that of the sample, at the end of the loading", [](R r) { return r.mean(boundary_zz) / r.stress(2, 2); }},
+      {"grain_stress_ratio", "-", "the same from all contacts of the RVEs' grains", [](R r) { return r.mean(grains_zz) / r.stress(2, 2); }},
+      {"field_ratio", "-", "the same of the coarse-grained field at their points", [](R r) { return r.mean([](const RveValue& v) { return v.field_zz; }) / r.stress(2, 2); }},
+      {"axial_stress_ratio", "-", "q/p of the RVEs' mean stress from the forces on their boundary at the end of the loading, but for simple shear: q the stress along z less the mean along x and y (Wellmann 32)", [](R r) { return r.deformation == "simple_shear" ? Value() : Value(axial_stress_ratio(r.end())); }},
+      {"strain_ratio", "-", "strain of the hulls over that of the sample's edges at the end of the loading: zz, of a simple shear xz", [](R r) { const Axis axis = axis_of(r.deformation); return r.strain(&RveValue::hull) / symmetric(r.gradient, axis.a, axis.b); }},
+      {"other_shear", "-", "largest of the hulls' mean shear strains that are not imposed over the imposed strain, at the end of the loading", [](R r) { const Axis axis = axis_of(r.deformation); return other_shear(r.end(), axis) / std::fabs(symmetric(r.gradient, axis.a, axis.b)); }},
+      {"fit_ratio", "-", "strain by least squares over that of the hulls, likewise", [](R r) { return r.strain(&RveValue::fit) / r.strain(&RveValue::hull); }},
+  };
+  // clang-format on
+  return rows;
 }
 
 }  // namespace
@@ -201,10 +208,30 @@ std::string rve_csv(const RveTable& table) {
   return out;
 }
 
-std::map<std::string, std::vector<double>> rve_figures(const RveTable& table,
-                                                       const std::string& deformation) {
-  std::map<std::string, std::vector<double>> out;
-  for (std::size_t r = 0; r < table.radii.size(); ++r) add_of_radius(table, r, deformation, out);
+FigureSamples rve_figures(const RveTable& table, const std::string& deformation) {
+  FigureSamples out;
+  const auto end = static_cast<std::size_t>(table.loading);
+  for (std::size_t r = 0; r < table.radii.size(); ++r) {
+    for (std::size_t k = 0; k < table.values[r].size(); ++k) {
+      const RvesOfSample one{table.values[r][k], end, table.stresses[k][end],
+                             table.gradients[k][end], deformation};
+      add_samples(rve_rows(), one, out, fmt::format("rve.r{:g}.", table.radii[r]));
+    }
+  }
+  return out;
+}
+
+std::vector<SummaryKey> rve_summary_keys() {
+  std::vector<SummaryKey> out = declared(rve_rows(), "rve.r*.");
+  out.push_back({"rve.contraction", "-",
+                 "simple shear: -trace/3 of the strain of the largest RVEs where its mean over the "
+                 "samples is least; the first state does not count, so it is below 0 where they "
+                 "dilate from the start"});
+  out.push_back({"rve.contraction_strain", "-",
+                 "shear strain xz of the samples there, its standard error by drawing samples "
+                 "anew"});
+  out.push_back({"rve.dilation", "-",
+                 "trace/3 of their strain at the end of the loading less the one there"});
   return out;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
-#include "coupling/studies/sample/state_figures.h"
+#include "coupling/studies/sample/figures.h"
 #include "dem/study/sample_path.h"
 
 namespace grainfield::coupling {
@@ -34,6 +34,25 @@ double fitted_slope(const StrengthPath& path, Index from, Index to) {
   if (n < 2) return kNan;
   const VectorXd x = path.strain.segment(from, n).array() - path.strain.segment(from, n).mean();
   return x.dot(path.volumetric.segment(from, n)) / x.squaredNorm();
+}
+
+template <double Strength::*angle>
+std::optional<double> known(const Strength& s) {
+  return std::isfinite(s.*angle) ? std::optional<double>(s.*angle) : std::nullopt;
+}
+
+const std::vector<Figure<Strength>>& strength_rows() {
+  // clang-format off
+  static const std::vector<Figure<Strength>> rows{
+      {"peak_friction_deg", "deg", "largest friction angle of the states that bear load: axial sin = (s1 - s3)/(s1 + s3), s3 the mean lateral stress; simple shear tan = tau/sigma of the planes that slide", known<&Strength::peak_friction>},
+      {"strain_at_peak", "-", "shortening (logarithmic) or shear of that state", known<&Strength::strain_at_peak>},
+      {"residual_friction_deg", "deg", "the same angle, mean of the states in the last quarter of strain", known<&Strength::residual_friction>},
+      {"peak_dilation_deg", "deg", "largest dilation angle, from the slope x of the volumetric strain over a fifth of the states: axial sin = x/(2 + x), simple shear under constant stress tan = x", known<&Strength::peak_dilation>},
+      {"dilation_at_peak_deg", "deg", "the same about the state of the peak of friction", known<&Strength::dilation_at_peak>},
+      {"residual_dilation_deg", "deg", "the same over the last quarter of strain: 0 in the critical state", known<&Strength::residual_dilation>},
+  };
+  // clang-format on
+  return rows;
 }
 
 }  // namespace
@@ -109,39 +128,15 @@ std::vector<StrengthPath> strength_paths(const StateTable& table, const dem::Sam
   return out;
 }
 
-std::map<std::string, std::vector<double>> strength_figures(
-    const std::vector<StrengthPath>& paths) {
-  std::map<std::string, std::vector<double>> out;
+FigureSamples strength_figures(const std::vector<StrengthPath>& paths) {
+  FigureSamples out;
   for (const StrengthPath& path : paths) {
-    const Strength s = strength_of(path);
-    for (const auto& [key, value] : {std::pair("peak_friction_deg", s.peak_friction),
-                                     {"residual_friction_deg", s.residual_friction},
-                                     {"strain_at_peak", s.strain_at_peak},
-                                     {"peak_dilation_deg", s.peak_dilation},
-                                     {"dilation_at_peak_deg", s.dilation_at_peak},
-                                     {"residual_dilation_deg", s.residual_dilation}}) {
-      if (std::isfinite(value)) out[std::string("strength.") + key].push_back(value);
-    }
+    add_samples(strength_rows(), strength_of(path), out, "strength.");
   }
   std::erase_if(out, [&](const auto& entry) { return entry.second.size() != paths.size(); });
   return out;
 }
 
-std::vector<SummaryKey> strength_summary_keys() {
-  return {
-      {"strength.peak_friction_deg", "deg",
-       "largest friction angle of the states that bear load: axial sin = (s1 - s3)/(s1 + s3), s3 "
-       "the mean lateral stress; simple shear tan = tau/sigma of the planes that slide"},
-      {"strength.strain_at_peak", "-", "shortening (logarithmic) or shear of that state"},
-      {"strength.residual_friction_deg", "deg",
-       "the same angle, mean of the states in the last quarter of strain"},
-      {"strength.peak_dilation_deg", "deg",
-       "largest dilation angle, from the slope x of the volumetric strain over a fifth of the "
-       "states: axial sin = x/(2 + x), simple shear under constant stress tan = x"},
-      {"strength.dilation_at_peak_deg", "deg", "the same about the state of the peak of friction"},
-      {"strength.residual_dilation_deg", "deg",
-       "the same over the last quarter of strain: 0 in the critical state"},
-  };
-}
+std::vector<SummaryKey> strength_summary_keys() { return declared(strength_rows(), "strength."); }
 
 }  // namespace grainfield::coupling

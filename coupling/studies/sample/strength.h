@@ -1,7 +1,6 @@
 // Mohr-Coulomb strength and dilation of a sample on its way (docs/theory-dem.md).
 #pragma once
 #include <Eigen/Core>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -43,7 +42,7 @@ std::vector<StrengthPath> strength_paths(const StateTable& table, const dem::Sam
 
 /// By summary key strength.*, a number for each realization; keys that are not known for all of
 /// them are left out.
-std::map<std::string, std::vector<double>> strength_figures(const std::vector<StrengthPath>& paths);
+FigureSamples strength_figures(const std::vector<StrengthPath>& paths);
 
 std::vector<SummaryKey> strength_summary_keys();
 

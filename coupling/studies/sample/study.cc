@@ -9,14 +9,14 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
+#include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/sample/block.h"
+#include "coupling/studies/sample/figures.h"
 #include "coupling/studies/sample/keys.h"
 #include "coupling/studies/sample/moduli.h"
 #include "coupling/studies/sample/page.h"
-#include "coupling/studies/sample/path_figures.h"
 #include "coupling/studies/sample/rve_page.h"
-#include "coupling/studies/sample/state_figures.h"
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
 #include "dem/snapshot/snapshot.h"
@@ -114,102 +114,41 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   return out;
 }
 
-const std::vector<std::string>& shown_figures() {
-  static const std::vector<std::string> keys{"dem.grains",
-                                             "sample.gap_spheres",
-                                             "sample.dropped_solid_fraction",
-                                             "sample.initial_pressure",
-                                             "sample.initial_solid_fraction",
-                                             "sample.initial_coordination",
-                                             "sample.final_pressure",
-                                             "sample.lost_strength",
-                                             "sample.strain_at_loss",
-                                             "sample.lateral_stress_ratio",
-                                             "sample.peak_stress_ratio",
-                                             "sample.strain_at_peak",
-                                             "sample.peak_friction_angle_deg",
-                                             "strength.peak_friction_deg",
-                                             "strength.residual_friction_deg",
-                                             "strength.peak_dilation_deg",
-                                             "strength.dilation_at_peak_deg",
-                                             "strength.residual_dilation_deg",
-                                             "sample.critical_stress_ratio",
-                                             "sample.critical_friction_angle_deg",
-                                             "sample.critical_drift",
-                                             "sample.critical_solid_fraction",
-                                             "sample.critical_coordination",
-                                             "sample.secant_modulus",
-                                             "sample.secant_strain",
-                                             "sample.volumetric_strain",
-                                             "sample.end_stress_ratio",
-                                             "sample.end_axial_stress_ratio",
-                                             "sample.stiffening",
-                                             "sample.stiffening_late",
-                                             "sample.pressure_ratio",
-                                             "sample.shear_over_pressure",
-                                             "sample.axial_dip_strain",
-                                             "sample.plastic_strain",
-                                             "sample.unloading_stiffness",
-                                             "sample.loop_loss",
-                                             "sample.residual_stress",
-                                             "sample.kinetic_share",
-                                             "sample.inertial_number",
-                                             "sample.late_kinetic_share",
-                                             "sample.late_inertial_number",
-                                             "sample.first_shear_stiffness",
-                                             "sample.stress_error",
-                                             "sample.stress_rms_error",
-                                             "sample.energy_balance_error",
-                                             "dem.max_overlap_ratio",
-                                             "dem.time_step"};
-  return keys;
-}
-
-// "0.61 ± 0.02", or "0.61" of one realization.
-std::string told(const Summary& summary, const std::string& key) {
-  const auto found = summary.find(key);
-  if (found == summary.end()) return "-";
-  const double value = std::get<double>(found->second);
-  const auto error = summary.find(key + ".standard_error");
-  return error == summary.end()
-             ? fmt::format("{:.3g}", value)
-             : fmt::format("{:.3g} ± {:.1g}", value, std::get<double>(error->second));
-}
-
 std::string sentence(const Case& value, const StateTable& table, const Summary& summary) {
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   const auto has = [&](const char* key) { return summary.count(key) != 0; };
   const auto number = [&](const char* key) { return std::get<double>(summary.at(key)); };
   const char* unit = plan.dim == 2 ? "N/m" : "Pa";
-  std::string out = fmt::format(
-      "From p = {} {} and the solid fraction {}: ", told(summary, "sample.initial_pressure"), unit,
-      told(summary, "sample.initial_solid_fraction"));
+  std::string out = fmt::format("From p = {} {} and the solid fraction {}: ",
+                                shown_with_error(summary, "sample.initial_pressure"), unit,
+                                shown_with_error(summary, "sample.initial_solid_fraction"));
   if (plan.deformation == "uniaxial" || plan.deformation == "isotropic") {
     out += fmt::format("p is {} {} at the end, the secant modulus {}",
-                       told(summary, "sample.final_pressure"), unit,
-                       told(summary, "sample.secant_modulus"));
+                       shown_with_error(summary, "sample.final_pressure"), unit,
+                       shown_with_error(summary, "sample.secant_modulus"));
     if (has("sample.lateral_stress_ratio")) {
       out += fmt::format(", lateral over axial stress {}",
-                         told(summary, "sample.lateral_stress_ratio"));
+                         shown_with_error(summary, "sample.lateral_stress_ratio"));
     }
   } else if (has("sample.peak_stress_ratio") && number("sample.strain_at_peak") > 0) {
-    out +=
-        fmt::format("q/p rises to {} at a strain of {}", told(summary, "sample.peak_stress_ratio"),
-                    told(summary, "sample.strain_at_peak"));
+    out += fmt::format("q/p rises to {} at a strain of {}",
+                       shown_with_error(summary, "sample.peak_stress_ratio"),
+                       shown_with_error(summary, "sample.strain_at_peak"));
   } else {
-    out +=
-        fmt::format("q/p is largest at the start, {}", told(summary, "sample.peak_stress_ratio"));
+    out += fmt::format("q/p is largest at the start, {}",
+                       shown_with_error(summary, "sample.peak_stress_ratio"));
   }
   if (has("sample.critical_stress_ratio")) {
-    out += fmt::format("; beyond {:.0f} % of the strain it is {} at the solid fraction {}",
-                       100 * kCriticalFrom, told(summary, "sample.critical_stress_ratio"),
-                       told(summary, "sample.critical_solid_fraction"));
+    out +=
+        fmt::format("; beyond {:.0f} % of the strain it is {} at the solid fraction {}",
+                    100 * kCriticalFrom, shown_with_error(summary, "sample.critical_stress_ratio"),
+                    shown_with_error(summary, "sample.critical_solid_fraction"));
   }
   if (has("sample.strain_at_loss")) {
     out += fmt::format(
         "; strength is lost (p below {:.0f} % of the first, or an inertial number above {:g}) at a "
         "strain of {} in {:.0f} of",
-        100 * kLeastPressure, kMostInertia, told(summary, "sample.strain_at_loss"),
+        100 * kLeastPressure, kMostInertia, shown_with_error(summary, "sample.strain_at_loss"),
         number("sample.lost_strength") * static_cast<double>(table.realizations()));
   }
   out += fmt::format("{} {} realization{}.", has("sample.strain_at_loss") ? "" : ";",
@@ -242,18 +181,9 @@ Report page_of(SampleReport report, const StudyResult& result, const Realization
     report.first = &grains->snapshots.front().second;
     report.last = &grains->snapshots.back().second;
   }
-  report.figures = figure_rows(result.summary, shown_figures());
-  add_energy_rows(result.summary, report.figures);
+  report.figures = figure_rows(result);
   report.made = origin_rows(result);
   return sample_report(report);
-}
-
-std::map<std::string, std::vector<double>> engine_figures(const std::vector<std::string>& files) {
-  std::map<std::string, std::vector<double>> out;
-  for (const std::string& file : files) {
-    for (const auto& [key, figure] : read_realization(file).figures) out[key].push_back(figure);
-  }
-  return out;
 }
 
 void add_contraction(const Contraction& found, Summary& summary) {
@@ -328,10 +258,9 @@ void warn_of_inertia(StudyResult& out) {
 StudyResult analyse_sample(const Case& value, const std::vector<std::string>& files) {
   const StateTable table(files);
   StudyResult out = begin_result(value, files);
-  add_figures(out.summary, engine_figures(files));
+  add_figures(out.summary, simulated_figures(files));
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
-  add_figures(out.summary, state_figures(table, plan.deformation, plan.records));
-  add_figures(out.summary, path_figures(table, plan));
+  add_figures(out.summary, sample_samples(table, plan));
   add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
@@ -350,14 +279,6 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   out.page = [report](const StudyResult& result, const Realization* first) {
     return page_of(report, result, first);
   };
-  out.overview = {{"peak q/p", "sample.peak_stress_ratio", ""},
-                  {"at strain", "sample.strain_at_peak", ""},
-                  {"critical q/p", "sample.critical_stress_ratio", ""},
-                  {"critical solid fraction", "sample.critical_solid_fraction", ""},
-                  {"secant modulus", "sample.secant_modulus", ""},
-                  {"first solid fraction", "sample.initial_solid_fraction", ""},
-                  {"volumetric strain", "sample.volumetric_strain", ""},
-                  {"inertial number", "sample.inertial_number", ""}};
   return out;
 }
 

@@ -85,7 +85,8 @@ StudyResult compare_models(const Case& value, const std::vector<ModelChoice>& ch
     out.fields.emplace_back("model_" + choice.label, std::move(field));
   }
   out.summary["time.continuum_s"] = seconds;
-  out.comparison = compare(std::move(profiles), std::move(models), where.load, facts.height);
+  out.comparison =
+      compare(std::move(profiles), std::move(models), scale_of_load(where.load, facts.height));
   // No grains here: the first model is the reference, and there is nothing to support.
   std::string sentence;
   for (const auto& result : out.comparison.results) {

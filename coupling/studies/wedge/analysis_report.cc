@@ -122,8 +122,7 @@ WedgeReport WedgeAnalysis::report(const StudyResult& result) const {
       add_maps(*m, in);
     }
   }
-  in.figures = figure_rows(result.summary, {"wedge.heaps", "wedge.equilibria", "wedge.dips",
-                                            "wedge.plateaus", "wedge.peaks", "time.continuum_s"});
+  in.figures = figure_rows(result);
   return in;
 }
 

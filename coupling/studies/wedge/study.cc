@@ -56,12 +56,10 @@ void WedgeAnalysis::compare_with(const WedgeMember& reference, StudyResult& out)
     others.push_back({member.choice.label, member.choice.label, family_of(member.choice.name),
                       member.pressures});
   }
-  out.comparison =
-      compare(std::move(profiles), std::move(others), setup_.rho_g * height_ * height_, height_);
-  out.comparison.scale = {"h", "rho g h", "apex",
-                          fmt::format("h = {:.6g} m, rho g h = {:.6g} N/m; the first column is "
-                                      "the heap {}",
-                                      height_, setup_.rho_g * height_, reference.choice.label)};
+  out.comparison = compare(
+      std::move(profiles), std::move(others),
+      scale_of_heaps(height_, setup_.rho_g * height_,
+                     fmt::format("; the first column is the heap {}", reference.choice.label)));
   add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
 }
 

@@ -11,6 +11,7 @@
 #include "coupling/output/vtu.h"
 #include "coupling/strain/motion.h"
 #include "coupling/structure/force_chains.h"
+#include "dem/snapshot/displacements.h"
 #include "tests/coupling/periodic_scene.h"
 #include "tests/coupling/program.h"
 
@@ -143,16 +144,17 @@ TEST(Periodic, StrainOfACellThatFlowsIsAffine) {
 // Simple shear from a tilt of 0.49 to 0.51, which the engine keeps as -0.49: whole edges are
 // exchanged, and the counts of images with them.
 TEST(Periodic, ACellThatTurnsOverMovesNobody) {
-  dem::Cell<3> before, after;
-  before.periodic = after.periodic = {true, true, false};
-  before.edges << 1, 0.49, 0, 0, 1, 0, 0, 0, 0;
-  after.edges << 1, -0.49, 0, 0, 1, 0, 0, 0, 0;
-  EXPECT_EQ(dem::image_in(after, before, {0, 1, 0}), (std::array<int, 3>{1, 1, 0}));
-  dem::Grain a, b;
-  a.image = {0, 1, 0};
-  b.position = {0.01, 0, 0};
-  b.image = {1, 1, 0};
-  const Vec3 moved = dem::displacement(a, b, before, after, true);
+  dem::Snapshot before, after;
+  before.cell.periodic = after.cell.periodic = {true, true, false};
+  before.cell.edges << 1, 0.49, 0, 0, 1, 0, 0, 0, 0;
+  after.cell.edges << 1, -0.49, 0, 0, 1, 0, 0, 0, 0;
+  EXPECT_EQ(dem::image_in(after.cell, before.cell, {0, 1, 0}), (std::array<int, 3>{1, 1, 0}));
+  before.grains.resize(1);
+  after.grains.resize(1);
+  before.grains[0].image = {0, 1, 0};
+  after.grains[0].position = {0.01, 0, 0};
+  after.grains[0].image = {1, 1, 0};
+  const Vec3 moved = dem::Displacements(before, after).of(0);
   EXPECT_NEAR(moved.x(), 0.01, 1e-12);  // the copy that was in the cell
   EXPECT_NEAR(moved.y(), 0, 1e-12);
 }

@@ -253,6 +253,30 @@ TEST(ExportForms, ADeckWithoutACaseAsksForTheLaw) {
   }
 }
 
+// Ids that LAMMPS can have are kept; others are numbered, and a line says so.
+TEST(ExportForms, ADeckKeepsIds) {
+  const Folder folder;
+  for (const auto& [first, told, note] :
+       {std::tuple{"7", "7 1 ", ""},
+        {"0", "1 1 ", "note: ids are one more than the packing's"},
+        {"4294967296", "2 1 ", "note: ids are numbers from 1"}}) {
+    const std::string csv = folder.write("g.csv", std::string("id,x,y,radius,density\n") + first +
+                                                      ",0,0,0.005,2500\n3,1,0,0.005,2500\n");
+    ASSERT_EQ(
+        program("import --from csv --without-contacts " + csv + " -o " + (folder / "g.h5")).code,
+        0);
+    const Output done =
+        program("export " + (folder / "g.h5") + " --to lammps -o " + (folder / "deck"));
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(read_text(folder / "deck/packing.data"), HasSubstr(std::string("\n") + told))
+        << first;
+    if (*note == 0)
+      EXPECT_THAT(done.err, ::testing::Not(HasSubstr("note: ids")));
+    else
+      EXPECT_THAT(done.err, HasSubstr(note));
+  }
+}
+
 // A folder keeps the results of one command: what goes is named, what is the user's stays.
 TEST(ExportForms, SaysWhatOfAnEarlierCommandIsGone) {
   const Folder folder;

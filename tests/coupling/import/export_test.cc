@@ -1,5 +1,6 @@
 // Packings of spheres for LAMMPS: what is written, what is refused, and, where LAMMPS is there, the
 // way there and back.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,6 +14,7 @@
 namespace grainfield::coupling {
 namespace {
 
+using dem::Vec3;
 using ::testing::Contains;
 using testing::Folder;
 using ::testing::HasSubstr;
@@ -203,6 +205,55 @@ models = ["boussinesq"]
   EXPECT_NEAR(dem::base_force(unloaded).z() / weight, 1, 1e-3);
   EXPECT_NEAR((dem::base_force(loaded) - dem::base_force(unloaded)).z() / -loaded.applied_force.z(),
               1, 0.02);
+}
+
+// An imported packing has no case: LAMMPS runs its deck with the law of the command line, and the
+// commands of its first lines bring it back.
+TEST(Export, APackingWithoutACaseRuns) {
+  if (!lammps::is_there()) GTEST_SKIP() << "lmp not found: the Debian package lammps has it";
+  const Folder folder;
+  const std::string at = folder.path() + "/";
+  std::string plane = "id,x,y,radius,density\n", space = "id,x,y,z,radius,density\n";
+  for (int k = 0; k < 12; ++k) {
+    const double x = 0.006 + 0.011 * (k % 4), y = 0.006 + 0.011 * (k / 4 % 3);
+    plane += fmt::format("{},{},{},0.005,2500\n", k + 1, x, y);
+    space += fmt::format("{},{},{},{},0.005,2500\n", k + 1, x, 0.006 + 0.011 * (k / 4), 0.006);
+  }
+  folder.write("2.csv", plane);
+  folder.write("3.csv", space);
+  for (const std::string dim : {"2", "3"}) {
+    const std::string walls = dim == "2" ? " --wall floor:y=0 --wall left:x=0 --wall right:x=0.045"
+                                         : " --wall floor:z=0 --periodic x=0:0.044";
+    const testing::Output imported =
+        program("import --from csv --without-contacts --friction 0.5 --dim " + dim + " " + at +
+                dim + ".csv" + walls + " -o " + at + dim + ".h5");
+    ASSERT_EQ(imported.code, 0) << imported.err;
+    const std::string deck = at + "deck" + dim;
+    const testing::Output exported = program("export " + at + dim + ".h5 --to lammps -o " + deck);
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    // Numbers in the words of the deck's first line.
+    lammps::run_lammps(
+        deck, "in.lammps",
+        "-var law \"hooke 1e4 20 damping mass_velocity tangential linear_history 2857 "
+        "1 0.5\" -var step 1e-5");
+    const std::string command = "# grainfield ", text = testing::read_text(deck + "/in.lammps");
+    const std::size_t line = text.find(command);
+    ASSERT_NE(line, std::string::npos);
+    const std::size_t begin = line + command.size();
+    const testing::Output back =
+        program(text.substr(begin, text.find('\n', begin) - begin), "cd " + deck + " &&");
+    ASSERT_EQ(back.code, 0) << back.err;
+    const dem::Snapshot s = dem::read_snapshot(deck + "/lammps.h5", "/unloaded");
+    ASSERT_EQ(s.grains.size(), 12u);
+    EXPECT_EQ(std::to_string(s.dim), dim);
+    // The floor carries the weight.
+    Vec3 floor = Vec3::Zero();
+    double weight = 0;
+    for (const dem::Contact& c : s.contacts)
+      if (c.j == -1) floor += c.force;
+    for (const dem::Grain& g : s.grains) weight += 9.81 * g.mass;
+    EXPECT_NEAR(floor[s.dim - 1] / weight, 1, 1e-2) << dim;
+  }
 }
 
 }  // namespace

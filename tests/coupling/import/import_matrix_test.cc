@@ -7,7 +7,7 @@
 #include <iostream>
 #include <optional>
 
-#include "dem/snapshot/images.h"
+#include "dem/snapshot/displacements.h"
 #include "tests/coupling/import_matrix_scene.h"
 #include "tests/coupling/program.h"
 
@@ -75,12 +75,10 @@ std::string difference(const dem::Snapshot& found, const dem::Snapshot& ours, do
 // The way between two states, of every grain.
 std::string displaced(const Seen& seen, const test::Motion& motion, double tolerance) {
   const dem::Snapshot &before = *seen.before, &after = *seen.after;
-  const bool counted = dem::counts_images(before) || dem::counts_images(after);
+  const dem::Displacements displacements(before, after);
   for (std::size_t g = 0; g < before.grains.size(); ++g) {
     const dem::Vec3 ours = motion.after.grains[g].position - motion.before.grains[g].position;
-    const dem::Vec3 found =
-        dem::displacement(before.grains[g], after.grains[g], before.cell, after.cell, counted);
-    const double off = (found - ours).norm();
+    const double off = (displacements.of(g) - ours).norm();
     if (!(off <= tolerance)) return fmt::format("displacement of grain {} off by {:g} m", g, off);
   }
   return "";

@@ -62,9 +62,10 @@ dem::Snapshot import_one(const Folder& folder, const std::string& arguments) {
   return dem::read_snapshot(folder / "in.h5", groups.at(0));
 }
 
-const char* axis_walls =
-    " --wall floor:y=0:ids=0,9000 --wall left:x=0:ids=1,9001"
-    " --wall right:x=0.12:ids=2,9002";
+const char* axis_walls =  // of LIGGGHTS' meshes
+    " --wall floor:y=0:ids=0 --wall left:x=0:ids=1 --wall right:x=0.12:ids=2";
+const char* body_walls =  // of YADE's bodies
+    " --wall floor:y=0:ids=9000 --wall left:x=0:ids=9001 --wall right:x=0.12:ids=9002";
 const char* fix_walls =
     " --wall floor:y=0:fix=f_floor --wall left:x=0:fix=f_left"
     " --wall right:x=0.12:fix=f_right";
@@ -137,7 +138,7 @@ TEST(Import, EveryFormatGivesBackTheStress) {
                                                     test::liggghts_columns + axis_walls));
     const std::string yade = folder.write("y.bodies", test::yade_bodies(ours)) + " " +
                              folder.write("y.inter", test::yade_interactions(ours));
-    expect_same_fields(ours, import_one(folder, "--from yade " + yade + axis_walls));
+    expect_same_fields(ours, import_one(folder, "--from yade " + yade + body_walls));
   }
 }
 
@@ -349,9 +350,11 @@ TEST(Import, WarnsOfDoubtfulValues) {
   const std::string row = "id,x,y,radius,density\n1,1,1,1,5000\n2,3,1,1,5000\n3,5.5,1,1,5000\n";
   EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:6.5"),
               Not(HasSubstr("overlap")));
-  EXPECT_THAT(warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:4"),
-              HasSubstr("pairs of grains that overlap by more than half the smaller radius: 1 (the "
-                        "first: 1 and 3); is the period narrower than the packing"));
+  EXPECT_THAT(
+      warned(row, "i,j,fx,fy\n1,2,-1,0\n", "--periodic x=0:4"),
+      HasSubstr("pairs of grains that overlap by more than half the smaller radius: 1 (the "
+                "first: 1 and 3); are the radii diameters, or in another unit than the places, "
+                "or is the period narrower than the packing?"));
   const auto sliding = [&](const char* force, int mark) {
     return warned(g, fmt::format("i,j,fx,fy,friction,sliding\n1,2,{},-3,0.5,{}\n", force, mark),
                   "");

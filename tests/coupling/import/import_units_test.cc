@@ -77,7 +77,7 @@ TEST(ImportUnits, HeadersNameTheirs) {
 TEST(ImportUnits, OutlinesAndChosenColumnsToo) {
   const Folder folder;
   const std::string grains =
-      "id,a[0] (mm),a[1],outline (mm),mass (g)\n1,10,0.02,-1 -1;1 -1;1 1;-1 1,3\n";
+      "id,a[0] (mm),a[1] (m),outline (mm),mass (g)\n1,10,0.02,-1 -1;1 -1;1 1;-1 1,3\n";
   const dem::Snapshot s = imported(folder, "--from csv --without-contacts --column 'x,y=a[0..1]' " +
                                                folder.write("g.csv", grains));
   EXPECT_DOUBLE_EQ(s.grains[0].position.x(), 0.01);
@@ -158,7 +158,9 @@ TEST(ImportUnits, MomentsOfInertiaInAnotherUnitAreDoubted) {
 }
 
 TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
-  const std::string unknown = ", of m g s N Pa J Hz rad deg, with n u m c d k M G before\n";
+  const std::string unknown =
+      ", of m g s N Pa J Hz rad deg, with n u m c d k M G before; where it is no unit: --column "
+      "'x=x (inch)'\n";
   const auto head = [](const std::string& x, const std::string& more = "mass") {
     return fmt::format("id,{},y,radius,{}\n1,0,0,1,1\n", x, more);
   };
@@ -180,9 +182,10 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
       {head("x", "mass,fixed (m)"), "",
        "column fixed: found the unit \"m\", allowed: none, a number without a unit\n"},
       {head("x (m),x (mm)"), "", "column \"x\" is there twice, allowed: once"},
-      {"id,x (mm),y,radius,mass\n1,ten,0,1,1\n", "",
+      {"id,x (mm),y (mm),radius (m),mass\n1,ten,0,1,1\n", "",
        "g.csv:2: column x (mm) (x): found \"ten\", expected a finite number"},
-      {"id,x (km),y,radius,mass\n1,1e308,0,1,1\n", "", "found \"1e308\", expected a finite number"},
+      {"id,x (km),y (m),radius (m),mass\n1,1e308,0,1,1\n", "",
+       "found \"1e308\", expected a finite number"},
       {head("x"), "--units inch",
        "--units: found \"inch\", allowed: m, cm, mm, um, nm, km, si, cgs, micro, nano\n"},
       {head("x"), "--units mm2/m", "--units: found \"mm2/m\", allowed: m, cm, mm"},

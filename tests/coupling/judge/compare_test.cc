@@ -60,7 +60,9 @@ Scene scene(int realizations, double height, double noise, unsigned seed = 5) {
   return s;
 }
 
-Comparison compared(const Scene& s) { return compare(s.profiles, s.models, 300, 0.15); }
+Comparison compared(const Scene& s) {
+  return compare(s.profiles, s.models, scale_of_load(300, 0.15));
+}
 
 TEST(Compare, MeasuresOfKnownDifferences) {
   Profile p;
@@ -69,7 +71,8 @@ TEST(Compare, MeasuresOfKnownDifferences) {
   p.x = axis(4, 1.5);
   p.mean = Eigen::Vector4d(0, 3, 4, 0);
   p.error = Eigen::Vector4d(1, 1, 2, 1);
-  const Comparison c = compare({p}, {{"m", "M", "M", {Eigen::Vector4d(0, 2, 6, NAN)}}}, 1, 1);
+  const Comparison c =
+      compare({p}, {{"m", "M", "M", {Eigen::Vector4d(0, 2, 6, NAN)}}}, scale_of_load(1, 1));
   const Measures& m = c.results[0].overall;
   EXPECT_DOUBLE_EQ(m.rel_l2, std::sqrt(5.0) / 5);
   EXPECT_EQ(m.largest, 2);
@@ -232,7 +235,7 @@ TEST(Compare, EqualRealizationsProveNothing) {
 TEST(Compare, FilesWithoutSamplesKeepTheirCount) {
   Scene s = scene(8, 0.92, 0.05);
   for (Profile& p : s.profiles) p.samples.resize(0, 0);
-  const Comparison c = compare(s.profiles, s.models, 300, 0.15, 8);
+  const Comparison c = compare(s.profiles, s.models, scale_of_load(300, 0.15), 8);
   EXPECT_EQ(c.realizations, 8);
   // Their standard errors stand in for them.
   EXPECT_EQ(c.judgement.errors_from, ErrorsFrom::data);
@@ -357,14 +360,16 @@ TEST(Compare, SummaryHasTheAgreedKeys) {
 
 TEST(Compare, Refuses) {
   const Scene s = scene(2, 1, 0.1);
-  EXPECT_EQ(refusal([&] { compare({}, s.models, 1, 1); }), "nothing to compare: no profile");
-  EXPECT_EQ(refusal([&] { compare(s.profiles, {}, 1, 1); }), "nothing to compare with: no model");
+  EXPECT_EQ(refusal([&] { compare({}, s.models, scale_of_load(1, 1)); }),
+            "nothing to compare: no profile");
+  EXPECT_EQ(refusal([&] { compare(s.profiles, {}, scale_of_load(1, 1)); }),
+            "nothing to compare with: no model");
   Scene outside = s;
   for (ModelProfiles& m : outside.models) {
     for (VectorXd& v : m.values) v.setConstant(NAN);
   }
   EXPECT_EQ(
-      refusal([&] { compare(outside.profiles, outside.models, 1, 1); }),
+      refusal([&] { compare(outside.profiles, outside.models, scale_of_load(1, 1)); }),
       "nothing to compare on " + s.profiles.front().name +
           (s.profiles.size() > 1 ? " and the others" : "") +
           ": no point has a value both of the simulation and of a model; choose heights inside "
@@ -386,7 +391,7 @@ TEST(Compare, AProfileOfTooFewValuesHasNoShape) {
   for (Eigen::Index k = 0; k < s.profiles[0].mean.size(); ++k) {
     if (k != 60) s.profiles[0].mean[k] = std::nan("");
   }
-  const Comparison c = compare(s.profiles, s.models, 1, 1, 1);
+  const Comparison c = compare(s.profiles, s.models, scale_of_load(1, 1), 1);
   EXPECT_TRUE(std::isnan(c.shapes[0].peak));
   EXPECT_TRUE(std::isfinite(c.results[0].overall.rel_l2));
 }

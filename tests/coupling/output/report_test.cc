@@ -72,8 +72,8 @@ PointLoadReport input(const dem::Snapshot& before, const dem::Snapshot& after) {
   in.unloaded = &before;
   in.loaded = &after;
   const Eigen::VectorXd model = 0.9 * p.mean;
-  in.comparison =
-      compare({p, base}, {{"flamant", "half plane", "half plane", {model, model}}}, 2, 0.06);
+  in.comparison = compare({p, base}, {{"flamant", "half plane", "half plane", {model, model}}},
+                          scale_of_load(2, 0.06));
   AverageOptions o;
   o.width = 0.02;
   in.map = response(before, after, grid_points(0.01, 0.11, 11, 0, 0.05, 6), o);
@@ -112,7 +112,7 @@ TEST_F(ReportTest, TheResidualMapIsOfTheNearestModel) {
   in.comparison = compare(in.comparison.profiles,
                           {{"far", "far=flamant", "half plane", values(0.3)},
                            {"near", "near=layer", "finite layer", values(0.99)}},
-                          2, 0.06);
+                          scale_of_load(2, 0.06));
   in.models = {{"far=flamant", Eigen::VectorXd::Constant(66, -1)},
                {"near=layer", Eigen::VectorXd::Constant(66, -2)}};
   ASSERT_EQ(in.comparison.judgement.best, "near");
@@ -146,7 +146,7 @@ TEST_F(ReportTest, PilesAreDrawnWithOutlinesAgeForcesAndDisplacements) {
   p.error = Eigen::VectorXd::Constant(9, 5);
   Profile cut = p;
   cut.name = cut.key = "height_0.5";
-  in.comparison = without_models({p, cut}, 200 * 0.05, 0.05, 3);
+  in.comparison = without_models({p, cut}, scale_of_heaps(0.05, 200, ""), 3);
   in.averaged = "coarse graining, lucy kernel, w = 0.0055 m";
   AverageOptions o;
   o.width = 0.01;

@@ -43,7 +43,7 @@ TEST(MemberProfiles, AreDrawnInEachMembersOwnUnits) {
     p.mean = load / 0.2 * Eigen::Vector3d(0.25, 0.75, 0.25);
     p.error = 0 * p.mean;
     StudyResult one;
-    one.comparison = without_models({p}, load, 0.2);
+    one.comparison = without_models({p}, scale_of_load(load, 0.2));
     results.push_back(std::move(one));
   }
   const Picture picture = member_profiles(value, {{"a", value}, {"b", value}}, results);

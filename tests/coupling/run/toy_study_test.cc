@@ -40,7 +40,8 @@ void declare_stack_keys(SectionKeys s) {
 }
 
 std::vector<SummaryKey> stack_figures() {
-  return {{"stack.base_force_over_weight", "-", "vertical force on the base over the weight"},
+  return {{"stack.base_force_over_weight", "-", "vertical force on the base over the weight",
+           "base force / weight"},
           {"stack.carried", "text", "yes | no"}};
 }
 
@@ -63,16 +64,12 @@ StudyResult analyse_stack(const Case& value, const std::vector<std::string>& fil
   out.summary["stack.carried"] = carried ? "yes" : "no";
   out.comparison.judgement.findings = {
       fmt::format("The base carries {:.6g} of the weight.", ratio)};
-  out.overview = {{"base force / weight", "stack.base_force_over_weight", ""}};
   out.page = [](const StudyResult& result, const Realization* first) {
     Report page;
     page.title = "A stack of " + std::to_string((*first)["pile"].grains.size()) + " disks";
     add_verdict(page, result.comparison.judgement);
     Table table{"Figures", "", {}, {}};
-    for (const auto& [name, text] :
-         figure_rows(result.summary, {"stack.base_force_over_weight", "stack.carried"})) {
-      table.rows.push_back({name, text});
-    }
+    for (const auto& [name, text] : figure_rows(result)) table.rows.push_back({name, text});
     page.sections.emplace_back(std::move(table));
     return page;
   };

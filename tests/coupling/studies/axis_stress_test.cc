@@ -138,7 +138,7 @@ TEST(AxisStress, IsAFigureOfEveryPileWithItsError) {
   EXPECT_NEAR(number("dip.centre.standard_error"), 0, 1e-12);
   EXPECT_NEAR(number("dip.centre"), 1, 0.1);
   std::map<std::string, int> columns;
-  for (const OverviewColumn& column : result.overview) ++columns[column.key];
+  for (const OverviewColumn& column : overview_of({result})) ++columns[column.key];
   EXPECT_EQ(columns["axis.stress_ratio"], 1);
   EXPECT_EQ(columns["dip.centre"], 1);
 }

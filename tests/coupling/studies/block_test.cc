@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
-#include "coupling/studies/sample/state_figures.h"
+#include "coupling/studies/sample/figures.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -64,8 +64,8 @@ TEST(Block, TablesHaveErrorsOverRealizations) {
   ASSERT_NE(stages, nullptr);
   // Without mean stress beside the driving one, unloading and angles.
   ASSERT_EQ(leaving->rows.size(), 5U);
-  EXPECT_EQ(leaving->rows.back()[1], "0.025 ± 0.005");
-  EXPECT_EQ(stages->rows[2][2], "2.5 ± 0.5");
+  EXPECT_EQ(leaving->rows.back()[1], "0.0250 ± 0.0050");
+  EXPECT_EQ(stages->rows[2][2], "2.50 ± 0.50");
 }
 
 // Two states more on the way back, where the block is straight and the grains are not; and a mean

@@ -196,15 +196,15 @@ TEST(PileAnalysis, PressureOfALatticeHeapIsHalfOfRhoGDepth) {
   EXPECT_NO_THROW(require_documented(result.summary));
   EXPECT_EQ(result.comparison.scale.stress, "rho g h");
   const double unit = number(result, "heap.rho_g_h");
-  EXPECT_NEAR(result.comparison.unit(), unit, 1e-9 * unit);
+  EXPECT_NEAR(result.comparison.scale.unit, unit, 1e-9 * unit);
   for (const auto& [key, share] :
        {std::pair{"base", 1.0}, {"height_0.25", 0.75}, {"height_0.5", 0.5}}) {
     const Profile& p = profile(result, key);
-    EXPECT_NEAR(p.depth, share * result.comparison.depth, 1e-12);
+    EXPECT_NEAR(p.depth, share * result.comparison.scale.h, 1e-12);
     int inside = 0;
     for (Eigen::Index k = 0; k < p.x.size(); ++k) {
       // Well inside the flanks of 60 degrees.
-      if (std::fabs(p.x[k]) > 0.8 * share * result.comparison.depth / std::sqrt(3)) continue;
+      if (std::fabs(p.x[k]) > 0.8 * share * result.comparison.scale.h / std::sqrt(3)) continue;
       ++inside;
       EXPECT_NEAR(p.mean[k] / unit, share / 2, 0.03) << key << " at " << p.x[k];
     }
@@ -252,9 +252,9 @@ TEST(PileAnalysis, PilesOfOtherHeightsFallOnOneScaledProfile) {
   value.get<AverageSetup>().width_diameters = 2;
   const StudyResult result = analyse_pile(value, files_of(folder, heaps), 1);
   const Profile& p = profile(result, "base");
-  const double unit = result.comparison.unit();
+  const double unit = result.comparison.scale.unit;
   for (Eigen::Index k = 0; k < p.x.size(); ++k) {
-    if (std::fabs(p.x[k]) > 0.4 * result.comparison.depth) continue;
+    if (std::fabs(p.x[k]) > 0.4 * result.comparison.scale.h) continue;
     EXPECT_NEAR(p.mean[k] / unit, 0.5, 0.02);
     // Without scaling the heights alone would spread by 0.27.
     EXPECT_LT(p.error[k] / unit, 0.01);
@@ -283,21 +283,24 @@ TEST(PileAnalysis, FindsAPlantedDipAndAPlantedPeak) {
   EXPECT_GT(number(dip, "dip.difference"), 3 * number(dip, "dip.standard_error"));
   EXPECT_LT(number(dip, "dip.ratio"), 0.85);
   EXPECT_LT(number(dip, "dip.window_ratio"), 0.85);
-  EXPECT_THAT(sentence(dip.comparison.judgement), HasSubstr("The heaps have a pressure dip (8 realizations, 95 %)."));
+  EXPECT_THAT(sentence(dip.comparison.judgement),
+              HasSubstr("The heaps have a pressure dip (8 realizations, 95 %)."));
 
   const StudyResult peak = planted(-0.4, 8, 100);
   EXPECT_EQ(std::get<std::string>(peak.summary.at("dip.verdict")), "peak");
   EXPECT_GT(number(peak, "dip.p_value"), 0.95);
   EXPECT_LT(number(peak, "dip.difference"), 0);
   EXPECT_GT(number(peak, "dip.window_ratio"), 1.1);
-  EXPECT_THAT(sentence(peak.comparison.judgement), HasSubstr("The heaps have a pressure peak and no dip (8 "));
+  EXPECT_THAT(sentence(peak.comparison.judgement),
+              HasSubstr("The heaps have a pressure peak and no dip (8 "));
 }
 
 TEST(PileAnalysis, FewRealizationsGiveNoVerdict) {
   const StudyResult two = planted(0.4, 2, 7);
   EXPECT_EQ(std::get<std::string>(two.summary.at("dip.verdict")), "undecided");
   EXPECT_TRUE(std::isnan(number(two, "dip.p_value")));
-  EXPECT_THAT(sentence(two.comparison.judgement), HasSubstr("needs at least 3 realizations that differ; there are 2."));
+  EXPECT_THAT(sentence(two.comparison.judgement),
+              HasSubstr("needs at least 3 realizations that differ; there are 2."));
   // 1/sqrt(2 (n - 1)) = 0.5 of three, 0.41 of four; with eight nothing is said.
   EXPECT_THAT(sentence(planted(0.4, 3, 7).comparison.judgement),
               HasSubstr(", an error that is itself uncertain by 50 %"));
@@ -336,12 +339,12 @@ TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {
   EXPECT_NO_THROW(require_documented(result.summary));
   ASSERT_EQ(result.comparison.results.size(), 2U);
   // rho g from the ensemble: rho g h on the base, where the grains carry half of it.
-  const double at_base = result.comparison.models[0].values[0][40] / result.comparison.unit();
+  const double at_base = result.comparison.models[0].values[0][40] / result.comparison.scale.unit;
   EXPECT_NEAR(at_base, 1, 1e-6);
   // Under the flanks the kernel blunts the ridge.
   const double ridge = result.comparison.models[1].values[0][40];
-  EXPECT_LT(ridge, 1000 * result.comparison.depth);
-  EXPECT_GT(ridge, 900 * result.comparison.depth);
+  EXPECT_LT(ridge, 1000 * result.comparison.scale.h);
+  EXPECT_GT(ridge, 900 * result.comparison.scale.h);
   EXPECT_TRUE(result.summary.count("compare.hydrostatic.rel_l2"));
   EXPECT_FALSE(result.comparison.judgement.best.empty());
   EXPECT_FALSE(result.summary.count("response.peak"));

@@ -1,0 +1,53 @@
+// Declarations of the figures in summary.json, beside what computes them. docs/summary-keys.md, the
+// page's table of figures and the columns of a sweep's table follow from them.
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainfield::coupling {
+
+struct SummaryKey {
+  std::string pattern;  ///< '*' stands for one name without dots of its own meaning
+  std::string unit;     ///< "-" for pure numbers, "text" for words
+  std::string meaning;
+  std::string heading = {};    ///< of its column in the table of a sweep; empty: it has none
+  std::string error_key = {};  ///< of its standard error; empty: KEY.standard_error
+};
+
+/// A figure with the function that computes it from `Facts`. Null: the simulation leaves it.
+/// nullopt: these facts have none.
+template <class Facts>
+struct Figure {
+  std::string key, unit, meaning;
+  std::function<std::optional<double>(const Facts&)> of = nullptr;
+  std::string heading = {};
+};
+
+/// By summary key, a number for each realization that has one.
+using FigureSamples = std::map<std::string, std::vector<double>>;
+
+/// The declarations; `prefix` comes before every key.
+template <class Facts>
+std::vector<SummaryKey> declared(const std::vector<Figure<Facts>>& rows,
+                                 const std::string& prefix = "") {
+  std::vector<SummaryKey> out;
+  for (const Figure<Facts>& row : rows) {
+    out.push_back({prefix + row.key, row.unit, row.meaning, row.heading});
+  }
+  return out;
+}
+
+/// Adds what the rows compute from one realization's facts.
+template <class Facts>
+void add_samples(const std::vector<Figure<Facts>>& rows, const Facts& facts, FigureSamples& out,
+                 const std::string& prefix = "") {
+  for (const Figure<Facts>& row : rows) {
+    if (!row.of) continue;
+    if (const auto value = row.of(facts)) out[prefix + row.key].push_back(*value);
+  }
+}
+
+}  // namespace grainfield::coupling

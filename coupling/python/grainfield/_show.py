@@ -1,0 +1,148 @@
+"""How packings, fields, tables and judgements show themselves in a notebook, and travel to pandas and xarray."""
+
+from __future__ import annotations
+
+import html
+from typing import Any, Iterable, Sequence
+
+import numpy as np
+
+_MOST_ROWS = 12  # of a table in a notebook: the first and the last half of them
+_AXES = ("x", "y", "z")
+
+
+def number(value: Any) -> str:
+    """A cell: six digits of a number, anything else as it is."""
+    if isinstance(value, (float, np.floating)):
+        return "-" if np.isnan(value) else f"{value:.6g}"
+    return str(value)
+
+
+def table(header: Sequence[Any], rows: Iterable[Sequence[Any]]) -> str:
+    def line(cells: Iterable[Any], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(number(cell))}</{tag}>" for cell in cells) + "</tr>"
+
+    body = "".join(line(row, "td") for row in rows)
+    return f"<table><thead>{line(header, 'th')}</thead><tbody>{body}</tbody></table>"
+
+
+def paragraph(text: str, tag: str = "p") -> str:
+    return f"<{tag}>{html.escape(text)}</{tag}>"
+
+
+def packing(state: Any) -> str:
+    radii = state.radii
+    across = f"{radii.min():.4g} to {radii.max():.4g} m" if len(radii) else "-"
+    rows = [("grains", len(state)), ("contacts", len(state.contacts)), ("walls", ", ".join(state.walls.names) or "none"),
+            ("radii", across), ("gravity", f"{np.round(state.gravity, 6).tolist()} m/s2"), ("time", f"{state.time:.6g} s")]
+    return table([f"Packing, {state.dim}D", ""], rows)
+
+
+def field(of: Any) -> str:
+    def extent(values: np.ndarray) -> tuple[str, str]:
+        known = values[np.isfinite(values)]
+        return (number(known.min()), number(known.max())) if len(known) else ("-", "-")
+
+    shape = "" if of.shape is None else f" ({' x '.join(map(str, of.shape))})"
+    title = f"Field {of.name}: {len(of)} points{shape}, {of.realizations} realization{'s' * (of.realizations != 1)}"
+    rows = [(name, of.units[name], *extent(of[name]), "yes" if of.error(name) is not None else "no")
+            for name in of.columns]
+    return paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+
+
+def columns(of: Any) -> str:
+    """The rows of a table, of many the first and the last."""
+    count = len(next(iter(of.values()), ()))
+    picked = list(range(count))
+    if count > _MOST_ROWS:
+        picked = picked[: _MOST_ROWS // 2] + picked[-_MOST_ROWS // 2 :]
+    header = [name if of.units.get(name) in (None, "1", "text") else f"{name} ({of.units[name]})" for name in of]
+    rows: list[Sequence[Any]] = [[values[k] for values in of.values()] for k in picked]
+    if count > _MOST_ROWS:
+        rows.insert(_MOST_ROWS // 2, ["..."] * len(header))
+    return table(header, rows) + paragraph(f"{count} rows")
+
+
+def judgement(of: Any) -> str:
+    shown = of._core.table()
+    out = "".join(paragraph(line, "h4") for line in of.headlines)
+    out += "".join(paragraph(line) for line in ([of.agreement] if of.agreement else []))
+    if shown.rows:
+        out += table(shown.header, shown.rows)
+    out += "".join(paragraph(line) for line in of.notes)
+    if of.doubts:
+        out += "<ul>" + "".join(paragraph(line, "li") for line in of.doubts) + "</ul>"
+    return out
+
+
+def _package(name: str) -> Any:
+    try:
+        return __import__(name)
+    except ImportError as error:
+        raise ImportError(f"this needs {name}, which is not installed (Debian: python3-{name})") from error
+
+
+def frame(values: dict[str, np.ndarray], units: dict[str, str], **more: Any) -> Any:
+    """A DataFrame with .attrs["units"]."""
+    out = _package("pandas").DataFrame(values)
+    out.attrs = {"units": {name: units.get(name, "1") for name in values}} | more
+    return out
+
+
+def rows_frame(of: Any) -> Any:
+    """A table of a packing: arrays of several numbers a row become columns NAME_x, NAME_y or NAME_0, ..."""
+    values, units = {}, {}
+    for name, unit in of.units.items():
+        array = np.asarray(getattr(of, name))
+        if array.ndim == 1:
+            parts = {name: array}
+        else:
+            ends = _AXES if array.shape[1] <= 3 and name != "pairs" else range(array.shape[1])
+            parts = {f"{name}_{end}": array[:, k] for k, end in zip(range(array.shape[1]), ends)}
+        values |= parts
+        units |= dict.fromkeys(parts, unit)
+    return frame(values, units)
+
+
+def _axes_of(of: Any) -> tuple[str, ...]:
+    return ("r", "z") if "sigma_rr" in of else _AXES[: of.points.shape[1]]
+
+
+def _units_of_points(of: Any) -> str:
+    frame_name = of.attributes.get("frame", "")
+    return "1" if frame_name.startswith("heap") and "= -h" not in frame_name else "m"
+
+
+def field_frame(of: Any) -> Any:
+    axes = _axes_of(of)
+    values = {axis: of.points[:, k] for k, axis in enumerate(axes)}
+    units = dict.fromkeys(axes, _units_of_points(of))
+    for name in of.columns:
+        values[name], units[name] = of[name], of.units[name]
+        if of.error(name) is not None:
+            values[f"{name}_error"], units[f"{name}_error"] = of.error(name), of.units[name]
+    return frame(values, units, attributes=dict(of.attributes))
+
+
+def field_dataset(of: Any) -> Any:
+    xarray = _package("xarray")
+    axes, unit = _axes_of(of), _units_of_points(of)
+    if of.shape is None:
+        dims: tuple[str, ...] = ("point",)
+        shape: tuple[int, ...] = (len(of),)
+        coords = {axis: (dims, of.points[:, k], {"units": unit}) for k, axis in enumerate(axes)}
+    else:  # x fastest
+        dims, shape = axes[::-1], of.shape[::-1]
+        grids = [of.points[:, k].reshape(shape) for k in range(len(axes))]
+        coords = {axis: (axis, np.moveaxis(grid, len(axes) - 1 - k, 0).reshape(shape[len(axes) - 1 - k], -1)[:, 0],
+                         {"units": unit}) for k, (axis, grid) in enumerate(zip(axes, grids))}
+    values = {}
+    for name in of.columns:
+        attrs = {"units": of.units[name]}
+        values[name] = (dims, of[name].reshape(shape), attrs)
+        if of.error(name) is not None:
+            values[f"{name}_error"] = (dims, of.error(name).reshape(shape), attrs)
+        if of.samples(name) is not None:
+            samples = of.samples(name)
+            values[f"{name}_samples"] = ((*dims, "realization"), samples.reshape(*shape, samples.shape[1]), attrs)
+    return xarray.Dataset(values, coords, dict(of.attributes))

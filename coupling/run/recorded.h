@@ -1,0 +1,32 @@
+// What a simulation recorded over time: columns of numbers in a state's attributes PREFIX:NAME.
+#pragma once
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupling/output/figure.h"
+#include "coupling/report/picture.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// Equally long columns by name.
+using RecordedColumns = std::map<std::string, std::vector<double>>;
+/// Throws std::invalid_argument naming the file and the column that is missing, empty, no number or
+/// as long as no other.
+RecordedColumns recorded_columns(const dem::Snapshot& state, const std::string& prefix,
+                                 std::span<const char* const> names, const std::string& file);
+
+/// history.csv: a row a record, the columns in this order.
+std::string recorded_csv(const RecordedColumns& columns, std::span<const char* const> names);
+/// A frame for each of the columns {name, label} over "time", in sqrt(d/g).
+Chart recorded_chart(const RecordedColumns& columns, const std::string& title, const std::string& y,
+                     const std::string& caption,
+                     const std::vector<std::pair<const char*, const char*>>& lines);
+
+/// The figures that the simulations themselves left, by key, of all realizations.
+FigureSamples simulated_figures(const std::vector<std::string>& files);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,106 @@
+"""What a notebook shows, and tables that travel to pandas and xarray."""
+
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import grainfield as gf
+from scene import heap, python
+
+HEAPS = [heap(1), heap(2)]
+
+
+def cells(shown):
+    """Rows of the tables of a piece of HTML, which is well formed."""
+    tree = ElementTree.fromstring(f"<div>{shown}</div>")
+    return [[cell.text or "" for cell in row] for row in tree.iter("tr")]
+
+
+def test_packings_and_fields_show_what_they_hold():
+    rows = dict(row for row in cells(HEAPS[0]._repr_html_()))
+    assert rows["grains"] == str(len(HEAPS[0])) and rows["contacts"] == str(len(HEAPS[0].contacts))
+    assert rows["walls"] == "floor" and "Packing, 2D" in rows
+    field = gf.average(HEAPS, frame="heap", grid=(5, 4))
+    assert "20 points (5 x 4), 2 realizations" in field._repr_html_()
+    rows = {row[0]: row[1:] for row in cells(field._repr_html_())}
+    assert list(rows)[1:] == field.columns
+    unit, least, largest, errors = rows["sigma_yy"]
+    assert unit == "N/m" and errors == "yes"
+    assert float(least) == pytest.approx(np.nanmin(field.sigma_yy), rel=1e-5) and float(largest) <= 0
+
+
+def test_judgements_show_what_the_report_shows():
+    result = gf.fit(HEAPS, ["osl", "bcc"], heights=[0.2], set={"fit.bootstrap": 0})
+    shown = result._repr_html_()
+    assert shown == result.judgement._repr_html_()
+    rows = cells(shown)
+    assert rows[0] == list(result.judgement.table) and len(rows) == 3
+    assert result.judgement.headlines[0] in re.sub("<[^>]*>", "", shown)
+    assert all(doubt in ElementTree.fromstring(f"<p>{shown}</p>").itertext() for doubt in result.judgement.doubts)
+
+
+def test_long_tables_show_both_ends_and_escape_words():
+    table = gf.Table({"x": np.arange(50.0), "word": np.array(["a<b"] * 50)}, {"x": "m", "word": "1"}, [])
+    rows = cells(table._repr_html_())
+    assert rows[0] == ["x (m)", "word"] and rows[1] == ["0", "a<b"] and rows[7] == ["...", "..."]
+    assert rows[-1][0] == "49" and len(rows) == 14 and "50 rows" in table._repr_html_()
+    short = gf.Table({"x": np.array([np.nan, 1])}, {"x": "1"}, [])
+    assert cells(short._repr_html_()) == [["x"], ["-"], ["1"]]
+    assert cells(gf.Table({}, {}, [])._repr_html_()) == [[]]
+
+
+def test_tables_become_frames():
+    pytest.importorskip("pandas")
+    result = gf.compare(gf.average(HEAPS, frame="heap", cuts=[0.2]), "bcc")
+    frame = result.profiles.to_pandas()
+    assert list(frame) == list(result.profiles) and frame.attrs["units"] == result.profiles.units
+    np.testing.assert_array_equal(frame["bcc"], result.profiles["bcc"])
+    grains = HEAPS[0].to_pandas()
+    np.testing.assert_array_equal(grains[["positions_x", "positions_y"]], HEAPS[0].positions)
+    assert grains.attrs["units"]["positions_x"] == "m" and len(grains) == len(HEAPS[0])
+    contacts = HEAPS[0].contacts.to_pandas()
+    np.testing.assert_array_equal(contacts[["pairs_0", "pairs_1"]], HEAPS[0].contacts.pairs)
+    np.testing.assert_array_equal(contacts["forces_y"], HEAPS[0].contacts.forces[:, 1])
+
+
+def test_fields_become_frames_and_datasets():
+    pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    field = gf.average(HEAPS, frame="heap", grid=(5, 4))
+    frame = field.to_pandas()
+    np.testing.assert_array_equal(frame[["x", "y"]], field.points)
+    np.testing.assert_array_equal(frame["sigma_xy_error"], field.error("sigma_xy"))
+    assert frame.attrs["units"] | {"x": "1"} == frame.attrs["units"]  # heap: shares of the height
+    grid = field.to_xarray()
+    assert grid["sigma_yy"].dims == ("y", "x") and grid.sizes["x"] == 5 and grid["sigma_yy"].units == "N/m"
+    np.testing.assert_array_equal(grid["sigma_yy"], field.grid("sigma_yy"))
+    np.testing.assert_array_equal(np.stack([a.ravel() for a in np.meshgrid(grid.x, grid.y)], axis=1), field.points)
+    samples = grid["sigma_yy_samples"]
+    assert samples.dims == ("y", "x", "realization")
+    np.testing.assert_allclose(samples.mean("realization"), grid["sigma_yy"], rtol=1e-12)
+    line = gf.average(HEAPS, frame="heap", cuts=[0.2]).to_xarray()
+    assert line["sigma_yy"].dims == ("point",) and set(line.coords) == {"x", "y"}
+
+
+def test_grids_in_space_keep_their_order():
+    pytest.importorskip("xarray")
+    x, y, z = np.meshgrid([0.0, 1, 2], [0.0, 1], [0.0, 1, 2, 3], indexing="ij")
+    points = np.stack([a.transpose(2, 1, 0).ravel() for a in (x, y, z)], axis=1)  # x fastest
+    field = gf.Field(points, {"sum": points @ [1, 10, 100]}, shape=(3, 2, 4))
+    grid = field.to_xarray()
+    assert grid["sum"].dims == ("z", "y", "x") and float(grid["sum"].sel(x=2, y=1, z=3)) == 312
+
+
+def test_without_pandas_the_error_says_what_to_install():
+    done = python("""
+import sys
+sys.modules["pandas"] = None
+import grainfield as gf
+try:
+    gf.packing([0], [0], 1, mass=1).to_pandas()
+except ImportError as error:
+    print(error)
+""")
+    assert done.stdout == "this needs pandas, which is not installed (Debian: python3-pandas)\n", done.stderr
