@@ -90,6 +90,11 @@ struct SamplePath {
     const Index from = std::max<Index>(1, (last() + 9) / 10);
     return values.segment(from, last() - from + 1).maxCoeff();
   }
+  // A number over p of the first state; nullopt for a box that bears nothing yet.
+  Value over_first_pressure(double value) const {
+    const double first = way("p")[0];
+    return first > 0 ? Value(value / first) : Value();
+  }
   // A column in a state; nullopt without the state.
   Value at(const char* name, Index state) const {
     return state < 0 ? Value() : Value(way(name)[state]);
@@ -204,9 +209,9 @@ const std::vector<Figure<SamplePath>>& sample_rows() {
       {"kinetic_share", "-", "largest kinetic over elastic energy of the states after the first one", [](P s) { const VectorXd share = s.way("kinetic_energy").array() / s.way("elastic_energy").array(); return Value(share.tail(share.size() - 1).maxCoeff()); }},
       {"late_kinetic_share", "-", "the same of the states of the loading beyond a tenth of its strain", [](P s) { return Value(s.largest_late(s.way("kinetic_energy").cwiseQuotient(s.way("elastic_energy")))); }},
       {"late_inertial_number", "-", "largest inertial number of the same states", [](P s) { return Value(s.largest_late(s.way("inertial_number"))); }},
-      {"pressure_ratio", "-", "p at the end of the loading over that of the first state", [](P s) { return Value(s.way("p")[s.last()] / s.way("p")[0]); }},
-      {"shear_over_pressure", "-", "simple shear: shear stress at the end of the loading over p of the first state", [](P s) { return dem::shears(s.plan) ? Value(s.driven[s.last()] / s.way("p")[0]) : Value(); }},
-      {"first_shear_stiffness", "-", "simple shear at constant volume: rise of the shear stress to the state after the first one, over its strain and over p of the first state", [](P s) { return dem::shears(s.plan) ? Value(slope(s.strain, s.driven, 0, 1) / s.way("p")[0]) : Value(); }},
+      {"pressure_ratio", "-", "p at the end of the loading over that of the first state", [](P s) { return s.over_first_pressure(s.way("p")[s.last()]); }},
+      {"shear_over_pressure", "-", "simple shear: shear stress at the end of the loading over p of the first state", [](P s) { return dem::shears(s.plan) ? s.over_first_pressure(s.driven[s.last()]) : Value(); }},
+      {"first_shear_stiffness", "-", "simple shear at constant volume: rise of the shear stress to the state after the first one, over its strain and over p of the first state", [](P s) { return dem::shears(s.plan) ? s.over_first_pressure(slope(s.strain, s.driven, 0, 1)) : Value(); }},
       {"axial_dip_strain", "-", "simple shear at constant volume: shear strain (half the shear) of the recorded state of the loading whose axial pressure is least; it falls first and rises then", strain_of_least_pressure},
       {"end_stress_ratio", "-", "uniaxial: q/p at the end of the loading", [](P s) { return s.uniaxial() ? s.at("q_over_p", s.last()) : Value(); }},
       {"end_axial_stress_ratio", "-", "uniaxial in three dimensions: q/p there with q the axial pressure less the mean lateral one (Wellmann 32), as axial_q_over_p of states.csv", [](P s) { return s.uniaxial() && s.plan.dim == 3 ? s.at("axial_q_over_p", s.last()) : Value(); }},
