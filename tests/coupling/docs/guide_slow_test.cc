@@ -117,11 +117,12 @@ TEST(Guide, EveryCommandSaysWhatThePageSays) {
 
 TEST(Tutorial, PointLoadRunsAsOnThePage) {
   const Folder folder;
-  // Two layers of half the size, without moduli: the page's own take a minute.
+  // Two layers of half the size, without moduli, and two models: the page's own take a minute.
   const Page page = read_and_run(folder, "tutorial-point-load.md",
                                  " --set ensemble.realizations=2 --set packing.width=0.08 "
                                  "--set packing.depth=0.03 --set load.probe_strain=0 "
-                                 "--set rest.unbalanced_force_ratio=1e-5");
+                                 "--set rest.unbalanced_force_ratio=1e-5 "
+                                 "--set 'compare.models=[\"boussinesq\",\"layer\"]'");
   EXPECT_EQ(page.commands, 3);
   EXPECT_THAT(page.said, HasSubstr("half space"));
 }
