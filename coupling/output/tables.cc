@@ -121,12 +121,16 @@ std::string profiles_csv(const Comparison& c) {
   for (const std::string& note : table.notes) text += "# " + note + "\n";
   text += "profile";
   for (const ProfileColumn& column : table.columns) {
-    text += "," + quote_csv(column.unit == "1" ? column.name : column.name + "_" + column.unit);
+    text += ',';
+    text += quote_csv(column.unit == "1" ? column.name : column.name + "_" + column.unit);
   }
   text += "\n";
   for (std::size_t k = 0; k < table.profile.size(); ++k) {
     text += quote_csv(table.profile[k]);
-    for (const ProfileColumn& column : table.columns) text += "," + number(column.values[k]);
+    for (const ProfileColumn& column : table.columns) {
+      text += ',';
+      text += number(column.values[k]);
+    }
     text += "\n";
   }
   return text;
