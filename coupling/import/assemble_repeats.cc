@@ -95,9 +95,7 @@ void Assembly::join_repeated_grains() {
             "{}: grain {} is there already, at {}{}", row.source.where(), row.grain.id,
             rows_[n].source.where(),
             row.digits == 0
-                ? "; of a table with several times or steps import one at a time, each from its "
-                  "own "
-                  "file"
+                ? "; of several times or steps import one at a time"
                 : fmt::format("; ids are printed with {} digits only, print them as whole numbers "
                               "(LAMMPS: dump_modify ID format float %.17g)",
                               row.digits)));

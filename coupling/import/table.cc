@@ -188,7 +188,8 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
 
 void TableColumns::note_length(const Heading& heading) const {
   if (heading.unit.empty()) {
-    bare_lengths_.push_back(heading.name);
+    // The places of a VTK file have no name that a unit could stand in.
+    if (table_.arrays == nullptr) bare_lengths_.push_back(heading.name);
     return;
   }
   const std::optional<Unit> unit = parse_unit(heading.unit);

@@ -128,7 +128,7 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
     good = {"i": [0], "j": [1], "fx": [-1.0], "fy": [0.0]}
     assert "contact of the unknown grain 5; known: 2 grains with ids from 0 to 1" in both(good | {"j": [5]})
     assert "grain 1: found radius -1 m, allowed: above 0" in both(good, radius=[0.005, -1.0])
-    assert both(good, id=[1, 1]) == "grains:1: grain 1 is there already, at grains:0"
+    assert both(good, id=[1, 1]) == "grains:1: grain 1 is there already, at grains:0; of several times or steps import one at a time"
     assert "grain 0 in contact with itself" in both(good | {"j": [0]})
     assert "in contact at a distance of 0.1 m" in both(good, x=[0.0, 0.1])
     wrong = error_of(lambda: gf.packing([0], [0], 1, mass=1, colour=[3]))

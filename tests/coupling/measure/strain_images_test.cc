@@ -33,10 +33,6 @@ struct State {
   std::vector<Vec3> place;
 };
 
-std::array<int, 3> sum(const std::array<int, 3>& a, const Eigen::Vector3i& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
 // x' = gradient x + drift, in a cell whose edges are exchanged as an engine does it.
 State state_of(const dem::Snapshot& packing, const Eigen::Matrix3d& gradient, const Vec3& drift,
                const Exchange& exchange = Exchange::Identity()) {
