@@ -77,9 +77,9 @@ struct Scale {
   std::string x_from = "load";  ///< where x = 0
   std::string note;             ///< one line for tables
 };
-/// Of responses to a load: F/h, in space F/h^2. `more` ends the note.
+/// The scale of responses to a load: F/h, in space F/h^2. `more` ends the note.
 Scale scale_of_load(double force, double h, int dim = 2, const std::string& more = "");
-/// Of heaps: rho g h. `what` ends the note.
+/// The scale of heaps: rho g h. `what` ends the note.
 Scale scale_of_heaps(double h, double pressure, const std::string& what,
                      const std::string& x_from = "apex", int dim = 2);
 /// "; every pile scaled by its own; realizations: N".

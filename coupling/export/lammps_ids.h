@@ -1,4 +1,4 @@
-// What LAMMPS calls the grains of a packing.
+// Ids of the grains of a packing in LAMMPS.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,9 +15,10 @@ class LammpsIds {
   explicit LammpsIds(const dem::Snapshot& packing);
 
   bool kept() const { return kept_; }
-  /// Of a grain by its id. Throws std::out_of_range for one that the packing has not.
+  /// The id of a grain in LAMMPS. Throws std::out_of_range for an id that the packing does not
+  /// have.
   std::int64_t of(std::int64_t id) const { return ids_.at(id); }
-  /// What was done where they are not kept, and how they come back: not of copies.
+  /// Says how ids are changed and how they come back. For `copied` packings they do not.
   std::string note(bool copied) const;
   /// A table id,original: LAMMPS' and the packing's.
   std::string csv(const dem::Snapshot& packing) const;

@@ -97,7 +97,7 @@ class Independence {
   std::map<std::size_t, std::string> packings_;
 };
 
-// What makes the averages of states mean nothing, or something else than their user thinks.
+// Facts that make the averages of states mean nothing, or something unexpected.
 void add_warnings(const SnapshotName& name, const dem::Snapshot& s, std::size_t idle,
                   PackingWarnings& out) {
   const std::string packing = name.file + ":" + name.group;

@@ -19,8 +19,8 @@ struct ProfileColumns {
 };
 
 /// A row for each point of the profiles, then of those `beside`, which have no models (nan). The
-/// columns: depth and x, m; mean, its standard error (nan without one), and of each model its value,
-/// difference (mean - model) and difference over error, in the profiles' unit.
+/// columns: depth and x, m; mean, its standard error (nan without one), and of each model its
+/// value, difference (mean - model) and difference over error, in the profiles' unit.
 ProfileColumns profile_columns(const Comparison& comparison);
 
 /// "F = 300 N, h = 0.15 m, ...": how the profiles are made dimensionless.

@@ -301,7 +301,8 @@ TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
   AverageOptions one;
   one.width = 1;
   EXPECT_EQ(refusal([&] { balance_table(flat, one); }),
-            "the packing is nowhere four mean diameters high; too low to compare averagings on (without --balance it is averaged all the same)");
+            "the packing is nowhere four mean diameters high; too low to compare averagings on "
+            "(without --balance it is averaged all the same)");
 }
 
 TEST(Points, HorizontalCuts) {

@@ -67,8 +67,8 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "export", "files", "import", "judge", "models", "output", "run",
         "structure", "system"}},
       {"python",
-       {"app", "averaging", "case", "compare", "files", "fit", "import", "judge", "models", "output",
-        "run", "structure", "system"}},
+       {"app", "averaging", "case", "compare", "files", "fit", "import", "judge", "models",
+        "output", "run", "structure", "system"}},
   };
   return kRooms;
 }
