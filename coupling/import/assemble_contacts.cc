@@ -113,6 +113,7 @@ void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
   const ContactColumns columns = contact_columns(named);
   named.require_length_units();
+  for (std::string& line : named.misspelled()) out_.warnings.push_back(std::move(line));
   ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;

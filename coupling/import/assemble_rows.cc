@@ -98,6 +98,7 @@ void Assembly::add_grains(const ForeignTable& table) {
       options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
   Bodies bodies{find_bodies(columns), {}, false};
   columns.require_length_units();
+  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
   std::vector<std::array<ForeignColumn, 7>> wall_columns;
   for (const WallChoice& wall : options_.walls) {
     wall_columns.emplace_back();
@@ -205,6 +206,7 @@ void Assembly::add_walls(const ForeignTable& table) {
                       nz = columns.find("nz"), friction = columns.find("friction"),
                       material = columns.find("material");
   columns.require_length_units();
+  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
   reader_.read(table, [&](const ForeignRow& row) {
     dem::Wall wall;
     wall.name = std::string(row.text(name));

@@ -212,6 +212,21 @@ void TableColumns::require_length_units() const {
                   bare.front()));
 }
 
+std::vector<std::string> TableColumns::misspelled() const {
+  std::vector<std::string> out, ours;
+  if (table_.arrays != nullptr) return out;  // the reader of arrays refuses such names
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
+    for (const OurColumn& column : our_columns(kind)) ours.push_back(column.name);
+  for (const Heading& heading : headings_) {
+    if (heading.name.size() < 4 || is_known_name(heading.name) || names_.claims(heading.name))
+      continue;
+    if (const std::string meant = continuum::misspelt(heading.name, ours); !meant.empty())
+      out.push_back(fmt::format("{}:{}: the column \"{}\" is not used; nearest: {}", table_.file,
+                                table_.header_line, heading.name, meant));
+  }
+  return out;
+}
+
 // "3.6", or "3.6 mm" in a unit of our column's kind, in SI. Nothing for any other text.
 std::optional<double> TableColumns::constant_of(const std::string& ours,
                                                 const std::string& text) const {

@@ -139,6 +139,8 @@ class TableColumns {
   /// Throws std::invalid_argument where of the lengths that were found some have a unit other than
   /// the table's and others none.
   void require_length_units() const;
+  /// A line for each column that nobody uses and whose name is nearly one of ours.
+  std::vector<std::string> misspelled() const;
 
  private:
   void note_length(const Heading& heading) const;

@@ -326,6 +326,21 @@ TEST(ImportMistakes, WhatTheSystemCannotRead) {
   EXPECT_THAT(output.err, HasSubstr("/proc/self/mem: cannot be read: "));
 }
 
+TEST(ImportMistakes, ColumnsThatAreNearlyOurs) {
+  const Folder folder;
+  const std::string csv =
+      folder.write("g.csv", "id,x,y,radius,density,fixd,temperature\n1,0,1,1,5000,1,300\n");
+  const auto import = [&](const std::string& more) {
+    return program("import --from csv --without-contacts " + csv + more + " -o " +
+                   (folder / "o.h5"));
+  };
+  const Output output = import("");
+  EXPECT_EQ(output.code, 0);
+  EXPECT_THAT(output.err, HasSubstr("g.csv:1: the column \"fixd\" is not used; nearest: fixed"));
+  EXPECT_THAT(output.err, ::testing::Not(HasSubstr("temperature")));
+  EXPECT_THAT(import(" --column fixed=fixd").err, ::testing::Not(HasSubstr("is not used")));
+}
+
 TEST(ImportMistakes, NoPackingWithinAnother) {
   const Folder folder;
   const std::string rest =
