@@ -34,7 +34,7 @@ ColumnTriple find_triple(const TableColumns& columns, const std::string& stem, i
   return columns.find(stem + "x") ? need_triple(columns, stem, dim) : ColumnTriple{};
 }
 
-// Of a tangential direction's length, and of its cosine to the normal: what few digits leave.
+// Tolerance for a tangential direction's length and its cosine to the normal: few digits leave it.
 constexpr double kOffUnit = 1e-2;
 // Share of the normal force that is rounding, whose direction is any.
 constexpr double kNoForce = 1e-6;

@@ -141,7 +141,7 @@ void Assembly::join_directions() {
     for (std::size_t k = group; k < kept.size() && !joined; ++k) {
       ContactRow& other = kept[k];
       const dem::Contact& d = other.contact;
-      // Of a pair the image is told apart already, and the point may be given at either grain.
+      // The image of a pair is known here, and its point may be given at either grain.
       const bool at_points = c.j < 0 || of_polygons(c);
       const bool same_point = !at_points || (c.point - d.point).norm() <= kSamePoint * radius;
       const bool same_force =

@@ -14,7 +14,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of a quaternion's length from 1: what is written with six digits.
+// Difference of a quaternion's length from 1 that six digits leave.
 constexpr double kUnit = 1e-5;
 
 std::array<double, 4> orientation_of(const ForeignRow& row,

@@ -40,7 +40,7 @@ Name parts_of(const std::string& file) {
 std::vector<std::optional<long long>> steps_of_names(const std::vector<std::string>& files) {
   std::vector<Name> names;
   for (const std::string& file : files) names.push_back(parts_of(file));
-  // Of the names of the same words: the place of the number that differs.
+  // Place of the number that differs among names of the same words.
   struct Kind {
     std::size_t first = 0;
     std::optional<std::size_t> place;

@@ -35,7 +35,7 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
   if (!column || column.constant) return !column;
   const std::string_view told = text(column);
-  // What R and pandas write for none.
+  // Words of R and pandas for an empty cell.
   return told.empty() || told == "NA" || told == "<NA>" || told == "None";
 }
 
