@@ -13,10 +13,10 @@ line. SI units; in 2D density is kg/m2, stiffness and stress N/m. Stress is tens
 docs/python.md tells more.
 """
 
+from ._cases import cases, check, keys
 from ._commands import (
     Model,
     average,
-    cases,
     compare,
     fit,
     import_field,
@@ -29,6 +29,7 @@ from ._commands import (
 from ._core import version as __version__
 from ._data import Contacts, Field, Packing, Summary, Table, Walls
 from ._engine import Engine
+from ._foreign import export, import_packing
 from ._files import Collection, read, write
 from ._packing import packing
 from ._results import CompareResult, FitResult, Judgement, Result, Structure
@@ -50,9 +51,13 @@ __all__ = [
     "Walls",
     "average",
     "cases",
+    "check",
     "compare",
+    "export",
     "fit",
     "import_field",
+    "import_packing",
+    "keys",
     "model",
     "models",
     "packing",

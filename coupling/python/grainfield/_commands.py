@@ -100,7 +100,9 @@ def average(
     load. width: m in every frame; default one mean diameter (particle_centre, area_exact: 2.5).
     rings: in 3D, points are radius and height.
 
-    The field's warnings are also given as Python warnings. Raises ValueError.
+    Places with too few grains are nan: .gaps of the field says which and why, a line each. The field's
+    warnings are also given as Python warnings; so are the gaps among points that are given, and where
+    nothing but nan is left. Raises ValueError.
     """
     sources, before = _sources(snapshots), _sources(unloaded)
     out = _core.average(
@@ -126,10 +128,19 @@ def average(
     named = {name: Field(core, name=name) for name, core in out.fields}
     field = named.pop(next(iter(named)))
     field.beside = named
-    field.warnings = out.warnings + out.gaps.splitlines()
     field.seconds = out.seconds
-    _warn(field.warnings)
+    _tell(field, out.warnings, out.gaps.splitlines(), points is not None)
     return field
+
+
+def _tell(field: Field, lines: list[str], gaps: list[str], given: bool) -> None:
+    """Gaps of a grid are no news; those at points that are given, and a field of nan alone, are."""
+    field.gaps = gaps
+    field.warnings = list(lines)
+    if given or not np.isfinite(field[field.columns[0]]).any():
+        field.warnings += gaps
+    for line in field.warnings:
+        _warnings.warn(line, stacklevel=3)
 
 
 def strain(
@@ -149,7 +160,7 @@ def strain(
     """Displacement gradient and strain between two states of the same grains (docs/strain.md).
 
     before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
-    width: m; default three mean diameters. Raises ValueError.
+    width: m; default three mean diameters. .gaps, .warnings: as of average(). Raises ValueError.
     """
     core, lines = _core.strain(
         before=_core_of(before),
@@ -165,8 +176,8 @@ def strain(
         threads=threads,
     )
     field = Field(core, name="strain")
-    field.warnings = lines
-    _warn(field.warnings)
+    gaps = [line for line in lines if " points have no strain:" in line]
+    _tell(field, [line for line in lines if line not in gaps], gaps, points is not None)
     return field
 
 
@@ -415,8 +426,3 @@ def run(
         line.end()
     _warn(found["warnings"])
     return Result(found["folder"], found["warnings"]) if found["first"] else None
-
-
-def cases() -> dict[str, str]:
-    """The shipped cases: name to file."""
-    return {os.path.basename(path)[: -len(".toml")]: path for path in _core.cases()}
