@@ -33,6 +33,7 @@ from ._foreign import export, import_packing
 from ._files import Collection, read, write
 from ._packing import packing
 from ._results import CompareResult, FitResult, Judgement, Result, Structure
+from ._sweep import Sweep, sweep
 
 __all__ = [
     "Collection",
@@ -47,6 +48,7 @@ __all__ = [
     "Result",
     "Structure",
     "Summary",
+    "Sweep",
     "Table",
     "Walls",
     "average",
@@ -65,5 +67,6 @@ __all__ = [
     "run",
     "strain",
     "structure",
+    "sweep",
     "write",
 ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import atexit
 import os
-import sys
 import warnings as _warnings
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
+from ._progress import Progress
 from ._results import CompareResult, FitResult, Result, Structure
 
 atexit.register(_core.finish_ranks)
@@ -364,24 +364,6 @@ def fit(
     return FitResult(outcome, place)
 
 
-class _ProgressLine:
-    """A line on standard error that is rewritten on a terminal, and nothing elsewhere."""
-
-    def __init__(self) -> None:
-        self._open = False
-
-    def show(self, progress: Mapping[str, Any]) -> None:
-        if sys.stderr is not None and sys.stderr.isatty():
-            sys.stderr.write("\r\x1b[K" + progress["text"])
-            sys.stderr.flush()
-            self._open = True
-
-    def end(self) -> None:
-        if self._open:
-            sys.stderr.write("\n")
-        self._open = False
-
-
 def run(
     case: str | os.PathLike,
     folder: str | os.PathLike | None = None,
@@ -399,7 +381,8 @@ def run(
 
     case: a case file or the name of a shipped one. folder: default results/CASE (CASE-quick). set:
     {"material.friction": 0.3} or ["material.friction=0.3"]. threads: 0 is all cores; the results do
-    not depend on it. progress: True shows a line on a terminal; a function is called about five times
+    not depend on it. progress: True shows a line on a terminal and, where tqdm is installed, a bar in a
+    notebook; a function is called about five times
     a second with phase, done, total, fraction, simulated_time (s), grains, awake, kinetic_energy (J),
     unbalanced_force_ratio, seconds_left and text. note: called with lines about what begins.
 
@@ -407,8 +390,10 @@ def run(
     on to the same bits. One run at a time in a process; under mpirun ranks other than the first get
     None. Raises ValueError, RuntimeError, OSError, KeyboardInterrupt.
     """
-    line = _ProgressLine()
-    show = line.show if progress is True else progress or None
+    line = Progress()
+    show = progress or None
+    if progress is True:
+        show = lambda now: line.show(now["text"], now["fraction"])  # noqa: E731
     try:
         found = _core.run(
             case=os.fspath(case),
