@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._data import Field, Packing, Table
+from ._show import axes_of_field
 
 
 def axes_of(ax: Any) -> Any:
@@ -77,6 +78,7 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
     over = "/h" if frame.startswith("heap") and "= -h" not in frame else " (m)"
     shape = field.shape
     points = field.points
+    axes = axes_of_field(field)
     if shape is not None and len(shape) == 2:
         grid = (shape[1], shape[0])
         drawn = ax.pcolormesh(points[:, 0].reshape(grid), points[:, 1].reshape(grid),
@@ -84,17 +86,17 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
         ax.set_aspect("equal")
         # Beside the map and as tall as it, whatever its aspect.
         ax.figure.colorbar(drawn, cax=ax.inset_axes([1.03, 0, 0.03, 1]), label=f"{name} ({unit})")
-        ax.set_xlabel("x" + over)
-        ax.set_ylabel("y" + over)
+        ax.set_xlabel(axes[0] + over)
+        ax.set_ylabel(axes[1] + over)
         return ax
     heights = points[:, -1]
     for height in np.unique(heights):
         row = np.flatnonzero(heights == height)
         row = row[np.argsort(points[row, 0])]
         band(ax, points[row, 0], values[row], field.error(column), row, f"{height:g}")
-    ax.set_xlabel("x" + over)
+    ax.set_xlabel(axes[0] + over)
     ax.set_ylabel(f"{name} ({unit})")
-    ax.legend(title="y" + over if points.shape[1] == 2 else "z" + over)
+    ax.legend(title=axes[-1] + over)
     return ax
 
 

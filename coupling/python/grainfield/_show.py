@@ -104,7 +104,8 @@ def rows_frame(of: Any) -> Any:
     return frame(values, units)
 
 
-def _axes_of(of: Any) -> tuple[str, ...]:
+def axes_of_field(of: Any) -> tuple[str, ...]:
+    """Names of the coordinates of a field's points."""
     return ("r", "z") if "sigma_rr" in of else _AXES[: of.points.shape[1]]
 
 
@@ -114,7 +115,7 @@ def _units_of_points(of: Any) -> str:
 
 
 def field_frame(of: Any) -> Any:
-    axes = _axes_of(of)
+    axes = axes_of_field(of)
     values = {axis: of.points[:, k] for k, axis in enumerate(axes)}
     units = dict.fromkeys(axes, _units_of_points(of))
     for name in of.columns:
@@ -126,7 +127,7 @@ def field_frame(of: Any) -> Any:
 
 def field_dataset(of: Any) -> Any:
     xarray = _package("xarray")
-    axes, unit = _axes_of(of), _units_of_points(of)
+    axes, unit = axes_of_field(of), _units_of_points(of)
     if of.shape is None:
         dims: tuple[str, ...] = ("point",)
         shape: tuple[int, ...] = (len(of),)
