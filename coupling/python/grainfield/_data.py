@@ -184,6 +184,11 @@ class Packing(_Rows):
     def _repr_html_(self) -> str:
         return _show.packing(self)
 
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh: grains as vertices with ids, radii, masses, fixed and velocities, contacts between
+        grains as lines with forces and normal_forces (nan on the vertices). .write("FILE.vtu") saves it."""
+        return _show.packing_mesh(self)
+
     @property
     def outlines(self) -> list[np.ndarray]:
         """Corners (k, 2) of polygons about their centroids before they are turned, m; empty: round."""
@@ -334,6 +339,11 @@ class Field:
         """A Dataset: a grid's coordinates, or points; the columns, COLUMN_error, and COLUMN_samples with
         the dimension realization. Units are in the attributes of each."""
         return _show.field_dataset(self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh: a grid as quadrilaterals or hexahedra, other points as vertices; the columns and
+        COLUMN_error at the points, in space with z = 0 for a field of the plane. .write("FILE.vtu") saves it."""
+        return _show.field_mesh(self)
 
     def plot(self, column: str | None = None, ax: Any = None) -> Any:
         """Draws a grid as a map, lines as profiles with bands of one error; returns the axes.
