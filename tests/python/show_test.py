@@ -1,6 +1,8 @@
 """What a notebook shows, and tables that travel to pandas and xarray."""
 
 import re
+import sys
+import types
 from xml.etree import ElementTree
 
 import numpy as np
@@ -122,6 +124,41 @@ def test_fields_and_packings_become_meshes(tmp_path):
     pair = HEAPS[0].contacts.pairs[:, 1] >= 0
     np.testing.assert_array_equal(mesh.cells_dict["line"], HEAPS[0].contacts.pairs[pair])
     np.testing.assert_array_equal(mesh.cell_data_dict["normal_forces"]["line"], HEAPS[0].contacts.normal_forces[pair])
+
+
+class Bar:
+    """Records what is asked of tqdm."""
+
+    def __init__(self, total, **_):
+        self.total, self.seen, self.words, self.closed = total, [], [], False
+
+    def set_description(self, words):
+        self.seen.append(self.n)
+        self.words.append(words)
+
+    def close(self):
+        self.closed = True
+
+
+def test_long_calls_show_a_bar_in_a_notebook(monkeypatch, capsys):
+    from grainfield._progress import Progress
+
+    made = []
+    tqdm = types.ModuleType("tqdm")
+    tqdm.tqdm = lambda **options: made.append(Bar(**options)) or made[-1]
+    tqdm.notebook = types.ModuleType("tqdm.notebook")
+    tqdm.notebook.tqdm = tqdm.tqdm
+    for name, module in (("ipykernel", types.ModuleType("ipykernel")), ("tqdm", tqdm), ("tqdm.notebook", tqdm.notebook)):
+        monkeypatch.setitem(sys.modules, name, module)
+    line = Progress()
+    line.show("rest  3/4", 0.25)
+    line.show("load", 1.0)
+    line.end()
+    (bar,) = made
+    assert bar.total == 1 and bar.seen == [0.25, 1.0] and bar.words == ["rest 3/4", "load"] and bar.closed
+    monkeypatch.delitem(sys.modules, "ipykernel")
+    Progress().show("rest", 0.5)  # neither a notebook nor a terminal
+    assert len(made) == 1 and capsys.readouterr().err == ""
 
 
 def test_without_pandas_the_error_says_what_to_install():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 from typing import Any
 
@@ -11,7 +12,10 @@ def _notebook_bar() -> Any:
     if "ipykernel" not in sys.modules:
         return None
     try:
-        from tqdm.auto import tqdm
+        if importlib.util.find_spec("ipywidgets"):
+            from tqdm.notebook import tqdm
+        else:
+            from tqdm import tqdm
     except ImportError:
         return None
     return tqdm(total=1.0, bar_format="{l_bar}{bar}| {elapsed}", leave=False)
