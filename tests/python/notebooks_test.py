@@ -77,3 +77,9 @@ def test_calibration(tmp_path, monkeypatch):
     _, text, pictures = run("calibration", tmp_path, monkeypatch)
     friction, error = map(float, re.search(r"friction (\S+) \+- (\S+)", text).groups())
     assert pictures == 1 and 0.2 < friction < 0.32 and 0.02 < error < 0.15
+
+
+def test_own_model(tmp_path, monkeypatch):
+    _, text, pictures = run("own_model", tmp_path, monkeypatch)
+    k, error = map(float, re.search(r"k = (\S+) \+- (\S+),", text).groups())
+    assert pictures == 1 and 0.1 < k < 1 and 0 < error < 0.2

@@ -15,7 +15,7 @@ docs/python.md tells more.
 
 from ._cases import cases, check, keys
 from ._commands import (
-    Model,
+    SetModel,
     average,
     compare,
     fit,
@@ -31,6 +31,7 @@ from ._data import Contacts, Field, Packing, Summary, Table, Walls
 from ._engine import Engine
 from ._foreign import export, import_packing
 from ._files import Collection, read, write
+from ._model import Facts, Model
 from ._packing import packing
 from ._results import CompareResult, FitResult, Judgement, Result, Structure
 from ._sweep import Sweep, sweep
@@ -40,12 +41,14 @@ __all__ = [
     "CompareResult",
     "Contacts",
     "Engine",
+    "Facts",
     "Field",
     "FitResult",
     "Judgement",
     "Model",
     "Packing",
     "Result",
+    "SetModel",
     "Structure",
     "Summary",
     "Sweep",

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
+from ._model import Model
 from ._progress import Progress
 from ._results import CompareResult, FitResult, Result, Structure
 
@@ -186,7 +187,7 @@ def structure(snapshot: Any) -> Structure:
     return Structure(_core.structure(_core_of(snapshot)))
 
 
-class Model:
+class SetModel:
     """A continuum model with its parameters set; call it with points."""
 
     def __init__(self, name: str, settings: Mapping[str, Any]):
@@ -217,15 +218,15 @@ class Model:
         return self._core.figures()
 
     def __repr__(self) -> str:
-        return f"<Model {self.name}: {', '.join(f'{k}={v}' for k, v in self.settings.items())}>"
+        return f"<SetModel {self.name}: {', '.join(f'{k}={v}' for k, v in self.settings.items())}>"
 
 
-def model(name: str, **settings: Any) -> Model:
+def model(name: str, **settings: Any) -> SetModel:
     """The model of this name: gf.model("layer", F=300, h=0.15)(points). models() lists them.
 
     Raises ValueError for an unknown name or parameter, or a value out of range.
     """
-    return Model(name, settings)
+    return SetModel(name, settings)
 
 
 def models() -> dict[str, dict[str, Any]]:
@@ -234,18 +235,22 @@ def models() -> dict[str, dict[str, Any]]:
 
 
 def _choices(models: Any) -> list[str]:
-    """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or Model}."""
-    def text(value: Any) -> str:
-        if isinstance(value, Model):
-            value = (value.name, value.settings)
-        if isinstance(value, str):
-            return value
-        name, settings = value
-        return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
-
+    """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or SetModel or Model}."""
     if isinstance(models, Mapping):
-        return [f"{label}={text(value)}" for label, value in models.items()]
-    return [text(value) for value in ([models] if isinstance(models, (str, Model)) else models)]
+        return [f"{label}={_choice(value)}" for label, value in models.items()]
+    return [_choice(value) for value in ([models] if isinstance(models, (str, SetModel, Model)) else models)]
+
+
+def _choice(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    name, settings = (value.name, getattr(value, "settings", {})) if isinstance(value, (SetModel, Model)) else value
+    return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
+
+
+def _free_choice(value: Any) -> str:
+    """As of `fit --model`: the parameters of a model of one's own are free."""
+    return _choice((value.name, dict.fromkeys(value.parameters, "free")) if isinstance(value, Model) else value)
 
 
 def import_field(
@@ -291,7 +296,8 @@ def compare(
     """Compares a field with continuum models (docs/comparison.md), as `grainfield compare`.
 
     field: a Field (with its base response, if it has one), several by name, or "FIELD.h5". models:
-    "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a list of these, or {label: model}. fields: only
+    "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a Model of one's own (with its defaults, or
+    called with values), a list of these, or {label: model}. fields: only
     these. folder: where profiles.*, summary.json and report.html go; without it nothing is written.
     Raises ValueError.
     """
@@ -318,7 +324,7 @@ def compare(
 
 def fit(
     inputs: Any,
-    models: Sequence[str] | str | None = None,
+    models: Any = None,
     *,
     heights: Sequence[float] = (),
     components: Sequence[str] = (),
@@ -333,7 +339,7 @@ def fit(
     """Fits stress models to heaps and ranks them (docs/fits.md), as `grainfield fit`.
 
     inputs: packings, one Field of frame heap, or names as of the command, or a list. models: names,
-    also "NAME:p=free,q=0.3"; default all for symmetric heaps. heights: shares of the heap's height.
+    also "NAME:p=free,q=0.3", and a Model of one's own; default all for symmetric heaps. heights: shares of the heap's height.
     set: {"fit.huber": 3}. folder: as of compare(). Raises ValueError, RuntimeError.
     """
     if isinstance(inputs, Mapping):
@@ -349,7 +355,7 @@ def fit(
         files=files,
         packings=packings,
         field=fields[0] if fields else None,
-        models=_list(models),
+        models=[_free_choice(one) for one in _list(models)],
         heights=[float(share) for share in heights],
         components=_list(components),
         width_diameters=width_diameters,
