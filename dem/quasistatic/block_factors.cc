@@ -112,59 +112,63 @@ void BlockRows::multiply(const Vector& x, Vector& y) const {
 }
 
 void BlockFactors::compute(const BlockRows& matrix) {
-  matrix_ = &matrix;
   std::vector<BlockRows::Block> factors = matrix.blocks_;
-  std::vector<BlockRows::Block> pivots(static_cast<std::size_t>(matrix.rows()));
+  const int n = matrix.rows();
+  pivots_.resize(static_cast<std::size_t>(n));
   double most = std::numeric_limits<double>::min();
   for (const int k : matrix.diagonal_)
     most = std::max(most, factors[k].diagonal().cwiseAbs().maxCoeff());
 
-  std::vector<int> place(pivots.size(), -1);  // of each column in the present row
-  for (int row = 0; row < matrix.rows(); ++row) {
+  std::vector<int> place(pivots_.size(), -1);  // of each column in the present row
+  for (int row = 0; row < n; ++row) {
     const int begin = matrix.start_[row], end = matrix.start_[row + 1], at = matrix.diagonal_[row];
     const double size = factors[at].diagonal().cwiseAbs().maxCoeff();
     for (int k = begin; k < end; ++k) place[matrix.column_[k]] = k;
     for (int k = begin; k < at; ++k) {
       const int above = matrix.column_[k];
-      factors[k] = (factors[k] * pivots[above]).eval();
+      factors[k] = (factors[k] * pivots_[above]).eval();
       for (int u = matrix.diagonal_[above] + 1; u < matrix.start_[above + 1]; ++u) {
         const int hit = place[matrix.column_[u]];
         if (hit >= 0) factors[hit].noalias() -= factors[k] * factors[u];
       }
     }
-    pivots[row] = inverse_of(factors[at], size > 0 ? size : most);
+    pivots_[row] = inverse_of(factors[at], size > 0 ? size : most);
     for (int k = begin; k < end; ++k) place[matrix.column_[k]] = -1;
   }
-  factors_.resize(factors.size());
-  pivots_.resize(pivots.size());
-  std::ranges::transform(factors, factors_.begin(),
-                         [](const auto& b) -> Block { return b.template cast<float>(); });
-  std::ranges::transform(pivots, pivots_.begin(),
-                         [](const auto& b) -> Block { return b.template cast<float>(); });
-  parts_.resize(pivots.size());
+
+  lower_.clear();
+  upper_.clear();
+  lower_counts_.resize(pivots_.size());
+  upper_counts_.resize(pivots_.size());
+  for (int row = 0; row < n; ++row) {
+    lower_counts_[row] = matrix.diagonal_[row] - matrix.start_[row];
+    upper_counts_[row] = matrix.start_[row + 1] - matrix.diagonal_[row] - 1;
+    for (int k = matrix.start_[row]; k < matrix.diagonal_[row]; ++k)
+      lower_.push_back({factors[k], matrix.column_[k]});
+  }
+  for (int row = n - 1; row >= 0; --row) {
+    for (int k = matrix.diagonal_[row] + 1; k < matrix.start_[row + 1]; ++k)
+      upper_.push_back({factors[k], matrix.column_[k]});
+  }
 }
 
 void BlockFactors::solve(const BlockRows::Vector& b, BlockRows::Vector& x) const {
-  const BlockRows& m = *matrix_;
+  const int n = static_cast<int>(pivots_.size());
   x.resize(b.size());
-  // Single precision ends at 1e-38, below what residuals may come to.
-  const double size = b.cwiseAbs().maxCoeff();
-  if (!(size > 0)) {
-    x.setZero();
-    return;
+  Eigen::Matrix<double, kSize, 1> sum;
+  const Entry* next = lower_.data();
+  for (int row = 0; row < n; ++row) {
+    sum = b.segment<kSize>(row * kSize);
+    for (const Entry* const end = next + lower_counts_[row]; next != end; ++next)
+      sum.noalias() -= next->block * x.segment<kSize>(next->column * kSize);
+    x.segment<kSize>(row * kSize) = sum;
   }
-  for (int row = 0; row < m.rows(); ++row) {
-    Part sum = (b.segment<kSize>(row * kSize) / size).cast<float>();
-    for (int k = m.start_[row]; k < m.diagonal_[row]; ++k)
-      sum.noalias() -= factors_[k] * parts_[m.column_[k]];
-    parts_[row] = sum;
-  }
-  for (int row = m.rows() - 1; row >= 0; --row) {
-    Part sum = parts_[row];
-    for (int k = m.diagonal_[row] + 1; k < m.start_[row + 1]; ++k)
-      sum.noalias() -= factors_[k] * parts_[m.column_[k]];
-    parts_[row] = pivots_[row] * sum;
-    x.segment<kSize>(row * kSize) = size * parts_[row].cast<double>();
+  next = upper_.data();
+  for (int row = n - 1; row >= 0; --row) {
+    sum = x.segment<kSize>(row * kSize);
+    for (const Entry* const end = next + upper_counts_[row]; next != end; ++next)
+      sum.noalias() -= next->block * x.segment<kSize>(next->column * kSize);
+    x.segment<kSize>(row * kSize).noalias() = pivots_[row] * sum;
   }
 }
 

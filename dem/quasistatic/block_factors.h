@@ -36,7 +36,7 @@ class BlockRows {
   std::vector<Block> blocks_;
 };
 
-/// Incomplete factors L U with the pattern of the matrix, in single precision.
+/// Incomplete factors L U with the pattern of the matrix.
 class BlockFactors {
  public:
   /// `matrix` must live, with this pattern, until the last solve. A pivot that is singular is
@@ -46,13 +46,15 @@ class BlockFactors {
   void solve(const BlockRows::Vector& b, BlockRows::Vector& x) const;
 
  private:
-  using Block = Eigen::Matrix<float, BlockRows::kSize, BlockRows::kSize>;
-  using Part = Eigen::Matrix<float, BlockRows::kSize, 1>;
-
-  const BlockRows* matrix_ = nullptr;
-  std::vector<Block> factors_;  // of L left of the diagonal, of U right of it
-  std::vector<Block> pivots_;   // inverse
-  mutable std::vector<Part> parts_;
+  struct Entry {
+    BlockRows::Block block;
+    int column;
+  };
+  // The blocks of L, row by row, and of U, from the last row to the first: in the order in which
+  // solve() meets them.
+  std::vector<Entry> lower_, upper_;
+  std::vector<int> lower_counts_, upper_counts_;  // of each row
+  std::vector<BlockRows::Block> pivots_;          // inverse
 };
 
 }  // namespace grainfield::dem
