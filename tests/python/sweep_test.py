@@ -31,7 +31,7 @@ def swept(case, tmp_path_factory):
 
 def test_members_are_runs_of_the_program(case, swept, tmp_path):
     assert list(swept) == ["friction_0.2", "friction_0.5"] and swept.settings["friction_0.5"] == {"material.friction": 0.5}
-    program("run", case, "--set", "ensemble.realizations=3", "--set", "material.friction=0.5", "-o", tmp_path / "r")
+    program("run", case, "--threads", "1", "--set", "ensemble.realizations=3", "--set", "material.friction=0.5", "-o", tmp_path / "r")
     same_summary(swept["friction_0.5"].summary, json.loads((tmp_path / "r" / "summary.json").read_text()))
     with pytest.raises(KeyError, match="no member friction_1; there are: friction_0.2, friction_0.5"):
         swept["friction_1"]
@@ -63,7 +63,7 @@ def test_figures_are_drawn_with_errors(swept):
 
 def test_what_is_finished_is_taken_and_more_is_added(case, swept):
     before = {name: os.stat(f"{swept.folder}/{name}/summary.json").st_mtime_ns for name in swept}
-    more = gf.sweep(case, {"material.friction": [0.2, 0.5, 0.8]}, realizations=3, folder=swept.folder)
+    more = gf.sweep(case, {"material.friction": [0.2, 0.5, 0.8]}, realizations=3, threads=1, folder=swept.folder)
     assert list(more) == ["friction_0.2", "friction_0.5", "friction_0.8"]
     assert {name: os.stat(f"{swept.folder}/{name}/summary.json").st_mtime_ns for name in before} == before
     other = error_of(lambda: gf.sweep(case, FRICTION, realizations=2, folder=swept.folder))
@@ -87,7 +87,7 @@ def test_ctrl_c_leaves_checkpoints_and_the_same_call_goes_on(case, swept, tmp_pa
         gf.sweep(case, FRICTION, **slow)
     assert all(folder.is_dir() and not (folder.parent / "summary.json").exists() for folder in both)
     resumed = gf.sweep(case, FRICTION, **slow)
-    program("run", case, "--set", "load.ramp_time=0.5", "--set", "ensemble.realizations=2",
+    program("run", case, "--threads", "1", "--set", "load.ramp_time=0.5", "--set", "ensemble.realizations=2",
             "--set", "material.friction=0.2", "-o", tmp_path / "r")
     same_summary(resumed["friction_0.2"].summary, json.loads((tmp_path / "r" / "summary.json").read_text()))
 
@@ -101,7 +101,7 @@ def test_combinations_and_executors(case, tmp_path):
     assert table["packing.rows"].tolist() == [3, 4] and np.isnan(table["dem.grains_error"]).all()
     assert table["dem.grains"][0] < table["dem.grains"][1]
     pairs = [{"packing.rows": 3, "load.force": 1.0}, {"packing.rows": 4, "load.force": 2.0}]
-    assert list(gf.sweep(case, pairs, realizations=1, folder=tmp_path / "p")) == ["rows_3,force_1.0", "rows_4,force_2.0"]
+    assert list(gf.sweep(case, pairs, realizations=1, threads=1, folder=tmp_path / "p")) == ["rows_3,force_1.0", "rows_4,force_2.0"]
 
 
 def test_mistakes_are_told_before_anything_runs(case, tmp_path):
@@ -125,6 +125,6 @@ def test_mistakes_are_told_before_anything_runs(case, tmp_path):
 
 def test_a_member_that_fails_lets_the_others_finish(case, tmp_path):
     with pytest.raises(RuntimeError, match="^max_time_1e-06: .*rest") as error:
-        gf.sweep(case, {"rest.max_time": [1e-6, 20.0]}, realizations=1, folder=tmp_path / "s")
+        gf.sweep(case, {"rest.max_time": [1e-6, 20.0]}, realizations=1, threads=1, folder=tmp_path / "s")
     assert error.value.__cause__ is not None
     assert (tmp_path / "s" / "max_time_20.0" / "summary.json").exists()
