@@ -13,7 +13,10 @@ FIELD = gf.average(HEAPS, frame="heap", cuts=[0.1, 0.3])
 def copied(name):
     """The registry's stress in the scale of a model of one's own."""
     def function(points, facts, **constants):
-        return gf.model(name, phi_deg=facts.slope, rho_g=1, **constants)(points)
+        try:
+            return gf.model(name, phi_deg=facts.slope, rho_g=1, **constants)(points)
+        except ValueError:  # eta and mu are impossible together
+            return None
 
     function.__doc__ = "oriented stress linearity again"
     return function
@@ -21,7 +24,7 @@ def copied(name):
 
 @pytest.fixture(scope="module")
 def again():
-    return gf.Model(copied("osl"), parameters={"eta": (0.1, 2.0), "mu": (-1.5, 0.7, 0.0)}, subject="heap", name="again")
+    return gf.Model(copied("osl"), parameters={"eta": (0.1, 2.0), "mu": (-1.5, 1.5, 0.0)}, subject="heap", name="again")
 
 
 def test_a_copy_of_osl_has_the_stress_of_osl(again):
@@ -55,6 +58,8 @@ def test_it_is_compared_as_osl_is(again):
     assert measures["mine"]["rel_l2"] == pytest.approx(measures["osl"]["rel_l2"], rel=1e-6)
     with pytest.raises(RuntimeError, match=r"model again: eta has no value; again\(eta=...\) gives one"):
         gf.compare(FIELD, again)
+    with pytest.raises(ValueError, match="nothing to compare"):  # impossible values have no stress
+        gf.compare(FIELD, again(eta=2, mu=1.5))
 
 
 def test_layers_are_in_units_of_load_and_depth():

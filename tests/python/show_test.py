@@ -26,6 +26,7 @@ def test_packings_and_fields_show_what_they_hold():
     assert rows["walls"] == "floor" and "Packing, 2D" in rows
     field = gf.average(HEAPS, frame="heap", grid=(5, 4))
     assert "20 points (5 x 4), 2 realizations" in field._repr_html_()
+    assert field.gaps and all(line in ElementTree.fromstring(f"<p>{field._repr_html_()}</p>").itertext() for line in field.gaps)
     rows = {row[0]: row[1:] for row in cells(field._repr_html_())}
     assert list(rows)[1:] == field.columns
     unit, least, largest, errors = rows["sigma_yy"]

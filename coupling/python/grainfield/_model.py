@@ -49,7 +49,8 @@ class Model:
     function(points, facts, **parameters) returns stresses (n, 3): xx, yy, xy, in space (n, 6): xx, yy, zz,
     yz, xz, xy, tension positive, in the specimen's own scale and axes. subject "heap": points over h, apex
     at (0, 0), the inside below it, stresses over rho_g h. "layer": points over h, load at (0, 0), base at -1,
-    stresses over F/h, in space over F/h^2. It gets points inside alone, n of them; facts: a Facts.
+    stresses over F/h, in space over F/h^2. It gets points inside alone, n of them; facts: a Facts. It returns
+    None for parameters that are impossible together: a fit keeps away from these.
 
     parameters: {name: (least, most)} or (least, most, default). dim: 2 or 3; fits are of the plane.
     calls: how often it was called, a few hundred to some thousands of times in a fit, each for all points.
@@ -94,7 +95,7 @@ class Model:
         return model(self.name, **settings)
 
     def _stress(self, points: np.ndarray, settings: Mapping[str, str]) -> np.ndarray:
-        """Stresses in N/m (Pa) at points in m, nan outside of the specimen."""
+        """Stresses in N/m (Pa) at points in m, nan outside of the specimen and where there are none."""
         numbers = {key: float(text) for key, text in settings.items()}
         optional = () if self.subject == "layer" else ("left_deg", "right_deg")
         missing = [key for key, value in numbers.items() if np.isnan(value) and key not in optional]
@@ -111,7 +112,9 @@ class Model:
         inside = self._inside(scaled, facts)
         out = np.full((len(points), 3 if self.dim == 2 else 6), np.nan)
         if inside.any():
-            out[inside] = unit * self._asked(scaled[inside], facts, {key: numbers[key] for key in self.parameters})
+            made = self._asked(scaled[inside], facts, {key: numbers[key] for key in self.parameters})
+            if made is not None:
+                out[inside] = unit * made
         return out
 
     def _inside(self, points: np.ndarray, facts: Facts) -> np.ndarray:
@@ -123,13 +126,16 @@ class Model:
         reach = {side: -up / np.tan(np.radians(slope)) + _EDGE for side, slope in (("left", facts.left), ("right", facts.right))}
         return (points[:, 0] >= -reach["left"]) & (points[:, 0] <= reach["right"])
 
-    def _asked(self, points: np.ndarray, facts: Facts, values: Mapping[str, float]) -> np.ndarray:
+    def _asked(self, points: np.ndarray, facts: Facts, values: Mapping[str, float]) -> np.ndarray | None:
         with self._lock:
             self.calls += 1
         shape = (len(points), 3 if self.dim == 2 else 6)
         told = "".join(f", {key} = {value:g}" for key, value in values.items())
         try:
-            made = np.asarray(self.function(points.copy(), facts, **values), float)
+            made = self.function(points.copy(), facts, **values)
+            if made is None:
+                return None
+            made = np.asarray(made, float)
         except Exception as error:
             where = self._first_failure(points, facts, values)
             raise RuntimeError(f"model {self.name}: {type(error).__name__}: {error}{where}{told}") from error

@@ -47,7 +47,8 @@ def field(of: Any) -> str:
     title = f"Field {of.name}: {len(of)} points{shape}, {of.realizations} realization{'s' * (of.realizations != 1)}"
     rows = [(name, of.units[name], *extent(of[name]), "yes" if of.error(name) is not None else "no")
             for name in of.columns]
-    return paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+    shown = paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+    return shown + "".join(paragraph(line) for line in of.gaps)
 
 
 def columns(of: Any) -> str:
