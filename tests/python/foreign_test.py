@@ -128,6 +128,12 @@ def test_check_says_what_a_case_would_compute():
         gf.check("sample-biaxial", set={"material.young": 2e7})
 
 
+def test_samples_are_those_of_the_program():
+    listed = program("samples").splitlines()
+    assert [line.split()[0] for line in listed[:-1]] == list(gf.samples())
+    assert len(gf.read(gf.samples()["heaps.h5"])) == 4 and "value" in gf.read(gf.samples()["measured.csv"])
+
+
 def test_keys_are_a_table():
     every = gf.keys()
     rows = {row["key"]: row for row in every.rows()}

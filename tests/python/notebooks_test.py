@@ -25,9 +25,8 @@ def code_of(book):
 
 
 def run(name, folder, monkeypatch):
-    """The executed notebook, at a copy of its place, and all it prints."""
-    shutil.copytree(EXAMPLES, folder / "docs/examples")
-    shutil.copytree(ROOT / "cases/samples", folder / "cases/samples")
+    """The executed notebook, at a copy of its folder, and all it prints."""
+    shutil.copytree(EXAMPLES, folder / "examples", ignore=shutil.ignore_patterns("results"))
     monkeypatch.setenv("PYTHONPATH", str(Path(gf.__file__).parents[1]))
     monkeypatch.setenv("GRAINFIELD_PROGRAM", PROGRAM)
     monkeypatch.setenv("IPYTHONDIR", str(folder))
@@ -39,7 +38,7 @@ def run(name, folder, monkeypatch):
         '{"display_name": "Python 3", "language": "python", "argv": ["%s", "-m", "ipykernel_launcher", "-f", '
         '"{connection_file}"]}' % sys.executable)
     book = nbformat.read(EXAMPLES / f"{name}.ipynb", as_version=4)
-    execute(timeout=120, kernel_name="python3").preprocess(book, {"metadata": {"path": str(folder / "docs/examples")}})
+    execute(timeout=120, kernel_name="python3").preprocess(book, {"metadata": {"path": str(folder / "examples")}})
     outputs = [output for cell in code_of(book) for output in cell.outputs]
     text = "".join(output.get("text", "") + "".join(output.get("data", {}).get("text/plain", "")) for output in outputs)
     pictures = sum("image/png" in output.get("data", {}) for output in outputs)

@@ -13,7 +13,7 @@ line. SI units; in 2D density is kg/m2, stiffness and stress N/m. Stress is tens
 docs/python.md tells more.
 """
 
-from ._cases import cases, check, keys
+from ._cases import cases, check, keys, samples
 from ._commands import (
     SetModel,
     average,
@@ -68,6 +68,7 @@ __all__ = [
     "packing",
     "read",
     "run",
+    "samples",
     "strain",
     "structure",
     "sweep",

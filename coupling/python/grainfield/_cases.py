@@ -1,4 +1,4 @@
-"""cases, check and keys: what a case may say."""
+"""cases, samples, check and keys: what is shipped, and what a case may say."""
 
 from __future__ import annotations
 
@@ -16,6 +16,12 @@ from ._data import Table
 def cases() -> dict[str, str]:
     """The shipped cases: name to file."""
     return {os.path.basename(path)[: -len(".toml")]: path for path in _core.cases()}
+
+
+def samples() -> dict[str, str]:
+    """The shipped samples to try things on: name to file, such as gf.read(gf.samples()["heaps.h5"])."""
+    folder = os.path.join(os.path.dirname(_core.cases()[0]), "samples")
+    return {name: os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith((".h5", ".csv"))}
 
 
 def check(
