@@ -115,7 +115,7 @@ class ManyRealizations {
   }
 
   /// Fewest realizations of which 80 in 100 draws out of `among` distinguish the two models;
-  /// infinite: more than half of them.
+  /// infinite: more than three quarters of them.
   double needed(std::vector<int> among, const std::vector<std::size_t>& two, int tries,
                 dem::Random& random) const {
     const auto found = [&](int size) {
@@ -125,7 +125,7 @@ class ManyRealizations {
       }
       return count >= 0.8 * tries;
     };
-    const int most = static_cast<int>(among.size()) / 2;
+    const int most = static_cast<int>(3 * among.size()) / 4;
     int low = 2, high = 4;
     while (!found(high)) {
       low = high;
