@@ -185,14 +185,19 @@ std::string power_line(const Judgement& j) {
         j.best, j.rival);
   }
   if (rival->distinguishable == Answer::yes) return "";
-  if (std::isinf(p.realizations)) {
+  const std::string what =
+      fmt::format("To distinguish {} and {} at 95 % with a power of 80 % takes", j.best, j.rival);
+  if (std::isinf(p.least)) {
     return fmt::format("{} and {} are equally far from the {}: no number of {} is foreseen.",
                        j.best, j.rival, subject(j), many(j));
   }
-  return fmt::format(
-      "To distinguish {} and {} at 95 % with a power of 80 % takes about {:.0f} {} ({} within one "
-      "standard error).",
-      j.best, j.rival, std::ceil(p.realizations), many(j), range_of(p));
+  if (std::isinf(p.realizations)) {
+    return fmt::format(
+        "{} {} {}: their difference here is within chance, which sets no upper limit.", what,
+        range_of(p), many(j));
+  }
+  return fmt::format("{} about {:.0f} {} ({} in {:.0f} of 100 ensembles).", what,
+                     std::ceil(p.realizations), many(j), range_of(p), 100 * kForesight);
 }
 
 // What the judgement says at other kernel widths: a line for each kind of answer.
@@ -321,14 +326,16 @@ std::vector<std::string> note_lines(const Judgement& j) {
 
 JudgementTable power_table(const Judgement& j) {
   JudgementTable out;
-  out.header = {"model", many(j) + " needed", "within one standard error", "distinguishable now"};
+  out.header = {"model", many(j) + " needed",
+                fmt::format("in {:.0f} of 100 ensembles", 100 * kForesight), "distinguishable now"};
   for (const JudgedModel& m : j.models) {
     if (m.name == j.best) continue;
     const Power& p = m.power;
     const std::string number = p.same                       ? "none: the same stress here"
                                : std::isnan(p.realizations) ? "unknown"
+                               : std::isinf(p.least)        ? "none is foreseen"
                                : std::isinf(p.realizations)
-                                   ? "none is foreseen"
+                                   ? "no upper limit"
                                    : fmt::format("{:.0f}", std::ceil(p.realizations));
     const bool shown = !p.same && std::isfinite(p.least);
     out.rows.push_back({m.label, number, shown ? range_of(p) : "-", text_of(m.distinguishable)});

@@ -48,14 +48,18 @@ TEST(LayerVerdictRun, FromCaseToReport) {
   EXPECT_EQ(again.variants[1].keys, std::vector<std::string>{"packing.jitter=0.04"});
   EXPECT_EQ(write_case(again), read_text(folder / "out/case.toml"));
 
-  // The same layers from files: the same fits.
+  // The same layers from files: the same fits, also with other kernels beside its own.
   const std::string from =
       folder.write("from.toml", tiny_verdict("[variant.uneven.grains]\nfiles = [\"" +
                                              (folder / "out/uneven/snapshots.h5") + "\"]\n"));
   const Output second =
-      program("run " + from + " -o " + (folder / "from") + " --set sweep.values=[\\\"uneven\\\"]");
+      program("run " + from + " -o " + (folder / "from") +
+              " --set sweep.values=[\\\"uneven\\\"] --set 'verdict.kernel=[1, 40]'");
   ASSERT_EQ(second.code, 0) << second.err;
   EXPECT_EQ(read_text(folder / "from/uneven/fits.csv"), read_text(folder / "out/uneven/fits.csv"));
+  const std::string verdict = read_text(folder / "from/uneven/verdict.md");
+  EXPECT_THAT(verdict, HasSubstr("The verdict is the same at kernel widths of 1 diameters."));
+  EXPECT_THAT(verdict, HasSubstr("Kernel widths of 40 diameters leave too few values."));
 }
 
 TEST(LayerVerdictRun, NoSpreadNoVerdict) {
