@@ -95,7 +95,7 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
         elif array.ndim == 2 and vectors:
             near = difflib.get_close_matches(name, vectors, 1, 0)[0]
             raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: ({len(array)},); "
-                             f"nearest: {near}, which takes (n, {dim})")
+                             f"did you mean {near}, which takes (n, {dim})?")
         elif array.dtype.kind in "US" or array.dtype == object:
             out[name] = [str(word) for word in value]
         elif name in _IDS:
@@ -152,7 +152,7 @@ def packing(
     for name in columns:
         near = difflib.get_close_matches(name, _ARGUMENTS, 1, 0.85)
         if near:
-            raise ValueError(f"packing: unknown argument {name}; nearest: {near[0]}")
+            raise ValueError(f"packing: unknown argument {name}; did you mean {near[0]}?")
     for name, value in (("y", y), ("z", z), ("radius", radius)):
         if value is not None and np.ndim(value) > 0 and len(value) != n:
             raise ValueError(f"packing: found {len(value)} values of {name} and {n} of x, allowed: as many")
