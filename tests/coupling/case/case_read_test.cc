@@ -1,8 +1,10 @@
 // Reading case files: values, overrides, and one clear line for every mistake.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
+#include <sstream>
 
 #include "coupling/case/keys.h"
 #include "coupling/run/averaging_setup.h"
@@ -18,6 +20,8 @@ using ::testing::EndsWith;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::Output;
+using testing::program;
 
 // What a run keeps for --resume is read again, whatever the title.
 TEST(ReadCase, TextsAreWrittenSoThatTheyAreReadAgain) {
@@ -212,7 +216,7 @@ realisations = 2
       {6, "compare.models: no model 'layr'; did you mean 'layer'?"},
       {9, "model.flat.nuu: "},
       {10, "model.flat.base: "},
-      {12, "pile.grains: "},
+      {12, "source.grains: has no meaning for study"},
       {14, "ensemble.realisations: unknown key; did you mean ensemble.realizations"}};
   for (const std::string& command : {"check " + file, "run " + file + " -o " + (folder / "out")}) {
     const Output out = program(command + " --set material.frction=0.1");
