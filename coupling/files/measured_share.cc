@@ -224,7 +224,7 @@ std::string share_doubt(const CarriedShare& s) {
   if (!far && !clear) return "";
   const bool weight = s.carried == "the weight above them";
   std::string out = share_text(s);
-  if (clear) out += fmt::format(", {:.2g} errors off", off / s.error);
+  if (clear) out += fmt::format(", {:.{}f} errors off", off / s.error, off < 10 * s.error ? 1 : 0);
   out += weight ? ": are the units, --height, --slope and --rho-g right?"
                 : ": are the units, --load and --dim right, and do the places reach far enough?";
   if (!(s.share > 0)) return out;
