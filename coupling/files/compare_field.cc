@@ -15,6 +15,7 @@
 #include "coupling/files/measured_share.h"
 #include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
+#include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
 #include "coupling/output/field_io.h"
@@ -268,15 +269,19 @@ void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std:
   }
 }
 
-void add_shares(const std::vector<SceneField>& scenes, CompareOutcome& out) {
+// What measured values carry, as lines and as doubts of the verdict.
+std::vector<std::string> carried_lines(const std::vector<SceneField>& scenes,
+                                       Judgement& judgement) {
+  std::vector<std::string> out;
   for (const SceneField& scene : scenes) {
     const auto share = carried_share(scene.field);
     if (!share) continue;
-    out.carried.push_back(share_text(*share));
-    if (std::string doubt = share_doubt(*share); !doubt.empty()) {
-      out.carried_doubts.push_back(std::move(doubt));
+    out.push_back(share_text(*share));
+    if (const std::string doubt = share_doubt(*share); !doubt.empty()) {
+      judgement.doubts.push_back(as_sentence(doubt));
     }
   }
+  return out;
 }
 
 }  // namespace
@@ -306,7 +311,6 @@ CompareOutcome compare_field(const CompareRequest& request) {
   const SceneField& scene = scenes.front();
   const bool measured = scene.field.is_measured();
   CompareOutcome out;
-  if (measured) add_shares(scenes, out);
   RunFacts facts = scene.facts;
   facts.depth = lines.front().profile.depth;
   std::vector<PointSet> sets;
@@ -364,6 +368,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   Comparison comparison = compared(scene, std::move(profiles), std::move(models));
   if (scene.scene == Scene::response) comparison.judgement.noun = "layer";
   if (heap) comparison.judgement.noun = facts.dim == 3 ? "cone" : "pile";
+  if (measured) out.carried = carried_lines(scenes, comparison.judgement);
   if (kernels.size() > 1) {
     comparison.judgement.notes.push_back(
         fmt::format("Fields are seen through different kernels, models through each one's own: {}.",

@@ -98,7 +98,9 @@ bool pair_with_errors(const FitSetup& setup, const Eigen::MatrixXd& places, Eige
 Observations observe_heap_field(const FitSetup& setup, const Field& whole,
                                 const std::string& where) {
   const Field field = without_realizations(whole, setup.leave_out, where);
-  if (field.points.cols() != 2) refuse_field(where, "is 3D; fits of heaps need a 2D field");
+  if (field.points.cols() != 2) {
+    refuse_field(where, fmt::format("is 3D; fits of heaps need a 2D field; {}", kCompareCones));
+  }
   std::vector<std::string> missing;
   std::vector<const Column*> columns;
   bool single = true;

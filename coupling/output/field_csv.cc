@@ -22,6 +22,24 @@ bool over_height(const Field& field) {
          frame->second.find("lengths over its height") != std::string::npos;
 }
 
+// A comment: the frame of the points, how the values were averaged, over how many realizations.
+std::string origin_of(const Field& field) {
+  const auto told = [&](const char* name) {
+    const auto at = field.attributes.find(name);
+    return at == field.attributes.end() ? std::string() : at->second;
+  };
+  if (told("frame").empty()) return "";
+  // The option's word for the models' frame.
+  const std::string models = "models:", frame = told("frame");
+  std::string out =
+      "# frame " + (frame.starts_with(models) ? "layer:" + frame.substr(models.size()) : frame);
+  if (!told("method").empty()) out += "; " + told("method");
+  if (!told("kernel").empty()) out += ", kernel " + told("kernel");
+  if (!told("width").empty()) out += ", width " + told("width") + " m";
+  return fmt::format("{}; {} realization{}; stresses tension positive\n", out, field.realizations,
+                     field.realizations == 1 ? "" : "s");
+}
+
 bool has_error(const Field& field, const Column& column) {
   return column.error.size() > 0 &&
          (field.realizations > 1 || column.error.array().isFinite().any());
@@ -32,12 +50,14 @@ bool has_error(const Field& field, const Column& column) {
 std::string field_csv(const Field& field) {
   // As import-field reads them: the unit in brackets behind the name.
   const std::string length = over_height(field) ? "h" : "m";
-  std::string out;
+  std::string out = origin_of(field);
+  std::string names;
   for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
                                      : on_rings(field)        ? "rz"
                                                               : "xy")) {
-    out += fmt::format("{}{} ({})", out.empty() ? "" : ",", axis, length);
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ",", axis, length);
   }
+  out += names;
   for (const Column& column : field.columns) {
     const bool plain = column.unit.empty() || column.unit == "1" || column.unit == "-";
     const std::string unit = plain ? "" : fmt::format(" ({})", column.unit);

@@ -98,7 +98,7 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
         elif array.ndim != 1:
             near = difflib.get_close_matches(name, vectors, 1) if array.shape[1:] == (dim,) else []
             raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: (n,)"
-                             + "".join(f"; nearest: {other}, which takes (n, {dim})" for other in near))
+                             + "".join(f"; did you mean {other}, which takes (n, {dim})?" for other in near))
         first = first or (name, len(array))
         if len(array) != first[1]:
             raise ValueError(f"{table}: found {len(array)} values of {name} and {first[1]} of {first[0]}, allowed: as many")
@@ -161,7 +161,7 @@ def packing(
     for name in columns:
         near = difflib.get_close_matches(name, _ARGUMENTS, 1, 0.85)
         if near:
-            raise ValueError(f"packing: unknown argument {name}; nearest: {near[0]}")
+            raise ValueError(f"packing: unknown argument {name}; did you mean {near[0]}?")
     def each(value: Any) -> Any:
         return np.full(n, value) if np.ndim(value) == 0 else value
 

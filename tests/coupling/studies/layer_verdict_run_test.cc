@@ -76,7 +76,7 @@ TEST(LayerVerdictRun, NoSpreadNoVerdict) {
 TEST(LayerVerdictRun, MistakesAreNamed) {
   const Folder folder;
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.packing]\njiter = 0.1\n")),
-              HasSubstr("packing.jiter: unknown key; nearest: packing.jitter"));
+              HasSubstr("packing.jiter: unknown key; did you mean packing.jitter"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.packing]\njitter = 2\n")),
               HasSubstr("packing.jitter: found 2"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.sweep]\nkey = \"x\"\n")),
@@ -84,7 +84,7 @@ TEST(LayerVerdictRun, MistakesAreNamed) {
   std::string text = tiny_verdict();
   text.replace(text.find("\"uneven\"]"), 9, "\"unevn\"]");
   EXPECT_THAT(refusal(folder, text),
-              HasSubstr("found \"unevn\", allowed: even, uneven; nearest: uneven"));
+              HasSubstr("found \"unevn\", allowed: even, uneven; did you mean uneven"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[verdict.models]\n")), HasSubstr("verdict"));
   text = tiny_verdict();
   text.replace(text.find("\"flamant\""), 9, "\"flamand\"");
