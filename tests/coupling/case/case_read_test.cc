@@ -159,6 +159,20 @@ TEST(ReadCase, AnEmptyVariantIsTheCaseAsItIs) {
             2U);
 }
 
+TEST(CaseErrors, AllMistakesAtOnce) {
+  EXPECT_EQ(
+      complaint("tittle = \"a\"\n[material]\nfrction = 0.5\nnormal_stifness = 1\n"),
+      "x.toml:1: tittle: unknown key; nearest: title; x.toml:3: material.frction: unknown key; "
+      "nearest: material.friction; x.toml:4: material.normal_stifness: unknown key; nearest: "
+      "material.normal_stiffness");
+  // A section of an unknown name is told once for all of its keys.
+  EXPECT_EQ(complaint("[materiel]\nfriction = 0.5\ndensity = 1\n"),
+            "x.toml:2: materiel: unknown section; nearest: material");
+  std::string many = "[material]\n";
+  for (char c = 'a'; c < 'k'; ++c) many += fmt::format("fricti{} = 1\n", c);
+  EXPECT_THAT(complaint(many), EndsWith("; and 2 more"));
+}
+
 TEST(CaseErrors, UnknownNames) {
   EXPECT_EQ(complaint("\n[material]\nfrction = 0.5\n"),
             "x.toml:3: material.frction: unknown key; nearest: material.friction");
