@@ -203,7 +203,8 @@ void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& c
 }
 
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
-  if (!row.empty(c.wall)) {
+  const std::string_view told = c.wall ? row.text(c.wall) : std::string_view();
+  if (!row.empty(c.wall) && told != "nan" && told != "NaN") {
     const std::int64_t wall = wall_of(row.text(c.wall));
     if (wall == 0) refuse_unknown(row, c.wall);
     const auto grain = grain_of(row, c.i, digits);

@@ -37,13 +37,13 @@ bool is_tangential_component(const std::string& plain) {
 
 // "c_p[3]" and three -> "c_p[4]", "c_p[5]", "c_p[6]" where all of them are among `names`.
 std::vector<std::string> names_behind(const std::string& name,
-                                      const std::vector<std::string>& names, int dim) {
+                                      const std::vector<std::string>& names, int count) {
   const std::size_t open = name.rfind('[');
   if (open == std::string::npos || name.back() != ']') return {};
   const auto number = dem::parse_integer(name.substr(open + 1, name.size() - open - 2));
   if (!number) return {};
   std::vector<std::string> out;
-  for (long long k = *number + 1; k <= *number + dim; ++k) {
+  for (long long k = *number + 1; k <= *number + count; ++k) {
     out.push_back(fmt::format("{}[{}]", name.substr(0, open), k));
     if (std::find(names.begin(), names.end(), out.back()) == names.end()) return {};
   }
@@ -88,8 +88,9 @@ void Assembly::find_parts_beside(const ForeignTable& table, const TableColumns& 
   }
   // LAMMPS' pair/local: the normal part, and behind it the tangential one.
   if (chosen && format_.name == "lammps") {
-    const std::string last = theirs(dim == 3 ? c.force.z : c.force.y);
-    const std::vector<std::string> behind = names_behind(last, columns.untaken(), dim);
+    const std::string last = theirs(c.force.z ? c.force.z : c.force.y);
+    const std::vector<std::string> behind =
+        names_behind(last, columns.untaken(), c.force.z ? 3 : 2);
     if (!behind.empty())
       out_.warnings.push_back(fmt::format(
           "{}:{}: {} to {} are taken as the whole force: of compute pair/local fx fy fz they are "

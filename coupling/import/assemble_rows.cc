@@ -56,6 +56,7 @@ void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& col
   bool plane = false;
   for (const char* unit : {"m2", "kg/m2", "kg/m"})
     plane = plane || column.unit->kind == parse_unit(unit)->kind;
+  if (column.name == "mass" && !plane) return;  // kg are those of the plane, too
   (plane ? plane_units_ : space_units_)
       .push_back(fmt::format("{}:{}: column {}: found \"{}\"", table.file, table.header_line,
                              column.name,

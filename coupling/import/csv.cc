@@ -158,7 +158,8 @@ class HeaderSearch {
     const std::size_t none = values_.size();
     std::size_t names = most_known(false);
     if (names == none) names = most_known(true);
-    if (names == none) names = words_before_numbers();
+    const bool any_row = std::find(rows_.begin(), rows_.end(), true) != rows_.end();
+    if (names == none && (any_row || head_.lines.size() < kHead)) names = words_before_numbers();
     if (names == none) refuse();
     const std::size_t units = units_line(names);
     table.columns = std::make_shared<const std::vector<std::string>>(
@@ -229,7 +230,7 @@ class HeaderSearch {
 
   [[noreturn]] void refuse() const {
     const auto& lines = head_.lines;
-    if (lines.size() == kHead && std::none_of(rows_.begin(), rows_.end(), [](bool r) { return r; }))
+    if (lines.size() == kHead && std::find(rows_.begin(), rows_.end(), true) == rows_.end())
       throw std::invalid_argument(fmt::format(
           "{}: no line of names among its first {} lines, expected one such as id,x,y,radius,mass; "
           "take out the lines before it",

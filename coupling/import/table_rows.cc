@@ -35,10 +35,8 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
   if (!column || column.constant) return !column;
   const std::string_view told = text(column);
-  // Words of R, pandas and numpy for an empty cell.
-  for (const std::string_view none : {"", "NA", "<NA>", "None", "nan", "NaN", "NAN"})
-    if (told == none) return true;
-  return false;
+  // Words of R and pandas for an empty cell; nan may be what a program computed.
+  return told.empty() || told == "NA" || told == "<NA>" || told == "None";
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
@@ -81,10 +79,13 @@ double ForeignRow::number(const ForeignColumn& column) const {
   if (!value || !std::isfinite(*value)) {
     const std::string_view told = text(column);
     const bool comma = array == nullptr && std::count(told.begin(), told.end(), ',') == 1;
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number{}", name_of(column), told,
-                       comma ? ": is the comma one of decimals or of thousands? Decimal commas are "
-                               "read where no number of the table has a point"
-                             : ""));
+    const bool none = array == nullptr && (told == "nan" || told == "NaN");
+    refuse(fmt::format(
+        "column {}: found \"{}\", expected a finite number{}", name_of(column), told,
+        comma  ? ": is the comma one of decimals or of thousands? Decimal commas are read where no "
+                 "number of the table has a point"
+        : none ? "; a column that may be missing may be empty"
+               : ""));
   }
   return *value;
 }

@@ -66,7 +66,10 @@ std::string foreign_unit_in(const std::string& line) {
       word += ch;
       continue;
     }
-    if (word.empty()) continue;
+    if (word.empty()) {
+      number = number && ch == ' ';  // "Packing 3 (cm)" is no quantity
+      continue;
+    }
     if (word.back() == '.') word.pop_back();
     if (!number && is_foreign_unit(word)) return word;
     number = dem::parse_number(word).has_value();

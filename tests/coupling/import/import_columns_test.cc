@@ -178,7 +178,7 @@ TEST_F(ImportColumns, TheNormalPartOfALammpsPairAsTheWholeForce) {
               write("c.dump", entries(0, "1 2 -1 0 0 0 0.3 0\n",
                                       "id1 id2 c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]"))},
              [](ImportOptions& o) { o.columns = {"fx,fy,fz=c_p[1..3]"}; });
-  EXPECT_THAT(warnings(out), Contains(HasSubstr("p1 p2 p3 (here c_p[4..5]?)")));
+  EXPECT_THAT(warnings(out), Contains(HasSubstr("p1 p2 p3 (here c_p[4..6]?)")));
 }
 
 TEST_F(ImportColumns, SizesOfForcesOnRoundGrainsNeedNoNormal) {

@@ -122,13 +122,6 @@ TEST_F(ImportSigns, ASignOfNumberInTheLastValue) {
   EXPECT_EQ(radius("id,x,y,density,radius\n1,0,0,2500,5 #first\n2,10,0,2500,5\n"), 5);
 }
 
-TEST_F(ImportSigns, NotANumberIsEmptyInColumnsThatMayBe) {
-  const ImportedSnapshot one =
-      only(grains("id,x,y,radius,mass,vx\n1,0,0,1,1,nan\n2,0,1.9,1,1,NaN\n"));
-  EXPECT_EQ(one.snapshot.grains.front().velocity.x(), 0);
-  EXPECT_THAT(grains("id,x,y,radius,mass\n1,nan,0,1,1\n").refused, HasSubstr("found \"nan\""));
-}
-
 TEST_F(ImportSigns, ForcesAndMassesPerLengthInThePlane) {
   const std::string g =
       write("g.csv", "id,x,y,radius,mass (kg/m)\n1,0,0.01,0.01,1\n2,0.0199,0.01,0.01,1\n");
