@@ -1,6 +1,7 @@
 #include "coupling/case/case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -27,8 +28,26 @@ Assignment without_quick(Assignment a) {
   return a;
 }
 
+// All mistakes at once; a section of an unknown name counts once, whatever its keys.
 void put(Draft& draft, const std::vector<Assignment>& assignments) {
-  for (const auto& a : assignments) apply(draft, a);
+  constexpr std::size_t most = 8;
+  std::vector<std::string> mistakes, seen;
+  for (const auto& a : assignments) {
+    try {
+      apply(draft, a);
+    } catch (const std::invalid_argument& e) {
+      const std::string text = e.what();
+      const std::string what = text.starts_with(a.origin) ? text.substr(a.origin.size()) : text;
+      if (std::find(seen.begin(), seen.end(), what) != seen.end()) continue;
+      seen.push_back(what);
+      mistakes.push_back(text);
+    }
+  }
+  if (mistakes.empty()) return;
+  const std::size_t left = mistakes.size() - std::min(mistakes.size(), most);
+  mistakes.resize(mistakes.size() - left);
+  throw std::invalid_argument(fmt::format("{}{}", fmt::join(mistakes, "; "),
+                                          left == 0 ? "" : fmt::format("; and {} more", left)));
 }
 
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }

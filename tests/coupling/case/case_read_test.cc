@@ -18,6 +18,7 @@ using ::testing::EndsWith;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 // What a run keeps for --resume is read again, whatever the title.
 TEST(ReadCase, TextsAreWrittenSoThatTheyAreReadAgain) {
@@ -157,6 +158,22 @@ TEST(ReadCase, AnEmptyVariantIsTheCaseAsItIs) {
   const Folder folder;
   EXPECT_EQ(sweep_cases(read_case(folder.write("x.toml", write_case(value)), false, {})).size(),
             2U);
+}
+
+TEST(CaseErrors, AllMistakesAtOnce) {
+  const std::string all =
+      complaint("tittle = \"a\"\n[material]\nfrction = 0.5\nnormal_stifness = 1\n");
+  EXPECT_THAT(all, StartsWith("x.toml:1: tittle: unknown key; nearest: title; "));
+  EXPECT_THAT(all,
+              HasSubstr("x.toml:3: material.frction: unknown key; nearest: material.friction; "));
+  EXPECT_THAT(all, EndsWith("x.toml:4: material.normal_stifness: unknown key; nearest: "
+                            "material.normal_stiffness"));
+  // A section of an unknown name is told once for all of its keys.
+  EXPECT_EQ(complaint("[materiel]\nfriction = 0.5\ndensity = 1\n"),
+            "x.toml:2: materiel: unknown section; nearest: material");
+  std::string many = "[material]\n";
+  for (char c = 'a'; c < 'k'; ++c) many += fmt::format("fricti{} = 1\n", c);
+  EXPECT_THAT(complaint(many), EndsWith("; and 2 more"));
 }
 
 TEST(CaseErrors, UnknownNames) {
