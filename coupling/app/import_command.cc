@@ -116,7 +116,8 @@ std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
   return text;
 }
 
-void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnings& repeated) {
+void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnings& repeated,
+          RepeatedWarnings& notes) {
   const dem::Snapshot& s = imported.snapshot;
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
@@ -136,7 +137,8 @@ void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnin
   };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   for (const std::string& text : imported.warnings) warn(text);
-  for (const std::string& text : imported.notes) say("  {}\n", text);
+  for (const std::string& text : imported.notes)
+    if (notes.is_first(imported.group, text)) say("  {}\n", text);
   if (imported.left_out > 0)
     say("  left out: {} contacts across periodic boundaries\n", imported.left_out);
   if (imported.idle > 0)
@@ -250,7 +252,7 @@ void add_import(CLI::App& app, Action& action) {
         if (all > 1 && std::chrono::steady_clock::now() - start > patience)
           progress.show([&] { return fmt::format("{}: {} of {}", phase, done, all); });
       };
-      RepeatedWarnings repeated;
+      RepeatedWarnings repeated, notes;
       import_snapshots(options, [&](ImportedSnapshot&& imported) {
         progress.end();
         std::string& group = imported.group;
@@ -268,7 +270,7 @@ void add_import(CLI::App& app, Action& action) {
         file.write_with([&](const std::string& temporary) {
           dem::write_snapshot(temporary, group, imported.snapshot);
         });
-        show(imported, !options.gravity, repeated);
+        show(imported, !options.gravity, repeated, notes);
       });
       for (const std::string& line : repeated.lines()) note("warning: {}", line);
       file.commit();

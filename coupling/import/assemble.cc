@@ -26,8 +26,8 @@ namespace {
 
 // Median radii from the middle of the packing: a warning, and a refusal.
 constexpr double kFar = 1e6, kTooFar = 1e9;
-// Radii along z that are rounding.
-constexpr double kFlat = 1e-9;
+// Radii along an axis that are rounding, also of numbers with four bytes.
+constexpr double kFlat = 1e-6;
 // Between a volume that is told and that of the radius: what three digits leave.
 constexpr double kSameVolume = 1e-2;
 
@@ -36,22 +36,39 @@ constexpr double kSameVolume = 1e-2;
 void Assembly::settle_dimension() {
   dem::Snapshot& s = out_.snapshot;
   const double z = rows_.front().grain.position.z();
-  // Rounding leaves a plane packing some digits along z.
-  const auto off_plane = [&](const GrainRow& row) {
-    return std::abs(row.grain.position.z() - z) > kFlat * row.grain.radius;
+  // Rounding leaves a plane packing some digits along an axis.
+  const auto off_plane = [&](Eigen::Index axis, double size) {
+    const double first = rows_.front().grain.position[axis];
+    return std::find_if(rows_.begin(), rows_.end(), [&, axis, size](const GrainRow& row) {
+      const double radius = std::max(row.grain.radius, row.grain.axes.maxCoeff());
+      return std::abs(row.grain.position[axis] - first) > size * radius;
+    });
   };
-  const auto other = std::find_if(rows_.begin(), rows_.end(), off_plane);
+  const auto other = off_plane(2, kFlat);
+  const bool across =
+      rows_.size() > 2 && other != rows_.end() && off_plane(1, kFlat) == rows_.end();
+  const std::string swap =
+      " (every y is the same: --dim 2 --column y=z --column z=y --column fy=fz --column fz=fy ... "
+      "import a packing in the xz-plane)";
   s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
   if (const auto& told = s.dim == 2 ? space_units_ : plane_units_; !told.empty())
     throw std::invalid_argument(
-        fmt::format("{0} in a packing in {1}D, allowed: density in kg/m{1}, volume in m{1}",
-                    told.front(), s.dim));
+        fmt::format("{} in a packing in {}D, allowed: {}", told.front(), s.dim,
+                    s.dim == 2 ? "density in kg/m2, volume in m2, mass in kg or kg/m"
+                               : "density in kg/m3, volume in m3, mass in kg"));
   if (s.dim == 2 && other != rows_.end())
     throw std::invalid_argument(fmt::format(
         "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "
-        "in space",
+        "in space{}",
         other->source.where(), other->grain.id, other->grain.position.z(), rows_.front().grain.id,
-        z));
+        z, across ? swap : ""));
+  if (across && options_.dim == 0)
+    out_.notes.push_back(
+        fmt::format("{}: the centres lie in a plane, and are read in 3D{}", first_file_, swap));
+  if (s.dim == 2 && has_z_ && off_plane(2, 0) != rows_.end())
+    out_.notes.push_back(fmt::format(
+        "{}: the places differ along z by less than a millionth of a radius: read as a plane",
+        first_file_));
   const auto polygon = std::find_if(rows_.begin(), rows_.end(),
                                     [](const GrainRow& row) { return !row.grain.outline.empty(); });
   const auto solid = std::find_if(rows_.begin(), rows_.end(),

@@ -76,15 +76,21 @@ class Assembly {
     bool again = false;   ///< is in a table before, too
     bool copied = false;  ///< one of the two was told by a copy's number
     int facet = 0;        ///< of the wall, as facet_of() has it
+    std::optional<double> told_fn = {},
+                          told_ft = {};  ///< sizes that the row gives beside the whole force
     [[noreturn]] void refuse(const std::string& what) const;
   };
   struct Tally {                                              ///< of contacts
     std::vector<std::pair<std::int64_t, std::int64_t>> idle;  ///< no force, and a gap
     long long left_out = 0;                                   ///< distant
     long long far = 0;                                        ///< forces across gaps
-    long long pointed = 0, off_surface = 0;                   ///< round pairs with points; far off
+    long long below_digits = 0;  ///< forces across gaps that the digits of places leave open
+    long long pointed = 0, off_surface = 0;  ///< round pairs with points; far off
     std::string first_off;
     std::string first_far;
+    long long sized = 0, off_size = 0;  ///< rows with sizes beside the force; contradicting it
+    double tangential = 0, told_tangential = 0;  ///< N, sums over these rows
+    std::string first_off_size;
   };
 
   /// A flat wall's contacts.
@@ -116,11 +122,15 @@ class Assembly {
   };
   PlaceColumns place_columns(const ForeignTable& table, const TableColumns& columns) const;
   ShapeColumns shape_columns(const TableColumns& columns) const;
-  void read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) const;
+  void read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out);
   void read_shape(const ShapeColumns& columns, const ForeignRow& row, dem::Grain& grain) const;
   /// Warns of columns that tell a shape which is not taken.
-  void warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
-                      const ShapeColumns& taken);
+  void warn_of_shapes(const ForeignTable& table, const TableColumns& columns, bool taken);
+  /// Says what became of a table's columns, once all were looked up; throws where some of them have
+  /// a unit and others of their kind none.
+  void tell_columns(const ForeignTable& table, const TableColumns& columns, TableKind kind);
+  /// Throws naming all columns that are missing where several are.
+  void require_columns_of_grains(const TableColumns& columns) const;
   ForeignColumn find_id(const ForeignTable& table, const TableColumns& columns);
   /// A column of molecules: its values, where they are numbers above 0.
   struct Bodies {
@@ -128,8 +138,10 @@ class Assembly {
     std::set<std::string, std::less<>> met;
     bool repeated = false;
     void add(const ForeignRow& row);
+    /// Whether there are several and one of them has several rows.
+    bool any() const { return repeated && met.size() > 1; }
   };
-  static ForeignColumn find_bodies(const TableColumns& columns);
+  static ForeignColumn find_bodies(const ForeignTable& table, const TableColumns& columns);
 
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
@@ -157,6 +169,8 @@ class Assembly {
   /// Drops the tables of grains that an earlier file has, too; throws for any other id that is
   /// there twice.
   void join_repeated_grains();
+  /// What to do about ids that are there again, by the table's number.
+  std::string several_times(int table) const;
   /// What two rows of one grain say differently: "x = 1 and 2"; "": nothing.
   std::string difference_of(const GrainRow& a, const GrainRow& b) const;
   /// Throws unless the second table has the rows of the first and no other.
@@ -171,7 +185,12 @@ class Assembly {
   void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
   /// What a row of contacts tells.
   struct ContactColumns;
-  ContactColumns contact_columns(const TableColumns& columns) const;
+  ContactColumns contact_columns(const ForeignTable& table, const TableColumns& columns);
+  /// Columns beside a force that tell its parts, too: they are compared, or in doubt.
+  void find_parts_beside(const ForeignTable& table, const TableColumns& columns, ContactColumns& c);
+  /// Counts a row whose sizes contradict its force.
+  void check_sizes(const ContactRow& row);
+  void tell_sizes();
   void read_contact(const ContactColumns& columns, const ForeignRow& row, int digits);
   /// The grains or the grain and the wall of a row; swapped where the wall stands first.
   struct Ends {
@@ -207,12 +226,19 @@ class Assembly {
   /// `side`: -1 where a wall is first.
   dem::Vec3 force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
                            const dem::Contact& contact, double side) const;
+  /// From the first body to the second: of round grains along the line of centres, of a wall its
+  /// own.
+  dem::Vec3 normal_of_shapes(const ForeignRow& row, const dem::Contact& contact) const;
+  /// Throws where the parts of a force do not add up to it.
+  static void check_parts(const ContactColumns& columns, const ForeignRow& row);
   /// Throws unless it is a direction across the normal; makes it one to the last digit.
   static void check_tangent(const ForeignRow& row, const dem::Vec3& normal, dem::Vec3& tangent);
 
   void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
   /// Image, normal and point; false: it is none, or left out.
   bool settle_pair(ContactRow& row, bool has_normal, bool has_point);
+  /// What the digits of the places and radii leave open of the gap between two grains, m.
+  double rounding_of_gap(const dem::Grain& a, const dem::Grain& b) const;
   void set_image(ContactRow& row, bool has_point) const;
   bool check_pair_distance(const ContactRow& row, bool has_point);
   bool settle_wall_contact(ContactRow& row, bool has_point);
@@ -248,8 +274,10 @@ class Assembly {
   bool contacts_expected_ = true;
   std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
-  std::string first_file_;          // of grains
-  std::vector<std::int64_t> by_x_;  // of grains, where copies have numbers
+  int place_digits_ = 0;                     // most that a coordinate of the files has
+  std::map<int, std::string> time_columns_;  // names, by table of grains
+  std::string first_file_;                   // of grains
+  std::vector<std::int64_t> by_x_;           // of grains, where copies have numbers
   double least_radius_ = 0, largest_radius_ = 0;
   dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;

@@ -77,11 +77,17 @@ void Assembly::tell_tally() {
   out_.left_out = tally_.left_out;
   out_.forceless = std::count_if(contacts_.begin(), contacts_.end(),
                                  [](const ContactRow& row) { return row.contact.force.isZero(0); });
+  tell_sizes();
   if (tally_.off_surface > 0)
     out_.warnings.push_back(fmt::format(
         "{} of {} contact points lie farther than half a radius off the surfaces of their grains "
         "(the first: {}): are they the centres of grains, or in another unit?",
         tally_.off_surface, tally_.pointed, tally_.first_off));
+  if (tally_.below_digits > 0)
+    out_.notes.push_back(fmt::format(
+        "{} contacts bear a force across gaps that the {} digits of the places leave open: they "
+        "touch (LAMMPS: dump_modify ID format float %.17g writes all digits)",
+        tally_.below_digits, place_digits_));
   if (tally_.far > 0)
     out_.warnings.push_back(
         fmt::format("{} contacts bear a force across a gap between their grains (the first: {}): "

@@ -23,6 +23,7 @@ constexpr double kDistant = 2;
 // centre, least, and of the way from the wall to the centre of a disk or sphere, radii, where no
 // point is told: disks and spheres lie on what they touch, corners of polygons may stand out far.
 constexpr double kLeastCosine = 0.5, kLeastCosineOfPolygon = 0.1, kLeastHeight = 0.25;
+constexpr int kAllDigits = 15;       // of a number that was not rounded in printing
 constexpr double kNotUnit = 1e-3;    // of a normal's length from 1
 constexpr double kOffSurface = 0.5;  // radii from both surfaces to a contact point, but for overlap
 constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's normal
@@ -133,8 +134,8 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
   if (!(d > 0))
     row.refuse(fmt::format("grains {} and {} have the same centre, allowed: a place for each", a.id,
                            b.id));
-  const bool apart = gap_of(s, c) > kGap * std::min(a.radius, b.radius);
-  if (apart && c.force.isZero(0)) {
+  const double gap = gap_of(s, c), touch = kGap * std::min(a.radius, b.radius);
+  if (gap > touch && c.force.isZero(0)) {
     tally_.idle.emplace_back(c.i, c.j);
     return false;
   }
@@ -162,8 +163,28 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
       tally_.first_off = fmt::format("{} and {}", a.id, b.id);
   }
   if (!check_pair_distance(row, has_point)) return false;
-  if (apart && tally_.far++ == 0) tally_.first_far = fmt::format("{} and {}", a.id, b.id);
+  if (gap <= touch) return true;
+  if (gap <= touch + rounding_of_gap(a, b)) {
+    ++tally_.below_digits;
+  } else if (tally_.far++ == 0) {
+    tally_.first_far = fmt::format("{} and {}", a.id, b.id);
+  }
   return true;
+}
+
+double Assembly::rounding_of_gap(const dem::Grain& a, const dem::Grain& b) const {
+  if (place_digits_ >= kAllDigits) return 0;
+  const auto rounding = [&](double number) {
+    if (number == 0) return 0.0;
+    return 0.5 * std::pow(10.0, std::floor(std::log10(std::abs(number))) + 1 - place_digits_);
+  };
+  double out = 0;
+  for (const dem::Grain* grain : {&a, &b}) {
+    Vec3 of_place;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) of_place[axis] = rounding(grain->position[axis]);
+    out += of_place.norm() + rounding(grain->radius);
+  }
+  return out;
 }
 
 bool Assembly::check_pair_distance(const ContactRow& row, bool has_point) {
@@ -260,6 +281,7 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   // False where the coefficient is unknown (nan).
   if (tell_sliding)
     c.sliding = std::abs(c.tangential_force) >= (1 - kSliding) * c.friction * c.normal_force;
+  check_sizes(row);
   contacts_.push_back(std::move(row));
 }
 

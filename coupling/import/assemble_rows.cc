@@ -53,12 +53,25 @@ std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file,
 
 void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& column) {
   if (!column.unit) return;
-  const bool plane =
-      column.unit->kind == parse_unit(column.name == "volume" ? "m2" : "kg/m2")->kind;
+  bool plane = false;
+  for (const char* unit : {"m2", "kg/m2", "kg/m"})
+    plane = plane || column.unit->kind == parse_unit(unit)->kind;
+  if (column.name == "mass" && !plane) return;  // kg are those of the plane, too
   (plane ? plane_units_ : space_units_)
       .push_back(fmt::format("{}:{}: column {}: found \"{}\"", table.file, table.header_line,
                              column.name,
                              (*table.columns)[static_cast<std::size_t>(column.index)]));
+}
+
+void Assembly::require_columns_of_grains(const TableColumns& columns) const {
+  std::vector<std::vector<std::string>> wanted;
+  if (contacts_expected_ && !format_.rows_are_ids) wanted.push_back({"id"});
+  for (const std::string axis : {"x", "y", "z"})
+    if (axis != "z" || options_.dim == 3)
+      wanted.push_back({axis, axis + "u", axis + "s", axis + "su"});
+  wanted.push_back({"radius", "diameter", "outline", "axis_x", "diameter_x"});
+  if (!(options_.density > 0)) wanted.push_back({"mass", "density"});
+  columns.require_all(wanted);
 }
 
 void Assembly::add_grains(const ForeignTable& table) {
@@ -66,13 +79,13 @@ void Assembly::add_grains(const ForeignTable& table) {
   ++tables_;
   const std::size_t rows_before = rows_.size();
   if (first_file_.empty()) first_file_ = table.file;
+  require_columns_of_grains(columns);
   const ForeignColumn id = find_id(table, columns);
   const PlaceColumns places = place_columns(table, columns);
   has_z_ = has_z_ || places.place[2];
   for (std::size_t a = 0; a < 3; ++a)
     axis_told_[a] = axis_told_[a] && (!places.carried_back[a] || places.image[a]);
   const ShapeColumns shape = shape_columns(columns);
-  warn_of_shapes(table, columns, shape);
   const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
   const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
   const ForeignColumn spin_x = columns.find("spin_x"), spin_y = columns.find("spin_y");
@@ -92,13 +105,10 @@ void Assembly::add_grains(const ForeignTable& table) {
                                       : "mass (kg) or density (kg/m2) tells it");
   const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
   if (!mass) remember_unit(table, density);
-  remember_unit(table, volume);
+  for (const ForeignColumn& column : {mass, volume}) remember_unit(table, column);
   const ForeignColumn fixed = columns.find("fixed");
   const ForeignColumn mark =
       options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
-  Bodies bodies{find_bodies(columns), {}, false};
-  columns.require_length_units();
-  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
   std::vector<std::array<ForeignColumn, 7>> wall_columns;
   for (const WallChoice& wall : options_.walls) {
     wall_columns.emplace_back();
@@ -106,6 +116,9 @@ void Assembly::add_grains(const ForeignTable& table) {
       wall_columns.back()[k] =
           columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1), k < 4 ? "fx" : "px");
   }
+  Bodies bodies{find_bodies(table, columns), {}, false};
+  warn_of_shapes(table, columns, bool(shape));
+  tell_columns(table, columns, TableKind::grains);
   reader_.read(table, [&](const ForeignRow& row) {
     const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
     GrainRow r;
@@ -192,7 +205,7 @@ void Assembly::add_grains(const ForeignTable& table) {
         "{}:{}: superellipsoids of unlike axes and no column tells how they are turned: all are "
         "unturned (--column qw,qx,qy,qz=... names a quaternion)",
         table.file, table.header_line));
-  if (bodies.repeated)
+  if (bodies.any())
     out_.warnings.push_back(fmt::format(
         "{}:{}: rows share numbers in the column {}: grains of one rigid body are read as "
         "grains of their own, and the forces within the body are not in the file",
@@ -205,8 +218,7 @@ void Assembly::add_walls(const ForeignTable& table) {
                       nx = columns.need("nx"), ny = columns.need("ny"), z = columns.find("z"),
                       nz = columns.find("nz"), friction = columns.find("friction"),
                       material = columns.find("material");
-  columns.require_length_units();
-  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
+  tell_columns(table, columns, TableKind::walls);
   reader_.read(table, [&](const ForeignRow& row) {
     dem::Wall wall;
     wall.name = std::string(row.text(name));

@@ -123,6 +123,8 @@ struct PackingCheck {
   /// Force of walls and fixed grains on the free grains, against gravity, over their weight and the
   /// applied force along gravity; nan without gravity or contacts.
   double support_ratio = std::numeric_limits<double>::quiet_NaN();
+  double weight = 0;          ///< of the free grains, with the applied force along gravity, N
+  dem::Vec3 across{0, 0, 0};  ///< force of walls and fixed grains across gravity, N
   int wall_contacts = 0;      ///< contacts with walls
   int off_wall_contacts = 0;  ///< of them, those whose point is over two radii off the wall's plane
   int round_pairs = 0;        ///< contacts between round grains

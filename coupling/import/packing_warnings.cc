@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,6 +30,10 @@ std::string unbalanced(const PackingCheck& check) {
 
 std::string unsupported(const PackingCheck& check) {
   if (!(std::fabs(check.support_ratio - 1) > kSupport)) return "";
+  // Gravity against the force across it.
+  const auto down = [&](Eigen::Index axis) {
+    return 0 - 9.81 * std::round(check.across[axis] / check.across.norm());
+  };
   const char* why = "gravity or masses are too small, or contacts stand there twice";
   if (check.support_ratio < 1) {
     why =
@@ -37,6 +42,13 @@ std::string unsupported(const PackingCheck& check) {
   }
   if (check.support_ratio < 0) {
     why = "gravity points the other way (--gravity), or the forces from below do";
+  } else if (check.across.norm() > (1 - kSupport) * check.weight) {
+    return fmt::format(
+        "walls and fixed grains carry {:.3g} of the weight along gravity and {:.3g} along ({:.2g}, "
+        "{:.2g}, {:.2g}): is that upwards (--gravity {:g},{:g},{:g})?",
+        check.support_ratio, check.across.norm() / check.weight, check.across.x() / check.weight,
+        check.across.y() / check.weight, check.across.z() / check.weight, down(0), down(1),
+        down(2));
   } else if (check.wall_contacts > 0 && check.support_ratio < kOtherUnits) {
     why =
         "contacts with the floor are missing, or forces, lengths and masses are not all in SI "
@@ -87,17 +99,21 @@ std::vector<std::string> warning_texts(const PackingCheck& check) {
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
-  double mass = 0, volume = 0, spheres = 0;
-  bool any = false;
+  double mass = 0, volume = 0, spheres = 0, diameters = 0;
+  int count = 0;
+  const auto free = [](const dem::Grain& grain) { return !grain.fixed; };
+  const bool any = std::any_of(packing.grains.begin(), packing.grains.end(), free);
   for (const dem::Grain& grain : packing.grains) {
-    if (grain.fixed) continue;
+    // Where all are fixed they are what there is.
+    if (any && grain.fixed) continue;
     mass += grain.mass;
     volume += grain.volume;
     spheres += 4.0 / 3 * std::numbers::pi * std::pow(grain.radius, 3);
-    any = true;
+    diameters += 2 * grain.radius;
+    ++count;
   }
-  if (!any) return {kNan, kNan, kNan};
-  return {mass / volume, mass / spheres, mean_diameter(packing)};
+  if (count == 0) return {kNan, kNan, kNan};
+  return {mass / volume, mass / spheres, any ? mean_diameter(packing) : diameters / count};
 }
 
 std::string tension_in(const PackingCheck& check) {

@@ -9,11 +9,11 @@ namespace grainfield::coupling {
 /// a unit in brackets. "Pos-X (mm)" -> "posx".
 std::string plain_column_name(const std::string& name);
 
-/// Plain names that other programs have for ours; the first list is of those that mean nothing
-/// else beside our other columns, so that the import takes them, the second of those that it only
-/// suggests.
+/// Plain names that other programs have for ours: `sure` are those that mean nothing else beside
+/// our other columns, so that the import takes them, `likely` those that it only suggests, and
+/// `components` those that it takes where they are written as a vector's, "v[0]" or "v:0".
 struct Synonyms {
-  std::vector<std::string> sure, likely;
+  std::vector<std::string> sure, likely, components = {};
 };
 const Synonyms& synonyms_of(const std::string& ours);
 

@@ -35,7 +35,7 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
   if (!column || column.constant) return !column;
   const std::string_view told = text(column);
-  // Words of R and pandas for an empty cell.
+  // Words of R and pandas for an empty cell; nan may be what a program computed.
   return told.empty() || told == "NA" || told == "<NA>" || told == "None";
 }
 
@@ -79,10 +79,13 @@ double ForeignRow::number(const ForeignColumn& column) const {
   if (!value || !std::isfinite(*value)) {
     const std::string_view told = text(column);
     const bool comma = array == nullptr && std::count(told.begin(), told.end(), ',') == 1;
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number{}", name_of(column), told,
-                       comma ? ": is the comma one of decimals or of thousands? Decimal commas are "
-                               "read in tables with semicolons"
-                             : ""));
+    const bool none = array == nullptr && (told == "nan" || told == "NaN");
+    refuse(fmt::format(
+        "column {}: found \"{}\", expected a finite number{}", name_of(column), told,
+        comma  ? ": is the comma one of decimals or of thousands? Decimal commas are read where no "
+                 "number of the table has a point"
+        : none ? "; a column that may be missing may be empty"
+               : ""));
   }
   return *value;
 }
@@ -121,6 +124,19 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   return {static_cast<std::int64_t>(*value), digits < whole_digits ? digits : 0};
 }
 
+int ForeignRow::digits(const ForeignColumn& column) const {
+  constexpr int kDouble = 17, kSingle = 7;
+  if (column.constant) return kDouble;
+  if (const ArrayColumn* array = array_of(column)) return array->single ? kSingle : kDouble;
+  int out = 0;
+  for (const char ch : text(column)) {
+    if (ch == 'e' || ch == 'E') break;
+    // Zeros before the first other digit tell nothing.
+    if (ch >= '0' && ch <= '9' && (ch != '0' || out > 0)) ++out;
+  }
+  return out;
+}
+
 bool ForeignRow::flag(const ForeignColumn& column) const {
   if (empty(column)) return false;
   const std::string_view told = column.constant ? std::string_view() : text(column);
@@ -156,7 +172,7 @@ void TableReader::read_arrays(const ForeignTable& table,
 }
 
 Lines& TableReader::lines_of(const std::string& file) {
-  constexpr std::size_t kMostOpen = 16;
+  constexpr std::size_t kMostOpen = 40;
   const auto at = std::find_if(files_.begin(), files_.end(),
                                [&](const Lines& lines) { return lines.file() == file; });
   if (at != files_.end()) {

@@ -57,10 +57,11 @@ TEST(ImportMistakes, MistakesInCsv) {
       {"id,x,y,d,mass\n1,0,0,1,1\n", c, "", "nearest: d (--column diameter=d); other"},
       {"number,x,y,radius,mass\n1,0,0,1,1\n", c, "",
        "no column \"id\"; found: number x y radius mass; nearest: number"},
-      {"id,xc,yc,radius,mass\n1,0,0,1,1\n", c, "", "nearest: xc"},
-      {g, "i,j,f1,f2\n1,2,0,1\n", "", "nearest: f1"},
+      {"id,xc,yc,radius,mass\n1,0,0,1,1\n", c, "", "nearest: x (xc), y (yc)"},
+      {g, "i,j,f1,f2\n1,2,0,1\n", "", "nearest: f1; other names"},
       {"id,x,y,radius\n1,0,0,1\n", c, "", "or --density"},
-      {g, "# c\ni,j,fx\n1,2,0\n", "", "c.txt:2: no column \"fy\"; found: i j fx; nearest: "},
+      {g, "# c\ni,j,fx\n1,2,0\n", "",
+       "c.txt:2: no column \"fy\"; found: i j fx; other names by --column fy=THEIRS"},
       {g, "i,j,fnx,fny\n1,2,0,1\n", "", "without friction: --column ftx,fty,ftz=0,0,0"},
       {g + "3,0,abc,1,1\n", c, "", "g.txt:4: column y: found \"abc\", expected a finite number"},
       {g + "3,0,nan,1,1\n", c, "", "g.txt:4: column y: found \"nan\", expected a finite number"},
@@ -210,9 +211,9 @@ TEST(ImportMistakes, MistakesInDumps) {
     return text.replace(text.find(from), from.size(), to);
   };
   const std::vector<Mistake> mistakes{
-      {g, c, "", "c.txt:9: no column \"i\"; found: index c_ids[1] c_ids[2] c_p[1]"},
+      {g, c, "", "c.txt:9: no columns \"i\", \"j\", \"fx\"; found: index c_ids[1] c_ids[2] c_p[1]"},
       {changed(g, " radius", " c_r"), c, columns,
-       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; nearest: "},
+       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; not used so far: type c_r; "},
       {cut(g, 1), c, columns,
        "truncated: step 7 has 6 rows announced, 5 there (the last one ends without a line end)"},
       {cut(g, 60), c, columns, "g.txt:15: truncated: step 7 has 6 rows announced, 5 there"},
