@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct Given {
   ImportOptions options;
-  std::string output, gravity, fixed, load;
+  std::string output, gravity, fixed, load, flip;
   std::vector<std::string> walls, steps, periodic;
   std::optional<double> friction;
   bool add = false;
@@ -88,6 +88,17 @@ void parse(Given& given) {
     const std::string list = given.fixed.substr(equals + 1);
     split(list, ',', values);
     options.fixed_values.assign(values.begin(), values.end());
+  }
+  if (given.flip == "all" || given.flip == "true") {
+    options.flip_forces = true;
+  } else if (given.flip == "pairs") {
+    options.flip_pairs = true;
+  } else if (given.flip == "walls") {
+    options.flip_walls = true;
+  } else if (!given.flip.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "--flip-forces={}: allowed: --flip-forces, --flip-forces=pairs, --flip-forces=walls",
+        given.flip));
   }
   if (!given.load.empty()) {
     const std::size_t equals = given.load.find('=');
@@ -222,7 +233,9 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--ids", o.ids_file,
                       "table id,original: grains get the original ids (of `export --to lammps`)");
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
-  command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
+  command->add_flag("--flip-forces{all}", given->flip,
+                    "the files' forces act on j: turn them all; --flip-forces=pairs, =walls turns "
+                    "those between grains, or with walls, alone");
   command->add_flag("--leave-out-distant", o.leave_out_distant,
                     "leave out contacts across periodic boundaries, and the cell");
   command->callback([=, &action] {

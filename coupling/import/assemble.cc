@@ -28,6 +28,7 @@ namespace {
 constexpr double kFar = 1e6, kTooFar = 1e9;
 // Radii along an axis that are rounding, also of numbers with four bytes.
 constexpr double kFlat = 1e-6;
+constexpr double kWide = 30;  // packings that fit into a periodic cell: one in another unit
 // Between a volume that is told and that of the radius: what three digits leave.
 constexpr double kSameVolume = 1e-2;
 
@@ -69,6 +70,15 @@ void Assembly::settle_dimension() {
     out_.notes.push_back(fmt::format(
         "{}: the places differ along z by less than a millionth of a radius: read as a plane",
         first_file_));
+  const GrainRow& first = rows_.front();
+  if (s.dim == 2 && first.density > 0 && first.sphere_density)
+    out_.notes.push_back(
+        fmt::format("{}: the density is that of spheres, {:g} kg/m3, in the plane, too",
+                    first_file_, first.density));
+  else if (s.dim == 2 && options_.dim == 0 && has_z_ && first.density > 0)
+    out_.notes.push_back(fmt::format(
+        "{}: every z is the same: read as disks, whose density is {:g} kg/m2 (--dim 3: spheres)",
+        first_file_, first.density));
   const auto polygon = std::find_if(rows_.begin(), rows_.end(),
                                     [](const GrainRow& row) { return !row.grain.outline.empty(); });
   const auto solid = std::find_if(rows_.begin(), rows_.end(),
@@ -139,11 +149,14 @@ void Assembly::complete(GrainRow& row) const {
   }
   if (row.volume_ten != 0) g.volume *= std::pow(10.0, out_.snapshot.dim * row.volume_ten);
   const bool round = g.outline.empty() && g.axes.isZero(0);
-  if (round && g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
+  if (g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
     throw std::invalid_argument(fmt::format(
-        "{}: grain {}: found volume {:g} and radius {:g} m, which makes {:g}, allowed: those that "
+        "{}: grain {}: found volume {:g} and {}, which makes {:g}, allowed: those that "
         "agree; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
-        row.source.where(), g.id, g.volume, g.radius, volume));
+        row.source.where(), g.id, g.volume,
+        round ? fmt::format("radius {:g} m", g.radius)
+              : fmt::format("a shape that reaches {:g} m from its centre", g.radius),
+        volume));
   if (g.volume == 0) g.volume = volume;
   // In 2D a density may be one of spheres; that of a dump is.
   const double as_spheres = 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
@@ -279,6 +292,25 @@ void Assembly::check_places() {
         far, grains.size(), kFar, first));
 }
 
+void Assembly::check_widths() {
+  const dem::Snapshot& s = out_.snapshot;
+  for (Eigen::Index a = 0; a < s.dim; ++a) {
+    if (!s.cell.periodic[static_cast<std::size_t>(a)]) continue;
+    double low = s.grains.front().position[a], high = low, radius = 0;
+    for (const dem::Grain& g : s.grains) {
+      low = std::min(low, g.position[a]);
+      high = std::max(high, g.position[a]);
+      radius = std::max(radius, g.radius);
+    }
+    const double packing = high - low + 2 * radius, width = s.cell.edges.col(a).norm();
+    if (width > kWide * packing)
+      out_.warnings.push_back(fmt::format(
+          "the periodic cell is {:.3g} m wide along {}, {:.3g} times as wide as the packing in it: "
+          "is it in the unit of the places (--periodic x=0:\"5 mm\")?",
+          width, "xyz"[a], width / packing));
+  }
+}
+
 void Assembly::settle_walls() {
   dem::Snapshot& s = out_.snapshot;
   dem::Vec3 middle(0, 0, 0);
@@ -322,6 +354,7 @@ void Assembly::settle() {
   join_repeated_grains();
   for (GrainRow& row : rows_) s.grains.push_back(std::move(row.grain));
   check_places();
+  check_widths();
   if (format_.copies_have_numbers) sort_for_copies();
   rows_ = {};
   const std::size_t tables = s.walls.size();
@@ -330,7 +363,7 @@ void Assembly::settle() {
     ContactRow row{{}, force.source};
     row.contact.i = index_of(force.grain);
     row.contact.j = -1 - static_cast<std::int64_t>(tables + force.choice);
-    row.contact.force = (options_.flip_forces ? -1 : 1) * force.force;
+    row.contact.force = options_.sign_of(true) * force.force;
     row.contact.point = force.point;
     row.contact.friction = options_.friction;
     set_spring(std::nullopt, row.contact);

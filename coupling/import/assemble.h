@@ -91,6 +91,9 @@ class Assembly {
     long long sized = 0, off_size = 0;  ///< rows with sizes beside the force; contradicting it
     double tangential = 0, told_tangential = 0;  ///< N, sums over these rows
     std::string first_off_size;
+    long long shaped = 0, off_shape = 0;  ///< points on outlines and superellipsoids; far off
+    std::string first_off_shape;
+    long long ft_above = 0, ft_below = 0;  ///< sizes ft without a direction, in 2D
   };
 
   /// A flat wall's contacts.
@@ -99,6 +102,11 @@ class Assembly {
     long long wrong = 0;  ///< of them, those whose grain is not on the side of the normal
     long long deep = 0;   ///< of these, those on it, but with their centre too near the wall
     std::string first_deep;
+    long long far = 0;   ///< contacts that bear a force across a gap
+    double widest = 0;   ///< of these gaps, m
+    long long sunk = 0;  ///< round grains that overlap it by much of their radius
+    double deepest = 0;  ///< of these overlaps, m
+    double lowest = std::numeric_limits<double>::infinity();  ///< gap of the lowest grain, m
     dem::Vec3 towards{0, 0, 0};  ///< sum of the directions from their points to their grains
   };
   /// Of the normals that the files give.
@@ -143,6 +151,10 @@ class Assembly {
   };
   static ForeignColumn find_bodies(const ForeignTable& table, const TableColumns& columns);
 
+  /// Throws where lengths of options have no unit beside columns that have one.
+  void require_units_of_options(const ForeignTable& table, const PlaceColumns& columns) const;
+  /// Throws where the rows are of several times or steps; warns where another table is of another.
+  void check_states(const ForeignTable& table, const TableColumns& columns);
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
   void settle_dimension();
@@ -150,11 +162,16 @@ class Assembly {
   void settle_walls();
   /// No two at one place, none far from all others, some that are fixed where they are named.
   void check_places();
+  /// Warns of periods that are much wider than what lies in them.
+  void check_widths();
   void check_fixed() const;
   void check_vectors() const;
   /// Throws for a wall whose normal does not point to the grains that touch it.
   void check_sides();
   void check_wall_side(const dem::Contact& contact, bool has_point);
+  /// Counts a grain that bears a force across a gap to its wall, or lies deep in it.
+  void check_wall_gap(const dem::Contact& contact);
+  void warn_of_wall_gaps();
   void check_given_normal(const dem::Contact& contact);
   void warn_of_normals();
   void complete(GrainRow& row) const;
@@ -239,7 +256,12 @@ class Assembly {
   bool settle_pair(ContactRow& row, bool has_normal, bool has_point);
   /// What the digits of the places and radii leave open of the gap between two grains, m.
   double rounding_of_gap(const dem::Grain& a, const dem::Grain& b) const;
-  void set_image(ContactRow& row, bool has_point) const;
+  /// Counts a contact whose point is far off the surface of one of its bodies that is not round.
+  void check_point_of_shapes(const dem::Contact& contact);
+  void set_image(ContactRow& row, bool has_normal, bool has_point) const;
+  /// Of the images of a pair that touch, the one towards which `direction` points; the nearest
+  /// where none does.
+  std::array<int, 3> image_towards(const dem::Contact& contact, const dem::Vec3& direction) const;
   bool check_pair_distance(const ContactRow& row, bool has_point);
   bool settle_wall_contact(ContactRow& row, bool has_point);
   void check_wall_distance(const ContactRow& row, bool has_point) const;
@@ -274,7 +296,11 @@ class Assembly {
   bool contacts_expected_ = true;
   std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
-  int place_digits_ = 0;                     // most that a coordinate of the files has
+  int place_digits_ = 0;  // most that a coordinate of the files has
+  struct State {          ///< a time or step that all rows of a table tell
+    std::string file, name, value;
+  };
+  std::vector<State> states_;
   std::map<int, std::string> time_columns_;  // names, by table of grains
   std::string first_file_;                   // of grains
   std::vector<std::int64_t> by_x_;           // of grains, where copies have numbers

@@ -99,7 +99,11 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
   const ContactColumns columns = contact_columns(table, named);
+  check_states(table, named);
   tell_columns(table, named, TableKind::contacts);
+  if (columns.friction && std::isfinite(options_.friction))
+    out_.notes.push_back(fmt::format("{}: --friction counts where the column {} is empty, no more",
+                                     table.file, columns.friction.name));
   ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;
@@ -194,12 +198,14 @@ void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& c
     return;
   const std::size_t tables = out_.snapshot.walls.size() - options_.walls.size();
   const auto w = static_cast<std::size_t>(-1 - wall);
-  if (w < tables || !options_.walls[w - tables].fix.empty()) return;
-  row.refuse(
-      fmt::format("{} is a grain and one of the ids of wall {}, allowed: one meaning; a column "
-                  "wall with its name "
-                  "tells contacts with the wall (--column wall=THEIRS), or leave it out of ids=",
-                  row.text(column), out_.snapshot.walls[w].name));
+  const bool in_table = w < tables;
+  if (!in_table && !options_.walls[w - tables].fix.empty()) return;
+  row.refuse(fmt::format(
+      "{} is a grain and {} wall {}, allowed: one meaning; a column wall with its name "
+      "tells contacts with the wall{}{}",
+      row.text(column), in_table ? "the name of" : "one of the ids of", out_.snapshot.walls[w].name,
+      options_.files.empty() ? "" : " (--column wall=THEIRS)",
+      in_table ? ", or name the wall by a word" : ", or leave it out of ids="));
 }
 
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
@@ -250,13 +256,18 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
   const double side = ends.swapped ? -1 : 1;
   if (has_normal) c.normal = side * columns.normal.of(row);
   if (s.dim == 2) c.normal.z() = 0;
-  const double sign = side * format_.force_sign * (options_.flip_forces ? -1 : 1);
+  const double flip = options_.sign_of(c.j < 0), sign = side * format_.force_sign * flip;
   if (columns.fn) {
-    c.force = (options_.flip_forces ? -1 : 1) * force_of_sizes(columns, row, c, side);
+    c.force = flip * force_of_sizes(columns, row, c, side);
   } else {
     c.force = sign * (columns.force
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
+  }
+  if (columns.fn && !columns.tangent && s.dim == 2) {
+    const double ft = row.number(columns.ft);
+    tally_.ft_above += ft > 0;
+    tally_.ft_below += ft < 0;
   }
   if (columns.told_normal) check_parts(columns, row);
   if (!row.empty(columns.told_fn)) r.told_fn = row.number(columns.told_fn);

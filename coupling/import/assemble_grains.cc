@@ -53,7 +53,8 @@ ForeignColumn Assembly::find_bodies(const ForeignTable& table, const TableColumn
   constexpr std::array bodies{"mol",    "molid",    "molecule",    "moleculeid", "cmol",
                               "body",   "bodyid",   "rigid",       "rigidid",    "rigidbody",
                               "ms",     "msid",     "agglomerate", "aggregate",  "agglomerateid",
-                              "parent", "parentid", "aggregateid"};
+                              "parent", "parentid", "aggregateid", "idbody",     "ibody",
+                              "idms",   "fms",      "fmsid"};
   for (const std::string& name : columns.untaken()) {
     std::string plain = plain_untaken_name(table, name);
     if (plain.ends_with('1') && name.ends_with("[1]")) plain.pop_back();  // "f_ms[1]"

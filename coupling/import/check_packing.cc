@@ -11,11 +11,17 @@ namespace {
 // A contact point farther than this many radii from its wall's plane is on another wall.
 constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
 constexpr double kOffWall = 2;
+constexpr double kPulling = 1e-3;  // of the mean force: a pull below it is rounding
 // Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
 constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
 
 void check_coulomb_limit(const dem::Contact& c, PackingCheck& check) {
-  if (!std::isfinite(c.friction)) return;
+  if (!std::isfinite(c.friction)) {
+    check.unknown_friction += c.j >= 0;
+    check.steep += c.j >= 0 && std::fabs(c.tangential_force) >
+                                   (1 + kBeyondFriction) * std::fabs(c.normal_force);
+    return;
+  }
   ++check.known_friction;
   const double most = c.friction * std::max(c.normal_force, 0.0) * (1 + kBeyondFriction);
   check.beyond_friction +=
@@ -43,6 +49,30 @@ void check_contact_normal(const dem::Snapshot& s, const dem::Contact& c, Packing
   if (check.odd_normals++ > 0) return;
   check.odd_i = i.id;
   check.odd_j = j.id;
+}
+
+// From grain i outwards through the contact: along the centres of round grains, whatever the file's
+// normal is.
+dem::Vec3 outwards(const dem::Snapshot& s, const dem::Contact& c) {
+  const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
+  const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
+  if (c.j < 0 || !round(i) || !round(s.grains[static_cast<std::size_t>(c.j)])) return c.normal;
+  return dem::second_place(s, c) - i.position;
+}
+
+// Counts the contacts that pull, as they are and with one component of all forces turned.
+void count_pulling(const dem::Snapshot& s, double mean_force, PackingCheck& check) {
+  for (const dem::Contact& c : s.contacts) {
+    const dem::Vec3 parts = c.force.cwiseProduct(outwards(s, c).normalized());
+    const double along = parts.sum(), least = kPulling * mean_force;
+    const bool bears = std::fabs(along) > least, pulls = along > least;
+    check.bearing += bears;
+    check.pulling += pulls;
+    check.bearing_walls += bears && c.j < 0;
+    check.pulling_walls += pulls && c.j < 0;
+    for (int axis = 0; axis < 3; ++axis)
+      check.pulling_turned[static_cast<std::size_t>(axis)] += along - 2 * parts[axis] > least;
+  }
 }
 
 }  // namespace
@@ -80,15 +110,18 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     }
     if (!free(c.i) && free(c.j)) support -= c.force;
   }
-  double total = 0;
+  count_pulling(s, force, check);
+  const dem::Vec3 up = -s.gravity.normalized();  // zero without gravity
+  double total = 0, squares = 0;
   int count = 0;
   for (std::size_t g = 0; g < s.grains.size(); ++g) {
     if (s.grains[g].fixed) continue;
     dem::Vec3 load = s.grains[g].mass * s.gravity;
     if (s.grains[g].id == s.loaded_grain) load += s.applied_force;
     weight += load;
-    if (!touched[g]) continue;
     const dem::Vec3 f = resultant[g] + load;
+    squares += std::pow(f.dot(up), 2);
+    if (!touched[g]) continue;
     total += f.norm();
     ++count;
   }
@@ -101,7 +134,10 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     check.weight = weight.dot(down);
     check.across = support - support.dot(down) * down;
     // 0 - 0 is +0 where -0 would be printed.
-    if (weight.dot(down) > 0) check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
+    if (weight.dot(down) > 0) {
+      check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
+      check.support_error = std::sqrt(squares) / weight.dot(down);
+    }
   }
   return check;
 }

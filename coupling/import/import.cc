@@ -27,11 +27,13 @@ TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   if (table.kind != TableKind::unknown) return table.kind;
   const TableColumns columns(table, names);
   const auto has = [&](const char* ours) { return columns.find(ours).index >= 0; };
-  if (has("i") && (has("j") || columns.find("wall"))) return TableKind::contacts;
-  if (columns.find("name") && columns.find("nx")) return TableKind::walls;
   // Forces and no places: contacts, of which a column of ids is missing.
   const bool forces = has("fx") || has("fnx") || has("fn");
   const bool sized = has("radius") || has("diameter") || has("outline");
+  // Beside places and sizes i and j are indices of a lattice, or moments of inertia.
+  const bool placed_grains = sized && !forces && has("x") && has("y") && has("id");
+  if (!placed_grains && has("i") && (has("j") || columns.find("wall"))) return TableKind::contacts;
+  if (!placed_grains && columns.find("name") && columns.find("nx")) return TableKind::walls;
   if (!sized && (has("i") || forces)) return TableKind::contacts;
   return TableKind::grains;
 }
@@ -326,10 +328,16 @@ void import_snapshots(const ImportOptions& options,
     const std::string plain = stepped ? fmt::format("/step_{}", choice.step) : "/packing";
     done.group =
         choice.group.empty() ? (options.group.empty() ? plain : options.group) : choice.group;
+    // A time that a column tells counts where the file and --time-step tell none.
+    const double of_column = done.snapshot.time;
     done.snapshot.time = time_of(tables.grains.front(), choice, options, done.warnings);
+    if (!tables.grains.front().time && options.time_step == 0) done.snapshot.time = of_column;
     for (std::string& text : steps.take_warnings()) done.warnings.push_back(std::move(text));
     for (std::string& text : steps.take_notes()) done.notes.push_back(std::move(text));
-    if (k == 0) done.notes.insert(done.notes.end(), by_name.notes.begin(), by_name.notes.end());
+    if (k == 0) {
+      done.notes.insert(done.notes.end(), by_name.notes.begin(), by_name.notes.end());
+      done.warnings.insert(done.warnings.end(), by_name.warnings.begin(), by_name.warnings.end());
+    }
     for (std::string& text : names.take_taken()) done.notes.push_back(std::move(text));
     if (!other_units.empty()) done.notes.push_back(other_units);
     done.units = tables.grains.front().units;

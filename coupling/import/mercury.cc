@@ -161,6 +161,7 @@ ImportFormat mercury_format() {
   format.name = "mercury";
   format.summary = "MercuryDPM's .data of the particles and .fstat of their contacts";
   format.scan = scan;
+  format.densities_of_spheres = true;
   format.rows_are_ids = true;
   format.steps_by_time = true;
   format.directions_turn_together = true;

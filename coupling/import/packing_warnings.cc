@@ -12,8 +12,14 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kUnbalanced = 0.1;   // unbalanced force ratio of a packing that is not at rest
-constexpr double kSupport = 0.1;      // of the weight: missing or too much at walls
+constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that is not at rest
+constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
+constexpr double kClearSupport = 0.02, kClearErrors = 3;  // or beyond both: share, its own errors
+constexpr double kManyPull = 0.01;                        // of the contacts
+constexpr double kMostPull = 0.9;  // of those between grains, or with walls: their signs are turned
+constexpr double kManySteep = 0.1;  // of the pairs, with more tangential than normal force
+constexpr int kFewSteep = 2;
+constexpr int kExplains = 10;  // a turned sign is the cause where it leaves a tenth of the pulls
 constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
 constexpr double kLeastDiameter = 1e-7, kMostDiameter = 100;  // m
@@ -29,7 +35,10 @@ std::string unbalanced(const PackingCheck& check) {
 }
 
 std::string unsupported(const PackingCheck& check) {
-  if (!(std::fabs(check.support_ratio - 1) > kSupport)) return "";
+  const double off = std::fabs(check.support_ratio - 1);
+  if (!(off > kSupport) && !(off > kClearSupport && off > kClearErrors * check.support_error)) {
+    return "";
+  }
   // Gravity against the force across it.
   const auto down = [&](Eigen::Index axis) {
     return 0 - 9.81 * std::round(check.across[axis] / check.across.norm());
@@ -55,8 +64,63 @@ std::string unsupported(const PackingCheck& check) {
         "units "
         "(N, m, kg)";
   }
-  return fmt::format("walls and fixed grains carry {:.3g} of the weight: {}", check.support_ratio,
-                     why);
+  const std::string error = off > kSupport ? "" : fmt::format(" +- {:.2g}", check.support_error);
+  return fmt::format("walls and fixed grains carry {:.3g}{} of the weight: {}", check.support_ratio,
+                     error, why);
+}
+
+// The component whose sign, turned in all forces, is why contacts pull: "fx"; empty: none is.
+std::string turned_component(const PackingCheck& check) {
+  const auto least = std::min_element(check.pulling_turned.begin(), check.pulling_turned.end());
+  if (kExplains * *least > check.pulling || *least >= check.bearing - check.pulling) return "";
+  return fmt::format("f{}", "xyz"[least - check.pulling_turned.begin()]);
+}
+
+// Whether the forces between grains alone, or those with walls alone, have the other sign.
+bool pull_together(int pulling, int bearing) {
+  return pulling > 0 && pulling >= kMostPull * bearing;
+}
+
+std::string turned_pairs_or_walls(const PackingCheck& check) {
+  const int pairs = check.bearing - check.bearing_walls;
+  const int pulling_pairs = check.pulling - check.pulling_walls;
+  const bool of_pairs = pull_together(pulling_pairs, pairs);
+  const bool of_walls = pull_together(check.pulling_walls, check.bearing_walls);
+  if (of_pairs == of_walls || check.bearing_walls == 0 || pairs == 0 ||
+      !turned_component(check).empty())
+    return "";
+  return fmt::format(
+      "{} of {} contacts {} pull, {} of {} {} push: forces count on grain i, by j or the wall; "
+      "turn the sign of those {} alone (import --flip-forces={}) unless they stick",
+      of_pairs ? pulling_pairs : check.pulling_walls, of_pairs ? pairs : check.bearing_walls,
+      of_pairs ? "between grains" : "with walls",
+      of_pairs ? check.bearing_walls - check.pulling_walls : pairs - pulling_pairs,
+      of_pairs ? check.bearing_walls : pairs, of_pairs ? "with walls" : "between grains",
+      of_pairs ? "between grains" : "with walls", of_pairs ? "pairs" : "walls");
+}
+
+std::string pulling(const PackingCheck& check) {
+  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
+  if (!(check.pulling > kManyPull * check.bearing)) return "";
+  const std::string component = turned_component(check);
+  return fmt::format(
+      "{} of {} contacts ({:.0f} %) pull, their normal force is tension: {}", check.pulling,
+      check.bearing, 100.0 * check.pulling / check.bearing,
+      component.empty()
+          ? "turn the sign of their forces, unless the grains stick together (cohesion, liquid "
+            "bridges)"
+          : fmt::format(
+                "turn the sign of {} alone, which leaves {} that pull", component,
+                *std::min_element(check.pulling_turned.begin(), check.pulling_turned.end())));
+}
+
+// Where friction is unknown: places, ids and axes that do not belong to the forces.
+std::string steep_forces(const PackingCheck& check) {
+  if (check.steep < kFewSteep || !(check.steep > kManySteep * check.unknown_friction)) return "";
+  return fmt::format(
+      "{} of {} contacts between grains bear more tangential than normal force (friction above 1): "
+      "do ids, axes and signs of forces fit the places?",
+      check.steep, check.unknown_friction);
 }
 
 std::string off_walls(const PackingCheck& check) {
@@ -92,8 +156,8 @@ std::string beyond_friction(const PackingCheck& check) {
 
 // One of each kind; empty: none.
 std::vector<std::string> warning_texts(const PackingCheck& check) {
-  return {unbalanced(check),  unsupported(check),    off_walls(check),
-          odd_normals(check), turned_normals(check), beyond_friction(check)};
+  return {unbalanced(check),  unsupported(check),    pulling(check),         off_walls(check),
+          odd_normals(check), turned_normals(check), beyond_friction(check), steep_forces(check)};
 }
 
 }  // namespace
@@ -117,12 +181,19 @@ GrainSizes grain_sizes(const dem::Snapshot& packing) {
 }
 
 std::string tension_in(const PackingCheck& check) {
+  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
   const double along = check.pairs_along_gravity + check.walls_along_gravity;
   // Without gravity, or across it, the mean stress tells.
   const double mean = check.pairs.trace() + check.walls.trace();
   if (!(along > 0) && !(mean > 0)) return "";
   const bool by_gravity = along > 0;
   const std::string remedy = "forces count on grain i, by j; turn their sign";
+  if (const std::string component = turned_component(check); by_gravity && !component.empty()) {
+    return fmt::format(
+        "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
+        "compression is negative), {} of {} contacts pull; turn the sign of {} alone",
+        along, check.pulling, check.bearing, component);
+  }
   if (by_gravity && check.walls_along_gravity < 0)
     return fmt::format(
         "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "

@@ -23,11 +23,24 @@ std::string_view without_formula(std::string_view value) {
 
 }  // namespace
 
+bool is_no_value(std::string_view value) {
+  for (const std::string_view word : {"", "NA", "<NA>", "None", "N/A", "n/a", "-", "--"})
+    if (value == word) return true;
+  // Errors of spreadsheets, in any language: "#N/A", "#VALEUR!", "#DIV/0!".
+  if (value.size() < 3 || value.front() != '#') return false;
+  const auto in_error = [](char ch) {
+    return (ch >= 'A' && ch <= 'Z') || std::string_view("/!?0").find(ch) != std::string_view::npos;
+  };
+  return value[1] >= 'A' && value[1] <= 'Z' &&
+         std::all_of(value.begin() + 1, value.end(), in_error);
+}
+
 std::string_view without_comment(std::string_view line, char separator) {
   const std::size_t sign = line.rfind('#');
   if (sign == std::string_view::npos || sign == 0) return line;
   if (line[sign - 1] != ' ' && line[sign - 1] != '\t') return line;
   const std::string_view behind = line.substr(sign);
+  if (separator != ' ' && is_no_value(trimmed(behind))) return line;
   if (separator != ' ' && behind.find(separator) != std::string_view::npos) return line;
   // "sand #1" is a value: a word goes on to a sign without a blank behind it.
   if (separator != ' ' && behind.size() > 1 && behind[1] != ' ') {

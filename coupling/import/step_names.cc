@@ -66,11 +66,23 @@ class StepsOfNames {
       for (auto& [words, kind] : kinds_)
         if (kind.grains == grains) settle_kind(kind);
     follow_others();
+    warn_of_two_steps();
     for (const NameParts& name : names_) out_.steps.push_back(step_of(name));
     return std::move(out_);
   }
 
  private:
+  // One file of grains and one of contacts, whose only numbers differ.
+  void warn_of_two_steps() {
+    if (files_.size() != 2 || files_[0].grains == files_[1].grains) return;
+    const auto &first = names_[0].numbers, &second = names_[1].numbers;
+    if (first.size() != 1 || second.size() != 1 || number_of(first[0]) == number_of(second[0]))
+      return;
+    out_.warnings.push_back(fmt::format(
+        "the names of {} and {} have different numbers: are grains and contacts of one step?",
+        files_[0].name, files_[1].name));
+  }
+
   // A kind with as many numbers, the places of whose grains are known.
   const NameKind* leader_of(const NameKind& kind) const {
     const std::size_t count = names_[kind.files.front()].numbers.size();

@@ -20,6 +20,7 @@ struct NamedFile {
 struct NamedSteps {
   std::vector<std::optional<long long>> steps;  ///< of each file
   std::vector<std::string> notes;               ///< how they were told where it is not plain
+  std::vector<std::string> warnings;            ///< what does not belong together by its numbers
 };
 /// Of files that hold one state each: of the numbers in their names the one in which they differ.
 /// Files that have no grain in common are pieces of one step (of several processors). Throws

@@ -124,6 +124,26 @@ std::string plain_column_name(const std::string& name) {
   return out;
 }
 
+std::string counted_from_zero(const std::string& plain, const std::vector<std::string>& all) {
+  static const std::set<std::string> stems = [] {
+    std::set<std::string> out;
+    for (const auto& [ours, others] : all_synonyms())
+      for (const auto* names : {&others.sure, &others.components})
+        for (const std::string& name : *names)
+          if (name.ends_with('0')) out.insert(name.substr(0, name.size() - 1));
+    return out;
+  }();
+  if (plain.empty() || plain.back() < '1' || plain.back() > '3') return plain;
+  const std::string stem = plain.substr(0, plain.size() - 1);
+  const auto there = [&](const char* number) {
+    return std::find(all.begin(), all.end(), stem + number) != all.end();
+  };
+  if (stems.find(stem) == stems.end() || there("0")) return plain;
+  // Half a vector is none.
+  if (!there("1") || !there("2")) return "";
+  return stem + static_cast<char>(plain.back() - 1);
+}
+
 const Synonyms& synonyms_of(const std::string& ours) {
   static const Synonyms none;
   const auto at = all_synonyms().find(ours);

@@ -20,6 +20,10 @@ const Synonyms& synonyms_of(const std::string& ours);
 /// The column of `columns` that likely means ours; empty: none.
 std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns);
 
+/// A plain name of one of the numbered components of a vector, counted from 0: where `all` has
+/// velocity1 and velocity2 and no velocity0, velocity1 is velocity0. Empty: of half a vector.
+std::string counted_from_zero(const std::string& plain, const std::vector<std::string>& all);
+
 /// Whether it is, plainly written, one of our names or a sure synonym of one.
 bool is_known_name(const std::string& name);
 

@@ -42,9 +42,42 @@ const OurColumn* our_column(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+// "x_mm", "radius/mm", "fx, kN": a unit behind a name that is ours; else the name as it is.
+Heading heading_without_brackets(const std::string& text, int index) {
+  const std::string_view whole = trimmed(text);
+  const std::size_t sign = whole.find_last_of("_/,");
+  if (sign != std::string_view::npos && sign > 0) {
+    const std::string_view unit = trimmed(whole.substr(sign + 1));
+    const std::string name(trimmed(whole.substr(0, sign)));
+    for (const std::string_view known : {"m", "cm", "mm", "um", "\u00b5m", "\u03bcm", "nm", "kg",
+                                         "g", "mg", "N", "kN", "mN", "uN", "MN"})
+      if (unit == known && is_known_name(name) && name != "i" && name != "j")
+        return {name, std::string(unit), index};
+  }
+  return {std::string(whole), "", index};
+}
+
+// Units of other systems, and ways to write units that are not ours.
+bool is_unit_of_others(std::string unit) {
+  for (char& ch : unit) ch = static_cast<char>(std::tolower(static_cast<unsigned char>(ch)));
+  for (const char* known :
+       {"in",     "inch",       "inches",      "ft",      "feet",  "foot",   "mil",
+        "yd",     "lb",         "lbs",         "lbf",     "lbm",   "oz",     "t",
+        "ton",    "tonne",      "kgf",         "gf",      "tf",    "kp",     "dyn",
+        "psi",    "slug",       "micron",      "microns", "meter", "meters", "metre",
+        "metres", "millimeter", "millimeters", "t/m3",    "t/m^3", "g/cc",   "g/ml",
+        "kg/l",   "lb/ft3",     "lb/in3",      "pcf",     "in/s",  "ft/s"})
+    if (unit == known) return true;
+  return false;
+}
+
+}  // namespace
+
 Heading heading_of(const std::string& text, int index) {
   const std::size_t open = text.find_last_of("([{");
-  if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
+  if (open == std::string::npos) return heading_without_brackets(text, index);
   const std::size_t close = text.find_first_of(")]}", open);
   // "fx (N) x1000" says more than a unit.
   if (close != std::string::npos && !trimmed(std::string_view(text).substr(close + 1)).empty())
@@ -90,8 +123,10 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
                         known->plane_unit == known->unit ? "" : " (2D: " + known->plane_unit + ")",
                         known_symbols()),
       unit ? ""
-           : fmt::format("; where it is no unit: --column '{}={}'", ours,
-                         (*table_.columns)[static_cast<std::size_t>(heading.index)])));
+      : is_unit_of_others(heading.unit)
+          ? "; convert the column"
+          : fmt::format("; where it is no unit: --column '{}={}'", ours,
+                        (*table_.columns)[static_cast<std::size_t>(heading.index)])));
 }
 
 void TableColumns::note_unit(const std::string& unit, const Heading& heading) const {
@@ -189,10 +224,12 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
   const auto is_in = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  std::vector<std::string> all;
+  for (const Heading& heading : headings_) all.push_back(plain_column_name(heading.name));
   auto found = none;
   for (auto at = headings_.begin(); at != none; ++at) {
     if (has_signs(at->name)) continue;
-    const std::string plain = plain_column_name(at->name);
+    const std::string plain = counted_from_zero(plain_column_name(at->name), all);
     // The components of a vector: "v[0]" is a velocity's, "v0" may be anything.
     if (!is_in(wanted, plain) && !(is_component(at->name) && is_in(known.components, plain)))
       continue;
@@ -249,7 +286,7 @@ ForeignColumn TableColumns::look_up(const std::string& ours) const {
     Heading heading = *at;
     const bool full =
         candidate.chosen && columns[static_cast<std::size_t>(at->index)] == candidate.theirs;
-    if (full && !parse_unit(heading.unit)) heading.unit.clear();
+    if (full && !parse_unit(heading.unit) && !is_unit_of_others(heading.unit)) heading.unit.clear();
     return {ours, at->index, std::nullopt, unit_of(ours, heading)};
   }
   const auto at = plainly(ours);
@@ -316,6 +353,13 @@ ForeignColumn TableColumns::need(const std::string& ours) const {
   ForeignColumn column = find(ours);
   if (!column) missing(ours);
   return column;
+}
+
+ForeignColumn TableColumns::peek_theirs(const std::string& theirs) const {
+  for (const Heading& heading : headings_)
+    if (heading.name == theirs)
+      return {theirs, heading.index, std::nullopt, parse_unit(heading.unit)};
+  return {};
 }
 
 ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::string& like) const {

@@ -139,6 +139,9 @@ class TableColumns {
   void require_all(const std::vector<std::vector<std::string>>& wanted) const;
   /// By the file's own name, with numbers such as our column `like` has; throws as need().
   ForeignColumn need_theirs(const std::string& theirs, const std::string& like = "") const;
+  /// A column of the file by its name, as it is, with the unit behind it; it does not count as
+  /// taken.
+  ForeignColumn peek_theirs(const std::string& theirs) const;
   /// What else would do: as an option of the program; as an argument, for a table in memory.
   [[noreturn]] void missing(const std::string& what, const std::string& option = "",
                             const std::string& argument = "") const;

@@ -5,11 +5,29 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/import/number_signs.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/table.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
+namespace {
+
+// Whether a line that begins with # parts into numbers as a row of the table does: a comment is
+// other words, or has a blank behind its sign.
+bool is_row_behind_sign(const std::vector<std::string_view>& fields, std::size_t columns) {
+  if (columns < 3 || fields.size() != columns || fields.front().size() < 2 ||
+      fields.front()[1] == ' ')
+    return false;
+  std::size_t numbers = 0, words = 0;
+  for (std::size_t k = 1; k < fields.size(); ++k) {
+    if (is_no_value(fields[k])) continue;
+    (dem::parse_number(fields[k]) || is_decimal_comma(fields[k]) ? numbers : words) += 1;
+  }
+  return numbers > 1 && numbers >= words;
+}
+
+}  // namespace
 
 const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
   return arrays == nullptr || column.index < 0 ? nullptr
@@ -35,8 +53,7 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
   if (!column || column.constant) return !column;
   const std::string_view told = text(column);
-  // Words of R and pandas for an empty cell; nan may be what a program computed.
-  return told.empty() || told == "NA" || told == "<NA>" || told == "None";
+  return is_no_value(told);  // nan may be what a program computed
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
@@ -200,7 +217,17 @@ void TableReader::read(const ForeignTable& table,
   for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
     row.line = lines.line();
     const std::string_view text = trimmed(line);
-    if (text.empty() || (table.rows < 0 && text.front() == '#')) continue;
+    if (text.empty()) continue;
+    if (table.rows < 0 && text.front() == '#') {
+      RowParts behind;
+      const auto& values = behind.of(text, table.separator);
+      if (!is_row_behind_sign(values, columns)) continue;
+      if (!is_no_value(values.front()))
+        row.refuse(
+            fmt::format("found \"{}\", expected a row, or a comment with a blank behind its "
+                        "sign: is it a row?",
+                        text.substr(0, 60)));
+    }
     ++n;
     const std::vector<std::string_view>& fields = parts.of(line, table.separator, lines);
     row.fields = &fields;

@@ -122,6 +122,7 @@ ImportFormat yade_format() {
   format.name = "yade";
   format.summary = "text of the bodies and of the interactions (docs/import.md has the script)";
   format.scan = scan;
+  format.densities_of_spheres = true;
   format.force_sign = -1;
   const char* same[] = {
       "id",     "x",    "y",       "z",        "vx",     "vy",    "vz",      "angle",  "spin",
