@@ -306,28 +306,29 @@ OffHeights off_heights(const Field& field, const std::optional<MeasuredHeap>& he
   return out;
 }
 
-std::string of_heights(const Field& field, const OffHeights& off, bool heap) {
+std::string of_heights(const Field& field, const OffHeights& off, bool heap,
+                       const char* allowed = "") {
   const std::string h = field.attributes.at("h");
   const Eigen::Index up = field.points.cols() - 1;
   const char axis = "xyz"[up];
-  const bool all_above = field.points.col(up).minCoeff() >= 0;
-  return fmt::format("{} of {} places lie {}; {} is 0 at the {}, -{} on the base{}", off.all(),
-                     field.points.rows(),
-                     off.below == 0 ? heap ? "above the heap's surface" : "at or above the surface"
-                     : off.above == 0 ? "below the base"
-                                      : "above the surface or below the base",
-                     axis, heap ? "apex" : "surface", h,
-                     all_above
-                         ? fmt::format(": are heights counted from the base? {} - {}", axis, h)
-                     : off.above == 0 ? ": is the unit of heights right?"
-                                      : "");
+  const char* where = "above the surface or below the base";
+  if (off.below == 0) where = heap ? "above the heap's surface" : "at or above the surface";
+  if (off.above == 0) where = "below the base";
+  std::string hint;
+  if (field.points.col(up).minCoeff() >= 0) {
+    hint = fmt::format(": are heights counted from the base? {} - {}", axis, h);
+  } else if (off.above == 0) {
+    hint = ": is the unit of heights right?";
+  }
+  return fmt::format("{} of {} places lie {}{}; {} is 0 at the {}, -{} on the base{}", off.all(),
+                     field.points.rows(), where, allowed, axis, heap ? "apex" : "surface", h, hint);
 }
 
 void refuse_heights(const Field& field, const std::optional<MeasuredHeap>& heap) {
   const OffHeights off = off_heights(field, heap);
   if (4 * off.all() > field.points.rows())
-    throw std::invalid_argument(of_heights(field, off, heap.has_value()) +
-                                "; allowed: a quarter of them");
+    throw std::invalid_argument(
+        of_heights(field, off, heap.has_value(), ", allowed: a quarter of them"));
 }
 
 std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Index outside) {

@@ -154,7 +154,7 @@ class Assembly {
   /// Throws where lengths of options have no unit beside columns that have one.
   void require_units_of_options(const ForeignTable& table, const PlaceColumns& columns) const;
   /// Throws where the rows are of several times or steps; warns where another table is of another.
-  void check_states(const ForeignTable& table, const TableColumns& columns);
+  void check_states(const ForeignTable& table, const TableColumns& columns, TableKind kind);
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
   void settle_dimension();

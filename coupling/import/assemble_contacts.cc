@@ -99,7 +99,7 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
   const ContactColumns columns = contact_columns(table, named);
-  check_states(table, named);
+  check_states(table, named, TableKind::contacts);
   tell_columns(table, named, TableKind::contacts);
   if (columns.friction && std::isfinite(options_.friction))
     out_.notes.push_back(fmt::format("{}: --friction counts where the column {} is empty, no more",

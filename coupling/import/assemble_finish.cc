@@ -67,15 +67,14 @@ void Assembly::warn_of_wall_gaps() {
     std::string where;
     Eigen::Index axis = 0;
     if (wall.normal.cwiseAbs().maxCoeff(&axis) == 1)
-      where = fmt::format("; the grains on it end at {} = {:.4g} m", "xyz"[axis],
+      where = fmt::format(" The grains on it end at {} = {:.4g} m", "xyz"[axis],
                           wall.point[axis] + wall.normal[axis] * side.lowest);
     const std::string found =
         side.far > 0 ? fmt::format("bear a force across a gap of up to {:.3g} m to", side.widest)
                      : fmt::format("lie up to {:.3g} m deep in", side.deepest);
-    out_.warnings.push_back(fmt::format(
-        "{} of {} contacts with wall {} {} it: is its plane where it says, and were the "
-        "forces taken at that time{}?",
-        side.far > 0 ? side.far : side.sunk, side.contacts, wall.name, found, where));
+    out_.warnings.push_back(
+        fmt::format("{} of {} contacts with wall {} {} it: is its plane where it says?{}",
+                    side.far > 0 ? side.far : side.sunk, side.contacts, wall.name, found, where));
   }
 }
 

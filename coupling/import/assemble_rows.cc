@@ -85,7 +85,8 @@ void Assembly::require_units_of_options(const ForeignTable& table,
   }
 }
 
-void Assembly::check_states(const ForeignTable& table, const TableColumns& columns) {
+void Assembly::check_states(const ForeignTable& table, const TableColumns& columns,
+                            TableKind kind) {
   if (format_.name != "csv" || table.arrays) return;
   for (const std::string& name : columns.untaken()) {
     const std::string plain = plain_column_name(name);
@@ -109,6 +110,8 @@ void Assembly::check_states(const ForeignTable& table, const TableColumns& colum
           fmt::join(values.begin(), std::next(values.begin(), 2), ", "),
           values.size() > 2 ? ", ..." : ""));
     const std::string value = *values.begin();
+    if (kind == TableKind::grains) time_columns_.try_emplace(tables_, name);
+    columns.need_theirs(name);  // it is used, if only to compare
     for (const State& other : states_)
       if (plain_column_name(other.name) == plain && other.value != value &&
           other.file != table.file)
@@ -186,7 +189,7 @@ void Assembly::add_grains(const ForeignTable& table) {
   }
   Bodies bodies{find_bodies(table, columns), {}, false};
   warn_of_shapes(table, columns, bool(shape));
-  check_states(table, columns);
+  check_states(table, columns, TableKind::grains);
   tell_columns(table, columns, TableKind::grains);
   const double kWholeTurn = 2 * std::numbers::pi;
   long long turns = 0;

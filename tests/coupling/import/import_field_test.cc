@@ -374,8 +374,8 @@ TEST(ImportField, HeightsThatAreNotInTheHeapOrLayer) {
                     layer = " --geometry layer --height 0.1 --load 200";
   EXPECT_THAT(
       refusal("0", heap),
-      HasSubstr("8 of 9 places lie above the heap's surface; y is 0 at the apex, -0.08 on "
-                "the base: are heights counted from the base? y - 0.08; allowed: a quarter"));
+      HasSubstr("8 of 9 places lie above the heap's surface, allowed: a quarter of them; y is 0 at "
+                "the apex, -0.08 on the base: are heights counted from the base? y - 0.08"));
   EXPECT_THAT(refusal("20", heap), HasSubstr("9 of 9 places lie above the heap's surface"));
   EXPECT_THAT(refusal("-160", heap), HasSubstr("9 of 9 places lie below the base"));
   EXPECT_THAT(refusal("-80", heap), Not(HasSubstr("places lie")));

@@ -84,6 +84,7 @@ TEST_F(ImportSilence, RowsOfSeveralTimes) {
         csv({timed, write("c.csv", fmt::format("time (ms),i,j,fx,fy\n{},1,2,-1,0\n", time))}));
   };
   EXPECT_EQ(at("500").snapshot.time, 0.5);
+  EXPECT_THAT(at("500").notes, Not(Contains(HasSubstr("not taken"))));
   EXPECT_THAT(at("500").warnings, Not(Contains(HasSubstr("of one state"))));
   EXPECT_THAT(at("700").warnings, Contains(HasSubstr("time is 700, in " + timed +
                                                      " it is 500: are they of one state")));

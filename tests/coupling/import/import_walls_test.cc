@@ -48,8 +48,8 @@ TEST_F(ImportWalls, ForcesAcrossGapsToAWallAreSaid) {
   EXPECT_THAT(
       with_wall("floor:y=-0.005").warnings,
       Contains(HasSubstr("2 of 2 contacts with wall floor bear a force across a gap of up to "
-                         "0.005 m to it: is its plane where it says, and were the forces "
-                         "taken at that time; the grains on it end at y = 0 m?")));
+                         "0.005 m to it: is its plane where it says? The grains on it end "
+                         "at y = 0 m")));
   EXPECT_THAT(with_wall("floor:y=0.004").warnings,
               Contains(HasSubstr("lie up to 0.004 m deep in it")));
 }
