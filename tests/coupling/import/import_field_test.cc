@@ -400,7 +400,7 @@ TEST(ImportField, HeightsThatAreNotInTheHeapOrLayer) {
         .err;
   };
   const std::string heap = " --height 0.08 --slope 30 --rho-g 15000",
-                    layer = " --geometry layer --height 0.1 --load 200";
+                    layer = " --geometry layer --dim 2 --height 0.1 --load 200";
   EXPECT_THAT(
       refusal("0", heap),
       HasSubstr("8 of 9 places lie above the heap's surface, allowed: a quarter of them; y is 0 at "

@@ -159,8 +159,7 @@ TEST(ImportUnits, MomentsOfInertiaInAnotherUnitAreDoubted) {
 
 TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
   const std::string unknown =
-      ", of m g s N Pa J Hz rad deg, with n u m c d k M G before; where it is no unit: --column "
-      "'x=x (inch)'\n";
+      ", of m g s N Pa J Hz rad deg, with n u m c d k M G before; convert the column\n";
   const auto head = [](const std::string& x, const std::string& more = "mass") {
     return fmt::format("id,{},y,radius,{}\n1,0,0,1,1\n", x, more);
   };
