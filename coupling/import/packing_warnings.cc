@@ -80,12 +80,15 @@ std::string turned_component(const PackingCheck& check) {
 bool pull_together(int pulling, int bearing) {
   return pulling > 0 && pulling >= kMostPull * bearing;
 }
+bool push_together(int pulling, int bearing) { return pulling <= (1 - kMostPull) * bearing; }
 
 std::string turned_pairs_or_walls(const PackingCheck& check) {
   const int pairs = check.bearing - check.bearing_walls;
   const int pulling_pairs = check.pulling - check.pulling_walls;
-  const bool of_pairs = pull_together(pulling_pairs, pairs);
-  const bool of_walls = pull_together(check.pulling_walls, check.bearing_walls);
+  const bool of_pairs = pull_together(pulling_pairs, pairs) &&
+                        push_together(check.pulling_walls, check.bearing_walls);
+  const bool of_walls = pull_together(check.pulling_walls, check.bearing_walls) &&
+                        push_together(pulling_pairs, pairs);
   if (of_pairs == of_walls || check.bearing_walls == 0 || pairs == 0 ||
       !turned_component(check).empty())
     return "";
