@@ -269,7 +269,7 @@ void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std:
   }
 }
 
-// What measured values carry, as lines and as doubts of the verdict.
+// Returns a line for each share that measured values carry, and adds the doubts to the verdict.
 std::vector<std::string> carried_lines(const std::vector<SceneField>& scenes,
                                        Judgement& judgement) {
   std::vector<std::string> out;
