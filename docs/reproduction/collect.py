@@ -27,7 +27,7 @@ from record import write_file
 HERE = pathlib.Path(__file__).resolve().parent
 PARTS = {"first": (0.0, 0.04), "middle": (0.08, 0.12), "last": (0.14, 0.20)}
 #: The keys that this script adds to those of a summary.
-ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", "lateral_ratio_at_0.04", "shear_stiffness.*")
+ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", "lateral_ratio_at_0.04", "shear_stiffness.*.*")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
 
