@@ -18,7 +18,6 @@
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/told_units.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -50,9 +49,14 @@ Head head_of(Lines& lines) {
       head.separator = line[sign + 4];
       continue;
     }
-    const bool comment = text.front() == '#';
-    if (comment) text.remove_prefix(1);
+    // "#,x,y": the sign is a name, of numbers.
+    const bool number = text.size() > 1 && std::string_view(",;\t|").find(text[1]) != std::string_view::npos;
+    std::size_t sign_of_comment = text.starts_with("//") ? 2 : 0;
+    if (text.front() == '%' || (text.front() == '#' && !number)) sign_of_comment = 1;
+    const bool comment = sign_of_comment > 0;
+    text.remove_prefix(sign_of_comment);
     std::string whole(text);
+    if (number && !comment && whole.front() == '#') whole.replace(0, 1, "id");
     const long long first = lines.line();
     // A name over several lines, "x\n(mm)" in quotation marks.
     const auto is_open = [&] { return std::count(whole.begin(), whole.end(), '"') % 2 == 1; };
@@ -77,7 +81,7 @@ std::size_t count_of(const std::vector<std::string>& values) {
 }
 
 bool is_number(std::string_view value, char separator) {
-  return dem::parse_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
+  return foreign_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
 }
 
 // More numbers than words.
@@ -266,6 +270,7 @@ ForeignTable scan_csv(const std::string& file, HeadWords&& known) {
   HeaderSearch(file, head, table.separator).find(table);
   NumberSigns signs = number_signs(lines, table);
   table.decimal_commas = signs.decimal_commas;
+  table.thousands = signs.thousands;
   if (!signs.doubt.empty()) table.doubts.push_back(std::move(signs.doubt));
   return table;
 }
