@@ -107,12 +107,22 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
 
 ForeignColumn Assembly::no_friction(const ForeignTable& table, const TableColumns& columns) {
   const bool only = table.any_names && columns.untaken().empty();
-  if (!only)
-    columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
+  if (!only) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
   out_.warnings.push_back(fmt::format(
       "{}:{}: no column tells a tangential force: the contacts are read without friction",
       table.file, table.header_line));
   return {"ft", -1, 0.0, std::nullopt};
+}
+
+void Assembly::check_time(const ForeignTable& grains, const ForeignTable& contacts) {
+  constexpr double kPrinted = 1e-4;  // what few digits leave, of the time
+  if (!grains.time || !contacts.time ||
+      std::abs(*grains.time - *contacts.time) <= kPrinted * std::abs(*grains.time))
+    return;
+  out_.warnings.push_back(
+      fmt::format("{}: its time is {:g} s, that of {} is {:g} s: are they of "
+                  "one state?",
+                  contacts.file, *contacts.time, grains.file, *grains.time));
 }
 
 void Assembly::add_contacts(const ForeignTable& table) {

@@ -119,7 +119,7 @@ class DumpScan {
       const std::string told(trimmed(line));
       const std::optional<UnitSystem> units = parse_unit_system(told);
       if (!units || units->lengths_only) {
-        table_.unknown_units = told;
+        table_.unknown_units = fmt::format("{}: units \"{}\"", lines_.where(), told);
         return true;
       }
       table_.units = *units;

@@ -131,10 +131,9 @@ void require_unit(bool bare, const std::string& option, const std::string& units
 void set_units(const UnitSystem& units, bool given, ForeignTable& table) {
   const UnitSystem told = table.units;
   if (!table.unknown_units.empty() && !given)
-    throw std::invalid_argument(fmt::format(
-        "{}: the file says that it is in {} units, allowed: si, cgs, micro, nano; --units m reads "
-        "its numbers as they are, as m, kg, s and N",
-        table.file, table.unknown_units));
+    throw std::invalid_argument(
+        table.unknown_units +
+        ", allowed: si, cgs, micro, nano; --units m reads the numbers as they are, in m, kg, s");
   if (!table.told_units.empty() && !units.is_si() &&
       (units.lengths_only || units.name != told.name))
     throw std::invalid_argument(
@@ -321,7 +320,10 @@ void import_snapshots(const ImportOptions& options,
     for (const ForeignTable& table : tables.grains) assembly.add_grains(table);
     for (const ForeignTable& table : tables.walls) assembly.add_walls(table);
     assembly.settle();
-    for (const ForeignTable& table : tables.contacts) assembly.add_contacts(table);
+    for (const ForeignTable& table : tables.contacts) {
+      assembly.check_time(tables.grains.front(), table);
+      assembly.add_contacts(table);
+    }
     ImportedSnapshot done = assembly.finish();
     if (!options.ids_file.empty()) restore_ids(options.ids_file, done.snapshot);
     // Of several states the latest is the loaded one: the others are what the load has changed.

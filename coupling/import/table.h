@@ -57,8 +57,9 @@ struct ForeignTable {
   bool any_names = false;       ///< names that other programs have for our columns are taken, too
   std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
   UnitSystem units;             ///< of columns that tell none
-  std::string unknown_units;    ///< "lj": what the file says it is in, where that is none of SI
-  std::string broken;           ///< not empty: why the table cannot be read (truncated)
+  /// "FILE:2: found the units lj": what the file says it is in, where that is none of SI.
+  std::string unknown_units;
+  std::string broken;  ///< not empty: why the table cannot be read (truncated)
   /// "FILE:LINE: found "lengths in mm"": a unit in a line that is no row of units.
   std::string unit_remark;
   std::vector<std::string> doubts;  ///< what makes the reading of its numbers doubtful
