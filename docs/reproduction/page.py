@@ -108,7 +108,10 @@ def figure_line(row: Row, results: Results) -> tuple[str, str]:
     """A line of a table, and its agreement."""
     ours, said = judged(row, results)
     study, lacking = row["study"], said == ""
-    realizations = "" if lacking else number(results, study, "ensemble.realizations", "g")
+    member = "." + row.get("to", row.get("member", "")).rpartition(".")[2]  # those of its own value of a sweep
+    realizations = "" if lacking else number(
+        results, study, "ensemble.realizations" + member if results.plain(study, "ensemble.realizations" + member)
+        is not None else "ensemble.realizations", "g")
     cells = [row["source"], row["what"], with_unit(row["theirs"], row), band(row), ours, said, realizations,
              study_cell(results, study)]
     return "| " + " | ".join(cells) + " |\n", said
