@@ -32,6 +32,8 @@ class Assembly {
   /// Decides the dimension, sorts the grains, places the walls, takes the walls' forces.
   void settle();
   void add_contacts(const ForeignTable& table);
+  /// Warns where both files say their times and these are two.
+  void check_time(const ForeignTable& grains, const ForeignTable& contacts);
   ImportedSnapshot finish();
 
  private:
@@ -202,6 +204,9 @@ class Assembly {
   void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
   /// What a row of contacts tells.
   struct ContactColumns;
+  /// The force ft of a table that tells ids and normal forces alone: 0, with a warning; throws
+  /// where other columns may be the tangential force.
+  ForeignColumn no_friction(const ForeignTable& table, const TableColumns& columns);
   ContactColumns contact_columns(const ForeignTable& table, const TableColumns& columns);
   /// Columns beside a force that tell its parts, too: they are compared, or in doubt.
   void find_parts_beside(const ForeignTable& table, const TableColumns& columns, ContactColumns& c);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "coupling/import/synonyms.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 
@@ -69,9 +70,17 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
     c.tangential_part = need_triple(columns, "ft", dim);
   } else if (!c.force) {
     c.fn = columns.find("fn");
-    if (!c.fn) columns.missing(columns.has("ftx") ? "fnx" : "fx", "", "forces (n, dim) tells it");
+    if (!c.fn) {
+      const bool size = !same_meaning("fn", columns.untaken()).empty();
+      columns.missing(size                 ? "fn"
+                      : columns.has("ftx") ? "fnx"
+                                           : "fx",
+                      "", "forces (n, dim) tells it");
+    }
     c.ft = columns.find("ft");
-    if (!c.ft) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
+    // A size along the normal, and the tangential part as a vector.
+    if (!c.ft) c.tangential_part = find_triple(columns, "ft", dim);
+    if (!c.ft && !c.tangential_part) c.ft = no_friction(table, columns);
     c.tangent = find_triple(columns, "t", dim);
   }
   c.point = find_triple(columns, "p", dim);
@@ -96,6 +105,26 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
   return c;
 }
 
+ForeignColumn Assembly::no_friction(const ForeignTable& table, const TableColumns& columns) {
+  const bool only = table.any_names && columns.untaken().empty();
+  if (!only) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
+  out_.warnings.push_back(fmt::format(
+      "{}:{}: no column tells a tangential force: the contacts are read without friction",
+      table.file, table.header_line));
+  return {"ft", -1, 0.0, std::nullopt};
+}
+
+void Assembly::check_time(const ForeignTable& grains, const ForeignTable& contacts) {
+  constexpr double kPrinted = 1e-4;  // what few digits leave, of the time
+  if (!grains.time || !contacts.time ||
+      std::abs(*grains.time - *contacts.time) <= kPrinted * std::abs(*grains.time))
+    return;
+  out_.warnings.push_back(
+      fmt::format("{}: its time is {:g} s, that of {} is {:g} s: are they of "
+                  "one state?",
+                  contacts.file, *contacts.time, grains.file, *grains.time));
+}
+
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
   const ContactColumns columns = contact_columns(table, named);
@@ -111,6 +140,7 @@ void Assembly::add_contacts(const ForeignTable& table) {
   const Tally tally = tally_;
   try {
     reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, 0); });
+    if (!reader_.doubt_of_end().empty()) out_.warnings.push_back(reader_.doubt_of_end());
     return;
   } catch (const RoundedId&) {
   }
@@ -264,7 +294,7 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
   }
-  if (columns.fn && !columns.tangent && s.dim == 2) {
+  if (columns.ft && !columns.tangent && s.dim == 2) {
     const double ft = row.number(columns.ft);
     tally_.ft_above += ft > 0;
     tally_.ft_below += ft < 0;
@@ -314,7 +344,7 @@ dem::Vec3 Assembly::normal_of_shapes(const ForeignRow& row, const dem::Contact& 
 
 dem::Vec3 Assembly::force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
                                    const dem::Contact& c, double side) const {
-  const double fn = row.number(columns.fn), ft = row.number(columns.ft);
+  const double fn = row.number(columns.fn), ft = columns.ft ? row.number(columns.ft) : 0;
   const dem::Snapshot& s = out_.snapshot;
   // Seen from the grain where a wall is first.
   const bool together = format_.directions_turn_together;
@@ -326,6 +356,8 @@ dem::Vec3 Assembly::force_of_sizes(const ContactColumns& columns, const ForeignR
     row.refuse(fmt::format("the contact's normal has length {:g}", length));
   normal /= length;
   double sign = 1;
+  if (columns.tangential_part)
+    return side * format_.force_sign * columns.tangential_part.of(row) - fn * normal;
   if (columns.tangent) {
     tangent = (together ? 1 : side) * columns.tangent.of(row);
     if (std::abs(ft) > kNoForce * std::abs(fn)) check_tangent(row, normal, tangent);

@@ -110,8 +110,8 @@ void Assembly::tell_tally() {
         "surfaces of their grains (the first: {}): do places, angles, shapes and points fit each "
         "other?",
         tally_.off_shape, tally_.shaped, tally_.first_off_shape));
-  if (tally_.ft_above >= kManyOfOneSign && tally_.ft_below == 0)
-    out_.warnings.push_back(fmt::format(
+  if (tally_.ft_above > 1 && tally_.ft_below == 0)
+    (tally_.ft_above >= kManyOfOneSign ? out_.warnings : out_.notes).push_back(fmt::format(
         "none of {} values of ft is below 0, and no tx, ty tell directions: where ft is a size, "
         "all "
         "tangential forces are turned one way (its sign is that along the normal turned to the "

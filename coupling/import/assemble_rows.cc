@@ -232,7 +232,10 @@ void Assembly::add_grains(const ForeignTable& table) {
                         "radius, or one of the columns",
                         g.id, g.radius, row.number(diameter)));
       if (!(g.radius > 0))
-        row.refuse(fmt::format("grain {}: found radius {} m, allowed: above 0", g.id, g.radius));
+        row.refuse(
+            fmt::format("grain {}: found radius {} m, allowed: above 0; leave out rows that are no "
+                        "grains (walls, markers, facets)",
+                        g.id, g.radius));
     }
     g.fixed = row.flag(fixed);
     if (mark) {
@@ -245,15 +248,18 @@ void Assembly::add_grains(const ForeignTable& table) {
           std::find(marks_.begin(), marks_.end(), text) == marks_.end())
         marks_.emplace_back(text);
     }
+    const bool has_mass = !row.empty(mass);
     g.mass = value(mass);
-    r.density = mass ? 0 : density ? row.number(density) : options_.density;
+    r.density = has_mass              ? 0
+                : !row.empty(density) ? row.number(density)
+                                      : options_.density;
     r.sphere_density =
-        !mass && format_.densities_of_spheres && (places.place[2] || !format_.rows_are_ids);
-    if (mass && !row.empty(density)) r.told_density = row.number(density);
-    const double given = mass ? g.mass : r.density;
+        !has_mass && format_.densities_of_spheres && (places.place[2] || !format_.rows_are_ids);
+    if (has_mass && !row.empty(density)) r.told_density = row.number(density);
+    const double given = has_mass ? g.mass : r.density;
     if (!(given > 0) && !(g.fixed && given == 0))
       row.refuse(fmt::format("grain {}: found {} {}, allowed: above 0", g.id,
-                             mass ? "mass" : "density", given));
+                             has_mass ? "mass" : "density", given));
     r.has_inertia = !row.empty(inertia);
     g.inertia = value(inertia);
     g.volume = value(volume);
@@ -271,6 +277,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     }
     rows_.push_back(std::move(r));
   });
+  if (!reader_.doubt_of_end().empty()) out_.warnings.push_back(reader_.doubt_of_end());
   if (turns > 0 && !angle.unit)
     out_.warnings.push_back(fmt::format(
         "{}:{}: {} angles of outlines are beyond a whole turn in rad: are they degrees, \"angle "

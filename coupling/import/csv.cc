@@ -18,7 +18,6 @@
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/told_units.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -50,8 +49,13 @@ Head head_of(Lines& lines) {
       head.separator = line[sign + 4];
       continue;
     }
-    const bool comment = text.front() == '#';
-    if (comment) text.remove_prefix(1);
+    // "#,x,y": the sign is a name, of numbers.
+    const bool number =
+        text.size() > 1 && std::string_view(",;\t|").find(text[1]) != std::string_view::npos;
+    std::size_t sign_of_comment = text.starts_with("//") ? 2 : 0;
+    if (text.front() == '%' || (text.front() == '#' && !number)) sign_of_comment = 1;
+    const bool comment = sign_of_comment > 0;
+    text.remove_prefix(sign_of_comment);
     std::string whole(text);
     const long long first = lines.line();
     // A name over several lines, "x\n(mm)" in quotation marks.
@@ -77,7 +81,7 @@ std::size_t count_of(const std::vector<std::string>& values) {
 }
 
 bool is_number(std::string_view value, char separator) {
-  return dem::parse_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
+  return foreign_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
 }
 
 // More numbers than words.
@@ -142,6 +146,30 @@ char separator_of(const Head& head) {
                               ": is empty, expected a line of names such as id,x,y,radius,mass");
 }
 
+// Throws where the first line is that of another format.
+void refuse_other_formats(const std::string& file, const HeadLine& first) {
+  const std::string_view text = trimmed(first.text);
+  struct Beginning {
+    std::string_view text;
+    bool comment;
+    const char* what;
+  };
+  for (const Beginning& other : std::initializer_list<Beginning>{
+           {"ITEM:", false, "a dump of LAMMPS or LIGGGHTS: --from lammps, --from liggghts"},
+           {"vtk DataFile", true, "a file of VTK: --from vtk"},
+           {"<?xml", false, "a file of XML: --from vtk reads those of VTK"},
+           {"<VTKFile", false, "a file of VTK: --from vtk"},
+           {"format ", true, "text of YADE: --from yade"},
+           {"<html", false, "a page of HTML: save the table as CSV"},
+           {"<!DOCTYPE", false, "a page of HTML: save the table as CSV"},
+           {"{", false, "JSON: write the tables as CSV"},
+           {"[", false, "JSON: write the tables as CSV"}})
+    if (first.comment == other.comment && text.starts_with(other.text) &&
+        (other.text.size() > 1 || text.find_first_of("])", 1) == std::string_view::npos))
+      throw std::invalid_argument(fmt::format("{}:{}: found \"{}\": this is {}", file, first.line,
+                                              text.substr(0, 40), other.what));
+}
+
 class HeaderSearch {
  public:
   HeaderSearch(const std::string& file, const Head& head, char separator)
@@ -165,6 +193,11 @@ class HeaderSearch {
     table.columns = std::make_shared<const std::vector<std::string>>(
         units < none ? names_with_units(values_[names], *units_of(units, names)) : values_[names]);
     table.header_line = head_.lines[names].line;
+    if (table.columns->front() == "#") {
+      std::vector<std::string> named = *table.columns;
+      named.front() = "id";
+      table.columns = std::make_shared<const std::vector<std::string>>(std::move(named));
+    }
     const bool behind = units < none && units > names && !head_.lines[units].comment;
     table.first = head_.lines[behind ? units : names].behind;
     if (units == none) table.unit_remark = remark(names);
@@ -259,6 +292,7 @@ ForeignTable scan_csv(const std::string& file, HeadWords&& known) {
   Head head = head_of(lines);
   head.known = std::move(known);
   if (head.lines.empty()) refuse_empty(file);
+  refuse_other_formats(file, head.lines.front());
   ForeignTable table;
   table.file = file;
   table.separator = separator_of(head);
@@ -266,6 +300,7 @@ ForeignTable scan_csv(const std::string& file, HeadWords&& known) {
   HeaderSearch(file, head, table.separator).find(table);
   NumberSigns signs = number_signs(lines, table);
   table.decimal_commas = signs.decimal_commas;
+  table.thousands = signs.thousands;
   if (!signs.doubt.empty()) table.doubts.push_back(std::move(signs.doubt));
   return table;
 }

@@ -118,12 +118,10 @@ class DumpScan {
       if (!next(line, "the units")) return false;
       const std::string told(trimmed(line));
       const std::optional<UnitSystem> units = parse_unit_system(told);
-      if (!units || units->lengths_only)
-        refuse(
-            fmt::format("units \"{}\", allowed: si, cgs, micro, nano; what has others has to be "
-                        "converted to one of these (grains have no size in units of lj, real or "
-                        "metal)",
-                        told));
+      if (!units || units->lengths_only) {
+        table_.unknown_units = fmt::format("{}: units \"{}\"", lines_.where(), told);
+        return true;
+      }
       table_.units = *units;
       table_.told_units = lines_.where();
       return true;

@@ -64,7 +64,7 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
 
 // Of --units.
 UnitSystem units_of(const std::string& text) {
-  if (const auto units = parse_unit_system(text)) return *units;
+  if (const auto units = parse_unit_system(text.empty() ? "m" : text)) return *units;
   throw std::invalid_argument(
       fmt::format("--units: found \"{}\", allowed: {}", text, kUnitSystems));
 }
@@ -127,9 +127,13 @@ void require_unit(bool bare, const std::string& option, const std::string& units
                   option, units));
 }
 
-// The table's numbers are in `units` (of --units), those of its cell too.
-void set_units(const UnitSystem& units, ForeignTable& table) {
+// The table's numbers are in `units` (`given`: by --units), those of its cell too.
+void set_units(const UnitSystem& units, bool given, ForeignTable& table) {
   const UnitSystem told = table.units;
+  if (!table.unknown_units.empty() && !given)
+    throw std::invalid_argument(
+        table.unknown_units +
+        ", allowed: si, cgs, micro, nano; --units m reads the numbers as they are, in m, kg, s");
   if (!table.told_units.empty() && !units.is_si() &&
       (units.lengths_only || units.name != told.name))
     throw std::invalid_argument(
@@ -151,7 +155,7 @@ void set_units(const UnitSystem& units, ForeignTable& table) {
 }
 
 // What one file says of its units holds for those that say nothing; returns that, a sentence.
-std::string settle_units(const UnitSystem& chosen, StepList& steps) {
+std::string settle_units(const UnitSystem& chosen, bool given, StepList& steps) {
   std::string where;  // the first file that says them
   UnitSystem told;
   steps.for_each([&](const ForeignTable& table) {
@@ -170,7 +174,7 @@ std::string settle_units(const UnitSystem& chosen, StepList& steps) {
     if (!says && for_all && !told.is_si() && out.empty())
       out =
           fmt::format("{}: says no units, those of {} are taken: {}", table.file, where, told.name);
-    set_units(!says && for_all ? told : chosen, table);
+    set_units(!says && for_all ? told : chosen, given, table);
   });
   return out;
 }
@@ -299,7 +303,7 @@ void import_snapshots(const ImportOptions& options,
       steps.add(std::move(table), kind);
     }
   found.clear();
-  const std::string other_units = settle_units(units, steps);
+  const std::string other_units = settle_units(units, !options.units.empty(), steps);
   steps.settle(format.steps_by_time, read_keys);
   names.take_taken();  // of the tables that are read it is told below
   const bool stepped = steps.stepped();
@@ -316,7 +320,10 @@ void import_snapshots(const ImportOptions& options,
     for (const ForeignTable& table : tables.grains) assembly.add_grains(table);
     for (const ForeignTable& table : tables.walls) assembly.add_walls(table);
     assembly.settle();
-    for (const ForeignTable& table : tables.contacts) assembly.add_contacts(table);
+    for (const ForeignTable& table : tables.contacts) {
+      assembly.check_time(tables.grains.front(), table);
+      assembly.add_contacts(table);
+    }
     ImportedSnapshot done = assembly.finish();
     if (!options.ids_file.empty()) restore_ids(options.ids_file, done.snapshot);
     // Of several states the latest is the loaded one: the others are what the load has changed.

@@ -45,7 +45,9 @@ struct StepChoice {
 struct ImportOptions {
   std::string format;                ///< lammps | liggghts | yade | csv | mercury | vtk
   std::vector<std::string> files;    ///< told apart by what they hold
-  std::string units = "m";           ///< parse_unit_system: of columns without a unit of their own
+  /// parse_unit_system: of columns without a unit of their own; "": m, and a file that says units
+  /// that are none of SI is refused.
+  std::string units;
   std::vector<std::string> columns;  ///< "ours=theirs", "ours=number unit", "i,j=c_id[1..2]"
   int dim = 0;                       ///< 0: 2 when there is no z or every z is the same, else 3
   std::optional<dem::Vec3> gravity;  ///< m/s2; default 9.81 down (2D: -y, 3D: -z)

@@ -3,13 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace grainfield::coupling {
 
 namespace {
 constexpr std::size_t kBlock = std::size_t{1} << 16;  // bytes that are read at once
-}
+
+struct Sign {
+  std::string_view bytes, plain;  // of one length
+};
+// What typesetting, spreadsheets and DOS put in the place of blanks and of the minus of a number:
+// no-break and narrow blanks, a byte order mark of a file that was put behind another, Ctrl-Z.
+constexpr std::array kSigns{
+    Sign{"\xC2\xA0", "  "},      Sign{"\xE2\x80\xAF", "   "}, Sign{"\xE2\x80\x89", "   "},
+    Sign{"\xEF\xBB\xBF", "   "}, Sign{"\xE2\x88\x92", "  -"}, Sign{"\x1A", " "}};
+
+}  // namespace
 
 Lines::Lines(const std::string& file) : file_(file), source_(file) {}
 
@@ -25,6 +36,11 @@ bool Lines::fill() {
   const std::size_t count = source_.read(buffer_.data() + old, more);
   buffer_.resize(old + count);
   ended_ = count == 0;
+  // From the last bytes of the block before, where a sign may begin.
+  for (const Sign& sign : kSigns)
+    for (std::size_t at = old - std::min(old, sign.bytes.size() - 1);
+         (at = buffer_.find(sign.bytes, at)) != std::string::npos; at += sign.bytes.size())
+      buffer_.replace(at, sign.bytes.size(), sign.plain);
   return !ended_;
 }
 

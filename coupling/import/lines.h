@@ -9,6 +9,7 @@
 
 namespace grainfield::coupling {
 
+/// No-break blanks, the typographic minus and other signs that mean a plain one are read as it.
 class Lines {
  public:
   /// Longest line that is read, bytes: outlines of thousands of corners fit.

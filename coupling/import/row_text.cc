@@ -23,6 +23,21 @@ std::string_view without_formula(std::string_view value) {
 
 }  // namespace
 
+std::string plain_exponent(std::string_view text) {
+  std::string out(text);
+  const std::size_t sign = out.find_first_of("dD");
+  if (sign == std::string::npos || sign == 0 || sign + 1 == out.size()) return out;
+  if (out.find_first_not_of("0123456789+-.,dD") == std::string::npos) out[sign] = 'E';
+  return out;
+}
+
+std::optional<double> foreign_number(std::string_view text) {
+  if (const auto number = dem::parse_number(text)) return number;
+  return text.find_first_of("dD") == std::string_view::npos
+             ? std::nullopt
+             : dem::parse_number(plain_exponent(text));
+}
+
 bool is_no_value(std::string_view value) {
   for (const std::string_view word : {"", "NA", "<NA>", "None", "N/A", "n/a", "-", "--"})
     if (value == word) return true;

@@ -1,6 +1,7 @@
 // Rows of tables as their values.
 #pragma once
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,11 @@ class RowParts {
 
 /// Whether it stands for an empty cell of a spreadsheet, of R or pandas: NA, None, -, #N/A, #NV.
 bool is_no_value(std::string_view value);
+
+/// A number as files write it: dem::parse_number(), and Fortran's exponents, 1.5D-03.
+std::optional<double> foreign_number(std::string_view text);
+/// "1.5D-03" -> "1.5E-03"; any other text as it is.
+std::string plain_exponent(std::string_view text);
 
 /// Without a comment behind the last value, "... # first".
 std::string_view without_comment(std::string_view line, char separator);

@@ -52,11 +52,14 @@ struct ForeignTable {
   long long rows = -1;                                      ///< -1: up to the end of the file
   char separator = ' ';
   bool decimal_commas = false;  ///< numbers are written as 0,005
+  char thousands = 0;           ///< sign between three digits and three, 50'000.0; 0: none
   bool prefixes = false;        ///< "c_", "f_", "v_", "i_", "d_" say what made a column (dumps)
   bool any_names = false;       ///< names that other programs have for our columns are taken, too
   std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
   UnitSystem units;             ///< of columns that tell none
-  std::string broken;           ///< not empty: why the table cannot be read (truncated)
+  /// "FILE:2: found the units lj": what the file says it is in, where that is none of SI.
+  std::string unknown_units;
+  std::string broken;  ///< not empty: why the table cannot be read (truncated)
   /// "FILE:LINE: found "lengths in mm"": a unit in a line that is no row of units.
   std::string unit_remark;
   std::vector<std::string> doubts;  ///< what makes the reading of its numbers doubtful
@@ -195,6 +198,7 @@ class ForeignRow {
   const std::vector<std::string>* columns = nullptr;
   const std::vector<std::string_view>* fields = nullptr;  ///< of a file's row
   bool decimal_commas = false;                            ///< of a file's numbers
+  char thousands = 0;                                     ///< likewise
   const std::vector<ArrayColumn>* arrays = nullptr;       ///< of a table in memory
   std::size_t place = 0;                                  ///< of the row in it
 
@@ -216,6 +220,8 @@ class ForeignRow {
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
+  /// A number's text with a point and without signs of thousands; refuses those that do not fit.
+  std::string plain_number(const ForeignColumn& column) const;
   std::string name_of(const ForeignColumn& column) const;
   const ArrayColumn* array_of(const ForeignColumn& column) const;
 
@@ -228,13 +234,18 @@ class ForeignRow {
 class TableReader {
  public:
   void read(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
+  /// Why the end of the table that was read last may be cut off, a sentence; "": no doubt.
+  const std::string& doubt_of_end() const { return doubt_of_end_; }
 
  private:
+  /// Compares the last value of a file without a line end with the shortest before it.
+  void check_end(const Lines& lines, std::string_view last, std::size_t shortest);
   void read_arrays(const ForeignTable& table, const std::function<void(const ForeignRow&)>& take);
   /// The file, opened or as it was left; of many files the last few stay open.
   Lines& lines_of(const std::string& file);
 
   std::list<Lines> files_;  // the one that was read last first
+  std::string doubt_of_end_;
 };
 
 }  // namespace grainfield::coupling

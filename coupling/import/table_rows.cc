@@ -2,16 +2,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
 #include "coupling/import/number_signs.h"
 #include "coupling/import/row_text.h"
+#include "coupling/import/synonyms.h"
 #include "coupling/import/table.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
+
+constexpr long long kFewRows = 4;  // by whose lengths a last one is not judged, with itself
 
 // Whether a line that begins with # parts into numbers as a row of the table does: a comment is
 // other words, or has a blank behind its sign.
@@ -22,9 +26,21 @@ bool is_row_behind_sign(const std::vector<std::string_view>& fields, std::size_t
   std::size_t numbers = 0, words = 0;
   for (std::size_t k = 1; k < fields.size(); ++k) {
     if (is_no_value(fields[k])) continue;
-    (dem::parse_number(fields[k]) || is_decimal_comma(fields[k]) ? numbers : words) += 1;
+    (foreign_number(fields[k]) || is_decimal_comma(fields[k]) ? numbers : words) += 1;
   }
   return numbers > 1 && numbers >= words;
+}
+
+// What is expected in the place of a text that is no id.
+std::string without_number(const std::string& told) {
+  const std::string out = "a whole number";
+  if (told.find_first_of("0123456789") != std::string::npos &&
+      std::isalpha(static_cast<unsigned char>(told.front())) != 0)
+    return out + "; leave the letters out in the tables of grains and of contacts";
+  for (const char* word : {"total", "sum", "mean", "average", "count", "min", "max", "std", "median"})
+    if (plain_column_name(told).starts_with(word))
+      return out + "; leave out rows of sums and means";
+  return out;
 }
 
 }  // namespace
@@ -66,12 +82,27 @@ void ForeignRow::refuse(const std::string& what) const {
   throw std::invalid_argument(fmt::format("{}:{}: {}", *file, line, what));
 }
 
+std::string ForeignRow::plain_number(const ForeignColumn& column) const {
+  std::string told(text(column));
+  if (thousands != 0) {
+    const std::size_t end = told.find(decimal_commas ? ',' : '.');
+    if (is_in_thousands(std::string_view(told).substr(0, end), thousands))
+      std::erase(told, thousands);
+  }
+  if (!decimal_commas) return told;
+  if (told.find('.') != std::string::npos)
+    refuse(fmt::format("column {}: found \"{}\", expected a comma in decimals, as in the rows before",
+                       name_of(column), told));
+  std::replace(told.begin(), told.end(), ',', '.');
+  return told;
+}
+
 double ForeignRow::number(const ForeignColumn& column) const {
   if (column.constant) return *column.constant;
   const ArrayColumn* array = array_of(column);
   std::optional<double> value;
-  const auto read = [&](std::string_view told) {
-    return column.unit ? in_si(std::string(told), *column.unit) : dem::parse_number(told);
+  const auto read = [&](const std::string& told) {
+    return column.unit ? in_si(plain_exponent(told), *column.unit) : foreign_number(told);
   };
   if (array != nullptr && !array->whole.empty()) {
     value = column.unit ? in_si(fmt::format("{}", array->whole[place]), *column.unit)
@@ -81,17 +112,8 @@ double ForeignRow::number(const ForeignColumn& column) const {
     // As the same number in a text would be.
     if (column.unit && std::isfinite(*value))
       value = in_si(fmt::format("{}", *value), *column.unit);
-  } else if (decimal_commas) {
-    std::string told(text(column));
-    if (told.find('.') != std::string::npos)
-      refuse(
-          fmt::format("column {}: found \"{}\", expected a comma in decimals, as in the rows "
-                      "before",
-                      name_of(column), told));
-    std::replace(told.begin(), told.end(), ',', '.');
-    value = read(told);
   } else {
-    value = read(text(column));
+    value = read(plain_number(column));
   }
   if (!value || !std::isfinite(*value)) {
     const std::string_view told = text(column);
@@ -101,7 +123,8 @@ double ForeignRow::number(const ForeignColumn& column) const {
         "column {}: found \"{}\", expected a finite number{}", name_of(column), told,
         comma  ? ": is the comma one of decimals or of thousands? Decimal commas are read where no "
                  "number of the table has a point"
-        : none ? "; a column that may be missing may be empty"
+        : none ? "; a column that may be missing may be empty, and the row of a lost grain may be "
+                 "left out"
                : ""));
   }
   return *value;
@@ -110,9 +133,8 @@ double ForeignRow::number(const ForeignColumn& column) const {
 ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   const ArrayColumn* array = array_of(column);
   if (array != nullptr && !array->whole.empty()) return {array->whole[place], 0};
-  std::string told =
-      column.constant ? fmt::format("{}", *column.constant) : std::string(text(column));
-  if (decimal_commas) std::replace(told.begin(), told.end(), ',', '.');
+  const std::string told =
+      column.constant ? fmt::format("{}", *column.constant) : plain_number(column);
   // A floating-point number in memory may be rounded, whatever its digits.
   const bool floating = array != nullptr && !array->numbers.empty();
   if (const auto value = dem::parse_integer(told); value && !floating) return {*value, 0};
@@ -129,7 +151,7 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
             ? fmt::format("a whole number with all of its digits: as a floating-point number{} one "
                           "from {} on may stand for its neighbour",
                           single ? " of four bytes" : "", single ? "2^24" : "2^53")
-            : std::string("a whole number")));
+            : without_number(told)));
   }
   const std::size_t e = told.find_first_of("eE");
   if (e == std::string::npos) return {static_cast<std::int64_t>(*value), 0};
@@ -201,8 +223,17 @@ Lines& TableReader::lines_of(const std::string& file) {
   return files_.front();
 }
 
+void TableReader::check_end(const Lines& lines, std::string_view last, std::size_t shortest) {
+  if (!lines.unfinished() || last.size() >= shortest || !foreign_number(last)) return;
+  doubt_of_end_ = fmt::format(
+      "{}: the file ends without a line end, and its last number, {}, is shorter than all before "
+      "it: is it cut off?",
+      lines.where(), last);
+}
+
 void TableReader::read(const ForeignTable& table,
                        const std::function<void(const ForeignRow&)>& take) {
+  doubt_of_end_.clear();
   if (table.arrays) return read_arrays(table, take);
   Lines& lines = lines_of(table.file);
   lines.seek(table.first);
@@ -211,9 +242,11 @@ void TableReader::read(const ForeignTable& table,
   row.file = &table.file;
   row.columns = table.columns.get();
   row.decimal_commas = table.decimal_commas;
+  row.thousands = table.thousands;
   const std::size_t columns = table.columns->size();
   std::vector<std::string_view> padded;
   std::string_view line;
+  std::size_t shortest = 0, length = std::string::npos;  // of the last values
   for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
     row.line = lines.line();
     const std::string_view text = trimmed(line);
@@ -231,6 +264,9 @@ void TableReader::read(const ForeignTable& table,
     ++n;
     const std::vector<std::string_view>& fields = parts.of(line, table.separator, lines);
     row.fields = &fields;
+    shortest = n == 1 ? std::string::npos : std::min(shortest, length);
+    length = fields.empty() ? 0 : fields.back().size();
+    if (n >= kFewRows) check_end(lines, fields.empty() ? "" : fields.back(), shortest);
     if (fields.size() != columns) {
       const auto blank = [](std::string_view field) { return field.empty(); };
       if (std::all_of(fields.begin(), fields.end(), blank)) continue;

@@ -37,7 +37,8 @@ bool is_foreign_unit(const std::string& word) {
 std::optional<std::string> unit_in(std::string value, const std::vector<std::string>& known) {
   if (value.size() > 2 && std::string("([{").find(value.front()) != std::string::npos)
     value = std::string(trimmed(std::string_view(value).substr(1, value.size() - 2)));
-  if (value.empty() || value == "-" || value == "1") return "";
+  for (const char* none : {"", "-", "--", "1", "#", "no.", "No.", "number", "integer", "int", "none"})
+    if (value == none) return "";
   if (parse_unit(value) || std::find(known.begin(), known.end(), value) != known.end())
     return value;
   return std::nullopt;

@@ -26,6 +26,7 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames& names) {
   }
   const VtkData data = legacy ? read_legacy_vtk(file, bytes) : read_xml_vtk(file, bytes);
   std::vector<ForeignTable> tables = vtk_tables(file, data, names);
+  for (ForeignTable& table : tables) table.time = data.time;
   // The second line of a legacy file is a title.
   const std::size_t title = bytes.find('\n') + 1;
   if (legacy && title > 0)

@@ -6,6 +6,9 @@
 #include <charconv>
 #include <cstring>
 
+#include "coupling/import/synonyms.h"
+#include "dem/snapshot/limits.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -97,6 +100,14 @@ void append_values(const char* from, std::size_t count, const VtkType& type, boo
     const auto value = static_cast<std::int64_t>(bits << unused);
     out.whole.push_back(type.sign ? value >> unused : static_cast<std::int64_t>(bits));
   }
+}
+
+void take_time(const VtkArray& array, VtkData& data) {
+  const std::string plain = plain_column_name(array.name);
+  if (array.rows() != 1 || (plain != "timevalue" && plain != "time")) return;
+  data.time =
+      array.whole.empty() ? array.numbers.front() : static_cast<double>(array.whole.front());
+  if (!(*data.time >= 0 && *data.time <= dem::kMostNumber)) data.time.reset();
 }
 
 }  // namespace grainfield::coupling

@@ -1,6 +1,7 @@
 // Arrays of VTK's files of points and lines.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,9 +37,12 @@ struct VtkData {
   std::vector<VtkVertex> vertices;            ///< points that are cells, alone or with others
   std::vector<VtkLine> lines;                 ///< cells of two points
   std::size_t cells = 0;                      ///< of any kind
+  std::optional<double> time;                 ///< of the field data, s
 };
 
 enum class VtkCells { vertices, lines, any, others };
+/// Takes an array of the field data that is the time: TimeValue, as ParaView and VTK name it.
+void take_time(const VtkArray& array, VtkData& data);
 /// Counts the cells whose points end at `ends` among `points` (numbers of a piece, whose first
 /// point is `before` in all) and keeps vertices and lines of them. `any`: by their points.
 void add_cells(VtkCells kind, const std::vector<std::int64_t>& points,

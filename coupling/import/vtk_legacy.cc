@@ -180,6 +180,7 @@ class LegacyReader {
       }
       const std::size_t components = count(), rows = count();
       VtkArray made = array(name, components, rows, std::string(word()));
+      if (into_ == nullptr) take_time(made, data_);
       if (into_ != nullptr && rows == rows_) into_->push_back(std::move(made));
     }
   }

@@ -101,7 +101,10 @@ class XmlReader {
     compressor_ = top.attribute("compressor").as_string();
     if (!compressor_.empty() && compressor_ != "vtkZLibDataCompressor")
       refuse(fmt::format("is packed by {}, allowed: vtkZLibDataCompressor, or none", compressor_));
-    for (const pugi::xml_node piece : top.child(kind.c_str()).children("Piece")) add(piece);
+    const pugi::xml_node data = top.child(kind.c_str());
+    for (const pugi::xml_node one : data.child("FieldData").children("DataArray"))
+      if (std::string(one.attribute("type").as_string()) != "String") take_time(array(one), data_);
+    for (const pugi::xml_node piece : data.children("Piece")) add(piece);
     return std::move(data_);
   }
 

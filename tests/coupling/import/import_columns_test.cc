@@ -196,7 +196,7 @@ TEST_F(ImportColumns, AllThatIsMissingAtOnceAndNoHintAtWhatIsTaken) {
   EXPECT_THAT(contacts("i,j,fx\n1,2,0\n").refused,
               AllOf(HasSubstr("no column \"fy\""), Not(HasSubstr("nearest"))));
   EXPECT_THAT(
-      contacts("i,j,fn\n1,2,0\n").refused,
+      contacts("i,j,fn,thing\n1,2,0,0\n").refused,
       AllOf(HasSubstr("no column \"ft\""), Not(HasSubstr("nearest")), HasSubstr("--column ft=0")));
   EXPECT_THAT(grains("id,x,y,thing,mass\n1,0,0,1,1\n").refused,
               HasSubstr("not used so far: thing"));
