@@ -95,9 +95,10 @@ Eigen::Vector2d base_force(const dem::Snapshot& snapshot) {
 
 double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {
   require_same_grains(unloaded, loaded);
-  const double load = dem::total_applied_force(unloaded).y() - dem::total_applied_force(loaded).y();
+  const int up = loaded.dim - 1;
+  const double load = dem::total_applied_force(unloaded)[up] - dem::total_applied_force(loaded)[up];
   if (load == 0) return std::numeric_limits<double>::quiet_NaN();
-  return (base_force(loaded).y() - base_force(unloaded).y()) / load;
+  return (base_force(loaded)[up] - base_force(unloaded)[up]) / load;
 }
 
 }  // namespace grainfield::coupling

@@ -14,7 +14,6 @@
 
 #include "continuum/model.h"
 #include "coupling/files/measured_share.h"
-#include "coupling/files/placement.h"
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/unit.h"
@@ -260,7 +259,7 @@ const std::vector<std::string>& stress_units() {
 }
 
 std::string name_of_measured(const Field& field) {
-  const double h = dem::parse_number(field.attributes.at("h")).value();
+  const double h = field.number("h");
   const Eigen::VectorXd heights = field.points.col(field.points.cols() - 1);
   return (heights.array() + h).abs().maxCoeff() <= kSamePlace * h ? "base" : "measured";
 }
@@ -416,18 +415,18 @@ Field measured_field(const MeasuredRequest& given) {
   auto& about = out.attributes;
   about["method"] = "measured";
   about["kernel"] = "heaviside";
-  about["width"] = fmt::format("{}", request.width > 0 ? request.width : kSmallWidth * h);
-  about["h"] = fmt::format("{}", h);
+  about["width"] = request.width > 0 ? request.width : kSmallWidth * h;
+  about["h"] = h;
   about["measured_file"] = request.file;
+  about["frame"] = request.geometry;
   if (request.geometry == "layer") {
-    about["frame"] = frame_text("layer", request.dim);
-    if (!std::isnan(request.load)) about["F"] = fmt::format("{}", request.load);
+    if (!std::isnan(request.load)) about["F"] = request.load;
     return out;
   }
-  about["frame"] = fmt::format("heap: apex at (0, 0), floor {} = -h", space ? "z" : "y");
-  about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
-  about["left_deg"] = fmt::format("{}", request.left_deg);
-  about["right_deg"] = fmt::format("{}", request.right_deg);
+  about["lengths"] = "m";
+  about["rho_g_h"] = request.rho_g * h;
+  about["left_deg"] = request.left_deg;
+  about["right_deg"] = request.right_deg;
   refuse_impossible(out);
   return out;
 }

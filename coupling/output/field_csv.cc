@@ -10,18 +10,6 @@
 namespace grainfield::coupling {
 namespace {
 
-bool on_rings(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  return frame != field.attributes.end() && frame->second.find("rings") != std::string::npos;
-}
-
-// Lengths of a heap's frame are over its height.
-bool over_height(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  return frame != field.attributes.end() &&
-         frame->second.find("lengths over its height") != std::string::npos;
-}
-
 bool has_error(const Field& field, const Column& column) {
   return column.error.size() > 0 &&
          (field.realizations > 1 || column.error.array().isFinite().any());
@@ -31,10 +19,10 @@ bool has_error(const Field& field, const Column& column) {
 
 std::string field_csv(const Field& field) {
   // As import-field reads them: the unit in brackets behind the name.
-  const std::string length = over_height(field) ? "h" : "m";
+  const std::string length = field.is_over_height() ? "h" : "m";
   std::string out;
   for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
-                                     : on_rings(field)        ? "rz"
+                                     : field.is_of_rings()    ? "rz"
                                                               : "xy")) {
     out += fmt::format("{}{} ({})", out.empty() ? "" : ",", axis, length);
   }
