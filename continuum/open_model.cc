@@ -20,8 +20,8 @@ const Parameter& free_parameter(const ModelInfo& info, const std::string& name) 
     throw BadParameter(fmt::format("model {}: {} cannot be free; allowed: none of its parameters",
                                    info.name, name));
   }
-  throw BadParameter(fmt::format("model {}: {} cannot be free; allowed: {}; nearest: {}", info.name,
-                                 name, fmt::join(free, ", "), nearest(name, free)));
+  throw BadParameter(fmt::format("model {}: {} cannot be free; allowed: {}; did you mean {}?",
+                                 info.name, name, fmt::join(free, ", "), nearest(name, free)));
 }
 
 OpenModel::OpenModel(const std::string& name, Settings settings,

@@ -90,8 +90,8 @@ std::vector<std::string> chosen(const std::vector<std::string>& there, const std
   for (const std::string& name : there) {
     if (name == wanted || name == "/" + wanted) return {name};
   }
-  throw std::invalid_argument(fmt::format("{}: found no \"{}\", allowed: {}; nearest: {}", file,
-                                          wanted, fmt::join(there, ", "),
+  throw std::invalid_argument(fmt::format("{}: found no \"{}\", allowed: {}; did you mean {}?",
+                                          file, wanted, fmt::join(there, ", "),
                                           continuum::nearest(wanted, there)));
 }
 

@@ -21,6 +21,7 @@
 #include "coupling/output/field_file.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/other_file.h"
+#include "coupling/structure/mean_stress.h"
 #include "coupling/system/printable.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -61,6 +62,21 @@ void print_balance(const AverageRequest& request) {
         printable_name(name.file), name.group, snapshot.grains.size(), snapshot.contacts.size(),
         diameter, balance_markdown(rows));
   }
+}
+
+// The mean stress of the packings in the frame of the field, which is their own where none is up.
+void print_mean_stress(const AverageRequest& request) {
+  std::vector<Eigen::Matrix3d> stresses;
+  int dim = 2;
+  for (const auto& name : request.snapshots) {
+    const auto read = snapshot_of(name);
+    const dem::Vec3 up = request.frame == "packing" ? dem::Vec3(0, 0, 0) : up_of(*read, request.up);
+    const auto held = up.isZero() ? read : upright(read, up);
+    if (held->contacts.empty()) return;
+    stresses.push_back(mean_stress(*held));
+    dim = held->dim;
+  }
+  say("mean stress: {}\n", mean_stress_text(stresses, dim));
 }
 
 }  // namespace
@@ -150,6 +166,7 @@ void add_average(CLI::App& app, Action& action) {
         say("{}: {} points, {} realization{}\n", name, field.points.rows(), field.realizations,
             field.realizations == 1 ? "" : "s");
       }
+      if (!request.response) print_mean_stress(request);
       print_gaps(gaps, fields.front().second);
       return 0;
     };
@@ -196,7 +213,6 @@ void add_compare(CLI::App& app, Action& action) {
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
-      for (const std::string& doubt : outcome.carried_doubts) note("warning: {}", doubt);
       for (const std::string& line : outcome.carried) say("{}\n", line);
       say("{}\nreport: {}/report.html\n", judgement_text(outcome.comparison.judgement),
           printable_name(request->folder));

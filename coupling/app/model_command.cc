@@ -14,6 +14,7 @@
 #include "coupling/app/points_csv.h"
 #include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
+#include "coupling/models/fit_names.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_file.h"
@@ -44,11 +45,21 @@ void list_models() {
                         : "3D      ",
         info.summary);
   }
+  std::vector<std::string> names;
+  for (const FitName& one : fit_names()) {
+    if (!one.registry.empty()) names.push_back(one.name);
+  }
+  say("with the names that fits give: {}\n", fmt::join(names, ", "));
   say("grainfield model NAME --list shows a model's parameters\n");
 }
 
-void list_parameters(const continuum::ModelInfo& info) {
-  say("{}: {}\n", info.name, info.summary);
+void list_parameters(const std::string& name, const continuum::ModelInfo& info) {
+  say("{}: {}\n", name, info.summary);
+  if (const FitName* known = find_fit_name(name)) {
+    const auto fixed = known->fixed.begin();
+    say("  it is {} with {}\n", info.name,
+        known->fixed.empty() ? known->needs : fmt::format("{} = {}", fixed->first, fixed->second));
+  }
   for (const auto& p : info.parameters) {
     say("  {} = {}  ({}; {})\n      {}{}\n", p.name,
         !p.choices.empty()      ? p.choices.front()
@@ -88,9 +99,10 @@ void add_model(CLI::App& app, Action& action) {
         list_models();
         return 0;
       }
-      const auto& info = continuum::find_model(given->name);
       if (given->list) {
-        list_parameters(info);
+        const FitName* known = find_fit_name(given->name);
+        const bool named = known != nullptr && !known->registry.empty();
+        list_parameters(given->name, continuum::find_model(named ? known->registry : given->name));
         return 0;
       }
       if (given->points.empty())
@@ -100,9 +112,12 @@ void add_model(CLI::App& app, Action& action) {
         require_other_file("-o", given->output, {given->points});
         require_ending("-o", given->output, {".csv", ".txt", ".dat"}, "a table as CSV");
       }
-      const auto settings = parse_settings(given->sets, "--set");
+      const ModelChoice choice =
+          in_registry({given->name, given->name, parse_settings(given->sets, "--set")});
+      const auto& info = continuum::find_model(choice.name);
+      const auto& settings = choice.settings;
       auto progress = std::make_unique<SolverProgress>();
-      const auto model = continuum::make_model(given->name, settings);
+      const auto model = continuum::make_model(choice.name, settings);
       const int dim = continuum::dimension(info, settings);
       if (given->cylindrical && dim != 3) {
         throw std::invalid_argument(

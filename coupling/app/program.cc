@@ -39,7 +39,7 @@ std::string unknown_option(const CLI::App& app) {
       if (extra == "--") break;  // behind it nothing is an option
       const std::string word = extra.substr(0, extra.find('='));
       if (!word.starts_with("--") || names.empty()) continue;
-      return fmt::format("unknown option \"{}\"; nearest: {}", word,
+      return fmt::format("unknown option \"{}\"; did you mean {}?", word,
                          continuum::nearest(word, names));
     }
   }
@@ -74,7 +74,7 @@ int parse_and_act(int argc, char** argv) {
     if (app.get_subcommands(called).empty()) {
       std::vector<std::string> names;
       for (const auto* command : shown_commands(app)) names.push_back(command->get_name());
-      return complain(2, fmt::format("unknown command \"{}\"; nearest: {} (grainfield --help)",
+      return complain(2, fmt::format("unknown command \"{}\"; did you mean {}? (grainfield --help)",
                                      argv[1], continuum::nearest(argv[1], names)));
     }
   }
@@ -110,7 +110,9 @@ int act(int argc, char** argv) {
     return parse_and_act(argc, argv);
   } catch (...) {
     const Failure failure = failure_of(std::current_exception());
-    return complain(failure.code, failure.text);
+    if (failure.mistakes.empty()) return complain(failure.code, failure.text);
+    for (const std::string& mistake : failure.mistakes) complain(failure.code, mistake);
+    return failure.code;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "coupling/files/average_files.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/output_folder.h"
+#include "coupling/structure/mean_stress.h"
 #include "coupling/structure/packing_structure.h"
 #include "coupling/system/printable.h"
 
@@ -54,6 +55,9 @@ void show(const std::string& title, const dem::Snapshot& s, const std::string& f
   const CoordinationCounts& counts = made.counts;
   const ForceChains& chains = made.chains;
   say("{}: {} free grains, {} rattlers\n", printable_name(title), counts.grains, counts.rattlers);
+  if (!s.contacts.empty()) {
+    say("  mean stress: {}\n", mean_stress_text({mean_stress(s)}, s.dim));
+  }
   say("  coordination: {:.4g}; without rattlers {:.4g}\n", counts.mean, counts.mean_bearing);
   say("  g2 = tr F/(nu c): {:.4f}; Madadi et al. 2004 for these sizes {:.4f}\n", made.size.measured,
       made.size.theory);

@@ -69,7 +69,7 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value)
         fmt::format("found \"{}\", allowed: {}; a number goes into {}", value, allowed(key), keys));
   }
   reject(a, key.path(),
-         fmt::format("found \"{}\", allowed: {}; nearest: {}", value, allowed(key),
+         fmt::format("found \"{}\", allowed: {}; did you mean {}?", value, allowed(key),
                      continuum::nearest(value, key.choices)));
 }
 
@@ -188,7 +188,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
   names.insert(names.end(), {"model", "variant", "quick"});
   const bool sectioned = a.table || section.size() < a.path.size();
   if (sectioned && std::find(names.begin(), names.end(), section) == names.end()) {
-    reject(a, section, "unknown section; nearest: " + continuum::nearest(section, names));
+    reject(a, section, "unknown section; did you mean " + continuum::nearest(section, names) + "?");
   }
   if (!a.table && std::find(with_keys.begin(), with_keys.end(), a.path) != with_keys.end()) {
     reject(a, a.path,
@@ -213,7 +213,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
     near.clear();
   }
   if (near.empty()) near = continuum::nearest(a.path, here.empty() ? everywhere : here);
-  reject(a, a.path, "unknown key; nearest: " + near);
+  reject(a, a.path, "unknown key; did you mean " + near + "?");
 }
 
 // A value as TOML.
@@ -277,9 +277,9 @@ void take_variant(Draft& draft, const Assignment& a) {
     return;
   }
   reject(a, "variant",
-         names.empty()
-             ? "no [variant.NAME] in this case"
-             : fmt::format("found \"{}\", nearest: {}", name, continuum::nearest(name, names)));
+         names.empty() ? "no [variant.NAME] in this case"
+                       : fmt::format("found \"{}\"; did you mean {}?", name,
+                                     continuum::nearest(name, names)));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "coupling/case/case.h"
 #include "coupling/case/document.h"
 #include "coupling/case/keys.h"
+#include "coupling/system/mistakes.h"
 
 namespace grainfield::coupling {
 
@@ -26,6 +27,10 @@ Assignment written(const Draft& draft, const std::string& path);
 /// Throws std::invalid_argument "ORIGIN: KEY: ..." for an unknown key or section (with the nearest
 /// name), a wrong type or a value out of range.
 void apply(Draft& draft, const Assignment& assignment);
+
+/// What single keys and tables of models say wrongly, of those that apply() took: without meaning
+/// for the study, unknown models and parameters.
+void check_keys(const Draft& draft, MistakeList& mistakes);
 
 /// What fits no single key: sections of another study, model names and parameters, sweep values,
 /// limits between keys, the stable time step. Fills Case::models.

@@ -12,6 +12,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
+#include "coupling/system/mistakes.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -27,8 +28,8 @@ Assignment without_quick(Assignment a) {
   return a;
 }
 
-void put(Draft& draft, const std::vector<Assignment>& assignments) {
-  for (const auto& a : assignments) apply(draft, a);
+void put(Draft& draft, const std::vector<Assignment>& assignments, MistakeList& mistakes) {
+  for (const auto& a : assignments) mistakes.attempt([&] { apply(draft, a); });
 }
 
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
@@ -60,24 +61,29 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
   Draft draft;
   draft.file = file;
   draft.value.name = stem(file);
+  MistakeList mistakes;
   // Some keys mean another member in another study, wherever the study is named.
   for (const auto* list : {&base, &fast, &set}) {
     if (list == &fast && !quick) continue;
     for (const auto& a : *list) {
-      if (a.path == "study") apply(draft, a);
+      if (a.path == "study") mistakes.attempt([&] { apply(draft, a); });
     }
   }
-  put(draft, base);
+  const bool known_study = mistakes.empty();
+  put(draft, base, mistakes);
   // The quick setting is checked even where it is not used: a mistake shows before it is needed.
   Draft with_quick = draft;
-  put(with_quick, fast);
-  if (quick) {
-    put(with_quick, set);
-    finish(with_quick);
-    return with_quick.value;
+  put(with_quick, fast, mistakes);
+  put(quick ? with_quick : draft, set, mistakes);
+  // What single keys say wrongly is told at once; what follows from several only without that.
+  if (known_study) {
+    check_keys(with_quick, mistakes);
+    if (!quick) check_keys(draft, mistakes);
   }
-  if (!fast.empty()) finish(with_quick);
-  put(draft, set);
+  mistakes.sort_by_line(file);
+  mistakes.require_none();
+  if (quick || !fast.empty()) finish(with_quick);
+  if (quick) return with_quick.value;
   finish(draft);
   return draft.value;
 }

@@ -18,6 +18,7 @@
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
+#include "coupling/models/fit_names.h"
 #include "coupling/models/models.h"
 
 namespace grainfield::coupling {
@@ -28,13 +29,14 @@ constexpr std::size_t kMostModels = 200;
 // Grains that are drawn for one member of a sweep, however many there are.
 constexpr std::int64_t kLeastDraws = 300;
 
-void check_sections(const Draft& draft) {
+void check_sections(const Draft& draft, MistakeList& mistakes) {
   for (const auto& [path, a] : draft.last) {
     const Key* key = find_key(path);
     if (key->space && !may_be_in_space(draft.value.study)) continue;  // check_dimensions
-    if (!key_applies(*key, draft.value.study)) {
+    if (key_applies(*key, draft.value.study)) continue;
+    mistakes.attempt([&, &path = path, &a = a] {
       reject(a, path, fmt::format("has no meaning for study = \"{}\"", draft.value.study));
-    }
+    });
   }
 }
 
@@ -58,8 +60,55 @@ void check_label(const Assignment& where, const std::string& label) {
                      kLongestName));
 }
 
-// Every [model.LABEL] table, whether it is used or not.
-std::map<std::string, ModelChoice> read_models(const Draft& draft) {
+// The model of a table [model.LABEL], whether it is used or not.
+ModelChoice read_model(const Draft& draft, const std::string& label,
+                       const std::map<std::string, Assignment>& table, MistakeList& mistakes) {
+  ModelChoice choice{label, label, {}};
+  Assignment where = written(draft, "compare.models");
+  if (!table.empty()) where = table.begin()->second;
+  check_label(where, label);
+  if (const auto name = table.find("name"); name != table.end()) {
+    where = name->second;
+    choice.name = scalar_text(name->second.items.front());
+  }
+  const continuum::ModelInfo* info = nullptr;
+  try {
+    // With its parameters, of which a name that fits give may need one.
+    for (const auto& [parameter, a] : table) {
+      if (parameter != "name") choice.settings[parameter] = scalar_text(a.items.front());
+    }
+    choice = in_registry(choice);
+    info = &continuum::find_model(choice.name);
+  } catch (const continuum::BadParameter& e) {
+    reject(where, "model." + label, e.what());
+  }
+  std::erase_if(choice.settings, [&](const auto& setting) {
+    return table.count(setting.first) > 0 || is_default(*info, setting.first, setting.second);
+  });
+  for (const auto& [parameter, a] : table) {
+    if (parameter == "name") continue;
+    const std::string value = scalar_text(a.items.front());
+    try {
+      continuum::complete(*info, {{parameter, value}});
+    } catch (const continuum::BadParameter& e) {
+      mistakes.attempt([&, &a = a] { reject(a, a.path, e.what()); });
+      continue;
+    }
+    if (!is_default(*info, parameter, value) || filled_by_run(parameter, draft.value.study)) {
+      choice.settings[parameter] = value;
+    }
+  }
+  // A study that varies the model's settings looks at every combination itself.
+  if (!study_of(draft.value).varies_models) {
+    if (const auto found = continuum::find_without_effect(*info, choice.settings)) {
+      const Assignment& a = table.at(found->parameter);
+      reject(a, a.path, found->refusal);
+    }
+  }
+  return choice;
+}
+
+std::map<std::string, ModelChoice> read_models(const Draft& draft, MistakeList& mistakes) {
   std::map<std::string, ModelChoice> out;
   if (draft.models.size() > kMostModels) {
     reject(written(draft, "compare.models"), "model",
@@ -67,46 +116,17 @@ std::map<std::string, ModelChoice> read_models(const Draft& draft) {
                        kMostModels));
   }
   for (const auto& [label, table] : draft.models) {
-    ModelChoice choice{label, label, {}};
-    Assignment where = written(draft, "compare.models");
-    if (!table.empty()) where = table.begin()->second;
-    check_label(where, label);
-    if (const auto name = table.find("name"); name != table.end()) {
-      where = name->second;
-      choice.name = scalar_text(name->second.items.front());
-    }
-    const continuum::ModelInfo* info = nullptr;
-    try {
-      info = &continuum::find_model(choice.name);
-    } catch (const continuum::BadParameter& e) {
-      reject(where, "model." + label, e.what());
-    }
-    for (const auto& [parameter, a] : table) {
-      if (parameter == "name") continue;
-      const std::string value = scalar_text(a.items.front());
-      try {
-        continuum::complete(*info, {{parameter, value}});
-      } catch (const continuum::BadParameter& e) {
-        reject(a, a.path, e.what());
-      }
-      if (!is_default(*info, parameter, value) || filled_by_run(parameter, draft.value.study)) {
-        choice.settings[parameter] = value;
-      }
-    }
-    // A study that varies the model's settings looks at every combination itself.
-    if (!study_of(draft.value).varies_models) {
-      if (const auto found = continuum::find_without_effect(*info, choice.settings)) {
-        const Assignment& a = table.at(found->parameter);
-        reject(a, a.path, found->refusal);
-      }
-    }
-    out.emplace(label, choice);
+    mistakes.attempt([&, &label = label, &table = table] {
+      out.emplace(label, read_model(draft, label, table, mistakes));
+    });
   }
   return out;
 }
 
 void choose_models(Draft& draft) {
-  auto tables = read_models(draft);
+  MistakeList mistakes;
+  auto tables = read_models(draft, mistakes);
+  mistakes.require_none();
   const Assignment where = written(draft, "compare.models");
   Case& value = draft.value;
   value.models.clear();
@@ -125,6 +145,7 @@ void choose_models(Draft& draft) {
     const auto table = tables.find(label);
     ModelChoice choice = table != tables.end() ? table->second : ModelChoice{label, label, {}};
     try {
+      if (table == tables.end()) choice = in_registry(choice);
       const auto& info = continuum::find_model(choice.name);
       const auto& fills = study_of(value).fills;
       continuum::Settings settings = choice.settings;
@@ -178,7 +199,7 @@ void check_list(const Assignment& where, const Key& key, const std::vector<T>& l
 }
 
 // Every list that the study reads, given or not. `section`: only this one's.
-void check_lists(const Draft& draft, const std::string& section = "") {
+void check_lists(const Draft& draft, MistakeList& mistakes, const std::string& section = "") {
   for (const Key& key : keys()) {
     if (!key_applies(key, draft.value.study)) continue;
     if (!section.empty() && key.section != section) continue;
@@ -188,7 +209,7 @@ void check_lists(const Draft& draft, const std::string& section = "") {
           using T = std::decay_t<decltype(held)>;
           if constexpr (std::is_same_v<T, std::vector<double>> ||
                         std::is_same_v<T, std::vector<std::string>>) {
-            check_list(written(draft, key.path()), key, held);
+            mistakes.attempt([&] { check_list(written(draft, key.path()), key, held); });
           }
         },
         key.where);
@@ -252,7 +273,28 @@ Assignment written(const Draft& draft, const std::string& path) {
   return none;
 }
 
-void check_section(const Draft& draft, const std::string& section) { check_lists(draft, section); }
+void check_section(const Draft& draft, const std::string& section) {
+  MistakeList mistakes;
+  check_lists(draft, mistakes, section);
+  mistakes.require_none();
+}
+
+void check_keys(const Draft& draft, MistakeList& mistakes) {
+  check_sections(draft, mistakes);
+  mistakes.attempt([&] { read_models(draft, mistakes); });
+  // Names without a table of their own. Lists are checked later: one that was refused is empty.
+  Draft copy = draft;
+  for (const std::string& label : model_names(copy.value)) {
+    if (draft.models.count(label) > 0) continue;
+    mistakes.attempt([&] {
+      try {
+        continuum::find_model(in_registry({label, label, {}}).name);
+      } catch (const continuum::BadParameter& e) {
+        reject(written(draft, "compare.models"), "compare.models", e.what());
+      }
+    });
+  }
+}
 
 std::vector<std::string>& model_names(Case& value) {
   const Study* study = find_study(value.study);
@@ -267,12 +309,15 @@ void finish(Draft& draft) {
            fmt::format("found {} tables [variant.NAME], allowed: up to {}",
                        draft.value.variants.size(), kMostEntries));
   }
-  check_sections(draft);
+  MistakeList mistakes;
+  check_sections(draft, mistakes);
+  mistakes.require_none();
   check_dimensions(draft);
   check_units(draft);
   blame(draft, [&] { follow_material(draft.value); });
   choose_models(draft);
-  check_lists(draft);
+  check_lists(draft, mistakes);
+  mistakes.require_none();
   if (const Study& study = study_of(draft.value); study.check != nullptr) {
     blame(draft, [&] { study.check(draft.value); });
   }

@@ -170,9 +170,9 @@ std::string limits(const Key& key) {
     near.clear();
     for (const Key& key : keys()) near.push_back(key.path());
   }
-  throw std::invalid_argument(fmt::format("keys: no {} '{}'; nearest: {}; {}",
-                                          path ? "key" : "section or study", name,
-                                          continuum::nearest(name, near), known));
+  throw std::invalid_argument(fmt::format("keys: no {} '{}'; {}; did you mean {}?",
+                                          path ? "key" : "section or study", name, known,
+                                          continuum::nearest(name, near)));
 }
 
 // Letters that a search for keys takes.

@@ -114,22 +114,34 @@ void check_sweep(const Draft& draft) {
     for (const std::string& name : sweep.values) {
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
       reject(values, "sweep.values",
-             fmt::format("found \"{}\", allowed: {}; nearest: {}", name, fmt::join(names, ", "),
-                         continuum::nearest(name, names)));
+             fmt::format("found \"{}\", allowed: {}; did you mean {}?", name,
+                         fmt::join(names, ", "), continuum::nearest(name, names)));
     }
   }
   const bool known = find_key(sweep.key) != nullptr;
   const Members members(draft);
+  const auto blame = [&](std::string what) {
+    const std::string set = "--set: ";
+    if (what.compare(0, set.size(), set) == 0) what = what.substr(set.size());
+    reject(known ? values : where, known ? "sweep.values" : "sweep.key", what);
+  };
+  const auto attempt = [&](const auto& act) {
+    MistakeList own;
+    own.attempt(act);
+    MistakeList blamed;
+    for (const std::string& what : own.lines()) blamed.attempt([&] { blame(what); });
+    blamed.require_none();
+  };
+  MistakeList mistakes;
   for (const auto& text : sweep.values) {
-    try {
+    mistakes.attempt([&] { attempt([&] { members.of(text); }); });
+  }
+  mistakes.require_none();
+  for (const auto& text : sweep.values) {
+    attempt([&] {
       Draft one = members.of(text);
       finish(one);
-    } catch (const std::invalid_argument& e) {
-      std::string what = e.what();
-      const std::string set = "--set: ";
-      if (what.compare(0, set.size(), set) == 0) what = what.substr(set.size());
-      reject(known ? values : where, known ? "sweep.values" : "sweep.key", what);
-    }
+    });
   }
 }
 

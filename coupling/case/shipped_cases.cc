@@ -83,7 +83,7 @@ std::string find_case(const std::string& name) {
   const std::string near = continuum::misspelt(wanted, names);
   throw std::invalid_argument(
       fmt::format("{}: no such file, and no shipped case{} (grainfield cases)", name,
-                  near.empty() ? "" : "; nearest: " + near));
+                  near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
 }  // namespace grainfield::coupling

@@ -98,7 +98,7 @@ const Exporter& find_exporter(const std::string& name) {
     if (one.name == name) return one;
     names.push_back(one.name);
   }
-  throw std::invalid_argument(fmt::format("--to: found \"{}\", allowed: {}; nearest: {}", name,
+  throw std::invalid_argument(fmt::format("--to: found \"{}\", allowed: {}; did you mean {}?", name,
                                           fmt::join(names, ", "), continuum::nearest(name, names)));
 }
 

@@ -14,6 +14,7 @@
 #include "continuum/settings.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/heap/heap_field.h"
+#include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
 #include "coupling/observe/seen_models.h"
@@ -202,15 +203,18 @@ Report page_of(const CompareRequest& request, const Observations& observed,
   return pile_report(page);
 }
 
-void add_shares(const NamedFields& fields, CompareOutcome& out) {
+// What measured values carry, as lines and as doubts of the verdict.
+std::vector<std::string> carried_lines(const NamedFields& fields, Judgement& judgement) {
+  std::vector<std::string> out;
   for (const auto& [name, field] : fields) {
     const auto share = carried_share(field);
     if (!share) continue;
-    out.carried.push_back(share_text(*share));
-    if (std::string doubt = share_doubt(*share); !doubt.empty()) {
-      out.carried_doubts.push_back(std::move(doubt));
+    out.push_back(share_text(*share));
+    if (const std::string doubt = share_doubt(*share); !doubt.empty()) {
+      judgement.doubts.push_back(as_sentence(doubt));
     }
   }
+  return out;
 }
 
 }  // namespace
@@ -227,7 +231,6 @@ CompareOutcome compare_field(const CompareRequest& request) {
   const Observations observed = observe_fields(fields, request.lines, request.file);
   CompareOutcome out;
   out.measured = observed.measured;
-  if (out.measured) add_shares(fields, out);
   std::size_t main = observed.lines.size() - 1;
   for (std::size_t l = 0; l < observed.lines.size(); ++l) {
     if (observed.lines[l].places.smoothing == Smoothing::marginal) main = l;
@@ -252,6 +255,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
     for (const auto& [key, figure] : model.figures) summary[prefix + key] = figure;
   }
   Comparison comparison = compared(observed, models);
+  if (out.measured) out.carried = carried_lines(fields, comparison.judgement);
   summary["version"] = version_and_commit();
   summary["ensemble.realizations"] = static_cast<std::int64_t>(observed.realizations);
   add_figures_of(observed, comparison, main, summary);

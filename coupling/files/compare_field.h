@@ -22,11 +22,10 @@ struct CompareRequest {
 struct CompareOutcome {
   Comparison comparison;  ///< profiles, models and judgement
   Summary summary;
-  std::string lacks;  ///< of the report (ReportResult::complaint)
-  /// Of what was measured, by field: share_text(), and share_doubt() where there is one.
-  std::vector<std::string> carried, carried_doubts;
-  std::string gone;       ///< earlier results that are gone (told_of_gone); empty: none
-  bool measured = false;  ///< the field is of no grains (Field::is_measured)
+  std::string lacks;                 ///< of the report (ReportResult::complaint)
+  std::vector<std::string> carried;  ///< share_text() of what was measured, by field
+  std::string gone;                  ///< earlier results that are gone (told_of_gone); empty: none
+  bool measured = false;             ///< the field is of no grains (Field::is_measured)
 };
 
 /// Compares any models of the registry with any field whose origin is known: responses to a load

@@ -194,15 +194,22 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
   Draft draft;
   draft.file = case_file;
   draft.value.study = "pile-fit";
+  MistakeList mistakes;
   if (!case_file.empty()) {
     for (const Assignment& a : read_document(case_file)) {
-      if (a.path == "fit" || a.path.compare(0, 4, "fit.") == 0) apply(draft, a);
+      if (a.path != "fit" && a.path.compare(0, 4, "fit.") != 0) continue;
+      mistakes.attempt([&] { apply(draft, a); });
     }
   }
   for (const Assignment& a : parse_overrides(overrides)) {
-    if (a.path.compare(0, 4, "fit.") != 0) reject(a, a.path, "found another section, allowed: fit");
-    apply(draft, a);
+    mistakes.attempt([&] {
+      if (a.path.compare(0, 4, "fit.") != 0) {
+        reject(a, a.path, "found another section, allowed: fit");
+      }
+      apply(draft, a);
+    });
   }
+  mistakes.require_none();
   check_section(draft, "fit");
   return draft.value.get<FitSetup>();
 }

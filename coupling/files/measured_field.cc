@@ -117,7 +117,8 @@ class Reader {
     std::vector<std::string> there;
     for (const Heading& h : headings_) there.push_back(h.name);
     refuse(fmt::format(
-        "no column \"{}\"; found: {}; nearest: {}; expected are x (UNIT), component, value (UNIT), "
+        "no column \"{}\"; found: {}; did you mean {}? Expected are x (UNIT), component, value "
+        "(UNIT), "
         "error (UNIT) and, for cones, r (UNIT) instead of x, with empty cells where an error is "
         "unknown",
         name, fmt::join(there, ", "), continuum::nearest(name, there)));
@@ -204,7 +205,7 @@ void require_above_zero(const char* option, double value, const char* why) {
 void check(const MeasuredRequest& r) {
   if (r.geometry != "heap" && r.geometry != "layer")
     throw std::invalid_argument(
-        fmt::format("--geometry: found \"{}\", allowed: heap, layer; nearest: {}", r.geometry,
+        fmt::format("--geometry: found \"{}\", allowed: heap, layer; did you mean {}?", r.geometry,
                     continuum::nearest(r.geometry, {"heap", "layer"})));
   if (r.dim != 0 && r.dim != 2 && r.dim != 3)
     throw std::invalid_argument(fmt::format("--dim: found {}, allowed: 2, 3", r.dim));

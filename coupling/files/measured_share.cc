@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -84,15 +87,50 @@ Force over_rings(const std::vector<LevelPressure>& level) {
   return out;
 }
 
+// "13870", for a command line.
+std::string four_digits(double value) {
+  return fmt::format("{}", dem::parse_number(fmt::format("{:.4g}", value)).value_or(value));
+}
+
+Force force_of(const std::vector<LevelPressure>& level, int dim) {
+  return dim == 3 ? over_rings(level) : along(level);
+}
+
+// The share of `whole` that the level carries, beside that of a pressure which is known everywhere.
+CarriedShare share_of(std::vector<LevelPressure> level, int dim, double whole,
+                      const std::function<double(double)>& reference) {
+  const Force force = force_of(level, dim);
+  CarriedShare out;
+  out.share = force.value / whole;
+  out.error = force.error / whole;
+  out.carrier = "the pressures on the base";
+  for (LevelPressure& place : level) place.pressure = reference(place.x);
+  const double seen = force_of(level, dim).value / whole;
+  out.least = std::min(1.0, seen);
+  out.most = std::max(1.0, seen);
+  return out;
+}
+
 std::optional<CarriedShare> share_of_weight(const Field& field, const MeasuredHeap& heap) {
   const std::vector<LevelPressure> base = base_pressures(field, heap);
   if (base.size() < kLeastPlaces) return std::nullopt;
   const bool space = heap.dim == 3;
-  const Force force = space ? over_rings(base) : along(base);
   const double weight =
       space ? heap.weight_within(base.back().x) : heap.weight_above(base.front().x, base.back().x);
-  return CarriedShare{force.value / weight, force.error / weight, "the pressures on the base",
-                      "the weight above them"};
+  const double pressure = field.number("rho_g_h");
+  CarriedShare out = share_of(base, heap.dim, weight, [&](double x) {
+    return pressure * std::max(0.0, 1 - (x < 0 ? -x / heap.left : x / heap.right));
+  });
+  out.carried = "the weight above them";
+  out.instead = "--rho-g " + four_digits(out.share * pressure / field.number("h"));
+  return out;
+}
+
+// Of a half plane or half space at the depth d: Flamant, Boussinesq.
+double half_body(double load, double x, double d, int dim) {
+  return dim == 3
+             ? 3 * load * std::pow(d, 3) / (2 * std::numbers::pi) * std::pow(x * x + d * d, -2.5)
+             : 2 * load * std::pow(d, 3) / std::numbers::pi * std::pow(x * x + d * d, -2);
 }
 
 std::optional<CarriedShare> share_of_load(const Field& field, double load, double h) {
@@ -108,15 +146,17 @@ std::optional<CarriedShare> share_of_load(const Field& field, double load, doubl
   if (most == levels.end()) return std::nullopt;
   const auto level = pressures_at(field, most->first, 2 * kSameLevel * h);
   if (level.size() < kLeastPlaces) return std::nullopt;
-  const bool space = field.points.cols() == 3;
-  const Force force = space ? over_rings(level) : along(level);
-  const bool base = std::fabs(most->first + h) <= 2 * kSameLevel * h;
-  return CarriedShare{
-      force.value / load, force.error / load,
-      base ? "the pressures on the base"
-           : fmt::format("the pressures {:.3g} m below the surface", -most->first),
-      space ? fmt::format("the load, within {:.3g} m of its axis", level.back().x)
-            : fmt::format("the load, from {:.3g} to {:.3g} m", level.front().x, level.back().x)};
+  const auto dim = static_cast<int>(field.points.cols());
+  CarriedShare out =
+      share_of(level, dim, load, [&](double x) { return half_body(load, x, -most->first, dim); });
+  if (std::fabs(most->first + h) > 2 * kSameLevel * h) {
+    out.carrier = fmt::format("the pressures {:.3g} m below the surface", -most->first);
+  }
+  out.carried =
+      dim == 3 ? fmt::format("the load, within {:.3g} m of its axis", level.back().x)
+               : fmt::format("the load, from {:.3g} to {:.3g} m", level.front().x, level.back().x);
+  out.instead = "--load " + four_digits(out.share * load);
+  return out;
 }
 
 }  // namespace
@@ -172,11 +212,20 @@ std::string share_text(const CarriedShare& s) {
 }
 
 std::string share_doubt(const CarriedShare& s) {
-  if (s.share >= kLeastShare && s.share <= kMostShare) return "";
+  const double off = std::max(s.share - s.most, s.least - s.share);
+  const bool clear = off > kClearShare && off > kClearErrors * s.error;
+  const bool far = s.share < kLeastShare || s.share > kMostShare;
+  if (!far && !clear) return "";
   const bool weight = s.carried == "the weight above them";
-  return share_text(s) + (weight ? ": are the units, --height, --slope and --rho-g right?"
-                                 : ": are the units, --load and --dim right, and do the places "
-                                   "reach far enough?");
+  std::string out = share_text(s);
+  if (clear) out += fmt::format(", {:.{}f} errors off", off / s.error, off < 10 * s.error ? 1 : 0);
+  out += weight ? ": are the units, --height, --slope and --rho-g right?"
+                : ": are the units, --load and --dim right, and do the places reach far enough?";
+  if (!(s.share > 0)) return out;
+  return out + fmt::format(
+                   " Models carry all of it. Multiply the values by {:.4g} if their scale is in "
+                   "doubt, or give what was measured, {}",
+                   1 / s.share, s.instead);
 }
 
 }  // namespace grainfield::coupling

@@ -9,8 +9,11 @@
 
 namespace grainfield::coupling {
 
-/// Shares outside of these are warned of.
+/// Shares outside of these are warned of,
 inline constexpr double kLeastShare = 0.9, kMostShare = 1.1;
+/// and those that differ from what they should be by more than kClearShare and so many of their own
+/// errors: a model carries all of the weight.
+inline constexpr double kClearShare = 0.02, kClearErrors = 3;
 
 /// A measured heap as its field tells it: a wedge, or in space a cone.
 struct MeasuredHeap {
@@ -39,6 +42,10 @@ struct CarriedShare {
   double error = 0;     ///< standard error, of the values' own; nan: they have none
   std::string carrier;  ///< "the pressures on the base"
   std::string carried;  ///< "the weight above them", "the load within 0.3 m of it"
+  /// Shares at these places of pressures that are right: 1, and that of the weight above each place
+  /// (of the half plane's response, which spreads most), straight between the places as they are.
+  double least = 1, most = 1;
+  std::string instead;  ///< the option with which the share is 1: "--rho-g 13950"
 };
 /// Of a measured heap or response; nothing where fewer than five places lie on one level, or no
 /// load is known. Between places the pressures are straight; in space they are those of rings
@@ -47,7 +54,7 @@ std::optional<CarriedShare> carried_share(const Field& field);
 
 /// "the pressures on the base carry 0.83 +- 0.02 of the weight above them".
 std::string share_text(const CarriedShare& share);
-/// The same with what to look at, where the share is outside kLeastShare to kMostShare; else empty.
+/// The same with what to do, where the share is outside of what is warned of; else empty.
 std::string share_doubt(const CarriedShare& share);
 
 }  // namespace grainfield::coupling

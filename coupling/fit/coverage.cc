@@ -240,7 +240,7 @@ std::string coverage_text(const Coverage& coverage, int realizations) {
                     fmt::format("{}", v.false_alarms)});
   }
   out += "\n" + markdown_table({"drawn", "draws", "one model named", "of these wrong",
-                                "disagrees with the rest by chance"},
+                                "differs from the rest by chance"},
                                rows);
   return out +
          fmt::format("\nNot distinguishable from the nearest, all realizations together: {}\n",

@@ -82,7 +82,7 @@ std::vector<SummaryKey> figures_of_fits() {
       {"fit.*.agrees", "text", "yes: chi2_per_dof is within chi2_chance; no; unknown: no errors"},
       {"fit.*.supported", "text",
        "yes: it agrees and is not distinguishable from the nearest; no; unknown: no errors"},
-      {"fit.*.branch", "text", "branch of Cantelaube's theory with the nearest core angle"},
+      {"fit.*.branch", "text", "branch of Cantelaube's theory whose core angle is closest"},
       {"fit.*.flank_balance_x", "-",
        "flanks: a_xy - a_xx tan(slope), 0 in equilibrium along x; else a description, no field"},
       {"fit.*.flank_balance_y", "-",

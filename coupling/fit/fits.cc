@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
 #include "coupling/fit/open_models.h"
+#include "coupling/judge/words.h"
 #include "coupling/observe/heap_rows.h"
 #include "coupling/statistics/spread.h"
 
@@ -98,15 +98,6 @@ std::vector<FitModel> models_of_layers(const std::vector<std::string>& texts,
 }
 
 namespace {
-
-// A warning with a capital letter, unless a key or a file begins it, and a full stop.
-std::string as_sentence(std::string text) {
-  const std::string first = text.substr(0, text.find(' '));
-  if (first.find_first_of("./_") == std::string::npos) {
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  }
-  return text + (text.back() == '?' ? "" : ".");
-}
 
 // What constants that are no stress field are called; empty: they are one within the errors.
 std::string imbalance(const Fit& fit, double slope_deg, int realizations) {

@@ -47,7 +47,8 @@ std::string why_not(const continuum::ModelInfo& info, Of of) {
     return "one solve takes as long as a whole search; fit a closed form, and finite_elements "
            "solves with its constants";
   }
-  if (info.dim == 3) return "it is a model of space, and fits are of the plane";
+  if (info.dim == 3)
+    return "it is a model of space, and fits are of the plane; `grainfield compare` takes it";
   return of == Of::heap ? "it is no model of a heap of weight rho_g"
                         : "it is no model of a body under a load";
 }

@@ -14,6 +14,11 @@ namespace grainfield::coupling {
   throw std::invalid_argument(where + ": " + what);
 }
 
+/// What to do with a cone, which fits do not take.
+inline constexpr const char* kCompareCones =
+    "of a cone: `grainfield average FILE.h5 --frame heap -o FIELD.h5`, then `grainfield compare "
+    "FIELD.h5 --model cone_osl,cone_fpa,cone_bcc`";
+
 /// One number per realization; of a field without single values one mean each.
 struct HeapFieldFacts {
   std::vector<double> height;               ///< h, m

@@ -125,7 +125,7 @@ void Assembly::complete(GrainRow& row) const {
   if (round && g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
     throw std::invalid_argument(fmt::format(
         "{}: grain {}: found volume {:g} and radius {:g} m, which makes {:g}, allowed: those that "
-        "agree; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
+        "fit each other; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
         row.source.where(), g.id, g.volume, g.radius, volume));
   if (g.volume == 0) g.volume = volume;
   // In 2D a density may be one of spheres; that of a dump is.
@@ -136,7 +136,7 @@ void Assembly::complete(GrainRow& row) const {
       (!g.outline.empty() || contradict(g.mass, row.told_density * as_spheres)))
     throw std::invalid_argument(fmt::format(
         "{}: grain {}: found mass {:g} kg and density {:g}, which makes {:g} kg, allowed: "
-        "those that agree, or one of the columns",
+        "those that fit each other, or one of the columns",
         row.source.where(), g.id, g.mass, row.told_density, row.told_density * g.volume));
   if (!row.has_inertia) g.inertia = g.mass * gyration;
   if (out_.snapshot.dim == 2) {

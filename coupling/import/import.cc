@@ -25,6 +25,7 @@ namespace {
 // A contact point farther than this many radii from its wall's plane is on another wall.
 constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
 constexpr double kOffWall = 2;
+constexpr double kPulling = 1e-3;  // of the mean force: a pull below it is rounding
 // Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
 constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
 
@@ -51,9 +52,9 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   std::vector<ArrayColumn> arrays;
   for (const auto& [name, column] : table.columns) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::invalid_argument(fmt::format("{}: unknown column \"{}\"; nearest: {}; allowed: {}",
-                                              table.name, name, continuum::nearest(name, known),
-                                              fmt::join(known, ", ")));
+      throw std::invalid_argument(
+          fmt::format("{}: unknown column \"{}\"; allowed: {}; did you mean {}?", table.name, name,
+                      fmt::join(known, ", "), continuum::nearest(name, known)));
     if (!arrays.empty() && column.rows() != arrays.front().rows())
       throw std::invalid_argument(fmt::format("{}: {} has {} values, {} has {}", table.name, name,
                                               column.rows(), names.front(), arrays.front().rows()));
@@ -380,6 +381,28 @@ void check_contact_normal(const dem::Snapshot& s, const dem::Contact& c, Packing
   check.odd_j = j.id;
 }
 
+// From grain i outwards through the contact: along the centres of round grains, whatever the file's
+// normal is.
+dem::Vec3 outwards(const dem::Snapshot& s, const dem::Contact& c) {
+  const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
+  const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
+  if (c.j < 0 || !round(i) || !round(s.grains[static_cast<std::size_t>(c.j)])) return c.normal;
+  return dem::second_place(s, c) - i.position;
+}
+
+// Counts the contacts that pull, as they are and with one component of all forces turned.
+void count_pulling(const dem::Snapshot& s, double mean_force, PackingCheck& check) {
+  for (const dem::Contact& c : s.contacts) {
+    const dem::Vec3 parts = c.force.cwiseProduct(outwards(s, c).normalized());
+    const double along = parts.sum(), least = kPulling * mean_force;
+    check.bearing += std::fabs(along) > least;
+    check.pulling += along > least;
+    for (int axis = 0; axis < 3; ++axis) {
+      check.pulling_turned[static_cast<std::size_t>(axis)] += along - 2 * parts[axis] > least;
+    }
+  }
+}
+
 }  // namespace
 
 PackingCheck check_packing(const dem::Snapshot& s) {
@@ -415,15 +438,18 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     }
     if (!free(c.i) && free(c.j)) support -= c.force;
   }
-  double total = 0;
+  count_pulling(s, force, check);
+  const dem::Vec3 up = -s.gravity.normalized();  // zero without gravity
+  double total = 0, squares = 0;
   int count = 0;
   for (std::size_t g = 0; g < s.grains.size(); ++g) {
     if (s.grains[g].fixed) continue;
     dem::Vec3 load = s.grains[g].mass * s.gravity;
     if (s.grains[g].id == s.loaded_grain) load += s.applied_force;
     weight += load;
-    if (!touched[g]) continue;
     const dem::Vec3 f = resultant[g] + load;
+    squares += std::pow(f.dot(up), 2);
+    if (!touched[g]) continue;
     total += f.norm();
     ++count;
   }
@@ -434,7 +460,10 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     check.pairs_along_gravity = down.dot(check.pairs * down);
     check.walls_along_gravity = down.dot(check.walls * down);
     // 0 - 0 is +0 where -0 would be printed.
-    if (weight.dot(down) > 0) check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
+    if (weight.dot(down) > 0) {
+      check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
+      check.support_error = std::sqrt(squares) / weight.dot(down);
+    }
   }
   return check;
 }

@@ -1,5 +1,7 @@
 // Packings of other programs as snapshots (docs/import.md).
 #pragma once
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -123,6 +125,14 @@ struct PackingCheck {
   /// Force of walls and fixed grains on the free grains, against gravity, over their weight and the
   /// applied force along gravity; nan without gravity or contacts.
   double support_ratio = std::numeric_limits<double>::quiet_NaN();
+  /// Its error, were the forces that are out of balance on the grains without direction: root of
+  /// the sum of their squares along gravity, over the same weight.
+  double support_error = std::numeric_limits<double>::quiet_NaN();
+  /// Contacts whose force pulls: its part along the normal is tension, above a thousandth of the
+  /// mean force. `pulling_turned`: how many would with the sign of one component turned.
+  int pulling = 0;
+  std::array<int, 3> pulling_turned{};
+  int bearing = 0;            ///< contacts whose part along the normal, of either sign, is above it
   int wall_contacts = 0;      ///< contacts with walls
   int off_wall_contacts = 0;  ///< of them, those whose point is over two radii off the wall's plane
   int round_pairs = 0;        ///< contacts between round grains

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,8 +12,11 @@
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kUnbalanced = 0.1;   // unbalanced force ratio of a packing that is not at rest
-constexpr double kSupport = 0.1;      // of the weight: missing or too much at walls
+constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that is not at rest
+constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
+constexpr double kClearSupport = 0.02, kClearErrors = 3;  // or beyond both: share, its own errors
+constexpr double kManyPull = 0.01;                        // of the contacts
+constexpr int kExplains = 10;  // a turned sign is the cause where it leaves a tenth of the pulls
 constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
 constexpr double kLeastDiameter = 1e-7, kMostDiameter = 100;  // m
@@ -28,7 +32,10 @@ std::string unbalanced(const PackingCheck& check) {
 }
 
 std::string unsupported(const PackingCheck& check) {
-  if (!(std::fabs(check.support_ratio - 1) > kSupport)) return "";
+  const double off = std::fabs(check.support_ratio - 1);
+  if (!(off > kSupport) && !(off > kClearSupport && off > kClearErrors * check.support_error)) {
+    return "";
+  }
   const char* why = "gravity or masses are too small, or contacts stand there twice";
   if (check.support_ratio < 1) {
     why =
@@ -43,8 +50,30 @@ std::string unsupported(const PackingCheck& check) {
         "units "
         "(N, m, kg)";
   }
-  return fmt::format("walls and fixed grains carry {:.3g} of the weight: {}", check.support_ratio,
-                     why);
+  const std::string error = off > kSupport ? "" : fmt::format(" +- {:.2g}", check.support_error);
+  return fmt::format("walls and fixed grains carry {:.3g}{} of the weight: {}", check.support_ratio,
+                     error, why);
+}
+
+// The component whose sign, turned in all forces, is why contacts pull: "fx"; empty: none is.
+std::string turned_component(const PackingCheck& check) {
+  const auto least = std::min_element(check.pulling_turned.begin(), check.pulling_turned.end());
+  if (kExplains * *least > check.pulling || *least >= check.bearing - check.pulling) return "";
+  return fmt::format("f{}", "xyz"[least - check.pulling_turned.begin()]);
+}
+
+std::string pulling(const PackingCheck& check) {
+  if (!(check.pulling > kManyPull * check.bearing)) return "";
+  const std::string component = turned_component(check);
+  return fmt::format(
+      "{} of {} contacts ({:.0f} %) pull, their normal force is tension: {}", check.pulling,
+      check.bearing, 100.0 * check.pulling / check.bearing,
+      component.empty()
+          ? "turn the sign of their forces, unless the grains stick together (cohesion, liquid "
+            "bridges)"
+          : fmt::format(
+                "turn the sign of {} alone, which leaves {} that pull", component,
+                *std::min_element(check.pulling_turned.begin(), check.pulling_turned.end())));
 }
 
 std::string off_walls(const PackingCheck& check) {
@@ -80,7 +109,7 @@ std::string beyond_friction(const PackingCheck& check) {
 
 // One of each kind; empty: none.
 std::vector<std::string> warning_texts(const PackingCheck& check) {
-  return {unbalanced(check),  unsupported(check),    off_walls(check),
+  return {unbalanced(check),  unsupported(check),    pulling(check),        off_walls(check),
           odd_normals(check), turned_normals(check), beyond_friction(check)};
 }
 
@@ -107,6 +136,12 @@ std::string tension_in(const PackingCheck& check) {
   if (!(along > 0) && !(mean > 0)) return "";
   const bool by_gravity = along > 0;
   const std::string remedy = "forces count on grain i, by j; turn their sign";
+  if (const std::string component = turned_component(check); by_gravity && !component.empty()) {
+    return fmt::format(
+        "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
+        "compression is negative), {} of {} contacts pull; turn the sign of {} alone",
+        along, check.pulling, check.bearing, component);
+  }
   if (by_gravity && check.walls_along_gravity < 0)
     return fmt::format(
         "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "

@@ -15,7 +15,8 @@ namespace grainfield::coupling {
 std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
-/// fixed grains that carry another part of the weight than 0.9 to 1.1, contacts with walls more
+/// fixed grains that carry another part of the weight than 0.9 to 1.1 (or one that is off by 2 %
+/// and three of its errors), one in a hundred contacts or more that pull, contacts with walls more
 /// than two radii off them, normals far off the line of centres, tangential forces beyond friction.
 /// `tension_in` aside.
 std::vector<std::string> warnings_of(const PackingCheck& check);

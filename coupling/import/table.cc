@@ -80,8 +80,8 @@ void ColumnNames::choose(const std::string& text) {
                                             text, ours.size(), theirs.size()));
   for (std::size_t k = 0; k < ours.size(); ++k) {
     if (std::find(known.begin(), known.end(), ours[k]) == known.end())
-      throw std::invalid_argument(fmt::format("--column {}: unknown name \"{}\"; nearest: {}", text,
-                                              ours[k], continuum::nearest(ours[k], known)));
+      throw std::invalid_argument(fmt::format("--column {}: unknown name \"{}\"; did you mean {}?",
+                                              text, ours[k], continuum::nearest(ours[k], known)));
     chosen_.emplace_back(ours[k], theirs[k]);
   }
 }
@@ -221,8 +221,8 @@ std::vector<std::string> TableColumns::misspelled() const {
     if (heading.name.size() < 4 || is_known_name(heading.name) || names_.claims(heading.name))
       continue;
     if (const std::string meant = continuum::misspelt(heading.name, ours); !meant.empty())
-      out.push_back(fmt::format("{}:{}: the column \"{}\" is not used; nearest: {}", table_.file,
-                                table_.header_line, heading.name, meant));
+      out.push_back(fmt::format("{}:{}: the column \"{}\" is not used; did you mean {}?",
+                                table_.file, table_.header_line, heading.name, meant));
   }
   return out;
 }
@@ -333,9 +333,9 @@ void TableColumns::missing(const std::string& what, const std::string& option,
                                             argument.empty() ? "" : "; " + argument));
   if (nearest.empty()) nearest = continuum::nearest(what, columns);
   throw std::invalid_argument(fmt::format(
-      "{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS{}", table_.file,
-      table_.header_line, what, found, nearest.empty() ? "" : "; nearest: " + nearest, what,
-      option.empty() ? "" : "; " + option));
+      "{}:{}: no column \"{}\"; found: {}{} Other names by --column {}=THEIRS{}", table_.file,
+      table_.header_line, what, found, nearest.empty() ? "." : "; did you mean " + nearest + "?",
+      what, option.empty() ? "" : "; " + option));
 }
 
 ForeignColumn TableColumns::need(const std::string& ours) const {
@@ -351,8 +351,8 @@ ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::st
   });
   if (at == headings_.end())
     throw std::invalid_argument(fmt::format(
-        "{}:{}: no column \"{}\"; found: {}; nearest: {}", table_.file, table_.header_line, theirs,
-        fmt::join(columns, " "), continuum::nearest(theirs, columns)));
+        "{}:{}: no column \"{}\"; found: {}; did you mean {}?", table_.file, table_.header_line,
+        theirs, fmt::join(columns, " "), continuum::nearest(theirs, columns)));
   return {theirs, at->index, std::nullopt, unit_of(like, *at)};
 }
 

@@ -1,7 +1,6 @@
 #include "coupling/judge/judge.h"
 
 #include <algorithm>
-#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -9,12 +8,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "coupling/judge/power.h"
+
 namespace grainfield::coupling {
 namespace {
 
 constexpr int kLeastRealizations = 3;
-constexpr double kConfidence = 0.95, kPower = 0.8;
-constexpr double kMostRealizations = 1e6;
+constexpr double kConfidence = 0.95;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::MatrixXd spread_out(const Eigen::MatrixXd& forecast, Eigen::Index columns) {
@@ -53,15 +53,17 @@ Difference paired(const Evidence& e, const Eigen::MatrixXd& one, const Eigen::Ma
   return out;
 }
 
-Power power_of(const Evidence& e, const Difference& behind, double signal, double distance) {
+// `distance`: |model - best|^2; `given`: no number is free, so that they must differ enough.
+Power foreseen(const Evidence& e, const Difference& behind, double signal, double distance,
+               bool given) {
   Power out;
   out.same = std::fabs(behind.mean) < kSame * signal || distance < kSame * signal;
-  const double deviation = behind.error * std::sqrt(static_cast<double>(e.realizations));
-  const double size = out.same ? 0 : std::fabs(behind.mean);
-  out.realizations = realizations_for_power(size, deviation);
-  out.least = realizations_for_power(out.same ? 0 : size + behind.error, deviation);
-  out.most = realizations_for_power(std::max(0.0, size - behind.error), deviation);
-  return out;
+  if (out.same) {
+    out.realizations = out.least = out.most = kInfinity;
+    return out;
+  }
+  return power_of(PairedDifference{behind.mean, behind.error, given ? distance : kInfinity,
+                                   e.realizations, e.errors_from == ErrorsFrom::data});
 }
 
 const std::string& family_of(const JudgedModel& m) { return m.family.empty() ? m.name : m.family; }
@@ -154,28 +156,6 @@ void mark_distinguishable(std::vector<JudgedModel>& models, const std::vector<do
   }
 }
 
-double realizations_for_power(double mean, double deviation) {
-  if (!(std::fabs(mean) > 0)) return kInfinity;
-  // Power of n realizations, increasing in n.
-  const auto power = [&](double n) {
-    const double shift = std::min(std::sqrt(n) * std::fabs(mean) / deviation, 30.0);
-    const double t = boost::math::quantile(boost::math::students_t(n - 1), (1 + kConfidence) / 2);
-    return boost::math::cdf(complement(boost::math::non_central_t(n - 1, shift), t));
-  };
-  double low = kLeastRealizations, high = low;
-  if (!(deviation > 0) || power(low) >= kPower) return low;
-  while (power(high) < kPower) {
-    low = high;
-    high *= 2;
-    if (high > kMostRealizations) return kInfinity;
-  }
-  while (high - low > 0.01 * low && high - low > 0.1) {
-    const double middle = (low + high) / 2;
-    (power(middle) < kPower ? low : high) = middle;
-  }
-  return high;
-}
-
 void judge_at_widths(const std::vector<double>& diameters,
                      const std::function<Judgement(double)>& again, Judgement& judgement) {
   for (const double width : diameters) {
@@ -253,7 +233,7 @@ Judgement judge(const Evidence& e, std::vector<Candidate> candidates) {
     if (m.name == best.name || std::isnan(m.score)) continue;
     const Difference behind = paired(e, forecast(m.name), own);
     const double distance = squared_distance(forecast(m.name), own, e.samples.cols());
-    if (judged) m.power = power_of(e, behind, signal, distance);
+    if (judged) m.power = foreseen(e, behind, signal, distance, !any_free);
     if (!out.rival.empty() || m.description || family_of(m) == family_of(best) ||
         contains(m, best.name)) {
       continue;

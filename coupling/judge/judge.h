@@ -74,8 +74,4 @@ Judgement judge(const Evidence& evidence, std::vector<Candidate> candidates);
 void judge_at_widths(const std::vector<double>& diameters,
                      const std::function<Judgement(double)>& again, Judgement& judgement);
 
-/// Realizations after which a paired difference of this mean and standard deviation is beyond
-/// chance (two-sided t test, 95 %) in 80 of 100 ensembles; infinite where the mean is 0.
-double realizations_for_power(double mean, double deviation);
-
 }  // namespace grainfield::coupling

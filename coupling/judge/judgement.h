@@ -26,8 +26,11 @@ enum class Answer { unknown, no, yes };
 /// "unknown", "no", "yes".
 const char* text_of(Answer answer);
 
-/// How many realizations would distinguish a model from the best at 95 % with a power of 80 %: of
-/// the paired difference that was found, and of one standard error more and less of it.
+/// Share of ensembles whose Power::least and most hold the true number.
+inline constexpr double kForesight = 0.8;
+
+/// How many realizations would distinguish a model from the best at 95 % with a power of 80 %. As
+/// often too many as too few; least and most hold the true number in kForesight of ensembles.
 struct Power {
   double realizations = kNan, least = kNan, most = kNan;  ///< infinite: none is foreseen
   bool same = false;  ///< no number would: the two are one stress here

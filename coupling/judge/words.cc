@@ -57,8 +57,9 @@ std::string basis(const Judgement& j) {
 struct Group {
   std::string name;  // "the finite layer", "osl"
   const JudgedModel* nearest = nullptr;
-  bool kept = false;    // one of it cannot be distinguished from the nearest
-  bool richer = false;  // only models that contain the best are kept
+  bool kept = false;       // one of it cannot be distinguished from the nearest
+  bool richer = false;     // only models that contain the best are kept
+  bool supported = false;  // one of it is
 };
 
 std::vector<Group> groups_of(const Judgement& j) {
@@ -75,6 +76,7 @@ std::vector<Group> groups_of(const Judgement& j) {
     if (at == out.end()) at = out.insert(out.end(), Group{name, &m, false, true});
     if (m.distinguishable == Answer::yes) continue;
     at->kept = true;
+    at->supported = at->supported || m.supported() == Answer::yes;
     const auto& special = m.special_cases;
     at->richer = at->richer && std::find(special.begin(), special.end(), j.best) != special.end();
   }
@@ -98,6 +100,75 @@ std::string without_errors(const Judgement& j, const std::vector<Group>& groups)
                      percent(groups[1].nearest->rel_l2));
 }
 
+// What cannot be distinguished from the nearest model, without models that contain the best one.
+bool stands(const Group& g) { return g.kept && !g.richer; }
+
+std::vector<std::string> names_where(const std::vector<Group>& groups,
+                                     const std::function<bool(const Group&)>& chosen) {
+  std::vector<std::string> out;
+  for (const Group& g : groups) {
+    if (chosen(g)) out.push_back(g.name);
+  }
+  return out;
+}
+
+// "osl, bcc and fpa"; of many the first and how many more.
+std::string listed(std::vector<std::string> names) {
+  const std::size_t all = names.size();
+  if (all > kNamed + 1) {
+    names.resize(kNamed);
+    names.push_back(fmt::format("{} more", all - kNamed));
+  }
+  return joined(names);
+}
+
+// The supported models and no other set of several; one that contains another supported one is left
+// to the table.
+std::string supported_headline(const Judgement& j, const std::vector<Group>& groups,
+                               const std::string& tail) {
+  auto supported = names_where(groups, [](const Group& g) { return stands(g) && g.supported; });
+  if (supported.empty()) {
+    supported = names_where(groups, [](const Group& g) { return g.supported; });
+  }
+  const auto rest = names_where(groups, [](const Group& g) { return !g.supported; });
+  const auto worse = names_where(groups, [](const Group& g) { return !g.kept; });
+  const std::string out =
+      fmt::format("The {} {} {}", subject(j), verb(j, "supports", "support"), listed(supported));
+  if (supported.size() > 1) {
+    return fmt::format("{}, which cannot be distinguished {}{}.", out, tail,
+                       rest.size() == 1 && worse == rest ? "; " + rest[0] + " is worse" : "");
+  }
+  if (worse.size() < rest.size()) {
+    const std::size_t more = rest.size() - worse.size();
+    return fmt::format("{} {}; {} more cannot be distinguished, but {} not agree.", out, tail, more,
+                       more == 1 ? "does" : "do");
+  }
+  if (rest.empty()) return fmt::format("{} {}.", out, tail);
+  return rest.size() == 1
+             ? fmt::format("{}, not {} {}.", out, rest[0], tail)
+             : fmt::format("{}, none of the other {} models {}.", out, rest.size(), tail);
+}
+
+std::string unsupported_headline(const Judgement& j, const std::vector<Group>& groups,
+                                 const std::string& tail) {
+  const auto kept = names_where(groups, stands);
+  const auto worse = names_where(groups, [](const Group& g) { return !g.kept; });
+  const bool all = kept.size() + worse.size() == groups.size();
+  const std::string others = worse.size() == 1 ? worse[0]
+                             : all             ? fmt::format("the other {} models", worse.size())
+                                               : fmt::format("{} other models", worse.size());
+  if (kept.size() == 1 && worse.empty()) {
+    return fmt::format("{} does not agree with the {} {}.", capital(kept[0]), subject(j), tail);
+  }
+  if (kept.size() == 1) {
+    return fmt::format("{} is nearer to the {} than {} {}.", capital(kept[0]), subject(j), others,
+                       tail);
+  }
+  return fmt::format(
+      "{} cannot be distinguished {}{}.", capital(listed(kept)), tail,
+      worse.empty() ? "" : fmt::format("; {} {} worse", others, worse.size() == 1 ? "is" : "are"));
+}
+
 std::string models_headline(const Judgement& j) {
   const std::vector<Group> groups = groups_of(j);
   const JudgedModel& best = j.best_model();
@@ -113,39 +184,9 @@ std::string models_headline(const Judgement& j) {
                        best.agrees() == Answer::yes ? "agrees" : "does not agree", subject(j),
                        tail);
   }
-  std::vector<std::string> kept;
-  std::vector<const Group*> others;
-  const Group* winner = nullptr;
-  for (const Group& g : groups) {
-    const bool own = g.kept && !g.richer;
-    if (own) kept.push_back(g.name);
-    if (own && winner == nullptr) winner = &g;
-    if (!own) others.push_back(&g);
-  }
-  if (kept.size() == 1) {
-    if (best.agrees() == Answer::yes) {
-      return others.size() == 1
-                 ? fmt::format("The {} {} {}, not {} {}.", subject(j),
-                               verb(j, "supports", "support"), winner->name, others[0]->name, tail)
-                 : fmt::format("The {} {} {}, none of the other {} models {}.", subject(j),
-                               verb(j, "supports", "support"), winner->name, others.size(), tail);
-    }
-    return fmt::format(
-        "{} is nearer to the {} than {} {}.", capital(winner->name), subject(j),
-        others.size() == 1 ? others[0]->name : fmt::format("the other {} models", others.size()),
-        tail);
-  }
-  const std::size_t all = kept.size();
-  if (all > kNamed + 1) {
-    kept.resize(kNamed);
-    kept.push_back(fmt::format("{} more", all - kNamed));
-  }
-  std::string out = fmt::format("{} cannot be distinguished {}", capital(joined(kept)), tail);
-  if (!others.empty()) {
-    out += others.size() == 1 ? fmt::format("; {} is worse", others[0]->name)
-                              : fmt::format("; {} others are worse", others.size());
-  }
-  return out + ".";
+  const bool supported =
+      std::any_of(groups.begin(), groups.end(), [](const Group& g) { return g.supported; });
+  return supported ? supported_headline(j, groups, tail) : unsupported_headline(j, groups, tail);
 }
 
 std::string position_line(const Judgement& j) {
@@ -185,14 +226,19 @@ std::string power_line(const Judgement& j) {
         j.best, j.rival);
   }
   if (rival->distinguishable == Answer::yes) return "";
-  if (std::isinf(p.realizations)) {
+  const std::string what =
+      fmt::format("To distinguish {} and {} at 95 % with a power of 80 % takes", j.best, j.rival);
+  if (std::isinf(p.least)) {
     return fmt::format("{} and {} are equally far from the {}: no number of {} is foreseen.",
                        j.best, j.rival, subject(j), many(j));
   }
-  return fmt::format(
-      "To distinguish {} and {} at 95 % with a power of 80 % takes about {:.0f} {} ({} within one "
-      "standard error).",
-      j.best, j.rival, std::ceil(p.realizations), many(j), range_of(p));
+  if (std::isinf(p.realizations)) {
+    return fmt::format(
+        "{} {} {}: their difference here is within chance, which sets no upper limit.", what,
+        range_of(p), many(j));
+  }
+  return fmt::format("{} about {:.0f} {} ({} in {:.0f} of 100 ensembles).", what,
+                     std::ceil(p.realizations), many(j), range_of(p), 100 * kForesight);
 }
 
 // What the judgement says at other kernel widths: a line for each kind of answer.
@@ -266,6 +312,14 @@ std::string with_error(double value, double error) {
                      power);
 }
 
+std::string as_sentence(std::string text) {
+  const std::string first = text.substr(0, text.find(' '));
+  if (first.find_first_of("./_") == std::string::npos) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  }
+  return text + (text.back() == '?' ? "" : ".");
+}
+
 std::vector<std::string> headlines(const Judgement& j) {
   std::vector<std::string> out = j.findings;
   if (!j.models.empty()) out.push_back(models_headline(j));
@@ -274,7 +328,12 @@ std::vector<std::string> headlines(const Judgement& j) {
 
 std::string agreement_line(const Judgement& j) {
   if (j.models.empty()) return "";
-  const JudgedModel& best = j.best_model();
+  // Where the best model does not agree, another one may be supported.
+  const JudgedModel* reference = &j.best_model();
+  for (const JudgedModel& m : j.models) {
+    if (reference->agrees() == Answer::no && m.supported() == Answer::yes) reference = &m;
+  }
+  const JudgedModel& best = *reference;
   if (best.agrees() == Answer::unknown) {
     return j.errors_from == ErrorsFrom::realizations
                ? fmt::format("{} do not show whether a model agrees.",
@@ -287,10 +346,15 @@ std::string agreement_line(const Judgement& j) {
     const auto supported = std::count_if(j.models.begin(), j.models.end(), [](const auto& m) {
       return m.supported() == Answer::yes;
     });
+    const auto agreeing = std::count_if(j.models.begin(), j.models.end(), [](const auto& m) {
+      return m.agrees() == Answer::yes && !m.description;
+    });
     const std::string own = fmt::format("misfit {}, and {}", digits(best.misfit), level);
-    return supported > 1 ? fmt::format("{} of the models agree within the errors: {} has {}.",
-                                       supported, best.label, own)
-                         : fmt::format("{} agrees within the errors: {}.", best.label, own);
+    if (agreeing == 1) return fmt::format("{} agrees within the errors: {}.", best.label, own);
+    return fmt::format(
+        "{} of the models agree within the errors{}: {} has {}.", agreeing,
+        agreeing == supported ? "" : fmt::format(", {} of them supported", supported), best.label,
+        own);
   }
   const bool none = std::none_of(j.models.begin(), j.models.end(), [](const JudgedModel& m) {
     return m.agrees() == Answer::yes && !m.description;
@@ -321,14 +385,16 @@ std::vector<std::string> note_lines(const Judgement& j) {
 
 JudgementTable power_table(const Judgement& j) {
   JudgementTable out;
-  out.header = {"model", many(j) + " needed", "within one standard error", "distinguishable now"};
+  out.header = {"model", many(j) + " needed",
+                fmt::format("in {:.0f} of 100 ensembles", 100 * kForesight), "distinguishable now"};
   for (const JudgedModel& m : j.models) {
     if (m.name == j.best) continue;
     const Power& p = m.power;
     const std::string number = p.same                       ? "none: the same stress here"
                                : std::isnan(p.realizations) ? "unknown"
+                               : std::isinf(p.least)        ? "none is foreseen"
                                : std::isinf(p.realizations)
-                                   ? "none is foreseen"
+                                   ? "no upper limit"
                                    : fmt::format("{:.0f}", std::ceil(p.realizations));
     const bool shown = !p.same && std::isfinite(p.least);
     out.rows.push_back({m.label, number, shown ? range_of(p) : "-", text_of(m.distinguishable)});
@@ -379,8 +445,10 @@ JudgementTable table_of(const Judgement& j) {
       {"distinguishable", "Distinguishable: behind the nearest by more than chance.",
        any([](const auto& m) { return m.distinguishable != Answer::unknown; }),
        [](const auto& m) { return text_of(m.distinguishable); }},
-      {"chi2 + 2 free, behind",
-       "chi2 + 2 free: Akaike's criterion less the nearest's; above 10 it counts.",
+      {"behind, Akaike",
+       "Akaike: chi2 of the fit plus twice its free numbers, less the nearest model's; above 10 "
+       "the "
+       "model is behind.",
        any([](const auto& m) { return std::isfinite(m.aic_behind); }),
        [](const auto& m) {
          return std::isfinite(m.aic_behind) ? fmt::format("{:.1f}", m.aic_behind) : "-";

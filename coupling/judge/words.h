@@ -24,6 +24,9 @@ std::string sentence(const Judgement& judgement);
 /// Position, equations, power, other kernel widths and the judgement's own notes; may be empty.
 std::vector<std::string> note_lines(const Judgement& judgement);
 
+/// A warning as a doubt: with a capital letter, unless a key or a file begins it, and a full stop.
+std::string as_sentence(std::string warning);
+
 struct JudgementTable {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< nearest first

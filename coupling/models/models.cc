@@ -14,6 +14,7 @@
 #include "continuum/size.h"
 #include "continuum/without_effect.h"
 #include "coupling/compare/compare.h"
+#include "coupling/models/fit_names.h"
 
 namespace grainfield::coupling {
 
@@ -96,12 +97,17 @@ void require_models(const std::vector<ModelChoice>& choices, int dim) {
 constexpr std::size_t kMostTold = 3;
 
 std::string model_label(const ModelChoice& choice) {
+  // A name that fits give says its settings itself.
+  const FitName* known = find_fit_name(choice.label);
+  if (known != nullptr && known->registry != choice.name) known = nullptr;
   std::vector<std::string> items;
-  for (const auto& [name, value] : choice.settings) items.push_back(name + "=" + value);
-  const std::string name =
-      choice.label == choice.name ? choice.name : choice.label + "=" + choice.name;
+  for (const auto& [name, value] : choice.settings) {
+    if (known == nullptr || known->fixed.count(name) == 0) items.push_back(name + "=" + value);
+  }
+  const bool one = choice.label == choice.name || known != nullptr;
+  const std::string name = one ? choice.label : choice.label + "=" + choice.name;
   // A name of its own stands for many constants, which legends and titles have no room for.
-  const bool told = choice.label != choice.name && items.size() > kMostTold;
+  const bool told = !one && items.size() > kMostTold;
   return items.empty() || told ? name : fmt::format("{} ({})", name, fmt::join(items, ", "));
 }
 

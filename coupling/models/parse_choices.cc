@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "coupling/models/fit_names.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -43,8 +45,8 @@ ModelChoice parse_choice(const std::string& text, const std::string& where) {
     throw std::invalid_argument(fmt::format(
         "{}: found the label '{}', allowed: letters, digits, _ and -", where, out.label));
   }
-  continuum::find_model(out.name);
-  if (colon == std::string::npos) return out;
+  if (find_fit_name(out.name) == nullptr) continuum::find_model(out.name);
+  if (colon == std::string::npos) return in_registry(out);
   std::vector<std::string> items;
   std::string rest = text.substr(colon + 1);
   for (std::size_t at = 0; at <= rest.size();) {
@@ -53,7 +55,7 @@ ModelChoice parse_choice(const std::string& text, const std::string& where) {
     at = end + 1;
   }
   out.settings = parse_settings(items, where + " " + out.name);
-  return out;
+  return in_registry(out);
 }
 
 std::string label_beside(std::set<std::string>& taken, const std::string& label) {

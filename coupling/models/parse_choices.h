@@ -16,7 +16,8 @@ continuum::Settings parse_settings(const std::vector<std::string>& texts, const 
 /// setting p=v of a choice with settings does.
 std::vector<std::string> split_choices(const std::string& text);
 
-/// One of parse_choices. Throws std::invalid_argument "WHERE: ...".
+/// One of parse_choices, with the registry's name where fits have another (fit_names.h). Throws
+/// std::invalid_argument "WHERE: ...".
 ModelChoice parse_choice(const std::string& text, const std::string& where = "--model");
 /// The label, or behind one that is taken _2, _3, ...; from now on it is taken.
 std::string label_beside(std::set<std::string>& taken, const std::string& label);

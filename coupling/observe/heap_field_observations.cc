@@ -57,7 +57,9 @@ Field without_realizations(const Field& whole, const std::vector<double>& number
 Observations observe_heap_field(const FitSetup& setup, const Field& whole,
                                 const std::string& where) {
   Field field = without_realizations(whole, setup.leave_out, where);
-  if (field.points.cols() != 2) refuse_field(where, "is 3D; fits of heaps need a 2D field");
+  if (field.points.cols() != 2) {
+    refuse_field(where, fmt::format("is 3D; fits of heaps need a 2D field; {}", kCompareCones));
+  }
   std::vector<std::string> missing;
   bool single = true;
   for (const std::string& component : setup.components) {

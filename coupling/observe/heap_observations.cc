@@ -9,6 +9,7 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
+#include "coupling/heap/heap_field.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/observe/heap_rows.h"
 #include "coupling/run/realization_file.h"
@@ -22,9 +23,13 @@ constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
 PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warnings) {
   const dem::Snapshot heap = heaps.read(k);  // its messages name the file
   try {
+    if (heap.dim != 2) {
+      throw std::invalid_argument(
+          fmt::format("is 3D; fits of heaps need a 2D packing; {}", kCompareCones));
+    }
     if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
     const dem::Vec3& g = heap.gravity;
-    if (heap.dim == 2 && !(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
+    if (!(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
       throw std::invalid_argument(
           fmt::format("found gravity ({:g}, {:g}), needed: downwards, along -y (import --gravity)",
                       g.x(), g.y()));

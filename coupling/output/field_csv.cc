@@ -10,6 +10,33 @@
 namespace grainfield::coupling {
 namespace {
 
+// The axes of the points for people.
+std::string frame_words(const Field& field) {
+  const std::string frame = field.word("frame");
+  const bool space = field.points.cols() == 3;
+  const std::string origin = space || field.is_of_rings() ? "(0, 0, 0)" : "(0, 0)";
+  const char* up = origin.size() > 6 ? "z" : "y";
+  std::string out = frame;
+  if (frame == "layer") out += fmt::format(": load at {}, surface {} = 0", origin, up);
+  if (frame == "heap") {
+    out += fmt::format(
+        ": apex at {}, {}", origin,
+        field.is_over_height() ? "lengths over its height h" : fmt::format("floor {} = -h", up));
+  }
+  return field.is_of_rings() ? out + ", rings: radius, height" : out;
+}
+
+// A comment: the frame of the points, how the values were averaged, over how many realizations.
+std::string origin_of(const Field& field) {
+  if (field.word("frame").empty()) return "";
+  std::string out = "# frame " + frame_words(field);
+  if (field.has("method")) out += "; " + field.word("method");
+  if (field.has("kernel")) out += ", kernel " + field.word("kernel");
+  if (field.has("width")) out += fmt::format(", width {} m", field.number("width"));
+  return fmt::format("{}; {} realization{}; stresses tension positive\n", out, field.realizations,
+                     field.realizations == 1 ? "" : "s");
+}
+
 bool has_error(const Field& field, const Column& column) {
   return column.error.size() > 0 &&
          (field.realizations > 1 || column.error.array().isFinite().any());
@@ -20,12 +47,14 @@ bool has_error(const Field& field, const Column& column) {
 std::string field_csv(const Field& field) {
   // As import-field reads them: the unit in brackets behind the name.
   const std::string length = field.is_over_height() ? "h" : "m";
-  std::string out;
+  std::string out = origin_of(field);
+  std::string names;
   for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
                                      : field.is_of_rings()    ? "rz"
                                                               : "xy")) {
-    out += fmt::format("{}{} ({})", out.empty() ? "" : ",", axis, length);
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ",", axis, length);
   }
+  out += names;
   for (const Column& column : field.columns) {
     const bool plain = column.unit.empty() || column.unit == "1" || column.unit == "-";
     const std::string unit = plain ? "" : fmt::format(" ({})", column.unit);

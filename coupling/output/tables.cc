@@ -203,12 +203,10 @@ void write_summary(const std::string& file, const Summary& summary) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [key, value] : summary) {
     if (const auto* number = std::get_if<double>(&value)) {
-      if (std::isnan(*number))
-        json[key] = "nan";
-      else if (std::isinf(*number))
-        json[key] = *number > 0 ? "inf" : "-inf";
-      else
+      if (std::isfinite(*number))
         json[key] = *number;
+      else
+        json[key] = nullptr;
     } else if (const auto* count = std::get_if<std::int64_t>(&value)) {
       json[key] = *count;
     } else {
@@ -232,7 +230,9 @@ Summary read_summary(const std::string& file) {
       summary[key] = value.get<std::int64_t>();
     else if (value.is_number())
       summary[key] = value.get<double>();
-    else if (value == "nan" || value == "inf" || value == "-inf")
+    else if (value.is_null())
+      summary[key] = kNan;
+    else if (value == "nan" || value == "inf" || value == "-inf")  // files of version 0.9
       summary[key] = dem::parse_number(value.get<std::string>()).value();
     else if (value.is_string())
       summary[key] = value.get<std::string>();

@@ -30,11 +30,11 @@ inline constexpr std::size_t kModelsShown = 3;
 /// Writes folder/profiles.csv, .md and .tex, each complete or not at all.
 void write_profiles(const std::string& folder, const Comparison& comparison);
 
-/// Flat results of a run. Not-a-number is written as the string "nan", infinities as "inf", "-inf".
+/// Flat results of a run. What is not finite is written as null: JSON has no such number.
 using Summary = std::map<std::string, std::variant<double, std::int64_t, std::string>>;
 void write_summary(const std::string& file, const Summary& summary);
-/// Throws std::invalid_argument naming the file: missing, not JSON, not flat. "nan" comes back as a
-/// number.
+/// Throws std::invalid_argument naming the file: missing, not JSON, not flat. null comes back as
+/// nan, and so do the words "nan", "inf" and "-inf" of older files as their numbers.
 Summary read_summary(const std::string& file);
 
 }  // namespace grainfield::coupling

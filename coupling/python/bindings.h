@@ -89,5 +89,6 @@ void add_data(py::module_& module);
 void add_results(py::module_& module);
 void add_commands(py::module_& module);
 void add_engine(py::module_& module);
+void add_own_models(py::module_& module);
 
 }  // namespace grainfield::python

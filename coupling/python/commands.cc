@@ -16,6 +16,7 @@
 #include "coupling/files/measured_field.h"
 #include "coupling/files/places.h"
 #include "coupling/files/strain_files.h"
+#include "coupling/models/fit_names.h"
 #include "coupling/python/bindings.h"
 #include "coupling/run/run_request.h"
 #include "coupling/structure/packing_structure.h"
@@ -480,9 +481,10 @@ void add_commands(py::module_& module) {
   module.def("models", models);
   py::class_<Model>(module, "Model")
       .def(py::init([](const std::string& name, const continuum::Settings& settings) {
-        const auto& info = continuum::find_model(name);
-        return Model{name, continuum::dimension(info, settings),
-                     continuum::make_model(name, settings)};
+        const coupling::ModelChoice choice = coupling::in_registry({name, name, settings});
+        return Model{name,
+                     continuum::dimension(continuum::find_model(choice.name), choice.settings),
+                     continuum::make_model(choice.name, choice.settings)};
       }))
       .def_readonly("name", &Model::name)
       .def_readonly("dim", &Model::dim)

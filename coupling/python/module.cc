@@ -39,4 +39,5 @@ PYBIND11_MODULE(_core, module) {
   grainfield::python::add_results(module);
   grainfield::python::add_commands(module);
   grainfield::python::add_engine(module);
+  grainfield::python::add_own_models(module);
 }

@@ -160,7 +160,9 @@ void add_results(py::module_& module) {
   add_fit(module);
   py::class_<coupling::CompareOutcome> compared(module, "CompareOutcome");
   add_outcome(compared);
-  compared.def_readonly("doubts", &coupling::CompareOutcome::carried_doubts)
+  compared
+      .def_property_readonly(
+          "doubts", [](const coupling::CompareOutcome& o) { return o.comparison.judgement.doubts; })
       .def("measures", [](const coupling::CompareOutcome& o) { return measures_of(o.comparison); });
   py::class_<coupling::FitOutcome> fitted(module, "FitOutcome");
   add_outcome(fitted);

@@ -47,6 +47,8 @@ Edges edges_of(const Map& map) {
 
 // Pixels: the y axis with its label, the space between maps, and the colour box with its label.
 constexpr double left_side = 96, between = 70, right_side = 85;
+// Above a map, for its title; the lowest colour box with room for its numbers.
+constexpr double above_map = 36, lowest_bar = 140;
 
 }  // namespace
 
@@ -99,19 +101,21 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   for (std::size_t k = 0; k < all.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
     const double left = left_side + column * (plot_width + between);
-    const double top = row * static_cast<double>(row_height) + 36;
+    const double top = row * static_cast<double>(row_height) + above_map;
     const double w = picture.width, h = picture.height;
     const bool last = k + 1 == all.size();
-    // One colour box, to the right of all the maps.
+    // One colour box for all the maps, to their right, beside the first and as high.
+    const double box = std::max(plot_width * aspect, lowest_bar);
     p += fmt::format(
         "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
         "set bmargin at screen {:.4f}\nset title {} offset 0,-0.5 noenhanced\n",
         left / w, (left + plot_width) / w, 1 - top / h, 1 - (top + plot_width * aspect) / h,
         style::quoted(all[k].title));
     p += last ? fmt::format(
-                    "set colorbox user origin screen {:.4f}, screen 0.12 size screen 0.018, screen "
-                    "0.76\n",
-                    (left_side + columns * (plot_width + between) - 45) / w)
+                    "set colorbox user origin screen {:.4f}, screen {:.4f} size screen 0.018, "
+                    "screen {:.4f}\n",
+                    (left_side + columns * (plot_width + between) - 45) / w,
+                    1 - (above_map + box) / h, box / h)
               : "unset colorbox\n";
     const Edges edges = edges_of(all[k]);
     p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", edges.low.x(), edges.high.x(),

@@ -114,7 +114,7 @@ class Workplace {
     }
     const std::string near = continuum::misspelt(folder_.filename().string(), begun);
     return near.empty() ? "no such folder"
-                        : fmt::format("no such folder; nearest with an unfinished run: {}", near);
+                        : fmt::format("no such folder; an unfinished run is in {}", near);
   }
 
   // Finished or half-done realizations that --resume could go on from.

@@ -156,7 +156,8 @@ const std::vector<SummaryKey>& summary_keys() {
       {"verdict.position", "-", "0: the other family's best model, 1: the nearest family's"},
       {"verdict.position_error", "-", "its standard error over realizations"},
       {"verdict.realizations_needed", "-",
-       "that would distinguish the two best models at 95 % with a power of 80 %"},
+       "that would distinguish the two best models at 95 % with a power of 80 %; null: none is "
+       "foreseen"},
   };
   static const std::vector<SummaryKey> of_all = {
       {"time.dem_cpu_s", "s",

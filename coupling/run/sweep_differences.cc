@@ -81,7 +81,7 @@ std::string differences_sentence(const std::vector<SweepDifference>& differences
       differences.size(), differences.size() == 1 ? "" : "s");
   if (!found.empty()) return fmt::format("Different {}: {}.", how, fmt::join(found, "; "));
   return fmt::format(
-      "Nothing differs {}; nearest to it: {} of {} against {}, {:+.3g} +- {:.2g}, p = "
+      "Nothing differs {}. The least p is that of {} of {} against {}: {:+.3g} +- {:.2g}, p = "
       "{:.2g}.",
       how, nearest->heading, names[nearest->member], names.front(), nearest->difference,
       nearest->error, nearest->p_value);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "continuum/model.h"
+#include "coupling/system/mistakes.h"
 #include "coupling/system/signals.h"
 #include "dem/computation_failed.h"
 #include "dem/storage_failed.h"
@@ -35,6 +36,8 @@ Failure failure_of(const std::exception_ptr& error) {
     std::rethrow_exception(error);
   } catch (const Interrupted& e) {
     return {kExitInterrupted, e.what()};
+  } catch (const Mistakes& e) {
+    return {2, e.what(), e.lines()};
   } catch (const std::invalid_argument& e) {
     return {2, e.what()};
   } catch (const dem::ComputationFailed& e) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace grainfield::coupling {
 
@@ -11,7 +12,8 @@ struct Failure {
   /// 2: a mistake in what the user gave; 3: a computation that failed; 74: an output cannot be
   /// written; 130: stopped from outside (Interrupted); 1: anything else.
   int code = 1;
-  std::string text;  ///< one line
+  std::string text;                        ///< one line, or one for each mistake
+  std::vector<std::string> mistakes = {};  ///< several mistakes, a line each; else empty
 };
 
 /// Of an exception in flight, which must not be null.

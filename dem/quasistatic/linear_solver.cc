@@ -2,12 +2,74 @@
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <limits>
 #include <span>
 #include <vector>
+
+#include "dem/quasistatic/block_factors.h"
+
+namespace grainfield::dem {
+namespace {
+class BlockProduct;
+}
+}  // namespace grainfield::dem
+
+// What Eigen asks of a matrix that it knows by its products alone
+// (https://eigen.tuxfamily.org/dox/group__MatrixfreeSolverExample.html).
+namespace Eigen::internal {
+template <>
+struct traits<grainfield::dem::BlockProduct> : traits<SparseMatrix<double>> {};
+}  // namespace Eigen::internal
+
+namespace grainfield::dem {
+namespace {
+
+class BlockProduct : public Eigen::EigenBase<BlockProduct> {
+ public:
+  using Scalar = double;
+  using RealScalar = double;
+  using StorageIndex = int;
+  enum {
+    ColsAtCompileTime = Eigen::Dynamic,
+    MaxColsAtCompileTime = Eigen::Dynamic,
+    IsRowMajor = false
+  };
+
+  BlockProduct() = default;
+  explicit BlockProduct(const BlockRows& rows) : rows_(&rows) {}
+  Eigen::Index rows() const { return rows_ ? rows_->rows() * BlockRows::kSize : 0; }
+  Eigen::Index cols() const { return rows(); }
+  const BlockRows& rows_of_blocks() const { return *rows_; }
+  template <class Rhs>
+  Eigen::Product<BlockProduct, Rhs, Eigen::AliasFreeProduct> operator*(
+      const Eigen::MatrixBase<Rhs>& x) const {
+    return {*this, x.derived()};
+  }
+
+ private:
+  const BlockRows* rows_ = nullptr;
+};
+
+}  // namespace
+}  // namespace grainfield::dem
+
+namespace Eigen::internal {
+template <class Rhs>
+struct generic_product_impl<grainfield::dem::BlockProduct, Rhs, SparseShape, DenseShape,
+                            GemvProduct>
+    : generic_product_impl_base<grainfield::dem::BlockProduct, Rhs,
+                                generic_product_impl<grainfield::dem::BlockProduct, Rhs>> {
+  template <class Dest>
+  static void scaleAndAddTo(Dest& out, const grainfield::dem::BlockProduct& matrix, const Rhs& x,
+                            double factor) {
+    VectorXd y;
+    matrix.rows_of_blocks().multiply(x, y);
+    out.noalias() += factor * y;
+  }
+};
+}  // namespace Eigen::internal
 
 namespace grainfield::dem {
 namespace {
@@ -16,12 +78,8 @@ namespace {
 // dominated by its symmetric, definite part, and diagonal pivots keep the factors sparse.
 constexpr double kPivotThreshold = 0.01;
 constexpr int kMostIterations = 500;
-// What so many iterations may leave of the right side where a fresh preconditioner does no better:
-// Newton's method gets on with it.
+// What so many iterations may leave of the right side: Newton's method gets on with it.
 constexpr double kMostLeft = 0.5;
-// A preconditioner of an earlier matrix is made anew when it needs so many iterations more than it
-// has: making one takes as long as some hundred of them.
-constexpr int kMostMore = 50;
 
 class DirectSolver final : public LinearSolver {
  public:
@@ -52,42 +110,30 @@ class DirectSolver final : public LinearSolver {
 };
 
 // What Eigen's iterative solvers ask of a preconditioner.
-class SymmetricPart {
+class IncompleteFactors {
  public:
-  using StorageIndex = int;
-  using Matrix = Eigen::SparseMatrix<double>;
-
-  bool stays = false;  ///< factors of an earlier matrix will do
-
-  SymmetricPart() = default;
   template <class M>
-  explicit SymmetricPart(const M& matrix) {
-    compute(matrix);
-  }
-  template <class M>
-  SymmetricPart& analyzePattern(const M&) {
+  IncompleteFactors& analyzePattern(const M&) {
     return *this;
   }
   template <class M>
-  SymmetricPart& factorize(const M& matrix) {
-    if (stays) return *this;
-    const Matrix transposed = matrix.transpose();
-    const Matrix part = 0.5 * (matrix + transposed);
-    factors_.compute(part);
+  IncompleteFactors& factorize(const M& matrix) {
+    factors_.compute(matrix.rows_of_blocks());
     return *this;
   }
   template <class M>
-  SymmetricPart& compute(const M& matrix) {
+  IncompleteFactors& compute(const M& matrix) {
     return factorize(matrix);
   }
-  template <class Rhs>
-  Eigen::VectorXd solve(const Rhs& b) const {
-    return factors_.solve(b);
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    Eigen::VectorXd x;
+    factors_.solve(b, x);
+    return x;
   }
-  Eigen::ComputationInfo info() const { return factors_.info(); }
+  Eigen::ComputationInfo info() const { return Eigen::Success; }
 
  private:
-  Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
+  BlockFactors factors_;
 };
 
 class IterativeSolver final : public LinearSolver {
@@ -97,37 +143,22 @@ class IterativeSolver final : public LinearSolver {
     solver_.setMaxIterations(kMostIterations);
   }
   bool prepare(const Matrix& matrix) override {
-    const bool fits = solver_.rows() == matrix.rows();
-    negative_ = -matrix;
-    return compute(fits && least_ > 0 && last_ <= least_ + kMostMore);
+    rows_.set(matrix, -1);
+    product_ = BlockProduct(rows_);
+    solver_.compute(product_);
+    return true;
   }
   void solve(const Vector& rhs, Vector& x) override {
-    const bool kept = solver_.preconditioner().stays;
-    if (try_to_solve(rhs, x, kept ? kLinearTolerance : kMostLeft)) return;
-    if (kept && compute(false) && try_to_solve(rhs, x, kMostLeft)) return;
-    x.setConstant(rhs.size(), std::numeric_limits<double>::quiet_NaN());
+    const Vector found = solver_.solve(Vector(-rows_.sorted(rhs)));
+    x = rows_.unsorted(found);
+    if (!(solver_.error() <= kMostLeft))
+      x.setConstant(rhs.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
  private:
-  /// `stays`: with the preconditioner that is there.
-  bool compute(bool stays) {
-    solver_.preconditioner().stays = stays;
-    if (!stays) least_ = last_ = 0;
-    solver_.compute(negative_);
-    return solver_.info() == Eigen::Success;
-  }
-  bool try_to_solve(const Vector& rhs, Vector& x, double most_left) {
-    x = solver_.solve(Vector(-rhs));
-    if (!(solver_.error() <= most_left)) return false;
-    last_ = std::max<Eigen::Index>(solver_.iterations(), 1);
-    least_ = least_ == 0 ? last_ : std::min(least_, last_);
-    if (solver_.info() != Eigen::Success) least_ = last_ = 0;  // it does not serve
-    return true;
-  }
-
-  Matrix negative_;
-  Eigen::BiCGSTAB<Matrix, SymmetricPart> solver_;
-  Eigen::Index least_ = 0, last_ = 0;  // iterations with this preconditioner: fewest, last
+  BlockRows rows_;
+  BlockProduct product_;
+  Eigen::BiCGSTAB<BlockProduct, IncompleteFactors> solver_;
 };
 
 }  // namespace

@@ -12,8 +12,8 @@ class LinearSolver {
   using Matrix = Eigen::SparseMatrix<double>;
 
   virtual ~LinearSolver() = default;
-  /// Makes ready for this matrix, which must live until the last solve; false: singular, where that
-  /// is looked at: not while something kept of an earlier matrix serves.
+  /// Makes ready for this matrix, which must live until the last solve; false: singular, where
+  /// that is looked at.
   virtual bool prepare(const Matrix& matrix) = 0;
   /// x of matrix x = rhs; not finite where no x was found.
   virtual void solve(const Vector& rhs, Vector& x) = 0;
@@ -22,9 +22,8 @@ class LinearSolver {
 /// Sparse unsymmetric factors of Eigen; the order of elimination stays while the pattern does.
 std::unique_ptr<LinearSolver> make_direct_solver();
 /// BiCGSTAB to kLinearTolerance of the right side, or where that takes too long to half of it,
-/// preconditioned by an incomplete Cholesky
-/// factorization of the symmetric part, which later matrices use while it serves them. For negative
-/// definite tangents that friction makes unsymmetric here and there.
+/// preconditioned by incomplete factors (block_factors.h). For tangents of spheres, six unknowns
+/// each, which friction makes unsymmetric here and there.
 std::unique_ptr<LinearSolver> make_iterative_solver();
 
 /// Of the right side, of a solution by iteration that is not taken for want of a better one.

@@ -52,7 +52,7 @@ def holm(p_values: list[float]) -> list[float]:
 
 
 def read_summary(file: pathlib.Path) -> dict[str, float | str]:
-    """A summary.json: numbers and texts by key; "nan", "inf" and "-inf" are numbers."""
+    """A summary.json: numbers and texts by key; null, and the words "nan", "inf" and "-inf" of older files, are numbers."""
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -60,6 +60,8 @@ def read_summary(file: pathlib.Path) -> dict[str, float | str]:
     if not isinstance(found, dict):
         raise Refused(f"{file}: not a JSON object")
     for key, value in found.items():
+        if value is None:
+            found[key] = value = math.nan
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise Refused(f"{file}: {key}: found {value!r}; allowed: numbers and texts")
         if value in ("nan", "inf", "-inf"):

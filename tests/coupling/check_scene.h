@@ -18,9 +18,7 @@ inline std::string complaint_of(const std::string& file, const Overrides& set = 
   try {
     read_case(file, quick, set);
   } catch (const std::invalid_argument& e) {
-    const std::string what = e.what();
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    return what;
+    return e.what();  // of several mistakes a line each
   }
   return "";
 }

@@ -277,8 +277,8 @@ def test_warnings_are_those_of_the_program(tmp_path):
     with pytest.warns(UserWarning, match="has no contacts: stress and fabric are 0") as told:
         field = gf.average(f"{tmp_path / 'p.h5'}:bare", grid=(5, 4))
     lines = [line.removeprefix("grainfield: ").removeprefix("warning: ") for line in done.stderr.splitlines()]
-    ours = [text.replace(":bare", ":/bare") for text in field.warnings]
-    assert ours == lines and len(told) == len(lines)
+    ours = [text.replace(":bare", ":/bare") for text in [*field.warnings, *field.gaps]]
+    assert ours == lines and [str(one.message) for one in told] == field.warnings and len(field.gaps) == 2
 
 
 def test_measured_fields(tmp_path):

@@ -132,16 +132,16 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
     assert "grain 0 in contact with itself" in both(good | {"j": [0]})
     assert "in contact at a distance of 0.1 m" in both(good, x=[0.0, 0.1])
     wrong = error_of(lambda: gf.packing([0], [0], 1, mass=1, colour=[3]))
-    assert wrong.startswith('grains: unknown column "colour"; nearest: ')
+    assert wrong.startswith('grains: unknown column "colour"; did you mean ')
     assert error_of(lambda: gf.packing([0, 1], [0], 1, mass=1)) == (
-        "packing: found 1 values of y and 2 of x, allowed: as many")
+        "grains: found 1 values of y and 2 of x, allowed: as many")
     assert error_of(lambda: gf.packing([0], [0], 1, mass=1, contact=good)) == (
-        "packing: unknown argument contact; nearest: contacts")
+        "packing: unknown argument contact; did you mean contacts?")
     assert "expected a finite number" in error_of(lambda: gf.packing([np.nan], [0], 1, mass=1))
     assert error_of(lambda: gf.packing([0], [0], 1)) == (
-        "grains: no \"mass\"; found: id x y radius; mass (kg) or density (kg/m2) tells it")
+        "grains: no \"mass\"; found: x id y radius; mass (kg) or density (kg/m2) tells it")
     one = error_of(lambda: gf.packing([0, 2], [0, 0], 1, mass=1, contacts={"i": [0], "j": [1], "force": [[0, 1]]}))
-    assert one == "contacts.force: found an array of shape (1, 2), allowed: (1,); nearest: forces, which takes (n, 2)"
+    assert one == "contacts.force: found an array of shape (1, 2), allowed: (n,); did you mean forces, which takes (n, 2)?"
     none = error_of(lambda: gf.packing([0, 2], [0, 0], 1, mass=1, contacts={"i": [0], "j": [1]}))
     assert none == "contacts: no \"fx\"; found: i j; forces (n, dim) tells it"
     assert "--" not in error_of(lambda: gf.packing([0], [0], 1, mass=1, friction=-1))

@@ -1,5 +1,7 @@
 """Pictures, with and without matplotlib."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,82 @@ def test_fields_and_profiles_show_bands_and_models():
     assert shear.get_title() == "sigma_xy at 0.2 h" and shear.get_ylabel() == "sigma_xy (N/m)"
     with pytest.raises(ValueError, match="profile: found top, allowed: "):
         gf.compare(cut, "ife").plot(profile="top")
+
+
+RUNS = {
+    "sample": ("sample-biaxial", {"sample.grains": 40, "sample.strain": 0.02, "sample.records": 4,
+                                  "sample.strain_rate": 1, "ensemble.realizations": 2}),
+    "pair": ("pair-restitution", {"pair.speeds": [1e-2], "motion.time_step_fraction": 0.2,
+                                  "sweep.values": ["linear", "overlap_area"]}),
+    "gas": ("hard-disks", {"gas.grains": 100, "gas.fractions": [0.1, 0.2], "gas.collisions": 10, "gas.equilibration": 3,
+                           "ensemble.realizations": 2, "sweep.values": ["pressure", "weak_loss"]}),
+    "settling": ("implicit-settling", {"sweep.values": ["coulomb"]}),
+    "switching": ("liffman-switching", {"switch.columns": 4, "switch.rows": 3}),
+    "lattice": ("liffman-lattice", {"sweep.values": [30, 45]}),
+}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what is small
+        return {name: gf.run(case, folder / name, quick=True, set=sets | {"output.report": False}, progress=False)
+                for name, (case, sets) in RUNS.items()}
+
+
+def labels(axes):
+    return [line.get_label() for line in axes.lines]
+
+
+def test_samples_have_states(ran):
+    sample = ran["sample"]
+    states = sample.states
+    assert states.units["sigma_xx"] == states.units["sigma_xx_error"] == "N/m" and states.units["work"] == "J"
+    single = sample.tables["states_of_realizations"]
+    for name in ("q_over_p", "sigma_yy"):
+        values = single[name].reshape(2, -1)
+        np.testing.assert_allclose(states[name], values.mean(axis=0), rtol=1e-8)
+        np.testing.assert_allclose(states[f"{name}_error"], np.abs(values[0] - values[1]) / 2,
+                                   rtol=0, atol=1e-8 * np.abs(values).max())  # nine digits
+    assert len(states.to_pandas()) == len(states["strain"]) and sample.profiles is None
+    axes = sample.plot()
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), states["q_over_p"])
+    np.testing.assert_array_equal(axes.lines[0].get_xdata(), states["strain"])
+    assert len(axes.collections) == 1 and axes.get_ylabel() == "q_over_p"
+    stress = sample.plot(profile="sigma_yy")
+    assert stress.get_ylabel() == "sigma_yy (N/m)"
+    with pytest.raises(ValueError, match="profile: found porosity, allowed: state, volumetric_strain"):
+        sample.plot(profile="porosity")
+
+
+def test_every_study_is_drawn(ran):
+    pressure, cooling = (ran["gas"].members[name].plot() for name in ("pressure", "weak_loss"))
+    assert labels(pressure) == ["compressibility", "theory", "virial_series"] and len(pressure.collections) == 1
+    assert labels(cooling) == ["temperature", "haff"]
+    assert labels(ran["settling"].members["coulomb"].plot()) == ["normal", "normal_closed_form"]
+    assert labels(ran["switching"].plot()) == ["kinetic", "elastic"]
+    impacts = ran["pair"].members["linear"].plot()
+    assert labels(impacts) == ["restitution_normal", "closed_form_restitution_normal"]
+    assert impacts.get_xlabel() == "speed (m/s)" and (np.diff(impacts.lines[0].get_xdata()) >= 0).all()
+    assert labels(ran["lattice"].members["slope_deg_30"].plot()) == ["grains", "lattice", "liffman"]
+
+
+def test_sweeps_are_drawn_with_a_curve_a_member(ran):
+    axes = ran["lattice"].plot()
+    assert labels(axes) == ["slope_deg_30", "slope_deg_45"]
+    for line, member in zip(axes.lines, ran["lattice"].members.values()):
+        np.testing.assert_array_equal(line.get_ydata(), member.profiles["simulation"][member.profiles["profile"] == "base"])
+    assert labels(ran["pair"].plot()) == ["linear", "overlap_area"]
+    assert labels(ran["gas"].plot()) == ["pressure"]  # the other member is drawn otherwise
+
+
+def test_maps_have_a_bar_as_tall_as_they_are():
+    axes = gf.average(heap(), frame="heap", grid=(21, 5)).plot()
+    (bar,) = axes.child_axes
+    axes.figure.canvas.draw()
+    drawn, beside = axes.get_window_extent(), bar.get_window_extent()
+    assert (beside.y0, beside.y1) == pytest.approx((drawn.y0, drawn.y1), abs=1) and bar.get_ylabel() == "-sigma_yy (N/m)"
 
 
 def test_what_was_measured_is_not_called_grains(tmp_path):

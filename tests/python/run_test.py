@@ -100,4 +100,4 @@ def test_one_run_at_a_time(case, tmp_path):
 
 def test_shipped_cases_have_names():
     assert gf.cases()["point-load-mono"].endswith("point-load-mono.toml")
-    assert "nearest: point-load-mono" in error_of(lambda: gf.run("point-load-mno"))
+    assert "did you mean point-load-mono" in error_of(lambda: gf.run("point-load-mno"))

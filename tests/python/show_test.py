@@ -1,6 +1,8 @@
 """What a notebook shows, and tables that travel to pandas and xarray."""
 
 import re
+import sys
+import types
 from xml.etree import ElementTree
 
 import numpy as np
@@ -24,6 +26,7 @@ def test_packings_and_fields_show_what_they_hold():
     assert rows["walls"] == "floor" and "Packing, 2D" in rows
     field = gf.average(HEAPS, frame="heap", grid=(5, 4))
     assert "20 points (5 x 4), 2 realizations" in field._repr_html_()
+    assert field.gaps and all(line in ElementTree.fromstring(f"<p>{field._repr_html_()}</p>").itertext() for line in field.gaps)
     rows = {row[0]: row[1:] for row in cells(field._repr_html_())}
     assert list(rows)[1:] == field.columns
     unit, least, largest, errors = rows["sigma_yy"]
@@ -65,7 +68,7 @@ def test_tables_become_frames():
     np.testing.assert_array_equal(contacts["forces_y"], HEAPS[0].contacts.forces[:, 1])
 
 
-def test_fields_become_frames_and_datasets():
+def test_fields_become_frames_and_datasets(tmp_path):
     pytest.importorskip("pandas")
     pytest.importorskip("xarray")
     field = gf.average(HEAPS, frame="heap", grid=(5, 4))
@@ -80,6 +83,10 @@ def test_fields_become_frames_and_datasets():
     samples = grid["sigma_yy_samples"]
     assert samples.dims == ("y", "x", "realization")
     np.testing.assert_allclose(samples.mean("realization"), grid["sigma_yy"], rtol=1e-12)
+    pytest.importorskip("scipy")
+    grid.to_netcdf(tmp_path / "field.nc")
+    with pytest.importorskip("xarray").open_dataset(tmp_path / "field.nc") as back:
+        assert back.identical(grid)
     line = gf.average(HEAPS, frame="heap", cuts=[0.2]).to_xarray()
     assert line["sigma_yy"].dims == ("point",) and set(line.coords) == {"x", "y"}
 
@@ -91,6 +98,68 @@ def test_grids_in_space_keep_their_order():
     field = gf.Field(points, {"sum": points @ [1, 10, 100]}, shape=(3, 2, 4))
     grid = field.to_xarray()
     assert grid["sum"].dims == ("z", "y", "x") and float(grid["sum"].sel(x=2, y=1, z=3)) == 312
+
+
+def test_fields_and_packings_become_meshes(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    field = gf.average(HEAPS, frame="heap", grid=(5, 4))
+    field.to_meshio().write(tmp_path / "field.vtu")
+    back = meshio.read(tmp_path / "field.vtu")
+    np.testing.assert_array_equal(back.points, np.pad(field.points, ((0, 0), (0, 1))))
+    np.testing.assert_array_equal(back.point_data["sigma_xy"], field.sigma_xy)
+    np.testing.assert_array_equal(back.point_data["sigma_xy_error"], field.error("sigma_xy"))
+    (quads,) = back.cells
+    assert quads.type == "quad" and len(quads.data) == 4 * 3
+    corners = field.points[quads.data]  # counterclockwise, of equal area
+    turned = np.roll(corners, -1, axis=1)
+    areas = (corners[..., 0] * turned[..., 1] - corners[..., 1] * turned[..., 0]).sum(axis=1) / 2
+    np.testing.assert_allclose(areas, np.prod(np.ptp(field.points, axis=0)) / 12)
+    x, y, z = np.meshgrid([0.0, 1, 2], [0.0, 1], [0.0, 1, 2, 3], indexing="ij")
+    points = np.stack([a.transpose(2, 1, 0).ravel() for a in (x, y, z)], axis=1)
+    (bricks,) = gf.Field(points, {"sum": points @ [1, 10, 100]}, shape=(3, 2, 4)).to_meshio().cells
+    assert bricks.type == "hexahedron" and len(bricks.data) == 2 * 1 * 3
+    assert points[bricks.data[0]].tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    HEAPS[0].to_meshio().write(tmp_path / "heap.vtu")
+    mesh = meshio.read(tmp_path / "heap.vtu")
+    np.testing.assert_array_equal(mesh.point_data["radii"], HEAPS[0].radii)
+    pair = HEAPS[0].contacts.pairs[:, 1] >= 0
+    np.testing.assert_array_equal(mesh.cells_dict["line"], HEAPS[0].contacts.pairs[pair])
+    np.testing.assert_array_equal(mesh.cell_data_dict["normal_forces"]["line"], HEAPS[0].contacts.normal_forces[pair])
+
+
+class Bar:
+    """Records what is asked of tqdm."""
+
+    def __init__(self, total, **_):
+        self.total, self.seen, self.words, self.closed = total, [], [], False
+
+    def set_description(self, words):
+        self.seen.append(self.n)
+        self.words.append(words)
+
+    def close(self):
+        self.closed = True
+
+
+def test_long_calls_show_a_bar_in_a_notebook(monkeypatch, capsys):
+    from grainfield._progress import Progress
+
+    made = []
+    tqdm = types.ModuleType("tqdm")
+    tqdm.tqdm = lambda **options: made.append(Bar(**options)) or made[-1]
+    tqdm.notebook = types.ModuleType("tqdm.notebook")
+    tqdm.notebook.tqdm = tqdm.tqdm
+    for name, module in (("ipykernel", types.ModuleType("ipykernel")), ("tqdm", tqdm), ("tqdm.notebook", tqdm.notebook)):
+        monkeypatch.setitem(sys.modules, name, module)
+    line = Progress()
+    line.show("rest  3/4", 0.25)
+    line.show("load", 1.0)
+    line.end()
+    (bar,) = made
+    assert bar.total == 1 and bar.seen == [0.25, 1.0] and bar.words == ["rest 3/4", "load"] and bar.closed
+    monkeypatch.delitem(sys.modules, "ipykernel")
+    Progress().show("rest", 0.5)  # neither a notebook nor a terminal
+    assert len(made) == 1 and capsys.readouterr().err == ""
 
 
 def test_without_pandas_the_error_says_what_to_install():

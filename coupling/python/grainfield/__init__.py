@@ -13,10 +13,10 @@ line. SI units; in 2D density is kg/m2, stiffness and stress N/m. Stress is tens
 docs/python.md tells more.
 """
 
+from ._cases import cases, check, keys, samples
 from ._commands import (
-    Model,
+    SetModel,
     average,
-    cases,
     compare,
     fit,
     import_field,
@@ -29,36 +29,48 @@ from ._commands import (
 from ._core import version as __version__
 from ._data import Contacts, Field, Packing, Summary, Table, Walls
 from ._engine import Engine
+from ._foreign import export, import_packing
 from ._files import Collection, read, write
+from ._model import Facts, Model
 from ._packing import packing
 from ._results import CompareResult, FitResult, Judgement, Result, Structure
+from ._sweep import Sweep, sweep
 
 __all__ = [
     "Collection",
     "CompareResult",
     "Contacts",
     "Engine",
+    "Facts",
     "Field",
     "FitResult",
     "Judgement",
     "Model",
     "Packing",
     "Result",
+    "SetModel",
     "Structure",
     "Summary",
+    "Sweep",
     "Table",
     "Walls",
     "average",
     "cases",
+    "check",
     "compare",
+    "export",
     "fit",
     "import_field",
+    "import_packing",
+    "keys",
     "model",
     "models",
     "packing",
     "read",
     "run",
+    "samples",
     "strain",
     "structure",
+    "sweep",
     "write",
 ]

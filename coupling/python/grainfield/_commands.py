@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import atexit
 import os
-import sys
 import warnings as _warnings
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
@@ -12,6 +11,8 @@ import numpy as np
 
 from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
+from ._model import Model
+from ._progress import Progress
 from ._results import CompareResult, FitResult, Result, Structure
 
 atexit.register(_core.finish_ranks)
@@ -100,7 +101,9 @@ def average(
     load. width: m in every frame; default one mean diameter (particle_centre, area_exact: 2.5).
     rings: in 3D, points are radius and height.
 
-    The field's warnings are also given as Python warnings. Raises ValueError.
+    Places with too few grains are nan: .gaps of the field says which and why, a line each. The field's
+    warnings are also given as Python warnings; so are the gaps among points that are given, and where
+    nothing but nan is left. Raises ValueError.
     """
     sources, before = _sources(snapshots), _sources(unloaded)
     out = _core.average(
@@ -126,10 +129,19 @@ def average(
     named = {name: Field(core, name=name) for name, core in out.fields}
     field = named.pop(next(iter(named)))
     field.beside = named
-    field.warnings = out.warnings + out.gaps.splitlines()
     field.seconds = out.seconds
-    _warn(field.warnings)
+    _tell(field, out.warnings, out.gaps.splitlines(), points is not None)
     return field
+
+
+def _tell(field: Field, lines: list[str], gaps: list[str], given: bool) -> None:
+    """Gaps of a grid are no news; those at points that are given, and a field of nan alone, are."""
+    field.gaps = gaps
+    field.warnings = list(lines)
+    if given or not np.isfinite(field[field.columns[0]]).any():
+        field.warnings += gaps
+    for line in field.warnings:
+        _warnings.warn(line, stacklevel=3)
 
 
 def strain(
@@ -149,7 +161,7 @@ def strain(
     """Displacement gradient and strain between two states of the same grains (docs/strain.md).
 
     before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
-    width: m; default three mean diameters. Raises ValueError.
+    width: m; default three mean diameters. .gaps, .warnings: as of average(). Raises ValueError.
     """
     core, lines = _core.strain(
         before=_core_of(before),
@@ -165,8 +177,8 @@ def strain(
         threads=threads,
     )
     field = Field(core, name="strain")
-    field.warnings = lines
-    _warn(field.warnings)
+    gaps = [line for line in lines if " points have no strain:" in line]
+    _tell(field, [line for line in lines if line not in gaps], gaps, points is not None)
     return field
 
 
@@ -175,7 +187,7 @@ def structure(snapshot: Any) -> Structure:
     return Structure(_core.structure(_core_of(snapshot)))
 
 
-class Model:
+class SetModel:
     """A continuum model with its parameters set; call it with points."""
 
     def __init__(self, name: str, settings: Mapping[str, Any]):
@@ -206,15 +218,15 @@ class Model:
         return self._core.figures()
 
     def __repr__(self) -> str:
-        return f"<Model {self.name}: {', '.join(f'{k}={v}' for k, v in self.settings.items())}>"
+        return f"<SetModel {self.name}: {', '.join(f'{k}={v}' for k, v in self.settings.items())}>"
 
 
-def model(name: str, **settings: Any) -> Model:
+def model(name: str, **settings: Any) -> SetModel:
     """The model of this name: gf.model("layer", F=300, h=0.15)(points). models() lists them.
 
     Raises ValueError for an unknown name or parameter, or a value out of range.
     """
-    return Model(name, settings)
+    return SetModel(name, settings)
 
 
 def models() -> dict[str, dict[str, Any]]:
@@ -223,18 +235,22 @@ def models() -> dict[str, dict[str, Any]]:
 
 
 def _choices(models: Any) -> list[str]:
-    """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or Model}."""
-    def text(value: Any) -> str:
-        if isinstance(value, Model):
-            value = (value.name, value.settings)
-        if isinstance(value, str):
-            return value
-        name, settings = value
-        return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
-
+    """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or SetModel or Model}."""
     if isinstance(models, Mapping):
-        return [f"{label}={text(value)}" for label, value in models.items()]
-    return [text(value) for value in ([models] if isinstance(models, (str, Model)) else models)]
+        return [f"{label}={_choice(value)}" for label, value in models.items()]
+    return [_choice(value) for value in ([models] if isinstance(models, (str, SetModel, Model)) else models)]
+
+
+def _choice(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    name, settings = (value.name, getattr(value, "settings", {})) if isinstance(value, (SetModel, Model)) else value
+    return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
+
+
+def _free_choice(value: Any) -> str:
+    """As of `fit --model`: the parameters of a model of one's own are free."""
+    return _choice((value.name, dict.fromkeys(value.parameters, "free")) if isinstance(value, Model) else value)
 
 
 def import_field(
@@ -280,7 +296,8 @@ def compare(
     """Compares a field with continuum models (docs/comparison.md), as `grainfield compare`.
 
     field: a Field (with its base response, if it has one), several by name, or "FIELD.h5". models:
-    "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a list of these, or {label: model}. fields: only
+    "NAME", "NAME:p=v,...", "LABEL=NAME:p=v,...", a Model of one's own (with its defaults, or
+    called with values), a list of these, or {label: model}. fields: only
     these. folder: where profiles.*, summary.json and report.html go; without it nothing is written.
     Raises ValueError.
     """
@@ -307,7 +324,7 @@ def compare(
 
 def fit(
     inputs: Any,
-    models: Sequence[str] | str | None = None,
+    models: Any = None,
     *,
     heights: Sequence[float] = (),
     components: Sequence[str] = (),
@@ -322,7 +339,7 @@ def fit(
     """Fits stress models to heaps and ranks them (docs/fits.md), as `grainfield fit`.
 
     inputs: packings, one Field of frame heap, or names as of the command, or a list. models: names,
-    also "NAME:p=free,q=0.3"; default all for symmetric heaps. heights: shares of the heap's height.
+    also "NAME:p=free,q=0.3", and a Model of one's own; default all for symmetric heaps. heights: shares of the heap's height.
     set: {"fit.huber": 3}. folder: as of compare(). Raises ValueError, RuntimeError.
     """
     if isinstance(inputs, Mapping):
@@ -338,7 +355,7 @@ def fit(
         files=files,
         packings=packings,
         field=fields[0] if fields else None,
-        models=_list(models),
+        models=[_free_choice(one) for one in _list(models)],
         heights=[float(share) for share in heights],
         components=_list(components),
         width_diameters=width_diameters,
@@ -351,24 +368,6 @@ def fit(
     )
     _warn([outcome.lacks, *outcome.warnings])
     return FitResult(outcome, place)
-
-
-class _ProgressLine:
-    """A line on standard error that is rewritten on a terminal, and nothing elsewhere."""
-
-    def __init__(self) -> None:
-        self._open = False
-
-    def show(self, progress: Mapping[str, Any]) -> None:
-        if sys.stderr is not None and sys.stderr.isatty():
-            sys.stderr.write("\r\x1b[K" + progress["text"])
-            sys.stderr.flush()
-            self._open = True
-
-    def end(self) -> None:
-        if self._open:
-            sys.stderr.write("\n")
-        self._open = False
 
 
 def run(
@@ -388,7 +387,8 @@ def run(
 
     case: a case file or the name of a shipped one. folder: default results/CASE (CASE-quick). set:
     {"material.friction": 0.3} or ["material.friction=0.3"]. threads: 0 is all cores; the results do
-    not depend on it. progress: True shows a line on a terminal; a function is called about five times
+    not depend on it. progress: True shows a line on a terminal and, where tqdm is installed, a bar in a
+    notebook; a function is called about five times
     a second with phase, done, total, fraction, simulated_time (s), grains, awake, kinetic_energy (J),
     unbalanced_force_ratio, seconds_left and text. note: called with lines about what begins.
 
@@ -396,8 +396,10 @@ def run(
     on to the same bits. One run at a time in a process; under mpirun ranks other than the first get
     None. Raises ValueError, RuntimeError, OSError, KeyboardInterrupt.
     """
-    line = _ProgressLine()
-    show = line.show if progress is True else progress or None
+    line = Progress()
+    show = progress or None
+    if progress is True:
+        show = lambda now: line.show(now["text"], now["fraction"])  # noqa: E731
     try:
         found = _core.run(
             case=os.fspath(case),
@@ -415,8 +417,3 @@ def run(
         line.end()
     _warn(found["warnings"])
     return Result(found["folder"], found["warnings"]) if found["first"] else None
-
-
-def cases() -> dict[str, str]:
-    """The shipped cases: name to file."""
-    return {os.path.basename(path)[: -len(".toml")]: path for path in _core.cases()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from . import _core, _show
 
 PLANE_STRESS = ("sigma_xx", "sigma_yy", "sigma_xy")
-_UNITS = ("m", "N/m", "N/m2", "Pa")  # of tables' headers
 SPACE_STRESS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy")
 
 
@@ -160,6 +160,7 @@ class Packing(_Rows):
 
     def __init__(self, core: Any):
         super().__init__(core)
+        self.report = ""  #: what `grainfield import` prints of it
         about = core.about()
         self.dim: int = about["dim"]
         self.time: float = about["time"]  #: s
@@ -182,6 +183,11 @@ class Packing(_Rows):
 
     def _repr_html_(self) -> str:
         return _show.packing(self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh: grains as vertices with ids, radii, masses, fixed and velocities, contacts between
+        grains as lines with forces and normal_forces (nan on the vertices). .write("FILE.vtu") saves it."""
+        return _show.packing_mesh(self)
 
     @property
     def outlines(self) -> list[np.ndarray]:
@@ -256,6 +262,8 @@ class Field:
         self.beside: dict[str, Field] = {}
         #: what makes the values doubtful, a line each
         self.warnings: list[str] = []
+        #: where it is nan and why, a line each: of an average, points with too few grains
+        self.gaps: list[str] = []
         self.seconds = 0.0  #: wall time that averaging it took, without Python's part
 
     @property
@@ -347,6 +355,11 @@ class Field:
         the dimension realization. Units are in the attributes of each."""
         return _show.field_dataset(self)
 
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh: a grid as quadrilaterals or hexahedra, other points as vertices; the columns and
+        COLUMN_error at the points, in space with z = 0 for a field of the plane. .write("FILE.vtu") saves it."""
+        return _show.field_mesh(self)
+
     def plot(self, column: str | None = None, ax: Any = None) -> Any:
         """Draws a grid as a map, lines as profiles with bands of one error; returns the axes.
         By default the vertical stress: sigma_yy in the plane, sigma_zz in space. Normal stresses
@@ -392,6 +405,20 @@ class Table(dict):
             yield dict(zip(self, values))
 
 
+#: "sigma_xx_N/m_error": a name, its unit and what of it the column holds.
+_HEADER = re.compile(r"(.+?)_(N/m2|N/m|Pa|m_per_s|m2|m|s|N|Nm|J|rad)(_error|_error_bar)?")
+
+
+def _header(text: str) -> tuple[str, str]:
+    """The name and the unit in a column's header: "x_m", "x (m)", "friction_angle_deg" (as it is)."""
+    start, bracket, unit = text.rpartition(" (")
+    if bracket and unit.endswith(")"):
+        return start, unit[:-1]
+    if found := _HEADER.fullmatch(text):
+        return found[1] + (found[3] or ""), found[2].replace("_per_", "/")
+    return text, "deg" if text.endswith("_deg") else "1"
+
+
 def _number(text: str) -> float | None:
     try:
         return float(text)
@@ -401,26 +428,21 @@ def _number(text: str) -> float | None:
 
 def read_table(path: str | os.PathLike) -> Table:
     """A CSV file with '#' comments and a header whose names may end with a unit: "x_m", "x (m)"."""
-    notes, rows = [], []
+    notes, lines = [], []
     with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.reader(line for line in file if line.strip()):
-            if row[0].startswith("#"):
-                notes.append(",".join(row)[1:].strip())
-            else:
-                rows.append(row)
+        for line in file:
+            if line.startswith("#"):
+                notes.append(line[1:].strip())
+            elif line.strip():
+                lines.append(line)
+    first = lines[0] if lines else ""
+    rows = csv.reader(lines, delimiter=";" if first.count(";") > first.count(",") else ",")
     columns, units = {}, {}
-    for name, *cells in zip(*rows):
-        start, bracket, unit = name.rpartition(" (")
-        if bracket and unit.endswith(")"):
-            name, unit = start, unit[:-1]
-        else:
-            start, _, unit = name.rpartition("_")
-            if unit in _UNITS and start:
-                name = start
-            else:
-                unit = "1"
+    for text, *cells in zip(*rows):
+        name, unit = _header(text)
+        if name in columns:
+            name = text
         numbers = [_number(cell) for cell in cells]
         columns[name] = np.array(cells if None in numbers else numbers)
         units[name] = unit
     return Table(columns, units, notes)
-

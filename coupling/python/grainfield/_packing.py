@@ -18,6 +18,8 @@ _SHORT = {"velocities": ("vx", "vy", "vz"), "forces": ("fx", "fy", "fz"), "point
 
 
 _IDS = ("id", "i", "j")
+#: What is named otherwise among the arguments than among the columns.
+_ARGUMENT = {("grains", "id"): "ids", ("grains", "outline"): "outlines"}
 
 
 def _whole(where: str, value: Any) -> Any:
@@ -83,25 +85,31 @@ def _periods(periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, A
 def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[str, Sequence[str]]):
     """Vectors (n, dim) by their components, lists of words as lists, all else as numbers."""
     out: dict[str, Any] = {}
-    for name, value in given.items():
+    first = None  # column and its rows
+    for column, value in given.items():
         if value is None:
             continue
+        name = _ARGUMENT.get((table, column), column)
         array = np.asarray(_whole(f"{table}.{name}", value))
-        if name in vectors:
+        if column in vectors:
             if array.ndim != 2 or array.shape[1] != dim:
                 raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
                                  f"allowed: (n, {dim})")
-            out.update({part: array[:, k] for k, part in enumerate(vectors[name][:dim])})
-        elif array.ndim == 2 and vectors:
-            near = difflib.get_close_matches(name, vectors, 1, 0)[0]
-            raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: ({len(array)},); "
-                             f"nearest: {near}, which takes (n, {dim})")
+        elif array.ndim != 1:
+            near = difflib.get_close_matches(name, vectors, 1) if array.shape[1:] == (dim,) else []
+            raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: (n,)"
+                             + "".join(f"; did you mean {other}, which takes (n, {dim})?" for other in near))
+        first = first or (name, len(array))
+        if len(array) != first[1]:
+            raise ValueError(f"{table}: found {len(array)} values of {name} and {first[1]} of {first[0]}, allowed: as many")
+        if column in vectors:
+            out.update({part: array[:, k] for k, part in enumerate(vectors[column][:dim])})
         elif array.dtype.kind in "US" or array.dtype == object:
-            out[name] = [str(word) for word in value]
-        elif name in _IDS:
-            out[name] = _ids(f"{table}.{name}", array)
+            out[column] = [str(word) for word in value]
+        elif column in _IDS:
+            out[column] = _ids(f"{table}.{name}", array)
         else:
-            out[name] = array.astype(float)
+            out[column] = array.astype(float)
     return out
 
 
@@ -148,19 +156,16 @@ def packing(
         _whole(f"grains.{name}", value)
     x = np.atleast_1d(np.asarray(x, float))
     n = len(x)
+    given: dict[str, Any] = {"x": x, "id": np.arange(n) if ids is None else ids}
 
     for name in columns:
         near = difflib.get_close_matches(name, _ARGUMENTS, 1, 0.85)
         if near:
-            raise ValueError(f"packing: unknown argument {name}; nearest: {near[0]}")
-    for name, value in (("y", y), ("z", z), ("radius", radius)):
-        if value is not None and np.ndim(value) > 0 and len(value) != n:
-            raise ValueError(f"packing: found {len(value)} values of {name} and {n} of x, allowed: as many")
-
+            raise ValueError(f"packing: unknown argument {name}; did you mean {near[0]}?")
     def each(value: Any) -> Any:
         return np.full(n, value) if np.ndim(value) == 0 else value
 
-    given: dict[str, Any] = {"id": np.arange(n) if ids is None else ids, "x": x, "y": each(y)}
+    given["y"] = each(y)
     if z is not None:
         given["z"] = each(z)
     given["radius"] = each(radius)

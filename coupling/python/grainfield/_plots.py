@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ._data import Field, Packing, Table
+from ._show import axes_of_field
 
 
-def _axes(ax: Any) -> Any:
+def axes_of(ax: Any) -> Any:
     try:
         import matplotlib.pyplot as plt
     except ImportError as error:
@@ -31,7 +32,7 @@ def _change(packing: Packing, before: Packing) -> np.ndarray:
 
 
 def plot_packing(packing: Packing, ax: Any, *, forces: bool, change: Packing | None) -> Any:
-    ax = _axes(ax)
+    ax = axes_of(ax)
     from matplotlib.collections import LineCollection, PatchCollection
     from matplotlib.patches import Circle, Polygon
 
@@ -69,54 +70,61 @@ def plot_packing(packing: Packing, ax: Any, *, forces: bool, change: Packing | N
 
 def plot_field(field: Field, column: str, ax: Any) -> Any:
     values, unit = field[column], field.units[column]
-    ax = _axes(ax)
+    ax = axes_of(ax)
     name = column
     if re.fullmatch(r"sigma_(\w)\1", column):  # pressure upwards, as in reports
         name, values = "-" + column, -values
     over = "/h" if field.is_over_height else " (m)"
     shape = field.shape
     points = field.points
+    axes = axes_of_field(field)
     if shape is not None and len(shape) == 2:
         grid = (shape[1], shape[0])
         drawn = ax.pcolormesh(points[:, 0].reshape(grid), points[:, 1].reshape(grid),
                               values.reshape(grid), shading="nearest", cmap="viridis")
-        ax.figure.colorbar(drawn, ax=ax, label=f"{name} ({unit})")
         ax.set_aspect("equal")
-        ax.set_xlabel("x" + over)
-        ax.set_ylabel("y" + over)
+        # Beside the map and as tall as it, whatever its aspect.
+        ax.figure.colorbar(drawn, cax=ax.inset_axes([1.03, 0, 0.03, 1]), label=f"{name} ({unit})")
+        ax.set_xlabel(axes[0] + over)
+        ax.set_ylabel(axes[1] + over)
         return ax
     heights = points[:, -1]
     for height in np.unique(heights):
         row = np.flatnonzero(heights == height)
         row = row[np.argsort(points[row, 0])]
-        _band(ax, points[row, 0], values[row], field.error(column), row, f"{height:g}")
-    ax.set_xlabel("x" + over)
+        band(ax, points[row, 0], values[row], field.error(column), row, f"{height:g}")
+    ax.set_xlabel(axes[0] + over)
     ax.set_ylabel(f"{name} ({unit})")
-    ax.legend(title="y" + over if points.shape[1] == 2 else "z" + over)
+    ax.legend(title=axes[-1] + over)
     return ax
 
 
-def _band(ax: Any, x: np.ndarray, mean: np.ndarray, error: np.ndarray | None, row: Any, label: str) -> None:
+def label_of(table: Table, column: str) -> str:
+    """A column of a table for an axis, with its unit."""
+    unit = table.units.get(column, "1")
+    return column if unit in ("1", "deg") else f"{column} ({unit})"
+
+
+def band(ax: Any, x: np.ndarray, mean: np.ndarray, error: np.ndarray | None, row: Any, label: str) -> None:
+    """A line, and about it one standard error where it is known; of `error` the rows of the line count."""
     (line,) = ax.plot(x, mean, label=label)
     if error is not None and np.isfinite(error[row]).any():
         ax.fill_between(x, mean - error[row], mean + error[row], alpha=0.3, color=line.get_color())
 
 
-def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str) -> Any:
-    if "profile" not in profiles:
-        raise ValueError("these profiles are no grains beside models; their columns, to plot by hand: "
-                         + ", ".join(profiles))
+def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str, models: bool = True) -> Any:
+    """A profile of a table with grains (called `of`) beside models."""
     names = list(dict.fromkeys(profiles["profile"].tolist()))
     if profile is None:
         profile = names[0]
     if profile not in names:
         raise ValueError(f"profile: found {profile}, allowed: {', '.join(names)}")
-    ax = _axes(ax)
+    ax = axes_of(ax)
     here = profiles["profile"] == profile
     x = profiles["x"][here]
     data = "measured" if "measured" in profiles else "simulation"
-    _band(ax, x, profiles[data][here], profiles["standard_error"], here, of)
-    for model in models_in(profiles):
+    band(ax, x, profiles[data][here], profiles["standard_error"], here, of)
+    for model in models_in(profiles) if models else ():
         ax.plot(x, profiles[model][here], "--", label=model)
     quantity = _quantity(profiles, profile)
     ax.set_title("-" + profile if profile.startswith("sigma") and quantity.startswith("-") else profile)

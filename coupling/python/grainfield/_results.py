@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from collections.abc import Mapping as MappingBase
@@ -36,22 +37,6 @@ class Structure:
 
     def __init__(self, found: Mapping[str, Any]):
         self.__dict__.update(found)
-
-
-class _Profiles:
-    profiles: Table | None
-    _of = "grains"  # or "measured"
-
-    def plot(self, ax: Any = None, profile: str | None = None) -> Any:
-        """Draws a profile of the grains, or of what was measured, with a band of one standard error,
-        and the models beside; by default the first. Returns the axes."""
-        from ._plots import plot_profiles
-
-        if self.profiles is None:
-            members = getattr(self, "members", None)
-            where = "; those of its members: .members[...].plot()" if members else ""
-            raise ValueError("there are no profiles to draw" + where)
-        return plot_profiles(self.profiles, ax, profile, self._of)
 
 
 def _profiles(outcome: Any) -> Table:
@@ -129,8 +114,15 @@ class Judgement(MappingBase):
         return _show.judgement(self)
 
 
-class _Judged(_Profiles):
+class _Judged:
     """What the results of compare and fit share."""
+
+    def plot(self, ax: Any = None, profile: str | None = None) -> Any:
+        """Draws a profile of the grains, or of what was measured, with a band of one standard error,
+        and the models beside; by default the first. Returns the axes."""
+        from ._plots import plot_profiles
+
+        return plot_profiles(self.profiles, ax, profile, self._of)
 
     def __init__(self, outcome: Any, folder: str | None):
         self._core = outcome
@@ -180,10 +172,10 @@ class FitResult(_Judged):
         }
 
 
-class Result(_Profiles):
+class Result:
     """The folder of a run: summary, fields and snapshots (Collections by name, read when asked for),
-    profiles (a Table), members ({name: Result} of a sweep), warnings, and the path of report.html.
-    What the run did not leave is None."""
+    tables (a Collection: every CSV file), profiles and, of a sample, states (Tables), members ({name:
+    Result} of a sweep), warnings, and the path of report.html. What the run did not leave is None."""
 
     def __init__(self, folder: str | os.PathLike, warnings: Sequence[str] = ()):
         self.folder = os.fspath(folder)
@@ -191,7 +183,8 @@ class Result(_Profiles):
         if not os.path.exists(self._path("summary.json")):
             raise ValueError(f"{self.folder}: holds no summary.json, so no results of a run")
         self.summary = Summary(_core.read_summary(self._path("summary.json")))
-        self.profiles = self._if_there("profiles.csv", read_table)
+        tables = [name[: -len(".csv")] for name in sorted(os.listdir(self.folder)) if name.endswith(".csv")]
+        self.tables = Collection(self.folder, tables, lambda name: read_table(self._path(name + ".csv")))
         self.fields: Collection | None = self._if_there("fields.h5", fields_of)
         self.snapshots: Collection | None = self._if_there("snapshots.h5", packings_of)
         self.report = self._if_there("report.html", lambda path: path)
@@ -206,6 +199,28 @@ class Result(_Profiles):
 
     def _if_there(self, name: str, load: Callable[[str], Any]) -> Any:
         return load(self._path(name)) if os.path.exists(self._path(name)) else None
+
+    @functools.cached_property
+    def profiles(self) -> Table | None:
+        return self.tables.get("profiles")
+
+    @functools.cached_property
+    def states(self) -> Table | None:
+        """The recorded states of a sample: strain, stress, fabric and so on, COLUMN_error the standard
+        error over realizations. tables["states_of_realizations"] has the single values."""
+        return self.tables.get("states")
+
+    def plot(self, ax: Any = None, profile: str | None = None) -> Any:
+        """Draws what the study is about and returns the axes: a profile of the grains with a band of one
+        standard error and the models, the stress ratio of a sample against its strain, impacts of a pair,
+        the pressure or the temperature of a gas, forces on the base; of a sweep that of every member.
+
+        profile: another profile by its name, or the column of a table, such as "void_ratio". A wrong one
+        is a ValueError that lists them.
+        """
+        from ._result_plots import plot_result
+
+        return plot_result(self, ax, profile)
 
     @property
     def verdict(self) -> str | None:

@@ -47,7 +47,8 @@ def field(of: Any) -> str:
     title = f"Field {of.name}: {len(of)} points{shape}, {of.realizations} realization{'s' * (of.realizations != 1)}"
     rows = [(name, of.units[name], *extent(of[name]), "yes" if of.error(name) is not None else "no")
             for name in of.columns]
-    return paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+    shown = paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+    return shown + "".join(paragraph(line) for line in of.gaps)
 
 
 def columns(of: Any) -> str:
@@ -104,7 +105,8 @@ def rows_frame(of: Any) -> Any:
     return frame(values, units)
 
 
-def _axes_of(of: Any) -> tuple[str, ...]:
+def axes_of_field(of: Any) -> tuple[str, ...]:
+    """Names of the coordinates of a field's points."""
     return ("r", "z") if "sigma_rr" in of else _AXES[: of.points.shape[1]]
 
 
@@ -113,7 +115,7 @@ def _units_of_points(of: Any) -> str:
 
 
 def field_frame(of: Any) -> Any:
-    axes = _axes_of(of)
+    axes = axes_of_field(of)
     values = {axis: of.points[:, k] for k, axis in enumerate(axes)}
     units = dict.fromkeys(axes, _units_of_points(of))
     for name in of.columns:
@@ -125,7 +127,7 @@ def field_frame(of: Any) -> Any:
 
 def field_dataset(of: Any) -> Any:
     xarray = _package("xarray")
-    axes, unit = _axes_of(of), _units_of_points(of)
+    axes, unit = axes_of_field(of), _units_of_points(of)
     if of.shape is None:
         dims: tuple[str, ...] = ("point",)
         shape: tuple[int, ...] = (len(of),)
@@ -145,3 +147,38 @@ def field_dataset(of: Any) -> Any:
             samples = of.samples(name)
             values[f"{name}_samples"] = ((*dims, "realization"), samples.reshape(*shape, samples.shape[1]), attrs)
     return xarray.Dataset(values, coords, dict(of.attributes))
+
+
+def _in_space(vectors: np.ndarray) -> np.ndarray:
+    """Rows of three numbers, as ParaView has points and vectors."""
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
+
+
+def field_mesh(of: Any) -> Any:
+    """A grid as quadrilaterals or hexahedra, other points as vertices."""
+    meshio = _package("meshio")
+    if of.shape is None:
+        cells = {"vertex": np.arange(len(of))[:, None]}
+    else:
+        at = np.arange(len(of)).reshape(of.shape[::-1])  # [(iz,) iy, ix]
+        face = [at[..., :-1, :-1], at[..., :-1, 1:], at[..., 1:, 1:], at[..., 1:, :-1]]
+        corners = face if at.ndim == 2 else [c[:-1] for c in face] + [c[1:] for c in face]
+        cells = {"quad" if at.ndim == 2 else "hexahedron": np.stack([c.ravel() for c in corners], axis=1)}
+    data = {name: np.array(of[name]) for name in of.columns}
+    data |= {f"{name}_error": np.array(of.error(name)) for name in of.columns if of.error(name) is not None}
+    return meshio.Mesh(_in_space(of.points), cells, point_data=data)
+
+
+def packing_mesh(state: Any) -> Any:
+    """Grains as vertices and contacts between grains as lines; forces of contacts belong to the lines."""
+    meshio = _package("meshio")
+    names = ("ids", "radii", "masses", "fixed", "velocities")
+    grains = {name: np.asarray(getattr(state, name)) for name in names}
+    grains["fixed"] = grains["fixed"].astype(np.int64)
+    grains["velocities"] = _in_space(grains["velocities"])
+    contacts = state.contacts
+    pair = contacts.pairs[:, 1] >= 0
+    cells = [("vertex", np.arange(len(state))[:, None]), ("line", contacts.pairs[pair])]
+    of_lines = {"forces": _in_space(contacts.forces)[pair], "normal_forces": contacts.normal_forces[pair]}
+    data = {name: [np.full((len(state), *values.shape[1:]), np.nan), values] for name, values in of_lines.items()}
+    return meshio.Mesh(_in_space(state.positions), cells, point_data=grains, cell_data=data)

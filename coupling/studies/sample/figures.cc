@@ -180,7 +180,7 @@ Value loop_loss(P s) {
   return (loaded + area_under(strain, outside, s.last(), strain.size() - 1)) / loaded;
 }
 
-const std::vector<Figure<SamplePath>>& sample_rows() {
+const std::vector<Figure<SamplePath>>& packing_rows() {
   // clang-format off
   static const std::vector<Figure<SamplePath>> all{
       {"initial_pressure", "N/m (3D: Pa)", "p of a sample at rest, before it is deformed", [](P s) { return s.at("p", 0); }},
@@ -188,6 +188,14 @@ const std::vector<Figure<SamplePath>>& sample_rows() {
       {"initial_coordination", "-", "contacts of a grain then, without rattlers", [](P s) { return s.at("coordination_bearing", 0); }},
       {"gap_spheres", "-", "dropped: spheres that fill the gap below the lid"},
       {"dropped_solid_fraction", "-", "dropped: solid fraction as the lid has been put on and the gap filled"},
+  };
+  // clang-format on
+  return all;
+}
+
+const std::vector<Figure<SamplePath>>& loading_rows() {
+  // clang-format off
+  static const std::vector<Figure<SamplePath>> all{
       {"final_pressure", "N/m (3D: Pa)", "p of the last state of the loading", [](P s) { return s.at("p", s.last()); }},
       {"lost_strength", "-", "share of the samples that lose their strength: some state has less than 1 % of the first pressure, or an inertial number above 0.1", [](P s) { return Value(s.lost >= 0 ? 1 : 0); }},
       {"strain_at_loss", "-", "imposed strain of the first such state, of these samples", [](P s) { return s.at("strain", s.lost); }},
@@ -239,14 +247,22 @@ Driving driving_of(const std::string& deformation, int dim) {
   return {"p", false, "mean stress"};
 }
 
+bool is_loaded(const dem::SamplePlan& plan) { return plan.strain >= kLeastLoading; }
+
 FigureSamples sample_samples(const StateTable& table, const dem::SamplePlan& plan) {
   FigureSamples out;
   for (Index r = 0; r < table.realizations(); ++r) {
-    add_samples(sample_rows(), SamplePath(table, plan, r), out, "sample.");
+    const SamplePath path(table, plan, r);
+    add_samples(packing_rows(), path, out, "sample.");
+    if (is_loaded(plan)) add_samples(loading_rows(), path, out, "sample.");
   }
   return out;
 }
 
-std::vector<SummaryKey> sample_figures() { return declared(sample_rows(), "sample."); }
+std::vector<SummaryKey> sample_figures() {
+  std::vector<SummaryKey> out = declared(packing_rows(), "sample.");
+  for (SummaryKey& key : declared(loading_rows(), "sample.")) out.push_back(std::move(key));
+  return out;
+}
 
 }  // namespace grainfield::coupling

@@ -16,6 +16,10 @@ inline constexpr double kCriticalFrom = 0.75;
 /// number is below the other: q/p of a liquid is a ratio of two small numbers.
 inline constexpr double kLeastPressure = 0.01, kMostInertia = 0.1;
 
+/// A smaller imposed strain loads nothing: the sample is a packing that was filled.
+inline constexpr double kLeastLoading = 1e-5;
+bool is_loaded(const dem::SamplePlan& plan);
+
 /// What drives the deformation, as columns of the table.
 struct Driving {
   std::string stress;        ///< "sigma_xz", "q", "p", "sigma_zz"
@@ -26,7 +30,8 @@ struct Driving {
 Driving driving_of(const std::string& deformation, int dim);
 
 /// By summary key sample.*, a number for each realization that has one. Those of the critical state
-/// are left out where it has too few states, or one that bears no load.
+/// are left out where it has too few states, or one that bears no load; of a packing that is not
+/// loaded those of the loading are.
 FigureSamples sample_samples(const StateTable& table, const dem::SamplePlan& plan);
 
 /// Their declarations.

@@ -114,8 +114,35 @@ SampleReport curves_of(const Case& value, const StateTable& table) {
   return out;
 }
 
+std::string counted_realizations(const StateTable& table) {
+  return fmt::format("{} realization{}", table.realizations(),
+                     table.realizations() == 1 ? "" : "s");
+}
+
+// What a packing is that was filled and not loaded: at rest by the bounds of [rest].
+std::string packing_sentence(const Case& value, const StateTable& table, const Summary& summary) {
+  const dem::SampleSetup& setup = value.get<dem::SampleSetup>();
+  const auto first = [&](const char* column) { return table.of(column).row(0).array().eval(); };
+  const auto kinetic = first("kinetic_energy"), elastic = first("elastic_energy"),
+             unbalanced = first("unbalanced_force_ratio");
+  const auto rests = (unbalanced <= setup.rest.unbalanced_force_ratio &&
+                      kinetic <= setup.rest.kinetic_to_elastic_energy * elastic)
+                         .count();
+  const bool all = rests == table.realizations(), none = rests == 0;
+  return fmt::format(
+      "A packing {}, not loaded: solid fraction {}, {} contacts of a grain, p = {} {}, {}.",
+      all    ? "at rest"
+      : none ? "that is not at rest"
+             : fmt::format("that is at rest in {} of its realizations", rests),
+      shown_with_error(summary, "sample.initial_solid_fraction"),
+      shown_with_error(summary, "sample.initial_coordination"),
+      shown_with_error(summary, "sample.initial_pressure"), setup.plan.dim == 2 ? "N/m" : "Pa",
+      counted_realizations(table));
+}
+
 std::string sentence(const Case& value, const StateTable& table, const Summary& summary) {
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
+  if (!is_loaded(plan)) return packing_sentence(value, table, summary);
   const auto has = [&](const char* key) { return summary.count(key) != 0; };
   const auto number = [&](const char* key) { return std::get<double>(summary.at(key)); };
   const char* unit = plan.dim == 2 ? "N/m" : "Pa";
@@ -151,9 +178,8 @@ std::string sentence(const Case& value, const StateTable& table, const Summary& 
         100 * kLeastPressure, kMostInertia, shown_with_error(summary, "sample.strain_at_loss"),
         number("sample.lost_strength") * static_cast<double>(table.realizations()));
   }
-  out += fmt::format("{} {} realization{}.", has("sample.strain_at_loss") ? "" : ";",
-                     table.realizations(), table.realizations() == 1 ? "" : "s");
-  return out;
+  return out + fmt::format("{} {}.", has("sample.strain_at_loss") ? "" : ";",
+                           counted_realizations(table));
 }
 
 // For ParaView: the states in order, with the strain as time.
@@ -261,7 +287,7 @@ StudyResult analyse_sample(const Case& value, const std::vector<std::string>& fi
   add_figures(out.summary, simulated_figures(files));
   const dem::SamplePlan& plan = value.get<dem::SampleSetup>().plan;
   add_figures(out.summary, sample_samples(table, plan));
-  add_figures(out.summary, strength_figures(strength_paths(table, plan)));
+  if (is_loaded(plan)) add_figures(out.summary, strength_figures(strength_paths(table, plan)));
   warn_of_inertia(out);
   out.comparison.realizations = static_cast<int>(files.size());
   out.comparison.judgement.findings = {sentence(value, table, out.summary)};

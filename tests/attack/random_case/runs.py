@@ -146,7 +146,7 @@ class Attack:
         with open(os.path.join(folder, "summary.json")) as file:
             summary = json.load(file)
         for name, value in summary.items():
-            if value in ("nan", "inf", "-inf"):
+            if value is None:
                 floats = name.startswith("dem.unbalanced_") and summary.get("dem.contacts") == 0
                 refused = name.startswith("predicted.") and summary.get("predicted.refusal")
                 if not (MAY_BE_MISSING.fullmatch(name) or floats or refused):

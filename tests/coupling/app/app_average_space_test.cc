@@ -84,11 +84,14 @@ TEST(AverageSpace, GridsCutsAndTables) {
   const Output cuts = program(start + "--cuts 0,0.5 --grid 3x4 -o " + (folder / "c.csv"));
   ASSERT_EQ(cuts.code, 0) << cuts.err;
   const std::string table = testing::read_text(folder / "c.csv");
-  EXPECT_THAT(table,
-              StartsWith("x (m),y (m),z (m),sigma_xx (N/m2),sigma_yy (N/m2),sigma_zz (N/m2),"
-                         "sigma_yz (N/m2),sigma_zy (N/m2),sigma_xz (N/m2),sigma_zx (N/m2),"
-                         "sigma_xy (N/m2),sigma_yx (N/m2),density (kg/m3)\n-0.03,-0.03,-0."));
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 25);
+  EXPECT_THAT(
+      table,
+      HasSubstr(
+          "tension positive\nx (m),y (m),z (m),sigma_xx (N/m2),sigma_yy (N/m2),sigma_zz (N/m2),"
+          "sigma_yz (N/m2),sigma_zy (N/m2),sigma_xz (N/m2),sigma_zx (N/m2),"
+          "sigma_xy (N/m2),sigma_yx (N/m2),density (kg/m3)\n-0.03,-0.03,-0."));
+  EXPECT_THAT(table, StartsWith("# frame layer: load at (0, 0, 0), surface z = 0; "));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 26);
   const Output balance = program("average " + (folder / "s.h5") + " --balance");
   ASSERT_EQ(balance.code, 0) << balance.err;
   EXPECT_THAT(balance.out, HasSubstr("| coarse_graining | lucy | 0.0"));
@@ -113,8 +116,9 @@ TEST(AverageSpace, RingsAboutTheAxisOfAFrame) {
   const Output packing = program(start + "--frame packing --axis 0.02,0.03 --points " + points +
                                  " -o " + (folder / "p.out.csv"));
   ASSERT_EQ(packing.code, 0) << packing.err;
-  EXPECT_THAT(testing::read_text(folder / "p.out.csv"),
-              StartsWith("r (m),z (m),sigma_rr (N/m2),sigma_tt (N/m2),sigma_zz (N/m2),"));
+  EXPECT_THAT(
+      testing::read_text(folder / "p.out.csv"),
+      HasSubstr("tension positive\nr (m),z (m),sigma_rr (N/m2),sigma_tt (N/m2),sigma_zz (N/m2),"));
   expect_refusal(program(start + "--frame packing --axis 0.2,0.03 -o " + (folder / "x.h5")),
                  "--axis: (0.2, 0.03) is outside the packing");
 }

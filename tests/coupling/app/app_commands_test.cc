@@ -87,8 +87,9 @@ TEST(Commands, CasesAreFoundByTheirNames) {
   }
   const Output unknown = program("run fit-ols-point", there);
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("fit-ols-point: no such file, and no shipped case; nearest: "
-                                     "fit-osl-point (grainfield cases)"));
+  EXPECT_THAT(unknown.err,
+              HasSubstr("fit-ols-point: no such file, and no shipped case; did you mean "
+                        "fit-osl-point? (grainfield cases)"));
   EXPECT_THAT(program("run nofile.toml", there).err,
               HasSubstr("nofile.toml: no such file, and no shipped case (grainfield cases)"));
   // A path is meant as it stands.

@@ -36,10 +36,10 @@ std::string truncated(const Folder& folder) {
 
 TEST(Errors, Usage) {
   expect_refusal(program(""), 2, "required");
-  expect_refusal(program("rum x.toml"), 2, "unknown command \"rum\"; nearest: run");
+  expect_refusal(program("rum x.toml"), 2, "unknown command \"rum\"; did you mean run");
   expect_refusal(program("reproduce results -o page.md"), 2, "unknown command \"reproduce\"");
   expect_refusal(program("run"), 2, "run: case is required");
-  expect_refusal(program("keys materiel"), 2, "nearest: material");
+  expect_refusal(program("keys materiel"), 2, "did you mean material");
   expect_refusal(program("run fit-osl-point --checkpoint-seconds -1"), 2,
                  "--checkpoint-seconds: found -1, allowed: 0 to 1e+06");
   expect_refusal(program("keys --sett"), 2, "unknown option \"--sett\"");
@@ -73,7 +73,7 @@ TEST(Errors, CaseFiles) {
     return program("run " + folder.write("x.toml", text) + " -o " + (folder / "out"));
   };
   expect_refusal(run("[material]\nfrction = 1\n"), 2,
-                 "x.toml:2: material.frction: unknown key; nearest: material.friction");
+                 "x.toml:2: material.frction: unknown key; did you mean material.friction");
   expect_refusal(run("[material]\nfriction = \"x\"\n"), 2, "found \"x\" (text), expected a number");
   expect_refusal(run("[material]\nfriction = -1\n"), 2, "found -1, allowed: 0 to 10");
   expect_refusal(run("[material\n"), 2, "x.toml:1: not valid TOML");

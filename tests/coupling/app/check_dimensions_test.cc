@@ -31,8 +31,8 @@ TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
   EXPECT_THAT(complaint(testing::small_case("pile"), {"shape.kind=sphere"}),
               HasSubstr("\"sphere\" is a shape of 3D; the grains of this study are in 2D"));
   // What is no word of any dimension is still told the nearest one.
-  EXPECT_THAT(complaint(layer, {"material.law=hertzz"}), HasSubstr("nearest: "));
-  EXPECT_THAT(complaint(layer, {"material.poison=0.3"}), HasSubstr("unknown key; nearest: "));
+  EXPECT_THAT(complaint(layer, {"material.law=hertzz"}), HasSubstr("did you mean "));
+  EXPECT_THAT(complaint(layer, {"material.poison=0.3"}), HasSubstr("unknown key; did you mean "));
 }
 
 TEST(CheckDimensions, TheProgramEndsWithExitCodeTwo) {

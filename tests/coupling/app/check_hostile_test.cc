@@ -195,7 +195,7 @@ TEST(CheckHostile, LongNamesAndDeepPaths) {
   refused(name + ".toml", "no such file");
   refused(repeated("d/", 3000) + "x.toml", "no such file");
   refused("elastic-layer", "", "GRAINFIELD_CASES=/" + name);
-  refused("elastic-layer --set " + std::string(100'000, 'k') + "=1", "unknown key; nearest: ");
+  refused("elastic-layer --set " + std::string(100'000, 'k') + "=1", "unknown key; did you mean ");
   refused("elastic-layer --set average.kernel=" + std::string(100'000, 'k'),
           "found a text of 100000 characters, allowed: up to 4096");
   refused("elastic-layer --set compare.models=[\\\"" + std::string(4000, 'm') + "\\\"]",

@@ -1,8 +1,10 @@
 // Reading case files: values, overrides, and one clear line for every mistake.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
+#include <sstream>
 
 #include "coupling/case/keys.h"
 #include "coupling/run/averaging_setup.h"
@@ -18,6 +20,8 @@ using ::testing::EndsWith;
 using testing::Folder;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::Output;
+using testing::program;
 
 // What a run keeps for --resume is read again, whatever the title.
 TEST(ReadCase, TextsAreWrittenSoThatTheyAreReadAgain) {
@@ -161,16 +165,17 @@ TEST(ReadCase, AnEmptyVariantIsTheCaseAsItIs) {
 
 TEST(CaseErrors, UnknownNames) {
   EXPECT_EQ(complaint("\n[material]\nfrction = 0.5\n"),
-            "x.toml:3: material.frction: unknown key; nearest: material.friction");
+            "x.toml:3: material.frction: unknown key; did you mean material.friction?");
   EXPECT_EQ(complaint("[materiel]\nfriction = 0.5\n"),
-            "x.toml:2: materiel: unknown section; nearest: material");
-  EXPECT_EQ(complaint("[materiel]\n"), "x.toml:1: materiel: unknown section; nearest: material");
-  EXPECT_EQ(complaint("tittle = \"a\"\n"), "x.toml:1: tittle: unknown key; nearest: title");
+            "x.toml:2: materiel: unknown section; did you mean material?");
+  EXPECT_EQ(complaint("[materiel]\n"),
+            "x.toml:1: materiel: unknown section; did you mean material?");
+  EXPECT_EQ(complaint("tittle = \"a\"\n"), "x.toml:1: tittle: unknown key; did you mean title?");
   EXPECT_EQ(complaint("[variant.\"a.b\"]\n"),
             "x.toml:1: \"a.b\": a name in quotes cannot hold a dot");
   // A key in the wrong section is found where it belongs.
   EXPECT_EQ(complaint("[packing]\nfriction = 0.5\n"),
-            "x.toml:2: packing.friction: unknown key; nearest: material.friction");
+            "x.toml:2: packing.friction: unknown key; did you mean material.friction?");
 }
 
 TEST(CaseErrors, EveryKeyIsFoundFromAMisspelling) {
@@ -182,7 +187,50 @@ TEST(CaseErrors, EveryKeyIsFoundFromAMisspelling) {
     if (wrong == key.name || find_key(key.section + "." + wrong) != nullptr) continue;
     const std::string text =
         key.section.empty() ? wrong + " = 1\n" : "[" + key.section + "]\n" + wrong + " = 1\n";
-    EXPECT_THAT(complaint(text), EndsWith("nearest: " + key.path())) << wrong;
+    EXPECT_THAT(complaint(text), EndsWith("did you mean " + key.path() + "?")) << wrong;
+  }
+}
+
+// Every mistake has its line and its way out, in the order of the file; the quick tables and the
+// command line with it.
+TEST(CaseErrors, AllMistakesOfAFileAtOnce) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", R"(study = "point-load"
+[material]
+fricton = 0.3
+density = "heavy"
+[compare]
+models = ["layr", "flamant", "flat"]
+[model.flat]
+name = "layer"
+nuu = 0.2
+base = "ruff"
+[source]
+grains = 7
+[quick.ensemble]
+realisations = 2
+)");
+  const std::vector<std::pair<int, std::string>> expected{
+      {3, "material.fricton: unknown key; did you mean material.friction"},
+      {4, "material.density: found \"heavy\" (text), expected a number"},
+      {6, "compare.models: no model 'layr'; did you mean 'layer'?"},
+      {9, "model.flat.nuu: "},
+      {10, "model.flat.base: "},
+      {12, "source.grains: has no meaning for study"},
+      {14, "ensemble.realisations: unknown key; did you mean ensemble.realizations"}};
+  for (const std::string& command : {"check " + file, "run " + file + " -o " + (folder / "out")}) {
+    const Output out = program(command + " --set material.frction=0.1");
+    EXPECT_EQ(out.code, 2);
+    std::istringstream lines(out.err);
+    std::string line;
+    for (const auto& [number, words] : expected) {
+      std::getline(lines, line);
+      EXPECT_THAT(line,
+                  ::testing::StartsWith(fmt::format("grainfield: {}:{}: {}", file, number, words)));
+    }
+    std::getline(lines, line);
+    EXPECT_THAT(line, HasSubstr("--set: material.frction: unknown key; did you mean "));
+    EXPECT_FALSE(std::getline(lines, line)) << line;
   }
 }
 
@@ -213,8 +261,9 @@ TEST(CaseErrors, OutOfRange) {
             "x.toml:2: material.young: found nan, allowed: 0.001 to 1e+15");
   EXPECT_EQ(complaint("[material]\nyoung = inf\n"),
             "x.toml:2: material.young: found inf, allowed: 0.001 to 1e+15");
-  EXPECT_EQ(complaint("[packing]\nfloor = \"rouhg\"\n"),
-            "x.toml:2: packing.floor: found \"rouhg\", allowed: smooth | rough; nearest: rough");
+  EXPECT_EQ(
+      complaint("[packing]\nfloor = \"rouhg\"\n"),
+      "x.toml:2: packing.floor: found \"rouhg\", allowed: smooth | rough; did you mean rough?");
   EXPECT_EQ(complaint("[average]\ndepths = [0.5, 1.5]\n"),
             "x.toml:2: average.depths: found 1.5, allowed: 1e-06 to 1");
   EXPECT_EQ(complaint("[average]\ndepths = []\n"),
@@ -247,7 +296,7 @@ TEST(CaseErrors, Piles) {
   EXPECT_EQ(pile(""), "");
   EXPECT_THAT(pile("[shape]\nkind = \"disc\"\n"),
               HasSubstr("x.toml:3: shape.kind: found \"disc\", allowed: disk | rand1 | regular | "
-                        "irregular | outline; nearest: disk"));
+                        "irregular | outline; did you mean disk"));
   EXPECT_THAT(pile("[shape]\ncorners_min = 2\n"),
               HasSubstr("x.toml:3: shape.corners_min: found 2, allowed: 3 to 64"));
   EXPECT_THAT(pile("[shape]\ncorners_min = 9\n"),
@@ -256,7 +305,7 @@ TEST(CaseErrors, Piles) {
               HasSubstr("shape.polydispersity: found 1, allowed: 0 to 0.99"));
   EXPECT_THAT(pile("[shape]\nkind = \"outline\"\noutline = [0.0, 0.0, 1.0, 0.0]\n"),
               HasSubstr("x.toml:4: shape.outline"));
-  EXPECT_THAT(pile("[source]\nkind = \"lines\"\n"), HasSubstr("nearest: line"));
+  EXPECT_THAT(pile("[source]\nkind = \"lines\"\n"), HasSubstr("did you mean line"));
   EXPECT_THAT(pile("[source]\ngrains = 2\n"), HasSubstr("source.grains: found 2, allowed: 3 to"));
   EXPECT_THAT(pile("[source]\ninterval = 0.0\n"),
               HasSubstr("source.interval: found 0, allowed: 1e-06 to 1e+06"));
@@ -266,10 +315,10 @@ TEST(CaseErrors, Piles) {
   EXPECT_THAT(pile("[sleep]\non = 1\n"),
               HasSubstr("sleep.on: found 1 (integer), expected a boolean, written true or false"));
   EXPECT_THAT(pile("[floor]\nfriction = 0.5\n"),
-              HasSubstr("floor.friction: unknown key; nearest: material.floor_friction"));
+              HasSubstr("floor.friction: unknown key; did you mean material.floor_friction"));
   EXPECT_THAT(pile("[change]\ngravity = [0.0]\n"),
               HasSubstr("change.gravity: found 0, allowed: 1e-06 to 1e+06"));
-  EXPECT_THAT(pile("[change]\nmethod = \"newtons\"\n"), HasSubstr("nearest: newton"));
+  EXPECT_THAT(pile("[change]\nmethod = \"newtons\"\n"), HasSubstr("did you mean newton"));
   EXPECT_THAT(pile("[heap]\nheights = [1.5]\n"),
               HasSubstr("heap.heights: found 1.5, allowed: 1e-06 to 1"));
   EXPECT_THAT(pile("[heap]\nheights = []\n"), HasSubstr("found an empty list"));
@@ -342,7 +391,7 @@ TEST(CaseErrors, Models) {
 
 TEST(CaseErrors, Sweeps) {
   EXPECT_THAT(complaint("[sweep]\nkey = \"material.frction\"\nvalues = [1]\n"),
-              HasSubstr("x.toml:2: sweep.key: material.frction: unknown key; nearest: "
+              HasSubstr("x.toml:2: sweep.key: material.frction: unknown key; did you mean "
                         "material.friction"));
   EXPECT_THAT(complaint("[sweep]\nkey = \"material.friction\"\nvalues = [0.1, -1]\n"),
               HasSubstr("x.toml:3: sweep.values: material.friction: found -1, allowed: 0 to 10"));
@@ -360,13 +409,13 @@ TEST(CaseErrors, TomlSyntaxAndDuplicates) {
 
 TEST(CaseErrors, QuickIsCheckedEvenWhenUnused) {
   EXPECT_EQ(complaint("[quick.material]\nfrction = 0.5\n"),
-            "x.toml:2: material.frction: unknown key; nearest: material.friction");
+            "x.toml:2: material.frction: unknown key; did you mean material.friction?");
   EXPECT_THAT(complaint("quick = 1\n"), HasSubstr("x.toml:1: quick: found a value"));
 }
 
 TEST(CaseErrors, Overrides) {
   EXPECT_EQ(complaint("", {"material.frction=1"}),
-            "--set: material.frction: unknown key; nearest: material.friction");
+            "--set: material.frction: unknown key; did you mean material.friction?");
   EXPECT_EQ(complaint("", {"material.friction=-1"}),
             "--set: material.friction: found -1, allowed: 0 to 10");
   EXPECT_EQ(complaint("", {"material.friction=much"}),

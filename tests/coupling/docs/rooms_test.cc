@@ -34,7 +34,7 @@ const std::vector<Room>& rooms() {
        {"averaging", "case", "compare", "heap", "import", "models", "output", "report", "run"}},
       {"fit",
        {"averaging", "case", "compare", "heap", "judge", "models", "observe", "output", "report",
-        "run", "statistics"}},
+        "run", "statistics", "structure"}},
       // Each study by itself, and what it takes from others of its kind.
       {"studies/point_load",
        {"averaging", "case", "compare", "elastic_constants", "models", "observe", "output",

@@ -154,9 +154,10 @@ TEST(ExportForms, AMeasuredFieldBecomesProfilesWithBars) {
   EXPECT_THAT(read_text(folder / "png/base.png"), StartsWith("\x89PNG"));
   // One realization with errors of its own.
   exported(field + " --to csv -o " + (folder / "csv"));
-  EXPECT_THAT(read_text(folder / "csv/base.csv"),
-              StartsWith("x (m),y (m),sigma_yy (N/m),sigma_yy_error (N/m),sigma_xy (N/m),"
-                         "sigma_xy_error (N/m)\n"));
+  EXPECT_THAT(
+      read_text(folder / "csv/base.csv"),
+      HasSubstr("tension positive\nx (m),y (m),sigma_yy (N/m),sigma_yy_error (N/m),sigma_xy (N/m),"
+                "sigma_xy_error (N/m)\n"));
 }
 
 TEST(ExportForms, AFieldThatIsNoPictureIsLeftOut) {
@@ -301,7 +302,8 @@ TEST(ExportForms, SaysWhatOfAnEarlierCommandIsGone) {
 TEST(ExportForms, WhatIsNoFormOrNoNameIsSaid) {
   EXPECT_THAT(
       refusal(kLayer + " --to vtk"),
-      HasSubstr("--to: found \"vtk\", allowed: lammps, vtu, csv, html, svg, png; nearest: vtu"));
+      HasSubstr(
+          "--to: found \"vtk\", allowed: lammps, vtu, csv, html, svg, png; did you mean vtu"));
   for (const std::string option : {"--quick", "--copies 2 2", "--set material.young=1"}) {
     EXPECT_THAT(refusal(kLayer + " --to csv " + option),
                 HasSubstr(option.substr(0, option.find(' ')) +

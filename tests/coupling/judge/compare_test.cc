@@ -341,7 +341,8 @@ TEST(Compare, OneFamilyHasNoPosition) {
   const Comparison c = compared(s);
   EXPECT_TRUE(std::isnan(c.judgement.position.value));
   EXPECT_THAT(said(c),
-              testing::StartsWith("smooth layer and rough layer cannot be distinguished (6 "));
+              testing::StartsWith("The grains support smooth layer (6 realizations, 95 %); 1 more "
+                                  "cannot be distinguished, but does not agree."));
 }
 
 TEST(Compare, SummaryHasTheAgreedKeys) {

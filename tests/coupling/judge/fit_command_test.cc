@@ -274,7 +274,9 @@ TEST(FitCommand, RefusesWithOneLine) {
   solid.dim = 3;
   for (auto& g : solid.grains) g.moments.setConstant(1e-6);
   dem::write_snapshot(folder / "solid.h5", "/pile", solid);
-  expect_refusal(program("fit " + (folder / "solid.h5") + out), "is 3D");
+  const Output solid_fit = program("fit " + (folder / "solid.h5") + out);
+  expect_refusal(solid_fit, "is 3D");
+  EXPECT_THAT(solid_fit.err, HasSubstr("`grainfield compare FIELD.h5 --model cone_osl"));
 
   dem::write_snapshot(folder / "steps.h5", "/step_1", osl_heap(1));
   dem::write_snapshot(folder / "steps.h5", "/step_2", osl_heap(1));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "continuum/closed/osl.h"
@@ -194,6 +195,77 @@ TEST(FitDoubts, HeapsOfUnlikeHeightAreNamed) {
       program("average " + file + " --frame heap --grid 9x5 -o " + (folder / "field.h5"));
   ASSERT_EQ(average.code, 0) << average.err;
   EXPECT_THAT(average.err, HasSubstr("m high in one average"));
+}
+
+// 400 disks, each on the floor: what the missing twentieth carries is beyond what unbalanced forces
+// make by chance.
+TEST(FitDoubts, AShareOfTheWeightIsJudgedByItsOwnError) {
+  const auto warned = [](int missing, double noise) {
+    dem::Snapshot s;
+    s.gravity = {0, -10, 0};
+    dem::Wall floor;
+    floor.name = "floor";
+    s.walls = {floor};
+    for (int k = 0; k < 400; ++k) {
+      dem::Grain grain;
+      grain.id = k;
+      grain.position = {2.5 * k, 1, 0};
+      grain.radius = grain.mass = grain.volume = grain.inertia = 1;
+      s.grains.push_back(grain);
+      if (k % 400 < missing) continue;
+      dem::Contact c;
+      c.i = k;
+      c.j = -1;
+      c.point = {2.5 * k, 0, 0};
+      c.normal = {0, -1, 0};
+      c.normal_force = 10 * (1 + (k % 2 == 0 ? noise : -noise));
+      c.force = {0, c.normal_force, 0};
+      s.contacts.push_back(c);
+    }
+    std::string out;
+    for (const std::string& text : warnings_of(check_packing(s))) {
+      if (text.find("of the weight") != std::string::npos) out += text;
+    }
+    return out;
+  };
+  EXPECT_EQ(warned(0, 0), "");
+  EXPECT_EQ(warned(0, 0.3), "");
+  EXPECT_EQ(warned(6, 0), "");  // 1.5 %
+  // sqrt(20) of 400 weights.
+  EXPECT_THAT(warned(20, 0), HasSubstr("walls and fixed grains carry 0.95 +- 0.011 of the weight: "
+                                       "contacts with the floor are missing"));
+  // The same share within the error of forces that are as far out of balance.
+  EXPECT_EQ(warned(20, 0.5), "");
+  EXPECT_THAT(warned(60, 0), HasSubstr("carry 0.85 of the weight: "));
+}
+
+TEST(FitDoubts, OneComponentOfWrongSignIsSeen) {
+  const Folder folder;
+  const auto imported = [&](const std::function<void(dem::Contact&)>& change) {
+    dem::Snapshot packing = heap(1);
+    for (dem::Contact& c : packing.contacts) change(c);
+    const Output out =
+        program("import --from csv " + csv_files(folder, packing) + " -o " + (folder / "one.h5"));
+    EXPECT_EQ(out.code, 0) << out.err;
+    return out.err;
+  };
+  EXPECT_THAT(imported([](dem::Contact&) {}), Not(HasSubstr("pull")));
+  EXPECT_THAT(
+      imported([](dem::Contact& c) { c.force.x() *= -1; }),
+      ::testing::ContainsRegex("[0-9]+ of [0-9]+ contacts \\([0-9]+ %\\) pull, their normal "
+                               "force is tension: turn the sign of fx alone, which leaves "
+                               "[0-9]+ that pull"));
+  const Output fit = program("fit " + (folder / "one.h5") + kModels + (folder / "fit"));
+  EXPECT_THAT(fit.out, HasSubstr("turn the sign of fx alone"));
+  EXPECT_THAT(imported([](dem::Contact& c) { c.force.y() *= -1; }),
+              HasSubstr("turn the sign of fy alone"));
+  EXPECT_THAT(imported([](dem::Contact& c) { c.force *= -1; }), HasSubstr("--flip-forces"));
+  // Some that pull, whatever component is turned: grains may stick together.
+  int count = 0;
+  EXPECT_THAT(imported([&](dem::Contact& c) {
+                if (c.j >= 0 && ++count % 10 == 0) c.force *= -1;
+              }),
+              HasSubstr("unless the grains stick together (cohesion, liquid bridges)"));
 }
 
 TEST(FitDoubts, TheImportsWarningsAreRepeated) {

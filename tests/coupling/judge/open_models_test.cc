@@ -121,7 +121,7 @@ TEST(OpenModels, EveryRangeOfASearchIsAllowed) {
 TEST(OpenModels, OfHeapsAreRefused) {
   for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
            {"osl:phi_deg=free", "model osl: phi_deg cannot be free; allowed: eta, mu, K, tau_deg"},
-           {"osl:muu=free", "muu cannot be free; allowed: eta, mu, K, tau_deg; nearest: mu"},
+           {"osl:muu=free", "muu cannot be free; allowed: eta, mu, K, tau_deg; did you mean mu"},
            {"osl:mu=steep", "mu = 'steep' is not a number"},
            {"hydrostatic:level=free", "level cannot be free; allowed: none"},
            {"osl:rho_g=2", "rho_g = 2: the fit takes it from the data; leave it out"},

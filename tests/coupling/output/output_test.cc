@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <sstream>
 
@@ -466,15 +467,26 @@ TEST_F(Output, ProfilesHaveUnitsDifferencesAndNormalisation) {
 }
 
 TEST_F(Output, SummaryComesBack) {
-  const Summary s{
-      {"a.b", 1.0 / 3}, {"n", std::int64_t{7}}, {"who", std::string("flamant")}, {"x", NAN}};
+  const Summary s{{"a.b", 1.0 / 3}, {"n", std::int64_t{7}}, {"who", std::string("flamant")},
+                  {"x", NAN},       {"more", HUGE_VAL},     {"less", -HUGE_VAL}};
   write_summary(at("summary.json"), s);
-  EXPECT_THAT(text(at("summary.json")), HasSubstr("\"x\": \"nan\""));
+  // JSON has no word for them: a text would be taken for a name.
+  const auto json = nlohmann::json::parse(text(at("summary.json")));
+  for (const char* key : {"x", "more", "less"}) EXPECT_TRUE(json[key].is_null()) << key;
   const Summary back = read_summary(at("summary.json"));
   EXPECT_EQ(std::get<double>(back.at("a.b")), 1.0 / 3);
   EXPECT_EQ(std::get<std::int64_t>(back.at("n")), 7);
   EXPECT_EQ(std::get<std::string>(back.at("who")), "flamant");
   EXPECT_TRUE(std::isnan(std::get<double>(back.at("x"))));
+  EXPECT_TRUE(std::isnan(std::get<double>(back.at("less"))));
+}
+
+TEST_F(Output, SummariesOfVersion09ComeBack) {
+  write_text_file(at("summary.json"), R"({"a": "nan", "b": "inf", "c": "-inf"})");
+  const Summary back = read_summary(at("summary.json"));
+  EXPECT_TRUE(std::isnan(std::get<double>(back.at("a"))));
+  EXPECT_EQ(std::get<double>(back.at("b")), HUGE_VAL);
+  EXPECT_EQ(std::get<double>(back.at("c")), -HUGE_VAL);
 }
 
 TEST_F(Output, SummaryReaderNamesWhatIsWrong) {

@@ -274,6 +274,27 @@ TEST_F(ReportTest, CellsOfMapsEndAtTheFrame) {
               HasSubstr("set xrange [-0.25:1.25]\nset yrange [-0.5:1.5]\n"));
 }
 
+// However many maps stand above each other, the scale is as high as one of them.
+TEST_F(ReportTest, TheColourBoxIsAsHighAsAMap) {
+  Map map;
+  map.nx = map.ny = 2;
+  map.points.resize(4, 2);
+  map.points << 0, 0, 2, 0, 0, 1, 2, 1;
+  map.value = Eigen::VectorXd::Ones(4);
+  for (const std::size_t count : {1, 3}) {
+    const Picture p = maps("maps", "x", "y", "v", std::vector<Map>(count, map));
+    const auto number = [&](const std::string& before, std::size_t from = 0) {
+      const std::size_t at = p.program.find(before, from);
+      EXPECT_NE(at, std::string::npos) << before;
+      return std::stod(p.program.substr(at + before.size()));
+    };
+    const double top = number("set tmargin at screen "), bottom = number("set bmargin at screen ");
+    const std::size_t box = p.program.find("set colorbox user origin screen ");
+    EXPECT_NEAR(number("size screen 0.018, screen ", box), top - bottom, 2e-4) << count;
+    EXPECT_NEAR(number(", screen ", box), bottom, 2e-4) << count;
+  }
+}
+
 TEST_F(ReportTest, BrokenAndEndlessProgramsAreReported) {
   need_gnuplot();
   const std::string gnuplot = *find_gnuplot();

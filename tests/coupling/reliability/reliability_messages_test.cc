@@ -40,7 +40,7 @@ TEST_F(MessagesTest, ResumingWhereNothingHasBegun) {
   // A slip of the pen.
   fs::create_directories(folder_ / "friction/checkpoint");
   refused(run({"-o", folder_ / "frction", "--resume"}),
-          HasSubstr("found no such folder; nearest with an unfinished run: friction; leave"));
+          HasSubstr("found no such folder; an unfinished run is in friction; leave"));
   EXPECT_FALSE(fs::exists(folder_ / "frction"));
   // Stopped before its first checkpoint: then it starts anew.
   fs::create_directory(out_ + "/checkpoint");

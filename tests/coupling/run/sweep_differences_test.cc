@@ -143,8 +143,8 @@ TEST(SweepDifferences, InOneSentence) {
           sweep_differences(kColumns, {member(30, 0.5, 0.1, 0.02), member(30.5, 0.6, 0.1, 0.03)}),
           names),
       HasSubstr("Nothing differs at 5 % (Welch's t over realizations, Holm's correction for "
-                "2 comparisons); nearest to it: repose (deg) of friction = 0.9 against "
-                "friction = 0.3, +0.5 +- 0.78, p = 0.5"));
+                "2 comparisons). The least p is that of repose (deg) of friction = 0.9 against "
+                "friction = 0.3: +0.5 +- 0.78, p = 0.5"));
   EXPECT_EQ(differences_sentence({}, names), "");
 }
 

@@ -159,9 +159,9 @@ TEST(ToyStudy, ItsKeysAreCheckedAndDocumented) {
     return "";
   };
   EXPECT_EQ(refused("stack.width=2"), "--set: stack.width: found 2, allowed: 3 to 100");
-  EXPECT_THAT(refused("stack.widht=4"), HasSubstr("unknown key; nearest: stack.width"));
+  EXPECT_THAT(refused("stack.widht=4"), HasSubstr("unknown key; did you mean stack.width"));
   EXPECT_THAT(refused("lattice.gap=0"), HasSubstr("has no meaning for study = \"toy-stack\""));
-  EXPECT_THAT(refused("study=\"toy-stak\""), HasSubstr("nearest: toy-stack"));
+  EXPECT_THAT(refused("study=\"toy-stak\""), HasSubstr("did you mean toy-stack"));
   EXPECT_THAT(keys_markdown(), HasSubstr("disks in the lowest row"));
   EXPECT_THAT(keys_text("stack"), HasSubstr("Studies: toy-stack."));
   EXPECT_THAT(summary_keys_markdown(), HasSubstr("| `stack.carried` | text | yes \\| no |"));

@@ -99,7 +99,7 @@ TEST(FieldsRun, FinishedPilesGiveWhatPouredOnesGive) {
   EXPECT_EQ(fewer.code, 0) << fewer.err;
   EXPECT_THAT(fewer.err, HasSubstr("warning: grains.files: 2 realizations, of which "
                                    "ensemble.realizations = 1 takes the first"));
-  EXPECT_THAT(refusal("'fields.topics=[\"fabrik\"]'"), HasSubstr("nearest: fabric"));
+  EXPECT_THAT(refusal("'fields.topics=[\"fabrik\"]'"), HasSubstr("did you mean fabric"));
   EXPECT_THAT(refusal("'compare.models=[\"osl\"]'"), HasSubstr("compare.models: has no meaning"));
 }
 

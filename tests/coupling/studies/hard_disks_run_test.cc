@@ -162,7 +162,7 @@ TEST(HardDisksCheck, RefusesWhatRunWould) {
               HasSubstr("x.toml:4: gas.fractions: found 0.30000001 beside 0.3"));
   EXPECT_THAT(refusal("collisions = 1e8\n"),
               HasSubstr("x.toml:4: gas.collisions: found 1e+08, 1.5e+12 collisions in all"));
-  EXPECT_THAT(refusal("restituton = 0.5\n"), HasSubstr("nearest: gas.restitution"));
+  EXPECT_THAT(refusal("restituton = 0.5\n"), HasSubstr("did you mean gas.restitution"));
   const Folder folder;
   const Output output = program(
       "check " + folder.write("x.toml", gas_case("shape = \"sphere\"\nfractions = [0.75]\n")));

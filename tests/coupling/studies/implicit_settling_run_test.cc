@@ -106,7 +106,7 @@ TEST(ImplicitSettlingCheck, RefusesWhatRunWould) {
   EXPECT_THAT(refusal("well = 0\n"),
               HasSubstr("x.toml:4: settling.well: found 0 with settling.static_friction 1, "
                         "allowed: above 0"));
-  EXPECT_THAT(refusal("frictoin = \"none\"\n"), HasSubstr("nearest: settling.friction"));
+  EXPECT_THAT(refusal("frictoin = \"none\"\n"), HasSubstr("did you mean settling.friction"));
   EXPECT_THAT(complaint(pile_case("", "slope_deg = 70\n")),
               HasSubstr("lattice.slope_deg: found 70"));
   const Folder folder;

@@ -48,14 +48,18 @@ TEST(LayerVerdictRun, FromCaseToReport) {
   EXPECT_EQ(again.variants[1].keys, std::vector<std::string>{"packing.jitter=0.04"});
   EXPECT_EQ(write_case(again), read_text(folder / "out/case.toml"));
 
-  // The same layers from files: the same fits.
+  // The same layers from files: the same fits, also with other kernels beside its own.
   const std::string from =
       folder.write("from.toml", tiny_verdict("[variant.uneven.grains]\nfiles = [\"" +
                                              (folder / "out/uneven/snapshots.h5") + "\"]\n"));
   const Output second =
-      program("run " + from + " -o " + (folder / "from") + " --set sweep.values=[\\\"uneven\\\"]");
+      program("run " + from + " -o " + (folder / "from") +
+              " --set sweep.values=[\\\"uneven\\\"] --set 'verdict.kernel=[1, 40]'");
   ASSERT_EQ(second.code, 0) << second.err;
   EXPECT_EQ(read_text(folder / "from/uneven/fits.csv"), read_text(folder / "out/uneven/fits.csv"));
+  const std::string verdict = read_text(folder / "from/uneven/verdict.md");
+  EXPECT_THAT(verdict, HasSubstr("The verdict is the same at kernel widths of 1 diameters."));
+  EXPECT_THAT(verdict, HasSubstr("Kernel widths of 40 diameters leave too few values."));
 }
 
 TEST(LayerVerdictRun, NoSpreadNoVerdict) {
@@ -72,7 +76,7 @@ TEST(LayerVerdictRun, NoSpreadNoVerdict) {
 TEST(LayerVerdictRun, MistakesAreNamed) {
   const Folder folder;
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.packing]\njiter = 0.1\n")),
-              HasSubstr("packing.jiter: unknown key; nearest: packing.jitter"));
+              HasSubstr("packing.jiter: unknown key; did you mean packing.jitter"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.packing]\njitter = 2\n")),
               HasSubstr("packing.jitter: found 2"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[variant.third.sweep]\nkey = \"x\"\n")),
@@ -80,7 +84,7 @@ TEST(LayerVerdictRun, MistakesAreNamed) {
   std::string text = tiny_verdict();
   text.replace(text.find("\"uneven\"]"), 9, "\"unevn\"]");
   EXPECT_THAT(refusal(folder, text),
-              HasSubstr("found \"unevn\", allowed: even, uneven; nearest: uneven"));
+              HasSubstr("found \"unevn\", allowed: even, uneven; did you mean uneven"));
   EXPECT_THAT(refusal(folder, tiny_verdict("[verdict.models]\n")), HasSubstr("verdict"));
   text = tiny_verdict();
   text.replace(text.find("\"flamant\""), 9, "\"flamand\"");

@@ -319,7 +319,7 @@ TEST(PairCheck, RefusesWhatRunWould) {
               HasSubstr("x.toml:3: pair.speeds: found 10000, allowed: at most "));
   EXPECT_THAT(refusal("offset = 1.9\nangles = [-80, 80]\n"),
               HasSubstr("x.toml:4: pair.angles: found 80: the bodies move apart"));
-  EXPECT_THAT(refusal("spedes = [1]\n"), HasSubstr("nearest: pair.speed"));
+  EXPECT_THAT(refusal("spedes = [1]\n"), HasSubstr("did you mean pair.speed"));
 
   const Folder folder;
   const Output output =

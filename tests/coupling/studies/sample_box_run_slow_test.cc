@@ -257,11 +257,15 @@ TEST(SampleBox, IsFilledOnceForSeveralLaws) {
   const std::string loaded =
       "filling = \"dropped\"\ncompress_to = \"none\"\ndeformation = \"uniaxial\"\nstrain = "
       "0.02\nrecords = 2\n";
-  run(folder,
-      box("filling = \"dropped\"\ndrop_damping = 25\ncompress_to = \"none\"\n"
-          "deformation = \"uniaxial\"\nstrain = 1e-6\nrecords = 1\n",
-          "friction = 0.3\nwall_friction = 0.3"),
-      "--set output.vtu=false --set output.report=false");
+  const Summary filled =
+      run(folder,
+          box("filling = \"dropped\"\ndrop_damping = 25\ncompress_to = \"none\"\n"
+              "deformation = \"uniaxial\"\nstrain = 1e-6\nrecords = 1\n",
+              "friction = 0.3\nwall_friction = 0.3"),
+          "--set output.vtu=false --set output.report=false");
+  EXPECT_THAT(std::get<std::string>(filled.at("verdict.sentence")),
+              ::testing::StartsWith("A packing "));
+  EXPECT_EQ(filled.count("sample.lost_strength"), 0U);
   const std::string files = "--set 'grains.files=[\"" + (folder / "out/snapshots.h5") + "\"]'";
   const auto load = [&](const std::string& law, const std::string& to) {
     const Output output = program("run " + folder.write("y.toml", box(loaded)) + " -o " +
@@ -288,7 +292,7 @@ TEST(SampleBox, MistakesAreNamed) {
   says({"sample.unload=0.02"},
        "sample.unload: found \"0.02\", allowed: none | strain | stress; a number goes into "
        "sample.unload_strain, sample.unload_stress, sample.unload_records");
-  says({"rve.radius=2"}, "rve.radius: unknown key; nearest: rve.radii");
+  says({"rve.radius=2"}, "rve.radius: unknown key; did you mean rve.radii");
   says({"rve.radii=[2, 9]"}, "rve.radii: found 9, allowed for 110 grains: up to ");
   says({"block.law=elastic"}, "block.law: found \"elastic\", allowed with sample.probe = \"none\"");
   says(

@@ -258,6 +258,23 @@ TEST(SampleRun, CompressionHasNoPeak) {
   EXPECT_THAT(sentence, ::testing::Not(HasSubstr("rises")));
 }
 
+// What is filled and not loaded has no strength to lose and no modulus.
+TEST(SampleRun, APackingThatIsNotLoadedIsCalledSo) {
+  const Folder folder;
+  std::string text = kDisks;
+  text.replace(text.find("strain = 0.04"), 13, "strain = 1e-6");
+  text.replace(text.find("records = 4"), 11, "records = 1");
+  const Ran ran = run(folder, text.c_str());
+  const std::string sentence = std::get<std::string>(ran.summary.at("verdict.sentence"));
+  EXPECT_THAT(sentence, ::testing::StartsWith("A packing at rest, not loaded: solid fraction 0."));
+  EXPECT_THAT(sentence, ::testing::EndsWith(" N/m, 2 realizations."));
+  for (const char* key : {"sample.lost_strength", "sample.peak_stress_ratio",
+                          "sample.secant_modulus", "strength.peak_friction_angle_deg"}) {
+    EXPECT_EQ(ran.summary.count(key), 0U) << key;
+  }
+  EXPECT_GT(number(ran.summary, "sample.initial_pressure"), 0);
+}
+
 TEST(SampleRun, DisksInACell) {
   const Folder folder;
   const Ran ran = run(folder, kDisks);
@@ -392,7 +409,7 @@ TEST(SampleRun, Mistakes) {
   says(kDisks, {"sample.grains=4"}, "sample.grains: found 4");
   says(kDisks, {"sample.records=0"}, "sample.records: found 0, allowed: 1 to 999");
   says(kDisks, {"sample.dim=4"}, "sample.dim: found 4, allowed: 2 to 3");
-  says(kDisks, {"sample.boundry=walls"}, "unknown key; nearest: sample.boundary");
+  says(kDisks, {"sample.boundry=walls"}, "unknown key; did you mean sample.boundary");
   says(kDisks, {"sample.shape=rand1", "sample.corners_min=9"}, "sample.corners_max: found 8");
   says(kDisks,
        {"material.rolling_friction=0.1", "material.rolling_stiffness=1e6", "sample.shape=rand1",

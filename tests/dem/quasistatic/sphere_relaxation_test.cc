@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dem/engine/engine.h"
+#include "dem/quasistatic/block_matrix.h"
 #include "dem/quasistatic/linear_solver.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/quasistatic/sphere_network.h"
@@ -116,8 +117,7 @@ TEST(SphereRelaxation, BothLinearSolversAgree) {
   EXPECT_LT((matrix * direct - rhs).norm(), 1e-9 * rhs.norm());
   EXPECT_LT((matrix * iterated - rhs).norm(), 2 * kLinearTolerance * rhs.norm());
 
-  // What is kept of one matrix serves the next, and is made anew for one that it does not serve:
-  // of other values, of another pattern, of another size.
+  // Then matrices of other values, of another size, of blocks on the diagonal alone.
   const Eigen::SparseMatrix<double> first = matrix;
   const auto expect_solved = [&](const Eigen::SparseMatrix<double>& next) {
     const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(next.rows(), -1, 2);
@@ -134,8 +134,8 @@ TEST(SphereRelaxation, BothLinearSolversAgree) {
   expect_solved(matrix);
   matrix = matrix.block(0, 0, 60, 60);
   expect_solved(matrix);
-  matrix.setIdentity();
-  matrix *= -3;
+  lay_out_blocks(10, 6, {}, matrix);
+  matrix.diagonal().setConstant(-3);
   expect_solved(matrix);
   expect_solved(first);
 }
